@@ -1,11 +1,11 @@
-//! How much light rough surfaces give back in all directions together, as tables.
+//! Directional albedo of rough surfaces, as tables.
 //!
-//! One reflection off a rough surface loses what would have been reflected a second time. Dividing
-//! by these tables gives it back, so that a surface that absorbs nothing stays white. Source:
-//! Turquin, *Practical multiple scattering compensation for microfacet models*, 2019.
+//! A single reflection off a rough surface loses the light that would be reflected a second time.
+//! Dividing by these tables restores it, so that a lossless surface stays white. Source: Turquin,
+//! *Practical multiple scattering compensation for microfacet models*, 2019.
 //!
-//! Tables are worked out by all threads, for the materials that ask for them, as a world is
-//! compiled ([`super::Tables::prepare`]); for others at their first use.
+//! [`super::Tables::prepare`] computes the tables of a world's materials with all threads when the
+//! world is compiled. Other tables are computed at first use.
 
 mod anisotropic;
 
@@ -16,25 +16,25 @@ use crate::spectrum::Spectrum;
 use rayon::prelude::*;
 use std::sync::OnceLock;
 
-/// Rows and columns of a table.
+/// Number of rows and of columns of a table.
 const SIZE: usize = 32;
 
-/// Points of each integral.
+/// Number of points of each integral.
 const POINTS: u32 = 1024;
 
-/// A function of a cosine and a roughness, both from 0 to 1.
+/// Table of a function of a cosine and a roughness, both in [0, 1].
 #[derive(Clone, Debug, PartialEq)]
 struct Table(Vec<f32>);
 
 impl Table {
     fn new(value: impl Fn(f32, f32) -> f32 + Sync) -> Self {
         let step = |i: usize| i as f32 / (SIZE - 1) as f32;
-        // Cosines are closer together towards grazing directions, where the functions change most.
+        // Place more cosines near grazing directions, where the functions change most.
         let entry = |i: usize| value((step(i % SIZE) * step(i % SIZE)).max(1e-4), step(i / SIZE));
         Table((0..SIZE * SIZE).into_par_iter().map(entry).collect())
     }
 
-    /// Linear between the entries.
+    /// Value at a cosine and a roughness, interpolated linearly.
     fn at(&self, cosine: f32, roughness: f32) -> f32 {
         let ((i, a), (j, b)) = (place(cosine.max(0.0).sqrt()), place(roughness));
         let row = |j: usize| self.0[j * SIZE + i] * (1.0 - a) + self.0[j * SIZE + i + 1] * a;
@@ -42,19 +42,19 @@ impl Table {
     }
 }
 
-/// The entry of a table below a number from 0 to 1, and how far that is on the way to the next.
+/// Index of the table entry below `x` in [0, 1], and the fraction towards the next entry.
 fn place(x: f32) -> (usize, f32) {
     place_among(x, SIZE)
 }
 
-/// The same of a table of any size.
+/// Index and fraction as in [`place`], for a table of `size` entries.
 fn place_among(x: f32, size: usize) -> (usize, f32) {
     let x = x.clamp(0.0, 1.0) * (size - 1) as f32;
     let i = (x as usize).min(size - 2);
     (i, x - i as f32)
 }
 
-/// The mean of a function over all directions above by their cosine.
+/// Cosine-weighted mean of `value` over the hemisphere.
 fn mean_by_cosine(value: impl Fn(f32) -> f32) -> f32 {
     const STEPS: usize = 512;
     let at = |i: usize| (i as f32 + 0.5) / STEPS as f32;
@@ -62,10 +62,10 @@ fn mean_by_cosine(value: impl Fn(f32) -> f32) -> f32 {
     (sum / STEPS as f64) as f32
 }
 
-/// What is worked out by several threads when it is first asked for.
+/// Returns the value of `cell`, computing it with `make` at first use.
 ///
-/// Nothing is locked meanwhile: a thread that waits for others may take up other work, which asks
-/// for the same and would wait for itself. All that work it out find the same.
+/// Holds no lock while `make` runs: a rayon thread that waits may steal work that needs this same
+/// value, and would deadlock. Concurrent callers all compute the same value.
 fn once<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
     cell.get().unwrap_or_else(|| {
         let made = make();
@@ -73,11 +73,11 @@ fn once<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
     })
 }
 
-/// Points that fill the unit square evenly: the sequence R2.
+/// Evenly distributed points of the unit square: the R2 sequence.
 ///
 /// Source: Martin Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018.
 fn points() -> impl Iterator<Item = Vec2> {
-    // Steps of 1/p and 1/p^2 in units of 2^-32, p being the root of p^3 = p + 1.
+    // Steps are 1/p and 1/p^2 in units of 2^-32, where p is the root of p^3 = p + 1.
     let unit = |i: u32, step: u32| ((i.wrapping_mul(step) >> 8) as f32 + 0.5) / 16_777_216.0;
     (0..POINTS).map(move |i| Vec2::new(unit(i, 3_242_174_889), unit(i, 2_447_445_414)))
 }
@@ -94,7 +94,7 @@ fn isotropic(roughness: f32) -> Ggx {
     Ggx::new(roughness, 0.0).clamped()
 }
 
-/// What a single reflection off GGX gives back where every facet reflects all.
+/// Directional albedo of single scattering off GGX with perfectly reflecting facets.
 pub fn ggx(cosine: f32, roughness: f32) -> f32 {
     static TABLE: OnceLock<Table> = OnceLock::new();
     let table = once(&TABLE, || {
@@ -106,15 +106,15 @@ pub fn ggx(cosine: f32, roughness: f32) -> f32 {
     table.at(cosine, roughness)
 }
 
-/// What one facet gives back that reflects all.
+/// Weight of one sampled facet that reflects all light.
 fn mirrored(ggx: Ggx, wo: Vec3, u: Vec2) -> f32 {
     let h = ggx.sample_visible(wo, u);
     let wi = 2.0 * wo.dot(h) * h - wo;
     if wi.z > 0.0 { ggx.masking_shadowing(wo, wi) / ggx.masking(wo) } else { 0.0 }
 }
 
-/// [`ggx`] of a surface that may be rougher along one axis than along the other; `roughness` is that
-/// of an even one.
+/// Value of [`ggx`] for a surface that may be anisotropic. `roughness` is only used for an
+/// isotropic one.
 pub fn facets(surface: Ggx, wo: Vec3, roughness: f32) -> f32 {
     static TABLE: OnceLock<anisotropic::Table> = OnceLock::new();
     match surface.is_even() {
@@ -123,7 +123,7 @@ pub fn facets(surface: Ggx, wo: Vec3, roughness: f32) -> f32 {
     }
 }
 
-/// What fuzz of white fibres gives back.
+/// Directional albedo of fuzz with white fibres.
 pub fn fuzz(cosine: f32, roughness: f32) -> f32 {
     static TABLE: OnceLock<Table> = OnceLock::new();
     let table = once(&TABLE, || {
@@ -131,7 +131,7 @@ pub fn fuzz(cosine: f32, roughness: f32) -> f32 {
             let wo = direction(cosine);
             mean(|u| {
                 let wi = super::warp::polar(u.x, u.y);
-                // Evenly spread directions: density 1 / (2 pi).
+                // Uniform hemisphere: the pdf is 1 / (2 pi).
                 2.0 * std::f32::consts::PI * fuzz_value(roughness, wo, wi) * wi.z
             })
         })
@@ -139,19 +139,18 @@ pub fn fuzz(cosine: f32, roughness: f32) -> f32 {
     table.at(cosine, roughness)
 }
 
-/// A boundary of two dielectrics of one relative index.
+/// Boundary between two dielectrics of a given relative index.
 #[derive(Clone, Debug)]
 pub struct Dielectric {
-    /// The index inside over that outside.
+    /// Index of refraction inside over that outside.
     pub ior: f32,
-    /// The mean of what it reflects where it is smooth, from outside, over all directions by their
-    /// cosine.
+    /// Cosine-weighted mean of the reflectance from outside, for a smooth boundary.
     smooth_mean: f32,
-    /// Reflected from outside and from inside; and all that is not lost.
+    /// Tables from outside and from inside: the reflected share, and the share that is not lost.
     tables: OnceLock<[[Table; 2]; 2]>,
-    /// The mean of what it reflects from outside, for each roughness of the tables.
+    /// Cosine-weighted mean of the reflectance from outside, for each roughness of the tables.
     means: OnceLock<Vec<f32>>,
-    /// All that is not lost, from outside and from inside, where it is rougher along one axis.
+    /// Share that is not lost, from outside and from inside, for anisotropic roughness.
     uneven: OnceLock<[anisotropic::Table; 2]>,
 }
 
@@ -162,13 +161,13 @@ impl PartialEq for Dielectric {
 }
 
 impl Dielectric {
-    /// Of an index.
+    /// Boundary of relative index `ior`, without tables yet.
     pub fn new(ior: f32) -> Self {
         let smooth_mean = mean_by_cosine(|cosine| fresnel::dielectric(cosine, ior));
         Dielectric { ior, smooth_mean, tables: OnceLock::new(), means: OnceLock::new(), uneven: OnceLock::new() }
     }
 
-    /// What it reflects, and all that is not lost; from inside or from outside.
+    /// Tables of the reflected share and of the share that is not lost, from one side.
     fn tables(&self, inside: bool) -> &[Table; 2] {
         let both = once(&self.tables, || {
             [self.ior, 1.0 / self.ior].map(|eta| {
@@ -183,19 +182,19 @@ impl Dielectric {
         &both[usize::from(inside)]
     }
 
-    /// Whether its tables are worked out.
+    /// True if the tables have been computed.
     #[cfg(any(test, feature = "testing"))]
     pub(crate) fn is_prepared(&self) -> bool {
         self.tables.get().is_some()
     }
 
-    /// The share that one reflection gives back, of what is not lost; from inside or from outside.
+    /// Share of one reflection among the light that is not lost, from inside or from outside.
     pub fn reflected(&self, inside: bool, cosine: f32, roughness: f32) -> f32 {
         let [reflected, all] = self.tables(inside);
         (reflected.at(cosine, roughness) / all.at(cosine, roughness)).min(1.0)
     }
 
-    /// The share that is reflected from outside: smooth where there is no roughness.
+    /// Reflectance from outside; Fresnel's value if the boundary is smooth.
     pub fn given(&self, cosine: f32, roughness: f32) -> f32 {
         match Ggx::new(roughness, 0.0).is_smooth() {
             true => fresnel::dielectric(cosine, self.ior),
@@ -203,7 +202,7 @@ impl Dielectric {
         }
     }
 
-    /// The mean of [`Dielectric::given`] over all directions by their cosine.
+    /// Cosine-weighted mean of [`Dielectric::given`] over the hemisphere.
     pub fn mean(&self, roughness: f32) -> f32 {
         if Ggx::new(roughness, 0.0).is_smooth() {
             return self.smooth_mean;
@@ -217,13 +216,14 @@ impl Dielectric {
         means[i] * (1.0 - a) + means[i + 1] * a
     }
 
-    /// What multiplies one reflection or refraction, so that nothing is lost.
+    /// Factor for one reflection or refraction that compensates for the lost light.
     pub fn gain(&self, inside: bool, cosine: f32, roughness: f32) -> f32 {
         1.0 / self.tables(inside)[1].at(cosine, roughness)
     }
 
-    /// The same of a surface that may be rougher along one axis than along the other, with the
-    /// index behind it over that before it: another body around it makes that differ from its own.
+    /// Value of [`Dielectric::gain`] for a surface that may be anisotropic. `eta` is the index
+    /// behind the boundary over that before it. It differs from the boundary's own index if another
+    /// medium is around it.
     pub fn gain_of(&self, inside: bool, eta: f32, surface: Ggx, wo: Vec3, roughness: f32) -> f32 {
         let own = if inside { 1.0 / self.ior } else { self.ior };
         if (eta / own - 1.0).abs() > NEAR {
@@ -239,12 +239,11 @@ impl Dielectric {
     }
 }
 
-/// Relative indices that differ by less than this share, as those of glass do over the colours of
-/// light, lose alike.
+/// Largest relative difference of indices that share a table. Dispersion of glass stays below it.
 const NEAR: f32 = 0.05;
 
-/// The mean over the facets of a rough surface that are seen, of what each does at a cosine: by few
-/// points, where there are too many kinds of surfaces for tables.
+/// Mean of `value` over the visible facets of a rough surface, by few points. `value` takes the
+/// cosine at a facet. Used where there are too many kinds of surfaces for tables.
 pub fn over_facets(surface: Ggx, wo: Vec3, value: impl Fn(f32) -> Spectrum) -> Spectrum {
     const FEW: usize = 16;
     let (ggx, cosine) = (surface.clamped(), wo.z);
@@ -259,8 +258,8 @@ pub fn over_facets(surface: Ggx, wo: Vec3, value: impl Fn(f32) -> Spectrum) -> S
     if all > 0.0 { sum / all } else { value(cosine) }
 }
 
-/// What one reflection off a boundary gives back on the mean over all directions by their cosine, and
-/// what reflection and refraction do together: by few points, where tables are not worth it.
+/// Cosine-weighted means over the hemisphere of one reflection off a boundary, and of reflection
+/// and refraction together, by few points. Used where tables are not worth their cost.
 pub fn single_means(eta: f32, roughness: f32) -> [f32; 2] {
     const COSINES: usize = 16;
     const FEW: usize = 64;
@@ -272,7 +271,7 @@ pub fn single_means(eta: f32, roughness: f32) -> [f32; 2] {
     })
 }
 
-/// One facet's part in what is reflected, or in all that goes on.
+/// Weight of one sampled facet: its reflection, or with `all` its reflection and refraction.
 fn single(ggx: Ggx, wo: Vec3, eta: f32, u: Vec2, all: bool) -> f32 {
     let h = ggx.sample_visible(wo, u);
     let cosine = wo.dot(h).max(0.0);
@@ -295,12 +294,12 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn threads_that_take_up_other_work_while_they_wait_do_not_wait_for_themselves() {
+    fn once_does_not_deadlock_if_a_waiting_thread_steals_work() {
         let (sender, done) = mpsc::channel();
         std::thread::spawn(move || {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
             let cell = OnceLock::new();
-            // As a thread does that waits for a part of the table: the next tile is taken up.
+            // Yield as a thread does that waits for a part of the table: it steals the next tile.
             let tile = || *once(&cell, || (rayon::yield_now(), 5).1);
             let _ = sender.send(pool.install(|| rayon::join(tile, tile)));
         });

@@ -1,5 +1,5 @@
-//! Thin films: soap, oil on water, tempered steel. Light that is reflected above and below them
-//! interferes.
+//! Thin films: soap, oil on water, tempered steel. Light reflected at their upper and lower
+//! boundaries interferes.
 //!
 //! Sources: Airy's sum of all reflections in a film (Born and Wolf, *Principles of Optics*, section
 //! 7.6); its orders one by one for colours: Belcour and Barla, *A Practical Extension to Microfacet
@@ -10,49 +10,49 @@ use crate::math::{Vec2, fp};
 use crate::spectrum::{Lanes, Spectrum, interference};
 use std::f32::consts::TAU;
 
-/// A film on something, seen from what is before it.
+/// Film on a base, seen from the medium before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Film {
-    /// The wavelengths of the lanes in nanometres; 0 where they are colours.
+    /// Wavelengths of the lanes in nanometres; 0 for RGB lanes.
     nm: Spectrum,
-    /// Of a dielectric its index over that before the film; of a metal what it reflects at right
-    /// angles.
+    /// Index of a dielectric base over that of the medium before the film, or reflectance of a
+    /// metal base at normal incidence.
     below: Spectrum,
     metal: bool,
-    /// In nanometres.
+    /// Thickness in nanometres.
     thickness: f32,
-    /// The film's index over that before it.
+    /// Index of the film over that of the medium before it.
     ior: f32,
-    /// How much of the surface it covers.
+    /// Share of the surface that the film covers, from 0 to 1.
     weight: f32,
 }
 
-/// How near a metal's index is to the least that its reflectance allows: so near are those of gold,
-/// copper, silver and aluminium.
+/// Place of a metal's index between the largest (0) and the smallest (1) that its reflectance
+/// allows. This value suits gold, copper, silver and aluminium.
 ///
 /// Source of the formulas: Gulbrandsen, *Artist Friendly Metallic Fresnel*, JCGT 3(4), 2014.
 const METALLIC: f32 = 0.985;
 
-/// The orders of interference that are summed for colours at most; what later ones add is below
-/// what eight bits show.
+/// Maximum number of interference orders in a sum for colours. Later orders are invisible at eight
+/// bits.
 const ORDERS: i32 = 12;
 
 impl Film {
-    /// On a dielectric; indices are over that of what is before the film. `micrometres` is how
-    /// thick it is.
+    /// Film on a dielectric. Indices are relative to the medium before the film. `micrometres` is
+    /// the thickness.
     pub fn on_dielectric(lanes: &Lanes, micrometres: f32, ior: f32, eta: f32, weight: f32) -> Self {
         let below = Spectrum::splat(eta);
         Film { nm: wavelengths(lanes), below, metal: false, thickness: 1_000.0 * micrometres, ior, weight }
     }
 
-    /// On a metal that reflects some light at right angles.
+    /// Film on a metal, whose reflectance at normal incidence is `reflected`.
     pub fn on_metal(lanes: &Lanes, micrometres: f32, ior: f32, reflected: Spectrum) -> Self {
         let below = reflected.clamp(Spectrum::splat(0.01), Spectrum::splat(0.999));
         Film { nm: wavelengths(lanes), below, metal: true, thickness: 1_000.0 * micrometres, ior, weight: 1.0 }
     }
 
-    /// The share of unpolarised light that is reflected at a cosine from 0 to 1. Seen from inside
-    /// (an index below 1), as much as from outside along the same way.
+    /// Reflectance for unpolarised light at a cosine from 0 to 1. From inside (an index below 1) it
+    /// equals the reflectance from outside along the same path.
     pub fn reflected(&self, cosine: f32) -> Spectrum {
         if self.metal {
             return self.covered(cosine);
@@ -86,7 +86,7 @@ impl Film {
         ];
         let mut sum = Spectrum::ZERO;
         for lane in 0..4 {
-            // The fourth of colours is green again.
+            // The fourth RGB lane is green again.
             let below = self.behind(lane, sine2, inside);
             for (first, second) in boundaries.into_iter().zip(below) {
                 sum[lane] += match self.nm.x > 0.0 {
@@ -98,13 +98,14 @@ impl Film {
         (0.5 * sum).clamp(Spectrum::ZERO, Spectrum::ONE)
     }
 
-    /// The amplitudes that the lower boundary reflects, across the plane of incidence and in it.
+    /// Reflected amplitudes of the lower boundary, perpendicular and parallel to the plane of
+    /// incidence.
     fn behind(&self, lane: usize, sine2: f32, inside: f32) -> [Vec2; 2] {
         let index = match self.metal {
             true => metal_index(self.below[lane]),
             false => Vec2::new(self.below[lane], 0.0),
         };
-        // The complex cosine behind: its square is 1 - sin^2 / n^2.
+        // The square of the complex cosine behind is 1 - sin^2 / n^2.
         let square = times(index, index);
         let cosine = root(Vec2::X - over(Vec2::new(sine2, 0.0), square));
         let film = self.ior;
@@ -121,7 +122,7 @@ fn wavelengths(lanes: &Lanes) -> Spectrum {
     }
 }
 
-/// Real and imaginary index of a metal that reflects a share `r` at right angles.
+/// Complex index of refraction of a metal with reflectance `r` at normal incidence.
 fn metal_index(r: f32) -> Vec2 {
     let root = r.sqrt();
     let n = METALLIC * (1.0 - r) / (1.0 + r) + (1.0 - METALLIC) * (1.0 + root) / (1.0 - root);
@@ -129,7 +130,7 @@ fn metal_index(r: f32) -> Vec2 {
     Vec2::new(n, k2.max(0.0).sqrt())
 }
 
-/// |(a + b z) / (1 + a b z)|^2, where z is a wave with a phase.
+/// Airy reflectance |(a + b z) / (1 + a b z)|^2, where z is a unit phasor.
 fn airy(first: f32, second: Vec2, phase: f32) -> f32 {
     let z = times(second, Vec2::new(fp::cos(phase), fp::sin(phase)));
     let above = Vec2::new(first, 0.0) + z;
@@ -137,14 +138,14 @@ fn airy(first: f32, second: Vec2, phase: f32) -> f32 {
     above.length_squared() / below.length_squared()
 }
 
-/// The mean of [`airy`] over what a channel sees of daylight: its Fourier series in the phase, each
-/// order as daylight has it.
+/// Mean of [`airy`] over a colour channel under daylight: its Fourier series in the phase, with
+/// each order averaged over daylight.
 fn by_orders(first: f32, second: Vec2, shift: f32, channel: usize) -> f32 {
     let (r1, r2) = (first * first, second.length_squared());
     let through = 1.0 - r1;
     let again = through * through * r2 / (1.0 - r1 * r2).max(1e-6);
     let mut sum = r1 + again;
-    // Each order is the one before times this.
+    // Each order is the one before times `step`.
     let step = -first * second;
     let mut order = step;
     for number in 1..=ORDERS {
@@ -166,7 +167,7 @@ fn over(a: Vec2, b: Vec2) -> Vec2 {
     times(a, Vec2::new(b.x, -b.y)) / b.length_squared()
 }
 
-/// The square root in the upper half of the plane.
+/// Square root in the upper half-plane.
 fn root(a: Vec2) -> Vec2 {
     let length = a.length();
     let real = (0.5 * (length + a.x)).max(0.0).sqrt();
@@ -184,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn films_of_no_thickness_or_no_index_are_not_there() {
+    fn film_without_thickness_contrast_or_weight_has_no_effect() {
         for lanes in [Lanes::Rgb, waves(0.3)] {
             for cosine in [1.0, 0.8, 0.4, 0.1] {
                 let plain = fresnel::dielectric(cosine, 1.5);
@@ -199,20 +200,20 @@ mod tests {
     }
 
     #[test]
-    fn a_quarter_wave_of_the_right_index_reflects_nothing() {
-        // An index of the root of the glass's, a quarter of the wavelength thick.
+    fn quarter_wave_film_of_matched_index_reflects_nothing() {
+        // The index is the root of the glass's index; the thickness is a quarter of the wavelength.
         let lanes = waves(0.4);
         let nm = lanes.hero().unwrap();
         let ior = 1.52_f32.sqrt();
         let film = Film::on_dielectric(&lanes, nm / (4.0 * ior) / 1_000.0, ior, 1.52, 1.0);
         assert!(film.reflected(1.0).x < 1e-6, "{}", film.reflected(1.0));
-        // Half a wave is as if it were not there.
+        // A half-wave film has no effect.
         let film = Film::on_dielectric(&lanes, nm / (2.0 * ior) / 1_000.0, ior, 1.52, 1.0);
         assert!((film.reflected(1.0).x - fresnel::dielectric(1.0, 1.52)).abs() < 1e-5);
     }
 
     #[test]
-    fn colours_are_the_means_of_wavelengths() {
+    fn film_colours_are_means_over_wavelengths() {
         let n = 8192;
         for (thickness, ior, metal) in [(0.1, 1.33, false), (0.35, 1.33, false), (1.2, 1.6, false), (0.3, 2.2, true)] {
             for cosine in [1.0, 0.6, 0.2] {
@@ -235,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_lost_or_won_and_both_sides_agree() {
+    fn film_conserves_energy_and_is_equal_from_both_sides() {
         for u in [0.1, 0.5, 0.8] {
             for cosine in [0.95_f32, 0.5, 0.15] {
                 let (out, eta) = (Film::on_dielectric(&waves(u), 0.4, 1.9, 1.5, 1.0), 1.0 / 1.5);

@@ -1,20 +1,20 @@
-//! The frame of a surface point: z is its normal.
+//! Local frame of a surface point. Its z axis is the normal.
 
 use crate::math::Vec3;
 
-/// Three unit vectors at right angles. Directions in it are *local*: z is the cosine to the normal.
+/// Orthonormal basis. Directions in it are *local*: z is the cosine to the normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// The local x axis: where the surface has one, the direction in which u grows.
+    /// Local x axis: the direction of increasing u, if the surface has one.
     pub tangent: Vec3,
-    /// The local y axis.
+    /// Local y axis.
     pub bitangent: Vec3,
-    /// The local z axis.
+    /// Local z axis.
     pub normal: Vec3,
 }
 
 impl Frame {
-    /// Any frame around a unit normal.
+    /// Arbitrary frame around a unit normal.
     ///
     /// Source: Duff and others, *Building an Orthonormal Basis, Revisited*, JCGT 6(1), 2017.
     pub fn around(normal: Vec3) -> Frame {
@@ -28,7 +28,7 @@ impl Frame {
         }
     }
 
-    /// The frame around a unit normal whose x axis is as near to a direction as can be.
+    /// Frame around a unit normal, with its x axis as close to `direction` as possible.
     pub fn along(normal: Vec3, direction: Vec3) -> Frame {
         match (direction - normal * normal.dot(direction)).try_normalize() {
             Some(tangent) => Frame { tangent, bitangent: normal.cross(tangent), normal },
@@ -36,12 +36,12 @@ impl Frame {
         }
     }
 
-    /// A direction of the world as the frame sees it.
+    /// Converts a direction from world space to the local frame.
     pub fn to_local(&self, v: Vec3) -> Vec3 {
         Vec3::new(v.dot(self.tangent), v.dot(self.bitangent), v.dot(self.normal))
     }
 
-    /// A local direction in the world.
+    /// Converts a local direction to world space.
     pub fn to_world(&self, v: Vec3) -> Vec3 {
         v.x * self.tangent + v.y * self.bitangent + v.z * self.normal
     }

@@ -1,10 +1,10 @@
-//! How much light a smooth boundary reflects.
+//! Reflectance of smooth boundaries.
 
 use crate::math::{Color, Vec3, fp};
 use crate::spectrum::{Spectrum, SpectrumSource, under_daylight};
 
-/// The share of unpolarised light that a boundary of two dielectrics reflects. `cosine` is that of
-/// the light's way to the normal, from 0 to 1; `eta` is the index behind the boundary over the
+/// Reflectance of a boundary between two dielectrics for unpolarised light. `cosine` is the cosine
+/// between the light and the normal, from 0 to 1. `eta` is the index behind the boundary over the
 /// index before it.
 ///
 /// Source: Fresnel's equations, as in *Physically Based Rendering*, 4th edition, section 9.3.5.
@@ -13,7 +13,7 @@ pub fn dielectric(cosine: f32, eta: f32) -> f32 {
     0.5 * (parallel + perpendicular)
 }
 
-/// The same of light that is polarised along the plane of incidence, and across it.
+/// Reflectance for light polarised parallel and perpendicular to the plane of incidence.
 fn polarised(cosine: f32, eta: f32) -> [f32; 2] {
     let sine2 = (1.0 - cosine * cosine).max(0.0) / (eta * eta);
     if sine2 >= 1.0 {
@@ -25,8 +25,8 @@ fn polarised(cosine: f32, eta: f32) -> [f32; 2] {
     [parallel * parallel, perpendicular * perpendicular]
 }
 
-/// The colours that a metal reflects at normal incidence and at cosine 1/7, seen from a medium of
-/// the index `outside`.
+/// Reflected colours of a metal at normal incidence and at cosine 1/7, seen from a medium of index
+/// `outside`.
 pub fn conductor_colors(eta: &SpectrumSource, k: &SpectrumSource, outside: f32) -> [Color; 2] {
     [1.0, 1.0 / 7.0].map(|cosine| match (eta, k) {
         (SpectrumSource::Rgb(n), SpectrumSource::Rgb(k)) => {
@@ -36,7 +36,7 @@ pub fn conductor_colors(eta: &SpectrumSource, k: &SpectrumSource, outside: f32) 
     })
 }
 
-/// The reflectance of a metal of index n + i k for unpolarised light.
+/// Reflectance of a metal of complex index n + i k for unpolarised light.
 ///
 /// Source: Fresnel's equations, as in *Physically Based Rendering*, 4th edition, section 9.3.6.
 pub fn conductor(cosine: f32, n: f32, k: f32) -> f32 {
@@ -51,20 +51,21 @@ pub fn conductor(cosine: f32, n: f32, k: f32) -> f32 {
     if share.is_finite() { share as f32 } else { 1.0 }
 }
 
-/// A thin sheet of a dielectric: light is reflected to and fro in it.
+/// Thin sheet of a dielectric, with internal reflections.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sheet {
-    /// The index inside over that around it.
+    /// Index of the sheet over that of the medium around it.
     pub eta: f32,
-    /// What is left of light that crosses its inside at right angles, if the sheet has a depth.
+    /// Transmittance of the inside at normal incidence, if the sheet has a depth.
     pub inside: Option<Spectrum>,
 }
 
 impl Sheet {
-    /// What it reflects and what goes through at a cosine, with all ways to and fro inside.
+    /// Reflectance and transmittance at a cosine, including all internal reflections.
     ///
-    /// Without a depth that is 2 F / (1 + F) and the rest, of unpolarised light at each face, as
-    /// others have it. With a depth light stays as it was polarised, and loses more at an angle.
+    /// Without a depth these are 2 F / (1 + F) and the remainder, with unpolarised light at each
+    /// face, as in other renderers. With a depth, light keeps its polarisation and loses more at an
+    /// angle.
     pub fn at(&self, cosine: f32) -> (Spectrum, Spectrum) {
         let Sheet { eta, inside } = *self;
         let Some(inside) = inside else {
@@ -80,68 +81,69 @@ impl Sheet {
         (0.5 * (parallel.0 + perpendicular.0), 0.5 * (parallel.1 + perpendicular.1))
     }
 
-    /// The same where one face reflects otherwise, and light as a whole.
+    /// Reflectance and transmittance of a sheet whose front face has reflectance `face`, for
+    /// unpolarised light.
     pub fn faced(&self, face: Spectrum, cosine: f32) -> (Spectrum, Spectrum) {
         let left = self.inside.map_or(Spectrum::ONE, |inside| left_of(inside, cosine, self.eta));
         to_and_fro(face, Spectrum::splat(dielectric(cosine, self.eta)), left)
     }
 }
 
-/// What is left of light that crosses a sheet at an angle: its way inside is longer.
+/// Transmittance of the inside at an angle, where the path is longer.
 fn left_of(inside: Spectrum, cosine: f32, eta: f32) -> Spectrum {
     let behind = (1.0 - (1.0 - cosine * cosine).max(0.0) / (eta * eta)).max(0.0).sqrt();
     inside.max(Spectrum::ZERO).map(|left| if left < 1.0 { fp::pow(left, 1.0 / behind.max(1e-3)) } else { 1.0 })
 }
 
-/// What two faces reflect and let through, by the sum over all ways between them, each of which
-/// leaves a share.
+/// Reflectance and transmittance of two parallel faces, summed over all internal reflections. Each
+/// crossing keeps the share `left`.
 fn to_and_fro(front: Spectrum, back: Spectrum, left: Spectrum) -> (Spectrum, Spectrum) {
     let entered = Spectrum::ONE - front;
     let again = (Spectrum::ONE - front * back * left * left).max(Spectrum::splat(1e-6));
     (front + entered * entered * back * left * left / again, entered * (Spectrum::ONE - back) * left / again)
 }
 
-/// The mean of [`dielectric`] over all directions by their cosine.
+/// Cosine-weighted mean of [`dielectric`] over the hemisphere.
 ///
 /// Source: a fit by d'Eon, *A Hitchhiker's Guide to Multiple Scattering*, and its converse for
-/// light from inside; good to 0.6 % for indices from 1 to 3.
+/// light from inside. The error is at most 0.6 % for indices from 1 to 3.
 pub fn diffuse(eta: f32) -> f32 {
     match eta >= 1.0 {
         true => fp::ln((10_893.0 * eta - 1_438.2) / (-774.4 * eta * eta + 10_212.0 * eta + 1.0)),
-        // Conservation of étendue: what is reflected inside follows from what is reflected outside.
+        // By conservation of étendue, internal reflection follows from external reflection.
         false => 1.0 - eta * eta * (1.0 - diffuse(1.0 / eta)),
     }
     .clamp(0.0, 1.0)
 }
 
-/// The index over that of what is around it whose boundary reflects a share `r0` at right angles.
+/// Relative index of a boundary with reflectance `r0` at normal incidence.
 pub fn ior_of_reflectance(r0: f32) -> f32 {
     let root = r0.clamp(0.0, 0.98).sqrt();
     (1.0 + root) / (1.0 - root)
 }
 
-/// What Schlick's curve from a colour at right angles has at 82 degrees, whose cosine is 1/7: there
-/// [`F82`] has its tint.
+/// Schlick's reflectance at 82 degrees (cosine 1/7) for the colour `f0` at normal incidence. There
+/// [`F82`] applies its tint.
 pub fn schlick_82(f0: Color) -> Color {
     f0 + (Color::ONE - f0) * fp::pow(6.0 / 7.0, 5.0)
 }
 
-/// What a metal reflects: its colour at right angles, and a tint at 82 degrees.
+/// Reflectance of a metal by its colour at normal incidence and a tint at 82 degrees.
 ///
 /// Source: Kutz, Hasan and Edmondson, *Novel aspects of the Adobe Standard Material*, 2021, section
 /// 2.3; OpenPBR, Metal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct F82 {
     f0: Spectrum,
-    /// How much is taken from Schlick's curve, in units of cos (1 - cos)^6.
+    /// Amount subtracted from Schlick's curve, in units of cos (1 - cos)^6.
     dip: Spectrum,
 }
 
 impl F82 {
-    /// All of every colour, from everywhere.
+    /// Metal that reflects all light at every angle.
     pub const WHITE: F82 = F82 { f0: Spectrum::ONE, dip: Spectrum::ZERO };
 
-    /// From the colour at right angles and the tint.
+    /// Metal by its colour at normal incidence and its tint.
     pub fn new(f0: Spectrum, tint: Spectrum) -> Self {
         const COSINE: f32 = 1.0 / 7.0;
         let rest = 1.0 - COSINE;
@@ -150,7 +152,7 @@ impl F82 {
         F82 { f0, dip: schlick * (Spectrum::ONE - tint) / (COSINE * power6) }
     }
 
-    /// At a cosine from 0 to 1.
+    /// Reflectance at a cosine from 0 to 1.
     pub fn at(&self, cosine: f32) -> Spectrum {
         let rest = (1.0 - cosine).clamp(0.0, 1.0);
         let power5 = rest * rest * rest * rest * rest;
@@ -164,8 +166,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn conductors_reflect_what_fresnel_says() {
-        // At normal incidence ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2); without k the equations of glass.
+    fn conductor_agrees_with_fresnel_equations() {
+        // Normal incidence: ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2). For k = 0: the dielectric
+        // equations.
         for (n, k) in [(0.2, 3.4), (1.5, 0.0), (2.9, 3.1)] {
             let right = ((n - 1.0_f32) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k);
             assert!((conductor(1.0, n, k) - right).abs() < 1e-6);
@@ -176,8 +179,8 @@ mod tests {
     }
 
     #[test]
-    fn a_metal_by_its_spectrum_is_the_metal_by_its_colours() {
-        // Gold of three wavelengths, and of three colours.
+    fn conductor_colours_agree_for_curve_and_rgb() {
+        // Gold by three wavelength bands, and by three colours.
         let curve = |c: [f32; 3]| {
             let rows = [[300.0, c[2]], [489.0, c[2]], [490.0, c[1]], [579.0, c[1]], [580.0, c[0]], [900.0, c[0]]];
             SpectrumSource::Curve(rows.to_vec())

@@ -1,9 +1,9 @@
-//! The layers of a principled material as lobes: fuzz on a coat on metal, glass or matte.
+//! Layers of a principled material as lobes: fuzz on a coat on metal, glass or a diffuse base.
 //!
-//! Light that a layer gives back does not reach the one below: layers are weighed by what is left
-//! of it in the direction from which they are seen. OpenPBR calls that albedo scaling. It keeps
-//! energy, but the whole is not reciprocal. A matte base is weighed by the direction of the light
-//! too ([`Boundary`]): plastic is reciprocal.
+//! Light reflected by a layer does not reach the layer below. Each layer is weighted by the share
+//! that the layers above let through in the view direction; OpenPBR calls this albedo scaling. It
+//! conserves energy, but the sum is not reciprocal. A diffuse base is weighted by the direction of
+//! the light too ([`Boundary`]), so plastic is reciprocal.
 
 use super::Bsdf;
 use super::albedo::{self, Dielectric};
@@ -22,21 +22,22 @@ use crate::math::{Vec3, fp};
 use crate::spectrum::{Curve, Lanes, Spectrum};
 use std::sync::Arc;
 
-/// What is worked out once for each material.
+/// Data computed once per material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tables {
-    /// The boundary of an opaque base.
+    /// Boundary of an opaque base.
     opaque: Arc<Dielectric>,
-    /// The boundary of glass.
+    /// Boundary of glass.
     glass: Arc<Dielectric>,
-    /// The coat's boundary.
+    /// Boundary of the coat.
     coat: Arc<Dielectric>,
-    /// The base colour as it was measured.
+    /// Measured spectrum of the base colour.
     measured: Option<Arc<Curve>>,
 }
 
 impl Tables {
-    /// For a material whose base may have been measured. `known` has what was worked out before.
+    /// Tables for a material, with the measured spectrum of its base, if any. `known` caches
+    /// boundaries by index.
     pub fn new(material: &PrincipledMaterial, measured: Option<Arc<Curve>>, known: &mut Vec<Arc<Dielectric>>) -> Self {
         let mut of = |ior: f32| {
             let found = known.iter().find(|tables| tables.ior == ior).cloned();
@@ -53,10 +54,10 @@ impl Tables {
         }
     }
 
-    /// Works out by all threads what points of the material can ask for, so that no thread that
-    /// renders has to.
+    /// Computes with all threads the tables that points of the material can use, so that no render
+    /// thread has to.
     pub fn prepare(&self, m: &PrincipledMaterial) {
-        // A picture multiplies: it changes no 0, and may change all else.
+        // A texture multiplies: it keeps 0, but may change any other value.
         let all = |share: f32, picture: &Option<FileName>| share == 1.0 && picture.is_none();
         let metal = all(m.base_metalness, &m.base_metalness_texture) && m.metallic_roughness_texture.is_none();
         let glass = all(m.transmission_weight, &m.transmission_weight_texture);
@@ -91,14 +92,15 @@ impl Tables {
         }
     }
 
-    /// Whether the albedo tables of the opaque base, of glass and of the coat have been built.
+    /// True for each of the opaque base, the glass and the coat if its albedo tables have been
+    /// built.
     #[cfg(any(test, feature = "testing"))]
     pub fn prepared(&self) -> [bool; 3] {
         [&self.opaque, &self.glass, &self.coat].map(|boundary| boundary.is_prepared())
     }
 }
 
-/// The index of an opaque base: `specularWeight` scales what reflects at right angles.
+/// Index of an opaque base. `specularWeight` scales the reflectance at normal incidence.
 pub fn opaque_ior(material: &PrincipledMaterial) -> f32 {
     if material.specular_weight == 1.0 {
         return material.specular_ior;
@@ -115,27 +117,27 @@ fn mix(a: f32, b: f32, share: f32) -> f32 {
     a + share * (b - a)
 }
 
-/// Shares over others; all where there are none.
+/// Quotient `shares / of` by lane; 1 where `of` is 0.
 fn parts(shares: Spectrum, of: Spectrum) -> Spectrum {
     Spectrum::select(of.cmpgt(Spectrum::splat(1e-6)), shares / of, Spectrum::ONE)
 }
 
-/// How a point of a principled material is seen.
+/// View of a point of a principled material.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
-    /// What light is made of.
+    /// Lanes that light is carried in.
     pub lanes: &'a Lanes,
-    /// The local direction from which it is seen.
+    /// Local direction to the viewer.
     pub wo: Vec3,
-    /// The local normal of what is matte: see [`Diffuse::normal`].
+    /// Local normal of the diffuse lobes; see [`Diffuse::normal`].
     pub normal: Vec3,
-    /// Whether that is from inside.
+    /// True if the point is seen from inside.
     pub inside: bool,
-    /// The index behind the boundary over that before it.
+    /// Index of refraction behind the boundary over that before it.
     pub eta: f32,
 }
 
-/// Adds the lobes of what is there of a material, each by a factor.
+/// Adds the lobes of the material `here`, each scaled by `factor`.
 pub fn scattering<'a>(bsdf: &mut Bsdf<'a>, factor: f32, here: &Parameters, tables: &'a Tables, view: View) {
     let stack = Stack {
         here,
@@ -150,7 +152,7 @@ pub fn scattering<'a>(bsdf: &mut Bsdf<'a>, factor: f32, here: &Parameters, table
     stack.scattering(bsdf, factor);
 }
 
-/// The layers of a point.
+/// Layers of one point.
 struct Stack<'a, 't> {
     here: &'a Parameters,
     tables: &'t Tables,
@@ -167,7 +169,7 @@ impl<'t> Stack<'_, 't> {
         if m.fuzz_weight > 0.0 && !view.inside {
             let roughness = m.fuzz_roughness;
             let given = albedo::fuzz(mu, roughness);
-            // Fibres at grazing angles would give back more than they get.
+            // At grazing angles the fibres would reflect more light than arrives.
             let scale = m.fuzz_weight * (1.0 / given).min(1.0);
             bsdf.push(Fuzz { roughness }, below * scale * view.lanes.reflectance(m.fuzz_color), factor * scale * given);
             below *= 1.0 - scale * given;
@@ -194,7 +196,7 @@ impl<'t> Stack<'_, 't> {
         let opaque = dielectric * (1.0 - m.transmission_weight);
         if opaque.max_element() > 0.0 {
             if view.inside && m.has_body && m.transmission_weight == 0.0 {
-                // Light that was scattered inside leaves in all directions.
+                // Light scattered inside the body leaves in all directions.
                 return bsdf.push(DiffuseTransmission { color: Spectrum::ONE }, opaque, opaque.max_element());
             }
             let film = self.film(self.tables.opaque.ior);
@@ -212,7 +214,7 @@ impl<'t> Stack<'_, 't> {
         }
     }
 
-    /// Light that goes into the body, or of a sheet comes out on both sides.
+    /// Adds the light that enters the body, or that a thin sheet scatters to both sides.
     fn subsurface(&self, bsdf: &mut Bsdf<'t>, weight: Spectrum, boundary: Option<Boundary<'t>>) {
         if weight.max_element() <= 0.0 {
             return;
@@ -232,16 +234,16 @@ impl<'t> Stack<'_, 't> {
         bsdf.push(DiffuseTransmission { color }, weight * onwards, share * onwards);
     }
 
-    /// The film on a dielectric of an index, if there is one.
+    /// Film on a dielectric of relative index `eta`, if there is one.
     fn film(&self, eta: f32) -> Option<Film> {
         let m = self.here;
-        // Outside is air; from inside the body is before the film.
+        // Outside is air. From inside, the body is before the film.
         let ior = m.thin_film_ior * eta.min(1.0);
         (m.thin_film_weight > 0.0)
             .then(|| Film::on_dielectric(self.view.lanes, m.thin_film_thickness, ior, eta, m.thin_film_weight))
     }
 
-    /// The reflection of a boundary of dielectrics seen from outside; returns its albedo.
+    /// Adds the reflection of a dielectric boundary seen from outside, and returns its albedo.
     fn boundary(
         &self,
         bsdf: &mut Bsdf<'t>,
@@ -250,7 +252,7 @@ impl<'t> Stack<'_, 't> {
         weight: Spectrum,
         film: Option<Film>,
     ) -> Spectrum {
-        // Without a change of index nothing is reflected, however rough.
+        // Without a change of index nothing is reflected, at any roughness.
         if tables.ior == 1.0 && film.is_none() {
             return Spectrum::ZERO;
         }
@@ -271,23 +273,23 @@ impl<'t> Stack<'_, 't> {
         given
     }
 
-    /// Whether light that facets reflect more than once is given back.
+    /// True if energy lost to multiple scattering between facets is restored.
     fn compensates(&self) -> bool {
         self.here.energy_compensation == Switch::On
     }
 
-    /// What a single reflection off facets that reflect all gives back, as far as the rest is to be
-    /// given back too.
+    /// Albedo of single scattering off perfectly reflecting facets; 1 without energy compensation.
     fn facets(&self, ggx: Ggx, roughness: f32) -> f32 {
         if self.compensates() { albedo::facets(ggx, self.view.wo, roughness) } else { 1.0 }
     }
 
-    /// What a coat takes of the light on its way down and up, and what it throws back down.
+    /// Factor for the base below a coat: absorption on the way down and up, and internal
+    /// reflection.
     fn coat(&self, mu: f32) -> Spectrum {
         let m = self.here;
         let eta = m.coat_ior;
         let inside = (1.0 - (1.0 - mu * mu) / (eta * eta)).max(0.01).sqrt();
-        // Down at right angles, on the mean; up as it is seen.
+        // Down at normal incidence, on average; up along the view direction.
         let tint = power(self.view.lanes.reflectance(m.coat_color), 0.5 + 0.5 / inside);
         let roughness = mix(1.0, self.here.specular_roughness, self.here.base_metalness);
         let thrown_back = mix(fresnel::dielectric(mu, eta), fresnel::diffuse(1.0 / eta), roughness);
@@ -325,7 +327,7 @@ impl<'t> Stack<'_, 't> {
             return bsdf.push(Mirror, reflected, reflected.max_element());
         }
         let given = self.facets(ggx, roughness);
-        // What is reflected again is coloured again.
+        // Every further reflection takes the metal's colour again.
         let again = Spectrum::ONE + self.base * ((1.0 - given) / given);
         let rough = Rough { ggx: ggx.clamped(), facet: Facet::Metal(f82), behind: false };
         bsdf.push(rough, weight * again, (weight * f82.at(mu)).max_element());
@@ -333,7 +335,7 @@ impl<'t> Stack<'_, 't> {
 
     fn glass(&self, bsdf: &mut Bsdf<'t>, roughness: f32, weight: Spectrum) {
         let (m, View { wo, inside, eta, .. }) = (self.here, self.view);
-        // With a depth the body has the colour, and not its skin.
+        // With a depth the colour belongs to the body, not to its surface.
         let tint = match m.transmission_depth > 0.0 {
             true => Spectrum::ONE,
             false => self.view.lanes.reflectance(m.transmission_color),
@@ -345,7 +347,7 @@ impl<'t> Stack<'_, 't> {
         let ggx = Ggx::new(roughness, m.specular_anisotropy);
         let plain = fresnel::dielectric(wo.z, eta);
         let reflected = film.map_or(Spectrum::splat(plain), |film| film.reflected(wo.z));
-        // Rough glass without a change of index scatters nothing either.
+        // Without a change of index, rough glass does not scatter.
         if ggx.is_smooth() || eta == 1.0 {
             let (up, down) = (weight * reflected, weight * (Spectrum::ONE - reflected));
             bsdf.push(Mirror, self.specular * up, up.max_element());
@@ -356,7 +358,7 @@ impl<'t> Stack<'_, 't> {
         }
         let (mut up, mut down) = (self.specular, tint);
         if let Some(film) = film {
-            // The film's colour is the same for all facets, such that nothing is lost.
+            // All facets share one film colour, chosen so that no energy is lost.
             let mean = |value: &dyn Fn(f32) -> Spectrum| albedo::over_facets(ggx, wo, value);
             let with = mean(&|cosine| film.reflected(cosine));
             let without = mean(&|cosine| Spectrum::splat(fresnel::dielectric(cosine, eta)));
@@ -370,16 +372,16 @@ impl<'t> Stack<'_, 't> {
         bsdf.push(rough, weight * gain, weight.max_element());
     }
 
-    /// A thin sheet: light is reflected to and fro in it, and leaves it in the direction in which
-    /// it came.
+    /// Adds a thin sheet with internal reflections. Transmitted light keeps its direction.
     fn sheet(&self, bsdf: &mut Bsdf<'t>, roughness: f32, weight: Spectrum) {
         let (m, wo, mu) = (self.here, self.view.wo, self.view.wo.z);
         let (eta, ggx) = (m.specular_ior, Ggx::new(roughness, m.specular_anisotropy));
         let color = self.view.lanes.reflectance(m.transmission_color);
-        // With a depth the inside has the colour, else all that passes.
+        // With a depth the inside has the colour; without one the colour tints all transmitted
+        // light.
         let (inside, tint) = if m.transmission_depth > 0.0 { (Some(color), Spectrum::ONE) } else { (None, color) };
         let sheet = Sheet { eta, inside };
-        // A film is on one of its faces.
+        // The film is on one of the two faces.
         let film = self.film(eta);
         let faced = |film: Film, cosine: f32| sheet.faced(film.reflected(cosine), cosine);
         let (reflected, through) = film.map_or_else(|| sheet.at(mu), |film| faced(film, mu));

@@ -1,4 +1,4 @@
-//! GGX: a surface of tiny mirrors.
+//! GGX microfacet distribution.
 //!
 //! Sources: Walter and others, *Microfacet Models for Refraction through Rough Surfaces*, EGSR
 //! 2007; Heitz, *Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs*, JCGT
@@ -8,29 +8,28 @@ use super::warp;
 use crate::math::{Vec2, Vec3, fp};
 use std::f32::consts::PI;
 
-/// Surfaces smoother than this are taken for smooth: alpha along both axes.
+/// Smallest alpha of a rough surface. Below it along both axes a surface counts as smooth.
 pub const SMOOTH: f32 = 1e-3;
 
-/// The distribution of a rough surface's normals.
+/// Distribution of the normals of a rough surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ggx {
-    /// Roughness along the local x and y axes.
+    /// Alpha along the local x and y axes.
     pub alpha: Vec2,
 }
 
 impl Ggx {
-    /// From a roughness from 0 to 1, whose square is alpha, and an anisotropy from 0 to 1, as
-    /// OpenPBR has them.
+    /// Distribution for a roughness and an anisotropy, both in [0, 1], as in OpenPBR. Alpha is the
+    /// square of the roughness.
     pub fn new(roughness: f32, anisotropy: f32) -> Self {
         let square = roughness * roughness;
         let rest = 1.0 - anisotropy;
-        // Both keep the sum of squares: (ax^2 + ay^2) / 2 = r^4.
+        // Anisotropy keeps the mean square: (ax^2 + ay^2) / 2 = r^4.
         let ax = square * (2.0 / (1.0 + rest * rest)).sqrt();
         Ggx { alpha: Vec2::new(ax.min(1.0), rest * ax) }
     }
 
-    /// The roughness, the anisotropy and the turn, in turns, that stand for an alpha along u and
-    /// along v.
+    /// Roughness, anisotropy and rotation (in turns) for alphas along u and v.
     pub fn parameters(alpha: [f32; 2]) -> [f32; 3] {
         let [u, v] = alpha.map(|alpha| alpha.clamp(0.0, 1.0));
         let mean = (0.5 * (u * u + v * v)).sqrt();
@@ -38,17 +37,17 @@ impl Ggx {
         [mean.sqrt(), 1.0 - rest, if v > u { 0.25 } else { 0.0 }]
     }
 
-    /// Whether it is as rough along both axes.
+    /// True if the surface is isotropic.
     pub fn is_even(&self) -> bool {
         self.alpha.x == self.alpha.y
     }
 
-    /// Whether it is a mirror, as far as numbers can tell.
+    /// True if the surface counts as a perfect mirror.
     pub fn is_smooth(&self) -> bool {
         self.alpha.max_element() < SMOOTH
     }
 
-    /// At least so rough along both axes that its density is finite.
+    /// Distribution with alphas large enough for a finite density.
     pub fn clamped(self) -> Self {
         Ggx { alpha: self.alpha.max(Vec2::splat(SMOOTH)) }
     }
@@ -59,30 +58,31 @@ impl Ggx {
         1.0 / (PI * self.alpha.x * self.alpha.y * s * s)
     }
 
-    /// Smith's Lambda: the hidden area over the visible.
+    /// Smith's Lambda: hidden area over visible area.
     pub fn lambda(&self, w: Vec3) -> f32 {
         let slope = (Vec2::new(w.x, w.y) * self.alpha).length_squared();
         let z2 = w.z * w.z;
         if slope == 0.0 {
             return 0.0;
         }
-        // (sqrt(1 + s) - 1) / 2, without cancellation. Along the surface all is hidden.
+        // This is (sqrt(1 + s) - 1) / 2 without cancellation. Along the surface everything is
+        // hidden.
         let s = slope / z2;
         if s.is_finite() { 0.5 * s / ((1.0 + s).sqrt() + 1.0) } else { f32::INFINITY }
     }
 
-    /// The share of normals that is seen from a direction.
+    /// Share of the normals visible from a direction.
     pub fn masking(&self, w: Vec3) -> f32 {
         1.0 / (1.0 + self.lambda(w))
     }
 
-    /// The share that is seen from both directions; heights are correlated.
+    /// Share of the normals visible from both directions, with height correlation.
     pub fn masking_shadowing(&self, wo: Vec3, wi: Vec3) -> f32 {
         1.0 / (1.0 + self.lambda(wo) + self.lambda(wi))
     }
 
-    /// A normal seen from `wo`, which is above the surface: with density masking(wo) · density(h) ·
-    /// wo·h / wo.z.
+    /// Samples a normal visible from `wo`, which is above the surface. Its pdf is masking(wo) ·
+    /// density(h) · wo·h / wo.z.
     pub fn sample_visible(&self, wo: Vec3, u: Vec2) -> Vec3 {
         let stretched = Vec3::new(wo.x * self.alpha.x, wo.y * self.alpha.y, wo.z).normalize();
         let z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
@@ -91,7 +91,7 @@ impl Ggx {
     }
 }
 
-/// Value of a layer of white fibres, without the cosine.
+/// BRDF value of a layer of white fibres, without the cosine.
 ///
 /// Source: see [`crate::bsdf::lobe::fuzz`].
 pub fn fuzz_value(roughness: f32, wo: Vec3, wi: Vec3) -> f32 {

@@ -1,8 +1,7 @@
-//! How a surface point scatters light: some lobes with weights, made for the direction in which it
-//! is seen.
+//! BSDFs: how a surface point scatters light, as weighted lobes for one view direction.
 //!
-//! Directions are local to the point's [`Frame`] and point away from the surface. The side from
-//! which it is seen is above.
+//! Directions are local to the point's [`Frame`] and point away from the surface. The viewer is
+//! above the surface (z > 0).
 
 pub mod albedo;
 pub mod film;
@@ -23,40 +22,40 @@ pub use layers::Tables;
 pub use lobe::{Lobe, LobeKind, Scatter, Spread};
 use smallvec::SmallVec;
 
-/// A lobe, how much it counts, and how often it is chosen.
+/// Lobe with its weight and its sampling probability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weighted<'a> {
-    /// The lobe.
+    /// Lobe.
     pub lobe: Lobe<'a>,
-    /// What multiplies it.
+    /// Factor of its value.
     pub weight: Spectrum,
-    /// The probability with which it is sampled.
+    /// Probability of sampling it.
     pub probability: f32,
 }
 
-/// The lobes of a point, seen from one direction.
+/// Lobes of a surface point for one view direction.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bsdf<'a> {
     lobes: SmallVec<[Weighted<'a>; 4]>,
-    /// The sum of the shares that were given.
+    /// Sum of the shares passed to [`Bsdf::push`].
     total: f32,
 }
 
-/// A direction that was chosen.
+/// Direction sampled from a BSDF.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BsdfSample {
-    /// Where the light comes from.
+    /// Local direction to the incident light.
     pub wi: Vec3,
-    /// What multiplies that light: value · |cos| / density.
+    /// Throughput factor: value · |cos| / pdf.
     pub weight: Spectrum,
-    /// Density per solid angle; 0 where it is a single direction.
+    /// Pdf per solid angle; 0 for a single direction.
     pub pdf: f32,
-    /// The number of the lobe that chose it.
+    /// Index of the lobe that sampled it.
     pub lobe: usize,
 }
 
 impl<'a> Bsdf<'a> {
-    /// Adds a lobe. Lobes are chosen in proportion to their `share`: about what they give back.
+    /// Adds a lobe. Lobes are sampled in proportion to `share`, their approximate albedo.
     pub fn push(&mut self, lobe: impl Into<Lobe<'a>>, weight: Spectrum, share: f32) {
         if weight.max_element() > 0.0 && share > 0.0 {
             self.lobes.push(Weighted { lobe: lobe.into(), weight, probability: share });
@@ -64,46 +63,45 @@ impl<'a> Bsdf<'a> {
         }
     }
 
-    /// The lobes, with the probabilities that they are chosen.
+    /// Lobes with their sampling probabilities.
     pub fn lobes(&self) -> impl Iterator<Item = Weighted<'a>> {
         self.lobes.iter().map(|part| Weighted { probability: part.probability / self.total, ..*part })
     }
 
-    /// Whether lights can be connected with: some lobe scatters into all directions.
+    /// True if some lobe is not a delta lobe, so that light sampling is useful.
     pub fn is_broad(&self) -> bool {
         self.lobes.iter().any(|part| !part.lobe.is_delta())
     }
 
-    /// Whether half or more of what is scattered goes into a narrow part of all directions.
+    /// True if glossy lobes have at least half of the sampling probability.
     pub fn is_glossy(&self) -> bool {
         let glossy = self.lobes.iter().filter(|part| part.lobe.kind().spread == Spread::Glossy);
         glossy.map(|part| part.probability).sum::<f32>() >= 0.5 * self.total
     }
 
-    /// Whether some of it is a fibre, whose light may leave on any side.
+    /// True if some lobe is a fibre, which scatters light to all sides.
     pub fn is_fibre(&self) -> bool {
         self.lobes.iter().any(|part| part.lobe.kind().is_fibre)
     }
 
-    /// Whether nothing is scattered.
+    /// True if no light is scattered.
     pub fn is_black(&self) -> bool {
         self.lobes.is_empty()
     }
 
-    /// Whether light from behind the surface is scattered too, and not only along single
-    /// directions.
+    /// True if light from behind the surface is scattered by a lobe that is not a delta lobe.
     pub fn passes_light(&self) -> bool {
         self.lobes.iter().any(|part| part.lobe.kind().transmits && !part.lobe.is_delta())
     }
 
-    /// The share of light that goes on as if nothing were there.
+    /// Share of light that passes straight through, as if there were no surface.
     pub fn straight(&self) -> Spectrum {
         let through = self.lobes.iter().filter(|part| part.lobe.kind().is_straight);
         through.map(|part| part.weight).sum()
     }
 
-    /// The value times |cos| of `wi`, and the density per solid angle with which [`Bsdf::sample`]
-    /// chooses it; without lobes of single directions.
+    /// Value times |cos| of `wi`, and the pdf per solid angle with which [`Bsdf::sample`] chooses
+    /// `wi`. Delta lobes are excluded.
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         let (mut value, mut density) = (Spectrum::ZERO, 0.0);
         for part in &self.lobes {
@@ -114,7 +112,7 @@ impl<'a> Bsdf<'a> {
         if density > 0.0 { (value, density / self.total) } else { (value, 0.0) }
     }
 
-    /// Chooses a direction by three numbers, uniform from 0 to 1; `None` where light ends.
+    /// Samples a direction by three numbers, uniform in [0, 1]; `None` if the path ends.
     pub fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<BsdfSample> {
         let mut rest = choice * self.total;
         let last = self.lobes.len().checked_sub(1)?;
@@ -127,7 +125,7 @@ impl<'a> Bsdf<'a> {
             rest -= part.probability;
         }
         let part = &self.lobes[chosen];
-        // What is left of the number is uniform again.
+        // The remainder of `choice` is uniform again.
         let again = (rest / part.probability).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
         let scattered = part.lobe.sample(wo, again, u)?;
         if part.lobe.is_delta() {

@@ -1,6 +1,5 @@
-//! Proofs by numbers: whether directions are sampled as their density says, and whether what
-//! absorbs nothing is white in even light. Tests use them with few samples, `cargo xtask validate`
-//! with many.
+//! Numerical checks: samples agree with their pdf, and lossless materials are white in a furnace.
+//! Tests run them with few samples, `cargo xtask validate` with many.
 
 use super::lobe::blinn::Blinn;
 use super::lobe::diffuse::{Diffuse, DiffuseTransmission};
@@ -18,25 +17,25 @@ use crate::spectrum::{Lanes, Spectrum};
 use std::f64::consts::{PI, TAU};
 use std::sync::LazyLock;
 
-/// Cells of equal solid angle, and how many samples are sorted into them.
+/// Cells of equal solid angle, and the number of samples sorted into them.
 #[derive(Clone, Copy, Debug)]
 pub struct Cells {
-    /// Bands from pole to pole.
+    /// Number of bands from pole to pole.
     pub rows: usize,
-    /// Cells around.
+    /// Number of cells around each band.
     pub columns: usize,
-    /// Samples.
+    /// Number of samples.
     pub samples: u32,
-    /// The density is asked for at so many points along each side of a cell.
+    /// Number of points along each side of a cell at which the pdf is evaluated.
     pub fine: usize,
 }
 
-/// What came of comparing samples with a density.
+/// Result of a comparison of samples with a pdf.
 #[derive(Clone, Copy, Debug)]
 pub struct Verdict {
     /// Chi-square as a deviate of the normal distribution.
     pub deviate: f64,
-    /// The density over all directions: 1, less what is not sampled.
+    /// Integral of the pdf over all directions: 1 less the probability of failed samples.
     pub density: f64,
 }
 
@@ -47,7 +46,7 @@ impl Cells {
         row * self.columns + ((turn * self.columns as f64) as usize).min(self.columns - 1)
     }
 
-    /// How many samples should fall into a cell.
+    /// Expected number of samples in a cell.
     fn expected(&self, cell: usize, pdf: &impl Fn(Vec3) -> f32) -> f64 {
         let fine = self.fine;
         let point = |i: usize| {
@@ -59,8 +58,8 @@ impl Cells {
         mean * 4.0 * PI / (self.rows * self.columns) as f64 * f64::from(self.samples)
     }
 
-    /// Samples, by three numbers from 0 to 1, against their density. Other seeds have other
-    /// samples.
+    /// Compares samples, drawn by three numbers in [0, 1], with their pdf. `seed` selects the
+    /// numbers.
     pub fn compare(&self, seed: u64, sample: impl Fn(f32, Vec2) -> Option<Vec3>, pdf: impl Fn(Vec3) -> f32) -> Verdict {
         let all = self.rows * self.columns;
         let mut counts = vec![0.0_f64; all + 1];
@@ -70,7 +69,7 @@ impl Cells {
         }
         let mut expected: Vec<f64> = (0..all).map(|cell| self.expected(cell, &pdf)).collect();
         let density = expected.iter().sum::<f64>() / f64::from(self.samples);
-        // What was not sampled is what is left of 1.
+        // Failed samples account for the remainder to 1.
         expected.push((f64::from(self.samples) * (1.0 - density)).max(0.0));
         let mut cells: Vec<(f64, f64)> = expected.into_iter().zip(counts).collect();
         cells.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -86,14 +85,14 @@ impl Cells {
         Verdict { deviate: deviate(chi2, freedom), density }
     }
 
-    /// A lobe seen from one direction.
+    /// Compares the samples of a lobe with its pdf, for one view direction.
     pub fn lobe(&self, seed: u64, lobe: Lobe, wo: Vec3) -> Verdict {
         let sample = |choice, u| lobe.sample(wo, choice, u).map(|scattered| scattered.wi);
         self.compare(seed, sample, |wi| lobe.eval(wo, wi).1)
     }
 }
 
-/// The upper share of a chi-square distribution, as a normal deviate.
+/// Upper tail of a chi-square distribution, as a normal deviate.
 ///
 /// Source: Wilson and Hilferty, *The Distribution of Chi-Square*, 1931.
 fn deviate(chi2: f64, freedom: f64) -> f64 {
@@ -102,7 +101,7 @@ fn deviate(chi2: f64, freedom: f64) -> f64 {
     (third - (1.0 - spread)) / spread.sqrt()
 }
 
-/// One of each lobe that scatters into many directions, with names.
+/// One lobe of every kind that is not a delta lobe, with names.
 pub fn broad() -> Vec<(&'static str, Lobe<'static>)> {
     let rough = |roughness, anisotropy, facet, behind| {
         Lobe::from(Rough { ggx: Ggx::new(roughness, anisotropy).clamped(), facet, behind })
@@ -126,7 +125,7 @@ pub fn broad() -> Vec<(&'static str, Lobe<'static>)> {
         ("Lambert", Diffuse::lambert(Spectrum::ONE).into()),
         ("rough matte", Diffuse { roughness: 1.0, ..Diffuse::lambert(Spectrum::ONE) }.into()),
         (
-            "matte with a normal of its own",
+            "matte with bent normal",
             Diffuse { normal: leaning, roughness: 0.5, ..Diffuse::lambert(Spectrum::ONE) }.into(),
         ),
         ("matte, other side", DiffuseTransmission { color: Spectrum::ONE }.into()),
@@ -148,7 +147,7 @@ pub fn broad() -> Vec<(&'static str, Lobe<'static>)> {
     ]
 }
 
-/// Materials that absorb nothing, with names.
+/// Lossless materials, with names.
 pub fn lossless() -> Vec<(&'static str, PrincipledMaterial)> {
     let white = || PrincipledMaterial { base_color: Vec3::ONE, ..Default::default() };
     vec![
@@ -174,7 +173,7 @@ pub fn lossless() -> Vec<(&'static str, PrincipledMaterial)> {
     ]
 }
 
-/// Materials with facets that absorb nothing and may be rougher along one axis, with names.
+/// Lossless materials with facets, for tests of anisotropy, with names.
 pub fn brushed() -> Vec<(String, PrincipledMaterial)> {
     let white = || PrincipledMaterial { base_color: Vec3::ONE, ..Default::default() };
     let glass = |ior| PrincipledMaterial { transmission_weight: 1.0, specular_ior: ior, ..white() };
@@ -186,8 +185,7 @@ pub fn brushed() -> Vec<(String, PrincipledMaterial)> {
     all
 }
 
-/// Materials with films that absorb nothing, with names. Of rough ones what they give back in all
-/// is known nearly.
+/// Lossless materials with films, with names. The albedo of rough ones is only approximate.
 pub fn filmed() -> Vec<(&'static str, PrincipledMaterial)> {
     let film = || PrincipledMaterial { base_color: Vec3::ONE, thin_film_weight: 1.0, ..Default::default() };
     let bubble = PrincipledMaterial { specular_ior: 1.0, transmission_weight: 1.0, walls: Walls::Thin, ..film() };
@@ -195,26 +193,25 @@ pub fn filmed() -> Vec<(&'static str, PrincipledMaterial)> {
     vec![("film on a matte base", film()), ("soap film", bubble), ("film on glass", glass)]
 }
 
-/// A material in even light from all around.
+/// Furnace: a material in uniform light from all directions.
 pub struct Furnace<'a> {
     material: &'a PrincipledMaterial,
     tables: Tables,
 }
 
 impl<'a> Furnace<'a> {
-    /// With a material in it.
+    /// Furnace with a material.
     pub fn new(material: &'a PrincipledMaterial) -> Self {
         Furnace { material, tables: Tables::new(material, None, &mut Vec::new()) }
     }
 
-    /// What it gives back, with a roughness and seen at a cosine, and the standard error of that.
-    /// What goes into glass counts by its flux: its radiance is denser by the square of the
-    /// index.
+    /// Albedo at a roughness and a cosine of the view, and its standard error. Light that enters
+    /// glass counts by its flux, since its radiance grows with the square of the index.
     pub fn gives(&self, roughness: f32, cosine: f32, samples: u32) -> (f64, f64) {
         self.gives_to(Seen { roughness, cosine, ..Seen::default() }, samples)
     }
 
-    /// The same seen in any way.
+    /// Albedo for any view, and its standard error.
     pub fn gives_to(&self, from: Seen, samples: u32) -> (f64, f64) {
         let here = Parameters {
             specular_roughness: from.roughness,
@@ -227,24 +224,24 @@ impl<'a> Furnace<'a> {
     }
 }
 
-/// How a material in a furnace is seen.
+/// View of a material in a furnace.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seen {
-    /// Its roughness.
+    /// Roughness.
     pub roughness: f32,
-    /// Its anisotropy.
+    /// Anisotropy.
     pub anisotropy: f32,
-    /// The cosine to the normal.
+    /// Cosine of the view to the normal.
     pub cosine: f32,
-    /// The azimuth, in turns.
+    /// Azimuth, in turns.
     pub turn: f32,
-    /// Whether that is from inside.
+    /// True if seen from inside.
     pub inside: bool,
-    /// The index behind the boundary over that before it; `None`: that of the material in air.
+    /// Index behind the boundary over that before it; `None` for the material in air.
     pub eta: Option<f32>,
 }
 
-/// A material from outside.
+/// BSDF of a material seen from outside.
 #[cfg(test)]
 pub(super) fn seen<'a>(here: &Parameters, tables: &'a Tables, wo: Vec3) -> Bsdf<'a> {
     seen_through(here, tables, wo, false, here.specular_ior)
@@ -257,7 +254,7 @@ fn seen_through<'a>(here: &Parameters, tables: &'a Tables, wo: Vec3, inside: boo
     bsdf
 }
 
-/// What lobes give back.
+/// Albedo of a BSDF by sampling, and its standard error.
 pub(super) fn given(bsdf: &Bsdf, wo: Vec3, samples: u32) -> (f64, f64) {
     let eta = bsdf.lobes().find_map(|part| part.lobe.kind().eta);
     let denser = eta.map_or(1.0, |eta| eta * eta);
@@ -271,6 +268,6 @@ pub(super) fn given(bsdf: &Bsdf, wo: Vec3, samples: u32) -> (f64, f64) {
     }
     let n = f64::from(samples);
     let mean = sums.0 / n;
-    // Points that are even have less error than this, and never more by much.
+    // The stratified points have a smaller error than this estimate, or barely a larger one.
     (mean, ((sums.1 / n - mean * mean).max(0.0) / n).sqrt())
 }

@@ -1,4 +1,4 @@
-//! Lobes and layers: what they give back, and whether they sample what they say.
+//! Tests of lobes and layers: albedo, reciprocity, and agreement of samples with pdf.
 
 use super::lobe::blinn::Blinn;
 use super::proof::{Cells, Furnace, Seen, broad, brushed, filmed, given, lossless, seen};
@@ -8,24 +8,24 @@ use crate::math::fp;
 use crate::math::random::Random;
 
 #[test]
-fn lobes_sample_what_their_density_says() {
-    // `cargo xtask validate` does the same with a million samples each.
+fn lobe_samples_agree_with_pdf() {
+    // `cargo xtask validate` runs this with a million samples each.
     let cells = Cells { rows: 60, columns: 80, samples: 200_000, fine: 12 };
     for (name, lobe) in broad() {
         for (cosine, turn) in [(0.95, 0.1), (0.6, 0.7), (0.25, 0.35)] {
             let verdict = cells.lobe(11, lobe, warp::polar(cosine, turn));
-            // 48 tests at a significance of 0.01 in all, by Sidak: 2.1e-4 each.
+            // 48 tests at a significance of 0.01 in all, by Šidák: 2.1e-4 each.
             assert!(verdict.density < 1.005 && verdict.deviate < 3.53, "{name} at {cosine}: {verdict:?}");
         }
     }
 }
 
 #[test]
-fn reflecting_lobes_are_the_same_both_ways() {
+fn reflecting_lobes_are_reciprocal() {
     let mut random = Random(12);
-    // A normal for shading is that of the cosine on one side only, and light enters a fibre where it
-    // is seen.
-    let others = ["matte with a normal of its own", "hair", "fur"];
+    // Exclude the bent normal, which enters the cosine on one side only, and fibres, whose offset
+    // depends on the view.
+    let others = ["matte with bent normal", "hair", "fur"];
     for (name, lobe) in broad().into_iter().filter(|(name, _)| !others.contains(name)) {
         for _ in 0..500 {
             let wo = warp::polar(random.between(0.05, 1.0), random.between(0.0, 1.0));
@@ -38,7 +38,7 @@ fn reflecting_lobes_are_the_same_both_ways() {
 }
 
 #[test]
-fn plastic_is_the_same_both_ways() {
+fn plastic_is_reciprocal() {
     let mut random = Random(15);
     let material = PrincipledMaterial { base_color: Vec3::new(0.9, 0.5, 0.1), ..Default::default() };
     for (ior, reflection) in [(1.1, 1.0), (1.5, 1.0), (1.5, 0.3), (2.5, 1.0)] {
@@ -56,7 +56,7 @@ fn plastic_is_the_same_both_ways() {
 }
 
 #[test]
-fn lobes_have_values_along_the_surface_too() {
+fn lobes_are_finite_at_grazing_angles() {
     let heights = [0.0, -0.0, 1e-38, -1e-38, 1e-30, -1e-30, 1e-12, -1e-12, 1e-6, -1e-6];
     let nearly_flat = |z: f32, turn: f32| warp::polar(0.0, turn).with_z(z);
     for (name, lobe) in broad() {
@@ -70,8 +70,8 @@ fn lobes_have_values_along_the_surface_too() {
     }
 }
 
-/// How far from white materials are at most, over roughness and angle, beyond three standard
-/// errors.
+/// Asserts that materials differ from white by at most `most` plus three standard errors, over
+/// roughness and angle.
 fn assert_white(materials: Vec<(&str, PrincipledMaterial)>, roughnesses: &[f32], most: f64) {
     for (name, material) in materials {
         let furnace = Furnace::new(&material);
@@ -83,14 +83,14 @@ fn assert_white(materials: Vec<(&str, PrincipledMaterial)>, roughnesses: &[f32],
 }
 
 #[test]
-fn what_absorbs_nothing_is_white_in_even_light() {
-    // `cargo xtask validate` does the same with more samples.
+fn lossless_materials_are_white_in_a_furnace() {
+    // `cargo xtask validate` runs this with more samples.
     assert_white(lossless(), &[0.0, 0.1, 0.3, 0.5, 0.8, 1.0], 0.002);
     assert_white(filmed(), &[0.0], 0.002);
 }
 
 #[test]
-fn brushed_surfaces_are_white_over_roughness_anisotropy_index_and_angle() {
+fn lossless_anisotropic_materials_are_white_in_a_furnace() {
     for (name, material) in brushed() {
         let furnace = Furnace::new(&material);
         let sides = if material.base_metalness > 0.0 { &[false][..] } else { &[false, true] };
@@ -107,7 +107,7 @@ fn brushed_surfaces_are_white_over_roughness_anisotropy_index_and_angle() {
 }
 
 #[test]
-fn rough_glass_in_another_body_is_nearly_white() {
+fn rough_glass_in_another_medium_is_nearly_white() {
     let material = PrincipledMaterial { transmission_weight: 1.0, base_color: Vec3::ONE, ..Default::default() };
     let furnace = Furnace::new(&material);
     for (eta, inside) in [(1.5 / 1.33, false), (1.33 / 1.5, true), (1.0 / 1.8, false), (2.4, true)] {
@@ -125,7 +125,7 @@ fn rough_films_are_nearly_white() {
 }
 
 #[test]
-fn nothing_gives_back_more_than_it_gets() {
+fn materials_reflect_no_more_light_than_arrives() {
     let mut random = Random(13);
     for round in 0..300 {
         let mut share = || random.between(0.0, 1.0);
@@ -152,7 +152,7 @@ fn nothing_gives_back_more_than_it_gets() {
 static TABLES: std::sync::OnceLock<Tables> = std::sync::OnceLock::new();
 
 #[test]
-fn a_sheet_is_the_sum_over_all_ways_between_its_faces() {
+fn sheet_agrees_with_sum_over_internal_reflections() {
     for (eta, left, cosine) in [(1.5, 1.0, 1.0), (1.52, 0.5, 0.7), (1.3, 0.9, 0.1), (2.0, 0.0, 0.5), (0.8, 0.3, 0.9)] {
         let (sine2, c) = ((1.0 - cosine * cosine) / (eta * eta), cosine);
         let inside = f64::sqrt(1.0 - sine2);
@@ -175,7 +175,7 @@ fn a_sheet_is_the_sum_over_all_ways_between_its_faces() {
             "{eta} {left} {cosine}: {up} {down}, {reflected} {through}"
         );
     }
-    // Without a depth the faces are of unpolarised light; a face may reflect otherwise.
+    // Without a depth the faces use unpolarised light. `faced` replaces one face's reflectance.
     let plain = fresnel::Sheet { eta: 1.5, inside: None };
     for (up, down) in [plain.at(1.0), plain.faced(Spectrum::splat(0.04), 1.0)] {
         assert!((up[0] - 0.08 / 1.04).abs() < 1e-6 && (down[0] - 0.96 / 1.04).abs() < 1e-6, "{up} {down}");
@@ -183,7 +183,7 @@ fn a_sheet_is_the_sum_over_all_ways_between_its_faces() {
 }
 
 #[test]
-fn fresnel_and_its_mean_agree() {
+fn diffuse_fresnel_is_the_mean_of_fresnel() {
     for eta in [1.1_f32, 1.33, 1.5, 2.0, 1.0 / 1.33, 1.0 / 1.5] {
         let steps = 20_000;
         let sum: f64 = (0..steps)
@@ -203,7 +203,7 @@ fn fresnel_and_its_mean_agree() {
 }
 
 #[test]
-fn highlights_of_the_course_give_back_less_than_their_bound() {
+fn highlights_of_the_course_stay_below_their_bound() {
     for (exponent, phong) in [(1.0, false), (5.0, false), (40.0, false), (1.0, true), (25.0, true)] {
         for cosine in [1.0, 0.7, 0.3, 0.05] {
             let mut bsdf = Bsdf::default();
@@ -215,7 +215,7 @@ fn highlights_of_the_course_give_back_less_than_their_bound() {
 }
 
 #[test]
-fn a_frame_turns_there_and_back() {
+fn frame_round_trips_directions() {
     let mut random = Random(14);
     for _ in 0..1_000 {
         let (n, v) = (random.direction(), random.direction());

@@ -1,9 +1,9 @@
-//! From the unit square to directions and places.
+//! Mappings from the unit square to directions and points.
 
 use crate::math::{Vec2, Vec3, fp};
 use std::hint::select_unpredictable;
 
-/// A point of the unit disc, evenly spread.
+/// Uniform point of the unit disc.
 ///
 /// Source: Shirley and Chiu, *A Low Distortion Map Between Disk and Square*, Journal of Graphics
 /// Tools 2(3), 1997.
@@ -12,7 +12,7 @@ pub fn disc(u: Vec2) -> Vec2 {
     if p == Vec2::ZERO {
         return Vec2::ZERO;
     }
-    // The angle in eighths of a turn.
+    // Angle in eighths of a turn.
     let flat = p.x.abs() > p.y.abs();
     let (radius, other) = (select_unpredictable(flat, p.x, p.y), select_unpredictable(flat, p.y, p.x));
     let ratio = other / radius;
@@ -21,26 +21,25 @@ pub fn disc(u: Vec2) -> Vec2 {
     radius * Vec2::new(cos, sin)
 }
 
-/// A direction of the upper hemisphere with density cos / pi.
+/// Direction of the upper hemisphere with pdf cos / pi.
 pub fn cosine_hemisphere(u: Vec2) -> Vec3 {
     let p = disc(u);
     p.extend((1.0 - p.length_squared()).max(0.0).sqrt())
 }
 
-/// A direction with polar coordinates: the cosine to z, and the angle about it as a share of a
-/// whole turn.
+/// Direction by polar coordinates: the cosine to z, and the azimuth in turns.
 pub fn polar(cosine: f32, turn: f32) -> Vec3 {
     let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
     let (sin, cos) = fp::sin_cos_turn(turn);
     Vec3::new(sine * cos, sine * sin, cosine)
 }
 
-/// A direction of the whole sphere, evenly spread: density 1 / (4 pi).
+/// Uniform direction of the sphere, with pdf 1 / (4 pi).
 pub fn sphere(u: Vec2) -> Vec3 {
     polar(1.0 - 2.0 * u.x, u.y)
 }
 
-/// Barycentric coordinates of a triangle, evenly spread over its area.
+/// Barycentric coordinates of a uniform point of a triangle.
 ///
 /// Source: Heitz, *A Low-Distortion Map Between Triangle and Square*, 2019.
 pub fn triangle(u: Vec2) -> Vec3 {

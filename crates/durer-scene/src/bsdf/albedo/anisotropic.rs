@@ -1,30 +1,31 @@
-//! Albedo of surfaces that are rougher along one axis than along the other.
+//! Directional albedo of anisotropic surfaces.
 //!
-//! The azimuth from which such a surface is seen matters, and near the smoother axis it matters very
-//! much. The table is therefore not over the azimuth and the two roughnesses, but over the slopes of
-//! the facets as they are seen: how far they spread along the direction of view, how far across it,
-//! and how much the two are correlated. In these the albedo is smooth for every anisotropy.
+//! Such an albedo depends on the azimuth of the view, and strongly so near the smoother axis. The
+//! table therefore is not over the azimuth and the two roughnesses, but over the slopes of the
+//! facets relative to the view: their spread along the direction of view, their spread across it,
+//! and the correlation of the two. In these coordinates the albedo is smooth for every anisotropy.
 
 use super::{direction, place_among};
 use crate::bsdf::microfacet::{Ggx, SMOOTH};
 use crate::math::{Vec2, Vec3, fp};
 use rayon::prelude::*;
 
-/// Entries along the cosine, the spread along the view, the spread across it, and the correlation.
+/// Number of entries along the cosine, the spread along the view, the spread across it, and the
+/// correlation.
 const SIZES: [usize; 4] = [16, 16, 10, 5];
 
-/// Points of an integral around the normal and towards it: enough for 0.1 %.
+/// Number of points of an integral around the normal and towards it. The error is at most 0.1 %.
 const EXACT: [usize; 2] = [32, 24];
 
-/// The same where an integral is worked out for one point of a picture.
+/// Number of points, as in [`EXACT`], of an integral for a single shading point.
 const QUICK: [usize; 2] = [16, 16];
 
-/// A function of a distribution of facets and of the direction from which it is seen.
+/// Table of a function of the facet distribution and the view direction.
 #[derive(Clone, Debug)]
 pub(super) struct Table(Vec<f32>);
 
 impl Table {
-    /// Of the mean of a function over the facets that are seen, given by two numbers.
+    /// Table of the mean of `value` over the visible facets, which `value` samples by two numbers.
     pub fn new(value: impl Fn(Ggx, Vec3, Vec2) -> f32 + Sync) -> Self {
         let entry = |mut i: usize| {
             let at = SIZES.map(|size| {
@@ -38,7 +39,7 @@ impl Table {
         Table((0..SIZES.iter().product()).into_par_iter().map(entry).collect())
     }
 
-    /// Cubic between the entries.
+    /// Value for a surface and a direction, interpolated cubically.
     pub fn at(&self, ggx: Ggx, wo: Vec3) -> f32 {
         let axes = axes(ggx.clamped(), wo);
         let parts: [(usize, [f32; 4]); 4] = std::array::from_fn(|axis| cubic(axes[axis], SIZES[axis]));
@@ -57,13 +58,13 @@ impl Table {
     }
 }
 
-/// The mean over the facets that are seen, for one point of a picture.
+/// Mean of `value` over the visible facets, for a single shading point.
 pub(super) fn quick(value: impl Fn(Vec2) -> f32) -> f32 {
     integral(QUICK, value)
 }
 
-/// The mean of a function over the unit square that is periodic in x. Points are closer together
-/// where y nears 1: there the facets lie along the direction of view.
+/// Mean over the unit square of a function that is periodic in x. Points are denser as y nears 1,
+/// where the facets lie along the direction of view.
 fn integral([around, towards]: [usize; 2], value: impl Fn(Vec2) -> f32) -> f32 {
     let mut sum = 0.0;
     for j in 0..towards {
@@ -74,7 +75,7 @@ fn integral([around, towards]: [usize; 2], value: impl Fn(Vec2) -> f32) -> f32 {
     sum / (around * towards) as f32
 }
 
-/// Coordinates of the table, from 0 to 1.
+/// Coordinates in the table, each in [0, 1].
 fn axes(ggx: Ggx, wo: Vec3) -> [f32; 4] {
     let across = Vec2::new(wo.x, wo.y).try_normalize().unwrap_or(Vec2::X);
     let (x2, y2) = (ggx.alpha.x * ggx.alpha.x, ggx.alpha.y * ggx.alpha.y);
@@ -85,12 +86,12 @@ fn axes(ggx: Ggx, wo: Vec3) -> [f32; 4] {
     [wo.z.max(0.0).sqrt(), along.sqrt().sqrt(), beside.sqrt().sqrt(), correlation.min(1.0)]
 }
 
-/// The inverse of [`axes`].
+/// Inverse of [`axes`].
 fn seen([cosine, along, beside, correlation]: [f32; 4]) -> (Ggx, Vec3) {
     let [along, beside] = [along * along, beside * beside].map(|alpha| alpha.max(SMOOTH));
     let both = correlation * along * beside;
     let (a2, b2) = (along * along, beside * beside);
-    // The eigenvalues and the axis of the matrix of the slopes' variances.
+    // Eigenvalues and axis of the covariance matrix of the slopes.
     let apart = ((a2 - b2) * (a2 - b2) + 4.0 * both * both).sqrt();
     let x2 = 0.5 * (a2 + b2 + apart);
     let y2 = a2 * b2 * (1.0 - correlation * correlation) / x2;
@@ -99,11 +100,11 @@ fn seen([cosine, along, beside, correlation]: [f32; 4]) -> (Ggx, Vec3) {
     (Ggx { alpha: Vec2::new(x2.sqrt(), y2.sqrt()) }.clamped(), Vec3::new(flat.x * cos, flat.x * sin, flat.z))
 }
 
-/// The first of four entries around a number from 0 to 1, and what each of them weighs.
+/// Index of the first of four entries around `x` in [0, 1], and the weight of each.
 fn cubic(x: f32, size: usize) -> (usize, [f32; 4]) {
     let (i, f) = place_among(x, size);
     let first = i.saturating_sub(1).min(size - 4);
-    // From the first of the four.
+    // Measure from the first of the four.
     let t = f + (i - first) as f32;
     let [a, b, c] = [t - 1.0, t - 2.0, t - 3.0];
     (first, [-a * b * c / 6.0, t * b * c / 2.0, -t * a * c / 2.0, t * a * b / 6.0])
@@ -116,7 +117,7 @@ mod tests {
     use crate::math::random::Random;
 
     #[test]
-    fn coordinates_lead_to_the_surface_that_they_came_from() {
+    fn axes_invert_seen() {
         let mut random = Random(21);
         for _ in 0..200 {
             let at: [f32; 4] = std::array::from_fn(|_| random.between(0.2, 0.95));
@@ -127,10 +128,10 @@ mod tests {
     }
 
     #[test]
-    fn an_even_surface_gives_back_what_the_table_of_even_ones_says() {
+    fn anisotropic_table_agrees_with_isotropic_table() {
         for (cosine, roughness) in [(0.9, 0.3), (0.5, 0.6), (0.2, 0.9), (0.7, 1.0)] {
             let ggx = Ggx::new(roughness, 0.0);
-            // By its own table, which is asked for uneven ones only.
+            // A slight anisotropy selects the anisotropic table.
             let uneven = Ggx { alpha: Vec2::new(ggx.alpha.x, ggx.alpha.x * (1.0 - 1e-6)) };
             let (own, even) = (albedo::facets(uneven, direction(cosine), roughness), albedo::ggx(cosine, roughness));
             assert!((own - even).abs() < 3e-3, "{cosine} {roughness}: {own} {even}");

@@ -1,4 +1,4 @@
-//! The course's highlights as lobes.
+//! Highlights of the course as lobes.
 
 use super::{LobeKind, NOTHING, Scatter, Scattered};
 use crate::bsdf::warp;
@@ -6,22 +6,22 @@ use crate::math::{Vec2, Vec3, fp, reflect};
 use crate::spectrum::Spectrum;
 use std::f32::consts::FRAC_1_PI;
 
-/// A highlight: color · base^exponent / pi, where the base is N·H (Blinn) or R·L (Phong).
+/// Highlight: color · base^exponent / pi, where the base is N·H (Blinn) or R·L (Phong).
 ///
-/// The course has no cosine beside it, and so would give back more light than arrives; here there
-/// is one.
+/// The course's formula has no cosine factor and would reflect more light than arrives. This lobe
+/// has one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blinn {
-    /// Its strength.
+    /// Strength.
     pub color: Spectrum,
-    /// Its sharpness.
+    /// Sharpness.
     pub exponent: f32,
-    /// Whether the base is R·L.
+    /// True if the base is R·L.
     pub phong: bool,
 }
 
 impl Blinn {
-    /// More than the share of light that a highlight of strength 1 gives back, from whatever side.
+    /// Upper bound of the albedo of a highlight of strength 1, for all directions.
     pub fn bound(exponent: f32) -> f32 {
         (8.0 / (exponent + 1.0)).min(1.0)
     }
@@ -35,7 +35,7 @@ impl Scatter for Blinn {
 
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         let half = (wo + wi).normalize_or_zero();
-        // What the power is of, and how much denser directions are than what is chosen.
+        // `base` is what the power is of; `spread` is the Jacobian from the sampled vector to `wi`.
         let (base, spread) = match self.phong {
             true => (reflect(-wo, Vec3::Z).dot(wi), 1.0),
             false => (half.z, 4.0 * wo.dot(half)),

@@ -1,8 +1,7 @@
-//! Matte surfaces: energy-preserving Oren-Nayar.
+//! Diffuse surfaces: energy-preserving Oren-Nayar.
 //!
 //! Source: Portsmouth, Kutz and Hill, *EON: A practical energy-preserving rough diffuse BRDF*, JCGT
-//! 14(1), 2025: Fujii's version of Oren and Nayar's, and a term that gives back what is scattered
-//! more than once.
+//! 14(1), 2025: Fujii's version of the model of Oren and Nayar, and a term for multiple scattering.
 
 use super::{LobeKind, NOTHING, Scatter, Scattered};
 use crate::bsdf::albedo::Dielectric;
@@ -11,41 +10,41 @@ use crate::math::{Vec2, Vec3, fp};
 use crate::spectrum::Spectrum;
 use std::f32::consts::{FRAC_1_PI, PI};
 
-/// A matte surface. Its value does not depend on which direction is which.
+/// Diffuse surface. Its value is reciprocal, apart from `boundary`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Diffuse<'a> {
-    /// The share of light given back, by colour.
+    /// Albedo, by lane.
     pub color: Spectrum,
-    /// From 0 (Lambert) to 1.
+    /// Roughness, from 0 (Lambert) to 1.
     pub roughness: f32,
-    /// What light passes on its way in. What it passes on its way out is the weight of the lobe.
+    /// Boundary that light passes on its way in. The weight of the lobe accounts for its way out.
     pub boundary: Option<Boundary<'a>>,
-    /// The local normal that it has of its own: z, but where that is bent so that mirrors show
-    /// nothing from below the surface. Matte things need not be bent.
+    /// Local shading normal of the lobe. It is z unless the shading normal was bent to keep mirrors
+    /// from reflecting below the surface. Diffuse lobes need no bent normal.
     pub normal: Vec3,
 }
 
-/// The boundary of dielectrics on a matte surface.
+/// Dielectric boundary on a diffuse surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Boundary<'a> {
-    /// What is known of it.
+    /// Index and albedo tables.
     pub dielectric: &'a Dielectric,
-    /// Its own roughness.
+    /// Roughness of the boundary.
     pub roughness: f32,
-    /// What multiplies its reflection, from 0 to 1.
+    /// Factor of its reflection, from 0 to 1.
     pub reflection: f32,
 }
 
 impl Boundary<'_> {
-    /// The share of light from a direction above that passes, over the mean of that share over all
-    /// directions by their cosine.
+    /// Transmittance for light from a direction above, over the cosine-weighted mean transmittance
+    /// of the hemisphere.
     ///
-    /// With 1 - E(wo) as the weight of a matte base, this makes
-    /// (1 - E(wo)) (1 - E(wi)) / (1 - E mean) of what the base gives alone: the same both ways, and
-    /// with the boundary's own E(wo) all light there is.
+    /// With the weight 1 - E(wo) of the diffuse base, this scales the bare base by (1 - E(wo)) (1 -
+    /// E(wi)) / (1 - E mean). The result is reciprocal, and conserves energy together with the
+    /// boundary's own E(wo).
     ///
-    /// Source: Kelemen and Szirmay-Kalos, *A Microfacet Based Coupled Specular-Matte BRDF Model with
-    /// Importance Sampling*, Eurographics 2001.
+    /// Source: Kelemen and Szirmay-Kalos, *A Microfacet Based Coupled Specular-Matte BRDF Model
+    /// with Importance Sampling*, Eurographics 2001.
     fn entering(&self, cosine: f32) -> f32 {
         let passing = |reflected: f32| 1.0 - self.reflection * reflected;
         let (own, mean) = (self.dielectric.given(cosine, self.roughness), self.dielectric.mean(self.roughness));
@@ -57,12 +56,12 @@ const C1: f32 = 0.5 - 2.0 / (3.0 * PI);
 const C2: f32 = 2.0 / 3.0 - 28.0 / (15.0 * PI);
 
 impl<'a> Diffuse<'a> {
-    /// Lambert's, of a colour, with nothing on it.
+    /// Lambert's diffuse lobe of a colour, without a boundary.
     pub fn lambert(color: Spectrum) -> Self {
         Diffuse { color, roughness: 0.0, boundary: None, normal: Vec3::Z }
     }
 
-    /// The directional albedo of single scattering for a white surface.
+    /// Directional albedo of single scattering for a white surface.
     fn single(&self, cosine: f32) -> f32 {
         let mu = cosine.clamp(1e-6, 1.0);
         let sine = (1.0 - mu * mu).max(0.0).sqrt();
@@ -71,21 +70,21 @@ impl<'a> Diffuse<'a> {
         (1.0 + self.roughness * FRAC_1_PI * g) / (1.0 + C1 * self.roughness)
     }
 
-    /// The value without the cosine, of directions with an angle between them, by its cosine and
-    /// those to the normal.
+    /// Value without the cosine factor. `between` is the cosine between the directions; `out` and
+    /// `into` are their cosines to the normal.
     fn value(&self, between: f32, out: f32, into: f32) -> Spectrum {
         let Some(boundary) = &self.boundary else { return self.bare(between, out, into) };
         let entering = boundary.entering(into);
         if self.roughness == 0.0 {
             return self.color * (FRAC_1_PI * entering);
         }
-        // Of a rough base the part that is the same in all directions. Of the rest not all would
-        // come out again, or more than went in.
+        // For a rough base, apply the boundary only to the isotropic part. Applied to the rest, it
+        // would lose or create energy.
         let even = FRAC_1_PI * (1.0 - self.roughness) / (1.0 + C1 * self.roughness);
         self.bare(between, out, into) + self.color * (even * (entering - 1.0))
     }
 
-    /// The same with nothing on it.
+    /// Value as in [`Diffuse::value`], without a boundary.
     fn bare(&self, between: f32, out: f32, into: f32) -> Spectrum {
         if self.roughness == 0.0 {
             return self.color * FRAC_1_PI;
@@ -120,7 +119,7 @@ impl Scatter for Diffuse<'_> {
         let mut wi = warp::cosine_hemisphere(u);
         if self.normal != Vec3::Z {
             wi = Frame::around(self.normal).to_world(wi);
-            // What leads below the surface stays there.
+            // A direction below the surface carries no light.
             if wi.z <= 0.0 {
                 return None;
             }
@@ -129,10 +128,10 @@ impl Scatter for Diffuse<'_> {
     }
 }
 
-/// Light that leaves on the other side, the same in all directions.
+/// Light that leaves on the other side with equal radiance in all directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiffuseTransmission {
-    /// The share of light that goes through, by lane.
+    /// Transmitted share of light, by lane.
     pub color: Spectrum,
 }
 

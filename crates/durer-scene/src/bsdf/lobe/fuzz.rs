@@ -14,7 +14,7 @@ use std::f32::consts::PI;
 /// Fuzz of white fibres. Its directional albedo is [`crate::bsdf::albedo::fuzz`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fuzz {
-    /// From 0 (a thin rim of light) to 1.
+    /// Roughness, from 0 (a thin bright rim) to 1.
     pub roughness: f32,
 }
 

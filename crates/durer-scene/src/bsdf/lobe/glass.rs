@@ -1,26 +1,26 @@
-//! Single directions: mirrors, smooth glass, and what goes straight on.
+//! Lobes of single directions: mirrors, smooth glass, and straight transmission.
 
 use super::{LobeKind, NOTHING, Scatter, Scattered};
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
-/// A perfect mirror; what it reflects is its weight.
+/// Perfect mirror. Its reflectance is the weight of the lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mirror;
 
-/// Refraction by a smooth boundary; what goes through is its weight.
+/// Refraction by a smooth boundary. Its transmittance is the weight of the lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refraction {
-    /// The index behind the boundary over that before it.
+    /// Index of refraction behind the boundary over that before it.
     pub eta: f32,
 }
 
-/// Light that goes on as if nothing were there.
+/// Transmission that keeps the direction, as if there were no surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Through;
 
-/// The direction behind a boundary with normal `h` on the side of `w`; `None` for total reflection.
-/// `eta` is the index behind over that before.
+/// Refracted direction of `w` at a boundary with normal `h`, both on the same side; `None` for
+/// total internal reflection. `eta` is the index behind over that before.
 pub fn refracted(w: Vec3, h: Vec3, eta: f32) -> Option<Vec3> {
     let cosine = w.dot(h);
     let sine2 = (1.0 - cosine * cosine).max(0.0) / (eta * eta);
@@ -55,7 +55,7 @@ single_direction!(
     |_lobe| LobeKind { is_straight: true, ..LobeKind::MIRROR.transmitting() },
     |_lobe, wo| Some(Scattered { wi: -wo, value: Spectrum::ONE })
 );
-// Radiance is denser where the index is higher: L / n^2 stays what it is. Source: Veach's thesis,
+// Radiance scales with the square of the index: L / n^2 is invariant. Source: Veach's thesis,
 // section 5.2.
 single_direction!(Refraction, |lobe| LobeKind::MIRROR.refracting(lobe.eta), |lobe, wo| refracted(
     wo,

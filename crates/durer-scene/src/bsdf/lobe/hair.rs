@@ -1,12 +1,12 @@
-//! A fibre seen from outside: hair and fur.
+//! Fibre seen from outside: hair and fur.
 //!
-//! Light is mirrored by the fibre, goes through it, or goes through after it was mirrored inside
-//! once, twice, ... Along the fibre it spreads as its scales are rough, and around it as its section
-//! is not round. The local x axis lies along the fibre; where across it light meets it follows from
-//! how the normal leans.
+//! Light is reflected by the fibre (R), passes through it (TT), or passes through after one or more
+//! internal reflections (TRT and higher). The roughness of the cuticle scales spreads it along the
+//! fibre; the uneven cross-section spreads it around the fibre. The local x axis lies along the
+//! fibre. The tilt of the normal gives the offset across the fibre at which light hits it.
 //!
 //! Sources: Marschner, Jensen, Cammarano, Worley and Hanrahan, *Light Scattering from Human Hair
-//! Fibers*, SIGGRAPH 2003 (the ways of light); d'Eon, Francois, Hill, Letteri and Aubry, *An
+//! Fibers*, SIGGRAPH 2003 (the paths of light); d'Eon, Francois, Hill, Letteri and Aubry, *An
 //! Energy-Conserving Hair Reflectance Model*, EGSR 2011 (the spread along the fibre, the melanins);
 //! Chiang, Bitterli, Tappan and Burley, *A Practical and Controllable Hair and Fur Model for
 //! Production Path Tracing*, Eurographics 2016 (the spread around it, roughness and colour).
@@ -18,40 +18,39 @@ use crate::math::{Color, Vec2, Vec3, fp};
 use crate::spectrum::{Lanes, Spectrum};
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
-/// Ways of light that are told apart: mirrored, straight through, mirrored inside once, and more
-/// often.
+/// Number of light paths: R, TT, TRT, and all with more internal reflections.
 const WAYS: usize = 4;
 
-/// The last of them, which spreads evenly around the fibre.
+/// Index of the last path, which spreads evenly around the fibre.
 const MORE: usize = WAYS - 1;
 
-/// What all points of a fibre have in common.
+/// Data shared by all points of a fibre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fibre {
     pigment: Pigment,
-    /// The index of refraction inside over that outside.
+    /// Index of refraction inside over that outside.
     eta: f32,
-    /// Sine and cosine of the angles by which scales turn the first ways.
+    /// Sine and cosine of the angles by which the scales tilt the first paths.
     tilts: [Vec2; MORE],
-    /// How wide each way spreads along the fibre.
+    /// Variance of each path along the fibre.
     variances: [f32; WAYS],
     spread: Logistic,
 }
 
-/// What takes light away inside.
+/// Absorption inside the fibre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Pigment {
-    /// As much per radius.
+    /// Absorption coefficient per radius.
     Absorption(Color),
-    /// As much as gives many fibres a colour; and what divides the logarithm of that.
+    /// Colour of many fibres together, and the divisor of its logarithm.
     Color(Color, f32),
 }
 
 impl Fibre {
-    /// What a material says.
+    /// Fibre of a material.
     pub fn new(m: &HairMaterial) -> Self {
-        // Scales turn what is mirrored outside by twice their angle, back; the others by half as
-        // much and by twice as much, on.
+        // The scales tilt R back by twice their angle, TT forward by their angle, and TRT forward by
+        // four times their angle.
         let tilt = |by: f64| {
             let (sin, cos) = fp::sin_cos_degrees(by * f64::from(m.scale_tilt));
             Vec2::new(sin as f32, cos as f32)
@@ -77,16 +76,16 @@ impl Fibre {
         }
     }
 
-    /// How many fibres look, nearly.
+    /// Approximate colour of many fibres together.
     pub fn color(&self) -> Color {
         match self.pigment {
             Pigment::Color(color, _) => color,
-            // Of no roughness.
+            // Assumes a roughness of 0.
             Pigment::Absorption(absorption) => absorption.map(|sigma| fp::exp(-5.969 * sigma.sqrt())),
         }
     }
 
-    /// As light of some lanes sees it.
+    /// Hair lobe for light in the given lanes.
     pub fn seen(&self, lanes: &Lanes) -> Hair<'_> {
         let absorption = match self.pigment {
             Pigment::Absorption(absorption) => lanes.coefficient(absorption),
@@ -98,7 +97,7 @@ impl Fibre {
         Hair { fibre: self, absorption }
     }
 
-    /// The direction from which it is seen, turned by the scales on a way.
+    /// Longitudinal sine and cosine of the view direction, tilted by the scales for a path.
     fn turned(&self, way: usize, out: &Direction) -> Vec2 {
         let Some(tilt) = self.tilts.get(way) else { return out.along };
         let sine = out.along.x * tilt.y + out.along.y * tilt.x;
@@ -106,19 +105,19 @@ impl Fibre {
     }
 }
 
-/// A point of a fibre.
+/// Lobe at a point of a fibre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hair<'a> {
     fibre: &'a Fibre,
-    /// How much light loses inside, per radius.
+    /// Absorption coefficient, per radius.
     absorption: Spectrum,
 }
 
-/// A direction as a fibre has it.
+/// Direction in coordinates of a fibre.
 struct Direction {
     /// Sine and cosine of the angle to the plane across the fibre.
     along: Vec2,
-    /// The angle around the fibre from the y axis to the z axis.
+    /// Angle around the fibre, from the y axis to the z axis.
     around: f32,
 }
 
@@ -129,18 +128,18 @@ impl Direction {
     }
 }
 
-/// What becomes of light on its ways.
+/// Shares of light among the paths.
 struct Ways {
     shares: [Spectrum; WAYS],
-    /// How often each is chosen, and the sum of that.
+    /// Sampling weight of each path, and their sum.
     chances: [f32; WAYS],
     total: f32,
-    /// The angles to the normal, around the fibre, outside and inside.
+    /// Angles to the normal around the fibre, outside and inside.
     angles: [f32; 2],
 }
 
 impl Ways {
-    /// By how much a way turns light around the fibre.
+    /// Angle by which a path turns light around the fibre.
     fn turn(&self, way: usize) -> f32 {
         let way = way as f32;
         2.0 * way * self.angles[1] - 2.0 * self.angles[0] + way * PI
@@ -152,7 +151,8 @@ impl Hair<'_> {
         let eta = self.fibre.eta;
         let (sine, cosine) = (out.along.x, out.along.y.max(1e-6));
         let outside = out.around - FRAC_PI_2;
-        // The index of a section across the fibre; the sine outside is -cos of the angle from y.
+        // Effective index of a section across the fibre. The sine outside is -cos of the angle from
+        // y.
         let across = (eta * eta - sine * sine).max(1e-12).sqrt() / cosine;
         let sine_inside = (-wo.y / cosine / across).clamp(-1.0, 1.0);
         let cosine_inside = (1.0 - sine_inside * sine_inside).sqrt();
@@ -167,7 +167,7 @@ impl Hair<'_> {
         Ways { shares, chances, total: chances.iter().sum(), angles: [outside, fp::asin(sine_inside)] }
     }
 
-    /// The density of a way along the fibre, per sine, and that around it, per radian.
+    /// Pdf of a path: per sine along the fibre times per radian around it.
     fn density(&self, way: usize, ways: &Ways, out: &Direction, coming: &Direction) -> f32 {
         let along = longitudinal(self.fibre.variances[way], self.fibre.turned(way, out), coming.along);
         if way == MORE {
@@ -204,10 +204,10 @@ impl Scatter for Hair<'_> {
             rest -= ways.chances[way];
             way += 1;
         }
-        // What is left of the number is uniform again.
+        // The remainder of `choice` is uniform again.
         let again = (rest / ways.chances[way]).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
         let (turned, variance) = (self.fibre.turned(way, &out), self.fibre.variances[way]);
-        // The sine's angle to that of the mirror, as on a sphere.
+        // Sample the angle to the mirror direction on a sphere.
         let cosine = 1.0 + variance * fp::ln((u.x + (1.0 - u.x) * fp::exp(-2.0 / variance)).max(f32::MIN_POSITIVE));
         let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
         let beside = fp::sin_cos_turn(u.y).1;
@@ -222,17 +222,17 @@ impl Scatter for Hair<'_> {
     }
 }
 
-/// How light spreads along a fibre: a distribution over the sphere around the direction of the
-/// mirror, averaged around the fibre. Both directions by sine and cosine.
+/// Longitudinal scattering: a distribution on the sphere around the mirror direction, averaged
+/// around the fibre. Both directions are given by sine and cosine.
 fn longitudinal(variance: f32, out: Vec2, coming: Vec2) -> f32 {
     let [out, coming] = [out.as_dvec2(), coming.as_dvec2()];
-    // How far the cosine of the angle to the mirror's cone is below 1.
+    // 1 minus the cosine of the angle to the mirror cone.
     let below = (1.0 - (coming.y * out.y - coming.x * out.x)) as f32;
     let height = variance * (1.0 - fp::exp(-2.0 / variance));
     bessel((coming.y * out.y) as f32 / variance) * fp::exp(-below / variance) / height
 }
 
-/// The modified Bessel function of the first kind and order 0, over e to the power of x from 0.
+/// Modified Bessel function of the first kind and order 0, divided by e^x, for x from 0.
 ///
 /// Source: Abramowitz and Stegun, *Handbook of Mathematical Functions*, 9.8.1 and 9.8.2.
 fn bessel(x: f32) -> f32 {
@@ -253,11 +253,11 @@ fn bessel(x: f32) -> f32 {
     if t < 1.0 { sum(&NEAR, t * t) * fp::exp(-x) } else { sum(&FAR, 1.0 / t) / x.sqrt() }
 }
 
-/// A logistic distribution cut to a turn: much like a normal one, and easily sampled.
+/// Logistic distribution on [-pi, pi]: close to a normal distribution, and cheap to sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Logistic {
     scale: f32,
-    /// What lies below -pi, and what between -pi and pi.
+    /// Probability below -pi, and between -pi and pi.
     below: f32,
     inside: f32,
 }
@@ -290,7 +290,7 @@ mod tests {
         Fibre::new(&HairMaterial { absorption, longitudinal_roughness, azimuthal_roughness, ..Default::default() })
     }
 
-    /// The mean over all directions, by even ones.
+    /// Integral over all directions, by uniform samples.
     fn over_all(random: &mut Random, value: impl Fn(Vec3) -> f32) -> f64 {
         const MANY: u32 = 200_000;
         let one = |_| f64::from(value(warp::sphere(Vec2::new(random.unit(), random.unit()))));
@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fibre_that_absorbs_nothing_gives_back_all_wherever_it_is_met() {
+    fn lossless_fibre_scatters_all_light() {
         let mut random = Random(81);
         for (along, around) in [(0.3, 0.3), (0.25, 0.7), (0.6, 0.4), (1.0, 1.0)] {
             let fibre = fibre(along, around);
@@ -312,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn bessel_is_its_series() {
+    fn bessel_agrees_with_its_series() {
         for i in 0..120_u8 {
             let x = 0.1 * f32::from(i);
             let (mut term, mut sum) = (1.0, 1.0);
@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn hair_of_a_colour_has_it_and_melanin_is_absorption() {
+    fn hair_colour_round_trips_and_melanin_sets_absorption() {
         let color = Color::new(0.6, 0.3, 0.1);
         let of = |m: HairMaterial| Fibre::new(&m).seen(&Lanes::Rgb).absorption.truncate();
         let by_color = of(HairMaterial { color: Some(color), azimuthal_roughness: 0.0, ..Default::default() });
@@ -338,8 +338,9 @@ mod tests {
     }
 
     #[test]
-    fn a_smooth_fibre_mirrors_into_a_cone() {
-        // Marschner's cone: along the fibre light leaves as steeply as it came, less the scales.
+    fn smooth_fibre_reflects_into_a_cone() {
+        // Marschner's cone: light leaves at the longitudinal angle at which it arrives, less the
+        // scale tilt.
         let m = HairMaterial { longitudinal_roughness: 0.05, scale_tilt: 3.0, ..Default::default() };
         let fibre = Fibre::new(&HairMaterial { absorption: Some(Color::splat(1e3)), ..m });
         let hair = fibre.seen(&Lanes::Rgb);
@@ -351,7 +352,7 @@ mod tests {
             let wi = hair.sample(wo, unit(), Vec2::new(unit(), unit())).unwrap().wi;
             mean += f64::from(fp::asin(wi.x).to_degrees()) / 2_000.0;
         }
-        // Seen at 30 degrees, turned back by twice the tilt.
+        // View angle of 30 degrees, turned back by twice the tilt.
         assert!((mean + 24.0).abs() < 0.5, "{mean}");
     }
 }

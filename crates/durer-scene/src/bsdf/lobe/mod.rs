@@ -1,4 +1,4 @@
-//! Lobes: the ways in which a surface scatters light. One file each; the list is [`Lobe`].
+//! Lobes: the parts of a BSDF. One file each; the list is [`Lobe`].
 
 pub mod blinn;
 pub mod diffuse;
@@ -11,84 +11,83 @@ pub mod rough_glass;
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
-/// A direction that a lobe chose.
+/// Direction sampled from a lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scattered {
-    /// Where the light comes from, locally.
+    /// Local direction to the incident light.
     pub wi: Vec3,
-    /// Of a lobe of single directions, what it multiplies light by; of others this is not asked.
+    /// Throughput factor of a delta lobe. Ignored for other lobes.
     pub value: Spectrum,
 }
 
-/// The value and the density of what a lobe never does.
+/// Value and pdf of a direction that a lobe never scatters to.
 const NOTHING: (Spectrum, f32) = (Spectrum::ZERO, 0.0);
 
-/// What every lobe can do. Directions are local and point away from the surface; `wo` is above it
+/// Interface of every lobe. Directions are local and point away from the surface. `wo` is above it
 /// (`wo.z` > 0).
 pub trait Scatter {
-    /// The lobe's value times |cos| of `wi`, and the density per solid angle with which
-    /// [`Scatter::sample`] chooses it; both 0 for a lobe of single directions.
+    /// Value times |cos| of `wi`, and the pdf per solid angle with which [`Scatter::sample`]
+    /// chooses `wi`. Both are 0 for a delta lobe.
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32);
 
-    /// A direction; `choice` and `u` are uniform from 0 to 1. `None` where none comes of these
-    /// numbers.
+    /// Samples a direction. `choice` and `u` are uniform in [0, 1]. `None` if the sample fails.
     fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<Scattered>;
 
-    /// What a path tracer must know of it beyond its values.
+    /// Properties that a path tracer needs beyond the values.
     fn kind(&self) -> LobeKind;
 
-    /// Whether it scatters into single directions only.
+    /// True if the lobe scatters into single directions only.
     #[inline]
     fn is_delta(&self) -> bool {
         self.kind().spread == Spread::Delta
     }
 }
 
-/// How widely a lobe scatters.
+/// Angular spread of a lobe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spread {
-    /// Into single directions: a perfect mirror, clear glass.
+    /// Single directions: a perfect mirror, clear glass.
     Delta,
-    /// Mostly into a narrow cone, which many samples of a light would miss.
+    /// Mostly a narrow cone, which light samples would rarely hit.
     Glossy,
-    /// Into all directions alike, or nearly.
+    /// All directions, equally or nearly so.
     Diffuse,
 }
 
-/// The properties of a lobe that decide how lights are sampled for it. [`Scatter::kind`] states them
-/// for every lobe, so none can be forgotten.
+/// Properties of a lobe that decide how lights are sampled for it. [`Scatter::kind`] states them
+/// for every lobe, so that none is forgotten.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LobeKind {
-    /// How widely it scatters.
+    /// Angular spread.
     pub spread: Spread,
-    /// Whether it scatters light that arrives from behind the surface.
+    /// True if it scatters light that arrives from behind the surface.
     pub transmits: bool,
-    /// Whether light goes on in its direction, as if nothing were there.
+    /// True if light keeps its direction, as if there were no surface.
     pub is_straight: bool,
-    /// Whether it is a fibre, which scatters light from any side to any side.
+    /// True for a fibre, which scatters light from any side to any side.
     pub is_fibre: bool,
-    /// Index of refraction behind the surface over that before it; `None` where nothing is refracted.
+    /// Index of refraction behind the surface over that before it; `None` without refraction.
     pub eta: Option<f32>,
 }
 
 impl LobeKind {
-    /// A perfect mirror.
+    /// Perfect mirror.
     pub const MIRROR: LobeKind = LobeKind::reflection(Spread::Delta);
-    /// A rough mirror, or a highlight.
+    /// Rough mirror or highlight.
     pub const GLOSSY: LobeKind = LobeKind::reflection(Spread::Glossy);
-    /// A matte surface.
+    /// Diffuse surface.
     pub const DIFFUSE: LobeKind = LobeKind::reflection(Spread::Diffuse);
 
     const fn reflection(spread: Spread) -> LobeKind {
         LobeKind { spread, transmits: false, is_straight: false, is_fibre: false, eta: None }
     }
 
-    /// The kind of a lobe that scatters light from behind the surface as well, or only that.
+    /// Kind of a lobe that scatters light from behind the surface as well, or only that.
     pub const fn transmitting(self) -> LobeKind {
         LobeKind { transmits: true, ..self }
     }
 
-    /// The kind of a transmitting lobe that refracts by the relative index `eta`.
+    /// Kind of a transmitting lobe that refracts with the relative index `eta`.
     pub const fn refracting(self, eta: f32) -> LobeKind {
         LobeKind { transmits: true, eta: Some(eta), ..self }
     }
@@ -96,7 +95,7 @@ impl LobeKind {
 
 macro_rules! lobes {
     ($($(#[doc = $doc:literal])+ $name:ident($type:ty),)+) => {
-        /// One way of scattering.
+        /// One lobe of a BSDF.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum Lobe<'a> { $($(#[doc = $doc])+ $name($type),)+ }
 
@@ -119,7 +118,7 @@ macro_rules! lobes {
         }
 
         impl Lobe<'_> {
-            /// Its name, for explanations.
+            /// Name for explanations.
             pub fn name(&self) -> &'static str {
                 match self { $(Lobe::$name(_) => stringify!($name),)+ }
             }
@@ -128,24 +127,24 @@ macro_rules! lobes {
 }
 
 lobes! {
-    /// Matte: energy-preserving Oren-Nayar; Lambert where it is not rough.
+    /// Diffuse: energy-preserving Oren-Nayar, or Lambert at roughness 0.
     Diffuse(diffuse::Diffuse<'a>),
-    /// Matte, on the other side.
+    /// Diffuse transmission.
     DiffuseTransmission(diffuse::DiffuseTransmission),
-    /// The course's highlight.
+    /// Highlight of the course.
     Blinn(blinn::Blinn),
-    /// A rough mirror: metal, a coat, the skin of plastic.
+    /// Rough mirror: metal, a coat, the surface of plastic.
     Rough(rough::Rough),
     /// Rough glass.
     RoughGlass(rough_glass::RoughGlass),
-    /// A perfect mirror.
+    /// Perfect mirror.
     Mirror(glass::Mirror),
     /// Perfect refraction.
     Refraction(glass::Refraction),
-    /// Light that goes straight on.
+    /// Transmission that keeps the direction.
     Through(glass::Through),
-    /// Fibres that stand out.
+    /// Fuzz of fibres, as on velvet.
     Fuzz(fuzz::Fuzz),
-    /// One fibre.
+    /// Single fibre of hair.
     Hair(hair::Hair<'a>),
 }

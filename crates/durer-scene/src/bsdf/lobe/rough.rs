@@ -1,4 +1,4 @@
-//! Rough mirrors: GGX with the reflectance of a metal or of a dielectric.
+//! Rough mirrors: GGX with the reflectance of a metal or a dielectric.
 
 use super::{LobeKind, NOTHING, Scatter, Scattered};
 use crate::bsdf::film::Film;
@@ -7,23 +7,23 @@ use crate::bsdf::microfacet::Ggx;
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
-/// What each facet reflects.
+/// Reflectance model of each facet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Facet {
-    /// As a metal.
+    /// Metal.
     Metal(F82),
-    /// As a boundary of dielectrics: the index behind over that before.
+    /// Dielectric boundary: the index behind over that before.
     Dielectric(f32),
-    /// As a thin sheet of a dielectric.
+    /// Reflection of a thin dielectric sheet.
     Sheet(Sheet),
-    /// What goes through a thin sheet.
+    /// Transmission of a thin dielectric sheet.
     BehindSheet(Sheet),
-    /// As what has a film on it.
+    /// Base with a thin film.
     Film(Film),
 }
 
 impl Facet {
-    /// At a cosine.
+    /// Reflectance, or transmittance of a sheet, at a cosine.
     pub fn at(&self, cosine: f32) -> Spectrum {
         match *self {
             Facet::Metal(f82) => f82.at(cosine),
@@ -35,20 +35,20 @@ impl Facet {
     }
 }
 
-/// A rough mirror.
+/// Rough mirror.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rough {
-    /// The distribution of normals.
+    /// Distribution of normals.
     pub ggx: Ggx,
-    /// What each of them reflects.
+    /// Reflectance model of the facets.
     pub facet: Facet,
-    /// Whether light goes on behind the surface, as far from its way as a mirror's above: a thin
+    /// True if light leaves behind the surface, mirrored to the other side: transmission by a thin
     /// sheet of rough glass.
     pub behind: bool,
 }
 
 impl Rough {
-    /// The direction as a mirror above the surface has it.
+    /// Mirror image above the surface of a direction behind it.
     fn above(&self, wi: Vec3) -> Vec3 {
         if self.behind { Vec3::new(wi.x, wi.y, -wi.z) } else { wi }
     }
@@ -66,7 +66,7 @@ impl Scatter for Rough {
         let density = self.ggx.density(h) / (4.0 * wo.z);
         let (hidden_o, hidden_i) = (self.ggx.lambda(wo), self.ggx.lambda(wi));
         let value = density / (1.0 + hidden_o + hidden_i) * self.facet.at(wo.dot(h).clamp(0.0, 1.0));
-        // The visible density without its factor wo·h, over 4 wo·h.
+        // Pdf of visible normals without its factor wo·h, divided by 4 wo·h.
         (value, density / (1.0 + hidden_o))
     }
 

@@ -9,28 +9,28 @@ use crate::bsdf::microfacet::Ggx;
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
-/// A rough boundary of two dielectrics.
+/// Rough boundary between two dielectrics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoughGlass {
-    /// The distribution of normals.
+    /// Distribution of normals.
     pub ggx: Ggx,
-    /// The index behind the boundary over that before it.
+    /// Index of refraction behind the boundary over that before it.
     pub eta: f32,
-    /// Tint of what is reflected.
+    /// Tint of reflected light.
     pub reflected: Spectrum,
-    /// Tint of what goes through.
+    /// Tint of transmitted light.
     pub transmitted: Spectrum,
 }
 
-/// The facet that turns one direction into the other, and the change of its solid angle; nothing
-/// where there is none.
+/// Facet normal that scatters `wo` to `wi`, and the Jacobian of the solid angle; `None` if no facet
+/// does.
 fn facet(wo: Vec3, wi: Vec3, eta: f32) -> Option<(Vec3, f32)> {
     let passes = wi.z < 0.0;
     let eta = if passes { eta } else { 1.0 };
     let h = (wi * eta + wo).try_normalize()?;
     let h = if h.z < 0.0 { -h } else { h };
     let (to_o, to_i) = (wo.dot(h), wi.dot(h));
-    // A facet is seen from its front only.
+    // Facets are visible from the front only.
     if to_o <= 0.0 || (to_i < 0.0) != passes {
         return None;
     }
@@ -45,7 +45,7 @@ fn facet(wo: Vec3, wi: Vec3, eta: f32) -> Option<(Vec3, f32)> {
 }
 
 impl RoughGlass {
-    /// The part that facets reflect, or let through.
+    /// Reflectance or transmittance of a facet.
     fn share(&self, passes: bool, cosine: f32) -> f32 {
         let reflected = fresnel::dielectric(cosine, self.eta);
         if passes { 1.0 - reflected } else { reflected }
