@@ -1,4 +1,4 @@
-//! Area lights: surfaces that emit, in world space, and how points on them are sampled.
+//! Area lights: emitting surfaces in world space, and the sampling of points on them.
 
 use super::closed::{Body, Closed};
 use super::seen::{EmitterPoint, ON_SURFACE, Placement, one_minus_cosine};
@@ -7,38 +7,38 @@ use crate::math::{Aabb, Vec2, Vec3, fp};
 use glam::{DVec2, DVec3};
 use std::f32::consts::PI;
 
-/// Surface in world space whose points can be sampled. Positions are in double precision, as those
-/// of ray hits are.
+/// Surface in world space whose points can be sampled. Positions are in double precision, as ray
+/// hits are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EmitterShape {
-    /// A corner and two edges.
+    /// Corner and two edges.
     Triangle(DVec3, [Vec3; 2]),
-    /// A corner and two edges.
+    /// Corner and two edges.
     Parallelogram(DVec3, [Vec3; 2]),
-    /// A centre and two half axes at any angle; and the share of the radius that is cut out.
+    /// Centre, two half axes at any angle, and the share of the radius that is cut out.
     Ellipse(DVec3, [Vec3; 2], f32),
-    /// A centre and a radius.
+    /// Centre and radius.
     Sphere(DVec3, f32),
-    /// A box, an ellipsoid, a cone, a cylinder or a ring.
+    /// Box, ellipsoid, cone, cylinder or ring.
     Closed(Closed),
 }
 
 impl EmitterShape {
-    /// Triangle of corners in object space, with its unit normal in world space.
+    /// Triangle with corners in object space, and its unit normal in world space.
     pub fn triangle([a, b, c]: [Vec3; 3], place: &Placement) -> (EmitterShape, Vec3) {
         let n = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
         let edges = [place.vector(b - a), place.vector(c - a)];
         (EmitterShape::Triangle(place.point(a), edges), place.normal(n))
     }
 
-    /// A body placed in the world, `axes` being the images of x, y and z in the object's space; it has
-    /// normals to all sides. `None` where the map leaves no volume.
+    /// Body placed in the world. `axes` are the images of x, y and z, in object space. The normal
+    /// is 0, since a body has normals in all directions. `None` if the map leaves no volume.
     pub fn body(place: &Placement, body: Body, center: Vec3, axes: [Vec3; 3]) -> Option<(EmitterShape, Vec3)> {
         let closed = Closed::new(body, place.point(center), axes.map(|axis| place.vector(axis)))?;
         Some((EmitterShape::Closed(closed), Vec3::ZERO))
     }
 
-    /// The cone or cylinder between two points with a radius at each.
+    /// Cone or cylinder between two points, with a radius at each.
     pub fn frustum(place: &Placement, ends: [Vec3; 2], radii: [f32; 2]) -> Option<(EmitterShape, Vec3)> {
         // The larger disc is the body's base.
         let ([base, top], [large, small]) = match radii[0] >= radii[1] {
@@ -50,7 +50,7 @@ impl EmitterShape {
         EmitterShape::body(place, Body::Frustum(small / large), base, axes)
     }
 
-    /// Its area.
+    /// Area in world space.
     pub fn area(&self) -> f32 {
         match self {
             EmitterShape::Triangle(_, [e, f]) => 0.5 * e.cross(*f).length(),
@@ -61,17 +61,17 @@ impl EmitterShape {
         }
     }
 
-    /// Whether it has normals to all sides.
+    /// True if it has normals in all directions.
     pub fn is_round(&self) -> bool {
         matches!(self, EmitterShape::Sphere(..) | EmitterShape::Closed(..))
     }
 
-    /// Whether it is a sphere or an ellipsoid, which is sampled from the middle outwards.
+    /// True for a sphere or an ellipsoid, whose visible cap is sampled from the middle outwards.
     pub fn is_ball(&self) -> bool {
         matches!(self, EmitterShape::Sphere(..)) || matches!(self, EmitterShape::Closed(closed) if closed.is_ball())
     }
 
-    /// The box around it.
+    /// Bounding box in world space.
     pub fn bounds(&self) -> Aabb {
         let near = |p: DVec3| p.as_vec3();
         match *self {
@@ -88,7 +88,7 @@ impl EmitterShape {
         }
     }
 
-    /// Chooses a point of it, as seen from a point; `None` where none can be seen.
+    /// Samples a point as seen from `from`; `None` if no point is visible.
     pub fn sample(&self, normal: Vec3, from: DVec3, u: Vec2) -> Option<EmitterPoint> {
         let to = match *self {
             EmitterShape::Triangle(p, [e, f]) => {
@@ -124,8 +124,8 @@ impl EmitterShape {
         (pdf.is_finite() && pdf > 0.0).then_some(EmitterPoint { wi, distance, cosine, pdf })
     }
 
-    /// The density per solid angle with which [`EmitterShape::sample`] chooses a direction that meets it at
-    /// a distance.
+    /// Pdf per solid angle with which [`EmitterShape::sample`] chooses a direction that hits the
+    /// surface at `distance`.
     pub fn pdf(&self, normal: Vec3, from: DVec3, wi: Vec3, distance: f32) -> f32 {
         match *self {
             EmitterShape::Sphere(center, radius) => {
@@ -145,7 +145,7 @@ impl EmitterShape {
         }
     }
 
-    /// A point chosen evenly over its area, its normal there, and the density per area.
+    /// Samples a point uniformly by area. Returns the point, its normal and the pdf per area.
     pub fn point(&self, normal: Vec3, u: Vec2) -> Option<(DVec3, Vec3, f32)> {
         let (point, normal) = match *self {
             EmitterShape::Triangle(p, [e, f]) => {
@@ -168,7 +168,7 @@ impl EmitterShape {
     }
 }
 
-/// A point of the unit disc without its middle, evenly over the area.
+/// Uniform point of the unit disc without its middle, by area.
 fn in_ring(u: Vec2, inner: f32) -> Vec2 {
     let d = warp::disc(u);
     // The area of a ring grows with the square of its radius.
@@ -176,37 +176,37 @@ fn in_ring(u: Vec2, inner: f32) -> Vec2 {
     if inner > 0.0 { d.normalize_or(Vec2::X) * square.sqrt() } else { d }
 }
 
-/// From one point to another.
+/// Vector from one point to another.
 fn offset(to: DVec3, from: DVec3) -> Vec3 {
     (to - from).as_vec3()
 }
 
-/// Whether a point is in a sphere or on it, by the squares of its distance from the centre and of the
-/// radius. Of points on the surface rounding says on which side they are, and both see the inside
-/// alone.
+/// True if a point lies in or on a sphere, by its squared distance from the centre and the squared
+/// radius. Rounding decides on which side of the surface a point lies; both sides see only the
+/// inside.
 fn is_within(d2: f32, r2: f32) -> bool {
     d2 <= r2 * (1.0 + ON_SURFACE)
 }
 
-/// The cosine of a sphere's normal at a point seen from inside, where `to` leads to the centre.
+/// Cosine of the sphere's normal for a point seen from inside. `to` is the vector to the centre.
 fn sphere_cosine(to: Vec3, wi: Vec3, distance: f32, radius: f32) -> f32 {
     ((distance * wi - to) / radius).dot(wi).abs().max(1e-6)
 }
 
-/// A point of a sphere, evenly over the solid angle in which it is seen.
+/// Samples a point of a sphere uniformly by the solid angle in which it is visible.
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 6.2.4.
 fn cone(to: Vec3, radius: f32, u: Vec2) -> Option<EmitterPoint> {
     let (d2, r2) = (to.length_squared(), radius * radius);
     let d = d2.sqrt();
     if is_within(d2, r2) {
-        // From inside, evenly over the area.
+        // From inside, sample uniformly by area.
         let at = to + radius * warp::sphere(u);
         let distance = at.length();
         let wi = at / distance;
         let cosine = sphere_cosine(to, wi, distance, radius);
         let pdf = distance * distance / (4.0 * PI * r2 * cosine);
-        // Its outside cannot be seen.
+        // From inside, the outside is never visible.
         return pdf.is_finite().then_some(EmitterPoint { wi, distance, cosine: -cosine, pdf });
     }
     let all = one_minus_cosine(r2 / d2);
@@ -216,17 +216,17 @@ fn cone(to: Vec3, radius: f32, u: Vec2) -> Option<EmitterPoint> {
     let (sin, cos) = fp::sin_cos_turn(u.y);
     let frame = Frame::around(to / d);
     let wi = frame.to_world(Vec3::new(sine2.sqrt() * cos, sine2.sqrt() * sin, cosine)).normalize();
-    // Where that direction first meets the sphere.
+    // Find where that direction first hits the sphere.
     let half = (r2 - d2 * sine2).max(0.0).sqrt();
     let distance = d * cosine - half;
     Some(EmitterPoint { wi, distance, cosine: half / radius, pdf: 1.0 / (2.0 * PI * all) })
 }
 
-/// A rectangle whose edges are less than this share of its distance is sampled evenly over its area:
-/// over it the density differs by a deviation of less than a tenth, and that is much faster.
+/// Largest edge of a rectangle, as a share of its distance, that is sampled uniformly by area. The
+/// pdf over it then deviates by less than a tenth, and sampling is much faster.
 const SMALL: f32 = 0.1;
 
-/// A rectangle seen from a point, to be sampled evenly over its solid angle.
+/// Rectangle seen from a point, to be sampled uniformly by solid angle.
 ///
 /// Source: Ureña, Fajardo and King, *An Area-Preserving Parametrization for Spherical Rectangles*,
 /// EGSR 2013.
@@ -236,13 +236,13 @@ struct Window {
     far: DVec3,
     solid_angle: f64,
     b: [f64; 2],
-    /// Cosine and sine of the angle from which points are counted.
+    /// Cosine and sine of the angle at which sampling starts.
     k: DVec2,
 }
 
 impl Window {
-    /// `None` for what has no right angles, or is seen so small or so flat that its area does as
-    /// well.
+    /// `None` for a parallelogram without right angles, or one that is seen so small or so flat
+    /// that sampling by area suffices.
     fn new(corner: Vec3, e: Vec3, f: Vec3) -> Option<Window> {
         let middle = corner + 0.5 * (e + f);
         if e.length_squared().max(f.length_squared()) < SMALL * SMALL * middle.length_squared() {
@@ -264,7 +264,7 @@ impl Window {
         // Cosines of the angles between the normals of the four planes through the edges.
         let nz = |a: f64| a / (a * a + near.z * near.z).sqrt();
         let [n0, n1, n2, n3] = [-nz(near.y), nz(far.x), nz(far.y), -nz(near.x)];
-        // Angles as complex numbers: those of products are sums, which are whole turns off.
+        // Angles as complex numbers: a product adds its angles, modulo whole turns.
         let angle = |cosine: f64| DVec2::new(cosine, ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt());
         let [g0, g1, g2, g3] = [angle(-n0 * n1), angle(-n1 * n2), angle(-n2 * n3), angle(-n3 * n0)];
         let right = g2.rotate(g3);
@@ -272,13 +272,13 @@ impl Window {
         let turns = fp::atan2_turn_f64(all.y, all.x);
         let solid_angle = std::f64::consts::TAU * if turns < 0.0 { turns + 1.0 } else { turns };
         let k = DVec2::new(right.x, -right.y);
-        // Turns are known to 2e-9, which is too much of few, and a rounding below none looks like a
-        // whole one.
+        // `turns` has an error of 2e-9, too much for a small angle. An error below 0 would also
+        // wrap to a whole turn.
         let known = turns.abs() > 1e-4;
         known.then_some(Window { axes: [x, y, z], near, far, solid_angle, b: [n0, n2], k })
     }
 
-    /// A point of it.
+    /// Samples a point, relative to the viewpoint.
     fn sample(&self, u: Vec2) -> Vec3 {
         let (near, far, [b0, b1]) = (self.near, self.far, self.b);
         let (sin, cos) = fp::sin_cos_f64(f64::from(u.x) * self.solid_angle);

@@ -1,7 +1,7 @@
-//! Closed surfaces that shine: boxes, ellipsoids, cones, cylinders and rings under any affine map.
+//! Closed emitters: boxes, ellipsoids, cones, cylinders and rings under any affine map.
 //!
-//! Each is the image of a body of fixed size. A point is chosen on that body; how much the map
-//! stretches the surface there turns its density into one per area of the world.
+//! Each is the image of a body of fixed size. A point is sampled on that body. The stretch of the
+//! surface by the map then converts its pdf to one per area in world space.
 
 use super::seen::{EmitterPoint, ON_SURFACE, one_minus_cosine};
 use crate::bsdf::{Frame, warp};
@@ -9,20 +9,20 @@ use crate::math::{Aabb, Vec2, Vec3, fp};
 use glam::DVec3;
 use std::f32::consts::{PI, TAU};
 
-/// A body of fixed size.
+/// Body of fixed size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Body {
-    /// The cube from -1 to 1.
+    /// Cube from -1 to 1.
     Cube,
-    /// The ball of radius 1.
+    /// Ball of radius 1.
     Ball,
-    /// From a disc of radius 1 at z = 0 to one of this radius, at most 1, at z = 1.
+    /// Frustum from a disc of radius 1 at z = 0 to a disc of this radius, at most 1, at z = 1.
     Frustum(f32),
-    /// All points within this distance of the circle of radius 1 around z.
+    /// Ring: the points within this distance of the circle of radius 1 around z.
     Ring(f32),
 }
 
-/// The image of a body under an affine map.
+/// Image of a body under an affine map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closed {
     center: DVec3,
@@ -30,23 +30,23 @@ pub struct Closed {
     body: Body,
 }
 
-/// Points of the mean over a surface.
+/// Number of points of a mean over a surface.
 const POINTS: u16 = 64;
 
-/// The two numbers of one of some points that fill the unit square.
+/// Point `i` of a grid over the unit square.
 fn spread(i: u16) -> Vec2 {
     Vec2::new(f32::from(i % 8) + 0.5, f32::from(i / 8) + 0.5) / 8.0
 }
 
 impl Closed {
-    /// `axes` are the images of x, y and z; `None` where the map leaves no volume.
+    /// Image of a body. `axes` are the images of x, y and z; `None` if the map leaves no volume.
     pub fn new(body: Body, center: DVec3, axes: [Vec3; 3]) -> Option<Closed> {
         let closed = Closed { center, axes, body };
         let most: f32 = axes.iter().map(|axis| axis.length()).product();
         (most.is_finite() && closed.volume().abs() > 1e-6 * most && most > 0.0).then_some(closed)
     }
 
-    /// Whether it is an ellipsoid.
+    /// True for an ellipsoid.
     pub fn is_ball(&self) -> bool {
         self.body == Body::Ball
     }
@@ -56,31 +56,31 @@ impl Closed {
         x.cross(y).dot(z)
     }
 
-    /// The image of a vector.
+    /// Image of a vector.
     fn vector(&self, v: Vec3) -> Vec3 {
         v.x * self.axes[0] + v.y * self.axes[1] + v.z * self.axes[2]
     }
 
-    /// The image of a piece of surface, given by its normal times its area.
+    /// Image of a surface element, given as its normal times its area.
     fn area_vector(&self, n: Vec3) -> Vec3 {
         let [x, y, z] = self.axes;
         self.volume().signum() * (n.x * y.cross(z) + n.y * z.cross(x) + n.z * x.cross(y))
     }
 
-    /// The body's vector of which this is the image.
+    /// Vector in body space whose image is `v`.
     fn inverse(&self, v: Vec3) -> Vec3 {
         let [x, y, z] = self.axes;
         Vec3::new(y.cross(z).dot(v), z.cross(x).dot(v), x.cross(y).dot(v)) / self.volume()
     }
 
-    /// The body's point of which a point of the world is the image. In double precision: of a needle the
-    /// map shrinks one way and stretches another.
+    /// Point in body space whose image is `from`. Uses double precision, since the map of a needle
+    /// shrinks one axis and stretches another.
     fn origin(&self, from: DVec3) -> Vec3 {
         let ([x, y, z], v) = (self.axes.map(|axis| axis.as_dvec3()), from - self.center);
         (DVec3::new(y.cross(z).dot(v), z.cross(x).dot(v), x.cross(y).dot(v)) / x.cross(y).dot(z)).as_vec3()
     }
 
-    /// Its area, to some percent.
+    /// Area in world space, accurate to a few percent.
     pub fn area(&self) -> f32 {
         let mean = |value: &dyn Fn(Vec2) -> f32| (0..POINTS).map(|i| value(spread(i))).sum::<f32>() / f32::from(POINTS);
         match self.body {
@@ -100,24 +100,24 @@ impl Closed {
         }
     }
 
-    /// The areas of a box's faces across each axis.
+    /// Area of a box's face across each axis.
     fn faces(&self) -> [f32; 3] {
         [Vec3::X, Vec3::Y, Vec3::Z].map(|n| 4.0 * self.area_vector(n).length())
     }
 
-    /// The areas of both caps of a frustum, and about that of its side.
+    /// Areas of the two caps of a frustum, and the approximate area of its side.
     fn parts(&self, top: f32) -> [f32; 3] {
         let cap = PI * self.area_vector(Vec3::Z).length();
         let side = (0..8).map(|i| self.side_stretch(fp::sin_cos_turn(i as f32 / 8.0), top)).sum::<f32>() / 8.0;
         [cap, top * top * cap, PI * (1.0 + top) * side]
     }
 
-    /// The area of a frustum's side over that of its angle, its height and its radius there.
+    /// Area element of a frustum's side, per angle, height and radius.
     fn side_stretch(&self, (sin, cos): (f32, f32), top: f32) -> f32 {
         self.area_vector(Vec3::new(cos, sin, 1.0 - top)).length()
     }
 
-    /// The box around it.
+    /// Bounding box in world space.
     pub fn bounds(&self) -> Aabb {
         let [x, y, z] = self.axes;
         let center = self.center.as_vec3();
@@ -130,7 +130,7 @@ impl Closed {
         }
     }
 
-    /// Chooses a point of it as seen from a point.
+    /// Samples a point as seen from `from`.
     pub fn sample(&self, from: DVec3, u: Vec2) -> Option<EmitterPoint> {
         let origin = self.origin(from);
         if self.body == Body::Ball && !is_within_ball(origin) {
@@ -141,7 +141,7 @@ impl Closed {
         let distance = to.length();
         let wi = to / distance;
         let cosine = -wi.dot(self.area_vector(n).normalize_or_zero());
-        // What is convex shows its outside to what is outside, and its inside to what is inside.
+        // A convex body shows its outside to points outside, and its inside to points inside.
         let hidden = match self.has_inside(origin) {
             Some(true) => cosine > 0.0,
             Some(false) => cosine < 0.0,
@@ -151,8 +151,8 @@ impl Closed {
         (!hidden && pdf.is_finite() && pdf > 0.0).then_some(EmitterPoint { wi, distance, cosine, pdf })
     }
 
-    /// The density per solid angle with which [`Closed::sample`] chooses a direction that meets it at
-    /// a distance.
+    /// Pdf per solid angle with which [`Closed::sample`] chooses a direction that hits the surface
+    /// at `distance`.
     pub fn pdf(&self, from: DVec3, wi: Vec3, distance: f32) -> f32 {
         let origin = self.origin(from);
         let way = self.inverse(wi);
@@ -165,14 +165,14 @@ impl Closed {
         density * distance * distance / wi.dot(self.area_vector(n).normalize_or_zero()).abs()
     }
 
-    /// A point chosen over its whole surface, its normal there, and the density per area.
+    /// Samples a point of the whole surface. Returns the point, its normal and the pdf per area.
     pub fn point(&self, u: Vec2) -> Option<(DVec3, Vec3, f32)> {
         let (point, n, density) = self.place(u, None)?;
         let normal = self.area_vector(n).try_normalize()?;
         (density.is_finite() && density > 0.0).then(|| (self.center + self.vector(point).as_dvec3(), normal, density))
     }
 
-    /// A point of an ellipsoid, evenly over the solid angle in which the ball is seen.
+    /// Samples a point of an ellipsoid, uniformly by the solid angle of the ball in body space.
     fn cone(&self, origin: Vec3, u: Vec2) -> Option<EmitterPoint> {
         let d2 = origin.length_squared();
         let d = d2.sqrt();
@@ -197,8 +197,8 @@ impl Closed {
         })
     }
 
-    /// Whether a point is in the body or on its surface, from where only its inside is seen; `None` where that says nothing about which of its sides is
-    /// seen.
+    /// True if a point of body space lies in the body or on its surface, from where only the inside
+    /// is visible. `None` for a ring, where that does not decide which side is visible.
     fn has_inside(&self, p: Vec3) -> Option<bool> {
         match self.body {
             Body::Cube => Some(is_within_cube(p)),
@@ -212,7 +212,7 @@ impl Closed {
         }
     }
 
-    /// The area of the faces of a box that are seen from a point, each sign of each axis by itself.
+    /// Areas of the faces of a box visible from a point of body space, for each sign of each axis.
     fn visible(&self, from: Option<Vec3>) -> [[f32; 2]; 3] {
         let faces = self.faces();
         let from = from.filter(|p| !is_within_cube(*p));
@@ -224,8 +224,8 @@ impl Closed {
         })
     }
 
-    /// A point of the body, its normal, and the density per area of the world; of a box only of the
-    /// faces that are seen `from` a point.
+    /// Samples a point of the body. Returns it with its normal and the pdf per area in world space.
+    /// A box samples only the faces visible `from` a point.
     fn place(&self, u: Vec2, from: Option<Vec3>) -> Option<(Vec3, Vec3, f32)> {
         match self.body {
             Body::Cube => {
@@ -263,7 +263,7 @@ impl Closed {
                 }
                 let share = ((rest - base - lid) / side).min(1.0);
                 let growth = top - 1.0;
-                // As often at a height as its radius is large.
+                // Choose heights in proportion to the radius there.
                 let mean = 0.5 * (1.0 + top);
                 let height = 2.0 * share * mean / (1.0 + (1.0 + 2.0 * growth * share * mean).max(0.0).sqrt());
                 let (sin, cos) = fp::sin_cos_turn(u.y);
@@ -281,8 +281,8 @@ impl Closed {
         }
     }
 
-    /// The normal and the density per area of the world of a point near the body's surface, as
-    /// [`Closed::place`] has them.
+    /// Normal and pdf per area in world space for a point near the surface, as in
+    /// [`Closed::place`].
     fn density(&self, p: Vec3, from: Vec3) -> (Vec3, f32) {
         match self.body {
             Body::Cube => {
@@ -310,7 +310,7 @@ impl Closed {
             Body::Ring(minor) => {
                 let across = Vec2::new(p.x, p.y);
                 let (radius, d) = (across.length(), across.normalize_or(Vec2::X));
-                // Of a ring without a hole the far part may be the nearer one.
+                // In a ring without a hole, the far side may be the nearer one.
                 let off = |radius: f32| (Vec2::new(radius - 1.0, p.z).length() - minor).abs();
                 let (radius, d) = if off(radius) <= off(-radius) { (radius, d) } else { (-radius, -d) };
                 let to = Vec2::new(radius - 1.0, p.z).normalize_or(Vec2::X);
@@ -330,8 +330,8 @@ fn is_within_ball(p: Vec3) -> bool {
     p.length_squared() <= 1.0 + ON_SURFACE
 }
 
-/// The normal of a ring by two angles in turns, and how much longer the circle through the point
-/// is than that through the ring's middle.
+/// Normal of a ring by two angles in turns, and the length of the circle through that point over
+/// the length of the ring's middle circle.
 fn ring_normal(u: Vec2, minor: f32) -> (Vec3, f32) {
     let ((sin, cos), (up, out)) = (fp::sin_cos_turn(u.x), fp::sin_cos_turn(u.y));
     (Vec3::new(out * cos, out * sin, up), (1.0 + minor * out).abs())
@@ -354,17 +354,17 @@ mod tests {
         let kinds =
             [Body::Cube, Body::Ball, Body::Frustum(0.0), Body::Frustum(0.6), Body::Frustum(1.0), Body::Ring(0.3)];
         let all = kinds.iter().flat_map(|&body| maps.map(|axes| Closed::new(body, DVec3::new(0.3, -0.2, 0.1), axes)));
-        all.map(|closed| closed.expect("it has a volume")).collect()
+        all.map(|closed| closed.expect("the body has a volume")).collect()
     }
 
     #[test]
-    fn points_have_the_density_that_is_found_for_them() {
+    fn sample_and_pdf_agree() {
         for closed in bodies() {
             for from in [DVec3::new(2.5, 3.0, -1.5), DVec3::new(0.35, -0.15, 0.1), DVec3::new(-4.0, 0.0, 0.0)] {
                 for i in 0..200 {
                     let Some(seen) = closed.sample(from, sampler::sample_2d(5, 0, 0, i, 0)) else { continue };
                     let again = closed.pdf(from, seen.wi, seen.distance);
-                    // Where it is seen edge on the density has no bound, and rounding decides.
+                    // Edge on, the pdf is unbounded and rounding dominates.
                     let near = (again / seen.pdf - 1.0).abs() < 2e-3 / seen.cosine.abs().max(1e-3);
                     assert!(near, "{closed:?} from {from}: {seen:?}, {again}");
                 }
@@ -373,10 +373,10 @@ mod tests {
     }
 
     #[test]
-    fn points_fill_the_whole_area() {
+    fn uniform_points_integrate_to_the_area() {
         const COUNT: u32 = 1 << 14;
         for closed in bodies() {
-            // The integral of 1 over the surface, and of the normal: of a closed surface it is 0.
+            // Integrals over the surface: of 1, and of the normal, which is 0 for a closed surface.
             let (mut area, mut normals) = (0.0_f64, DVec3::ZERO);
             for i in 0..COUNT {
                 let Some((_, n, density)) = closed.point(sampler::sample_2d(6, 0, 0, i, 0)) else { continue };

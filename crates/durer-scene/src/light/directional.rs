@@ -1,4 +1,4 @@
-//! A light at infinity.
+//! Directional light, at infinity.
 
 use super::{Emitter, Illumination, as_bright};
 use crate::describe::{FileName, Rule, described};
@@ -8,20 +8,20 @@ use glam::DVec3;
 use std::f32::consts::PI;
 
 described! {
-    /// Light that comes from one direction everywhere.
+    /// Light that comes from the same direction everywhere.
     DirectionalLight ["DirectionalLight" in set::CLASSIC, "directional" in set::F23] {
-        /// Where the light goes; of any length.
+        /// Direction in which the light travels, of any length.
         direction: Vec3 = Vec3::NEG_Y, required, Rule::NonZero, ["direction" in set::ALL];
-        /// Its colour and strength.
+        /// Colour and strength.
         color: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::ALL];
-        /// Half the angle in which it is seen, in degrees, for soft shadows under a path tracer,
-        /// which sees its disc: 0.27 for the sun.
+        /// Angular radius in degrees, which gives soft shadows and a visible disc in path tracing;
+        /// 0.27 for the sun.
         spread: Option<f32> = None, optional, Rule::NonNegative, ["spread" in set::DURER];
-        /// Illuminance in lux of what faces it: how strong it is, of which `color` is the hue.
+        /// Illuminance in lux on a surface that faces the light; `color` then gives only the hue.
         lux: Option<f32> = None, optional, Rule::NonNegative, ["lux" in set::DURER];
-        /// Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`)
-        /// or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried
-        /// as such, else as its colour.
+        /// Measured spectrum, multiplied by `color`: a file (`lamp.csv`, `lamps.csv:column`) or an
+        /// illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum, other modes its
+        /// colour.
         spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
     }
 }

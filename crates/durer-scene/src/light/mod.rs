@@ -67,7 +67,7 @@ macro_rules! delegate {
 }
 
 described_list! {
-    /// A light.
+    /// Light source.
     Light: Emitter => delegate {
         Directional(directional::DirectionalLight),
         Point(point::PointLight),
@@ -77,83 +77,82 @@ described_list! {
 }
 
 impl Light {
-    /// Changes its colour.
+    /// Replaces the colour by `change` of it.
     pub fn recolor(&mut self, change: impl Fn(Color) -> Color) {
         *self.color_mut() = change(self.color());
     }
 
-    /// File or name of its measured spectrum.
+    /// File or name of the measured spectrum.
     pub fn spectrum(&self) -> Option<&FileName> {
         Emitter::spectrum(self)
     }
 }
 
-/// A colour that is as bright as white times a number. What is black stays black.
+/// Colour scaled to the luminance of white times `white`. Black stays black.
 fn as_bright(color: Color, white: f32) -> Color {
     let luminance = color.dot(LUMINANCE);
     if luminance > 0.0 { color * (white / luminance) } else { Color::ZERO }
 }
 
-const TWO_UNITS: &str = "`candela` and `lumens` both say how strong this light is: write one of them";
+const TWO_UNITS: &str = "`candela` and `lumens` both set the strength of this light: write only one of them";
 
-/// A light as seen from a point.
+/// Light that arrives at a point from one light source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Illumination {
-    /// Unit vector to the light.
+    /// Unit vector to the light, in world space.
     pub to_light: Vec3,
-    /// How far it is; infinite for directional lights.
+    /// Distance to the light; infinite for directional lights.
     pub distance: f32,
-    /// What arrives.
+    /// Arriving light: the radiance that a white diffuse surface facing the light shows.
     pub color: Color,
 }
 
-/// What every light can do. No method has a default: the compiler names what a new light lacks.
+/// Interface of every light. No method has a default, so the compiler names what a new light lacks.
 pub trait Emitter {
-    /// The light that arrives at a point, if nothing is in the way.
+    /// Light that arrives at a point, without occlusion.
     fn illuminate(&self, point: DVec3) -> Illumination;
 
-    /// Its colour, as written.
+    /// Colour, as written.
     fn color(&self) -> Color;
 
-    /// Its colour, to be changed.
+    /// Mutable access to the colour.
     fn color_mut(&mut self) -> &mut Color;
 
-    /// File or name of its measured spectrum.
+    /// File or name of the measured spectrum.
     fn spectrum(&self) -> Option<&FileName>;
 
-    /// The light with its strength in its colour, if that is written in candela, lumen or lux.
+    /// Light with its strength in its colour, converted from candela, lumen or lux if written so.
     fn in_units(&self) -> Self;
 
-    /// Checks its fields together. Each by itself has its rule in the statement.
+    /// Checks the fields together. The rule in the statement checks each field alone.
     ///
     /// # Errors
     ///
-    /// A sentence that names the fields which contradict each other.
+    /// A sentence that names the contradictory fields.
     fn validate(&self) -> Result<(), String>;
 
-    /// Its position, as written; `None` for a light at infinity.
+    /// Position, as written; `None` for a light at infinity.
     fn position(&self) -> Option<Vec3>;
 
-    /// Direction in which its light goes, or the middle of its beam, as written, of any length;
+    /// Direction in which the light travels, or the axis of its beam, as written, of any length;
     /// `None` for a light that is equally strong in all directions.
     fn direction(&self) -> Option<Vec3>;
 
-    /// Degrees from [`Emitter::direction`] to the edge of its beam; `None` for a light without one.
+    /// Angle in degrees from [`Emitter::direction`] to the edge of the beam; `None` without a beam.
     fn cone(&self) -> Option<f32>;
 
-    /// Its position, and what arrives at distance 1 in the direction in which it is strongest;
-    /// `None` for a light at infinity, and for one that fades otherwise than with the square of
-    /// the distance.
+    /// Position, and the light that arrives at distance 1 in the strongest direction; `None` for a
+    /// light at infinity, and for one that does not fade with the square of the distance.
     fn place(&self) -> Option<(Vec3, Color)>;
 
-    /// Half the angle in which it is seen from everywhere, in degrees.
+    /// Angular radius in degrees, the same from every point.
     fn spread(&self) -> f32;
 
-    /// The file that says how strong it is in each direction.
+    /// File with the intensity in each direction.
     fn profile(&self) -> Option<&FileName>;
 
-    /// A direction from the light in the coordinates of that file: x is its horizontal angle 0, z
-    /// its lower side. Of no use without a file.
+    /// Converts a direction from the light to the coordinates of that file: x is horizontal angle
+    /// 0, z is down. Only useful for a light with a file.
     fn in_profile(&self, dir: Vec3) -> Vec3;
 }
 

@@ -1,4 +1,4 @@
-//! A light measured in a laboratory: how strong it shines in each direction.
+//! Photometric light: a point light with a measured intensity in each direction.
 
 use super::{Emitter, Illumination, as_bright};
 use crate::describe::{FileName, Rule, described};
@@ -9,32 +9,32 @@ use glam::DVec3;
 use std::f32::consts::PI;
 
 described! {
-    /// A lamp whose light was measured: a point that shines as an IES or EULUMDAT file says, in candela.
+    /// Point light whose intensity in candela was measured, as an IES or EULUMDAT file gives it.
     PhotometricLight ["PhotometricLight" in set::DURER] {
-        /// Where it is.
+        /// Position.
         position: Vec3 = Vec3::ZERO, required, Rule::Any, ["position" in set::DURER];
-        /// The measurement: an IES file (LM-63-1986 to 2019), or EULUMDAT (`.ldt`).
+        /// Measurement: an IES file (LM-63-1986 to 2019) or an EULUMDAT file (`.ldt`).
         file: FileName = FileName::default(), required, Rule::Any, ["file" in set::DURER];
-        /// Where its lower side points.
+        /// Direction of the lower side, of any length.
         direction: Vec3 = Vec3::NEG_Y, optional, Rule::NonZero, ["direction" in set::DURER];
-        /// Where its horizontal angle 0 points; made perpendicular to `direction`.
+        /// Direction of horizontal angle 0; made perpendicular to `direction`.
         front: Vec3 = Vec3::X, optional, Rule::NonZero, ["front" in set::DURER];
-        /// How far behind it its light seems to come from, as that of a lamp with a reflector: at a
-        /// distance d it has faded as at d and this together.
+        /// Distance from the position back to the apparent origin of the light, as for a reflector:
+        /// at distance d it fades as at d + `focalLength`.
         focal_length: f32 = 0.0, optional, Rule::NonNegative, ["focalLength" in set::DURER];
-        /// What multiplies what was measured, by colour.
+        /// Factor of the measured light, by colour.
         color: Vec3 = Vec3::ONE, optional, Rule::Any, ["color" in set::DURER];
-        /// Its luminous flux in lumen, in the place of that of the file; `color` is its hue then.
+        /// Luminous flux in lumen, in place of the file's; `color` then gives only the hue.
         lumens: Option<f32> = None, optional, Rule::NonNegative, ["lumens" in set::DURER];
-        /// Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`)
-        /// or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried
-        /// as such, else as its colour.
+        /// Measured spectrum, multiplied by `color`: a file (`lamp.csv`, `lamps.csv:column`) or an
+        /// illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum, other modes its
+        /// colour.
         spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
     }
 }
 
 impl PhotometricLight {
-    /// The same with its own flux in its colour, where that is written.
+    /// Light whose colour includes its own `lumens`, if written.
     pub fn with_flux(&self, profile: &Profile) -> Self {
         let Some(lumens) = self.lumens else { return self.clone() };
         let flux = profile.flux() as f32;
@@ -44,11 +44,11 @@ impl PhotometricLight {
 }
 
 impl Emitter for PhotometricLight {
-    /// As if it shone with one candela everywhere: its profile multiplies that.
+    /// Light for an intensity of 1 candela in all directions, to be multiplied by the profile.
     fn illuminate(&self, point: DVec3) -> Illumination {
         let offset = (self.position.as_dvec3() - point).as_vec3();
         let distance = offset.length();
-        // A light's colour is what a white matte surface shows: illuminance over pi.
+        // The colour of a light is the radiance of a white diffuse surface: illuminance over pi.
         let faded = distance + self.focal_length;
         let color = self.color / (PI * faded * faded);
         Illumination { to_light: offset.normalize_or(Vec3::Y), distance, color }
@@ -66,7 +66,7 @@ impl Emitter for PhotometricLight {
         self.spectrum.as_ref()
     }
 
-    /// Its flux is known with the file.
+    /// Converting `lumens` needs the file; see [`PhotometricLight::with_flux`].
     fn in_units(&self) -> Self {
         self.clone()
     }
@@ -98,7 +98,7 @@ impl Emitter for PhotometricLight {
         Some(self.direction)
     }
 
-    /// Most lamps light the half that their lower side faces.
+    /// 90 degrees: most luminaires light the hemisphere below them.
     fn cone(&self) -> Option<f32> {
         Some(90.0)
     }
@@ -108,32 +108,33 @@ impl Emitter for PhotometricLight {
     }
 }
 
-/// How strong a lamp shines in each direction.
+/// Intensity of a luminaire in each direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
-    /// How its angles are meant.
+    /// Meaning of the angles.
     pub kind: ProfileKind,
-    /// Vertical angles in degrees, rising.
+    /// Vertical angles in degrees, ascending.
     pub vertical: Vec<f32>,
-    /// Horizontal angles in degrees, rising.
+    /// Horizontal angles in degrees, ascending.
     pub horizontal: Vec<f32>,
-    /// Candela, all vertical angles of the first horizontal one first.
+    /// Intensity in candela: every vertical angle for the first horizontal angle, then for the
+    /// next.
     pub candela: Vec<f32>,
 }
 
-/// The coordinates of a photometer.
+/// Coordinate system of a photometer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProfileKind {
-    /// C: vertical angles from straight down, horizontal ones about that axis.
+    /// C: vertical angles from straight down, horizontal angles about that axis.
     C,
-    /// B: planes turned about the horizontal axis that lies across the lamp's front.
+    /// B: planes turned about the horizontal axis across the front of the luminaire.
     B,
     /// A: planes turned about the vertical axis.
     A,
 }
 
 impl Profile {
-    /// The hash of all that it holds.
+    /// Hash of the whole profile.
     pub fn digest(&self) -> Digest {
         let mut hasher = Digest::hasher();
         hasher.count(self.kind as u64);
@@ -144,24 +145,24 @@ impl Profile {
         hasher.finish()
     }
 
-    /// The most that it shines anywhere.
+    /// Maximum intensity, in candela.
     pub fn most(&self) -> f32 {
         self.candela.iter().copied().fold(0.0, f32::max)
     }
 
-    /// Candela in a direction: x is horizontal angle 0, z down. Linear between angles; nothing
-    /// beyond the vertical ones.
+    /// Intensity in candela in a direction: x is horizontal angle 0, z is down. Interpolates
+    /// linearly between angles; 0 beyond the vertical angles.
     pub fn at(&self, dir: Vec3) -> f32 {
         let degrees = |y: f32, x: f32| fp::atan2(y, x).to_degrees();
         let across = |a: f32, b: f32| (a * a + b * b).sqrt();
         let (vertical, horizontal) = match self.kind {
             ProfileKind::C => (degrees(across(dir.x, dir.y), dir.z), degrees(dir.y, dir.x)),
-            // z is where the lamp looks: down, as it hangs; angles grow towards y and x.
+            // The luminaire faces z, which is down as mounted. Angles grow towards y and x.
             ProfileKind::B => (degrees(dir.x, across(dir.y, dir.z)), degrees(dir.y, dir.z)),
             ProfileKind::A => (degrees(dir.y, across(dir.x, dir.z)), degrees(dir.x, dir.z)),
         };
         let horizontal = self.folded(horizontal);
-        // Halves that are not written mirror those that are.
+        // A missing half mirrors the written one.
         let vertical = if self.vertical[0] >= 0.0 { vertical.abs() } else { vertical };
         let (Some((i, a)), Some((j, b))) = (place(&self.vertical, vertical), place(&self.horizontal, horizontal))
         else {
@@ -175,7 +176,7 @@ impl Profile {
         row(j) * (1.0 - b) + row(j + 1) * b
     }
 
-    /// A horizontal angle within those that are written, by the symmetry that they stand for.
+    /// Maps a horizontal angle into the range of written angles, by the symmetry that they imply.
     fn folded(&self, angle: f32) -> f32 {
         let (first, last) = (self.horizontal[0], self.horizontal[self.horizontal.len() - 1]);
         if self.horizontal.len() == 1 {
@@ -196,8 +197,8 @@ impl Profile {
         }
     }
 
-    /// The light in all directions together, in lumen: exact for what is linear between the angles,
-    /// but for the sine.
+    /// Luminous flux in lumen. Exact for a profile that is linear between the angles, up to the
+    /// sine factor.
     pub fn flux(&self) -> f64 {
         let (rows, columns) = (720_u32, 360_u32);
         let mut sum = 0.0;
@@ -212,8 +213,8 @@ impl Profile {
     }
 }
 
-/// The last angle that is not beyond a wanted one, and the way from there to the next; `None`
-/// outside of all.
+/// Index of the last angle at or before `wanted`, and the fraction towards the next; `None` outside
+/// the range.
 fn place(angles: &[f32], wanted: f32) -> Option<(usize, f32)> {
     const SLACK: f32 = 1e-3;
     let (first, last) = (angles[0], angles[angles.len() - 1]);

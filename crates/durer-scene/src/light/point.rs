@@ -1,4 +1,4 @@
-//! A light at a point. What arrives at distance d is color / (a0 + a1 d + a2 d^2).
+//! Point light. The light that arrives at distance d is color / (a0 + a1 d + a2 d^2).
 
 use super::{Emitter, Illumination, TWO_UNITS, as_bright};
 use crate::describe::{FileName, Rule, described};
@@ -10,25 +10,24 @@ use std::f32::consts::PI;
 described! {
     /// Light that comes from one point.
     PointLight ["PointLight" in set::CLASSIC, "point" in set::F23] {
-        /// Where it is.
+        /// Position.
         position: Vec3 = Vec3::ZERO, required, Rule::Any, ["position" in set::CLASSIC];
-        /// Its colour and strength.
+        /// Colour and strength.
         color: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::ALL];
-        /// How it fades: the divisor's constant, its factor of distance and its factor of distance
-        /// squared.
+        /// Coefficients of the divisor: constant, linear and quadratic in the distance.
         attenuation: Option<Vec3> = None, optional, Rule::Any, ["attenuation" in set::OLD | set::DURER];
-        /// How it fades: the divisor's factor of distance squared; what is added to it depends on
-        /// the dialect.
+        /// Quadratic coefficient of the divisor; the dialect decides what is added to it.
         falloff: Option<f32> = None, optional, Rule::NonNegative,
             ["falloff" in set::F12A5 | set::F16 | set::DURER, "attenuation" in set::F23];
-        /// Luminous intensity in candela: how strong it is, of which `color` is the hue; it fades with
-        /// the square of the distance.
+        /// Luminous intensity in candela, which fades with the square of the distance; `color` then
+        /// gives only the hue.
         candela: Option<f32> = None, optional, Rule::NonNegative, ["candela" in set::DURER];
-        /// The same by its luminous flux in lumen.
+        /// Luminous flux in lumen, which fades with the square of the distance; `color` then gives
+        /// only the hue.
         lumens: Option<f32> = None, optional, Rule::NonNegative, ["lumens" in set::DURER];
-        /// Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`)
-        /// or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried
-        /// as such, else as its colour.
+        /// Measured spectrum, multiplied by `color`: a file (`lamp.csv`, `lamps.csv:column`) or an
+        /// illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum, other modes its
+        /// colour.
         spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
     }
 }
@@ -60,7 +59,7 @@ impl Emitter for PointLight {
 
     fn in_units(&self) -> Self {
         let Some(candela) = self.candela.or(self.lumens.map(|lumens| lumens / (4.0 * PI))) else { return self.clone() };
-        // What arrives is what a white matte surface shows: illuminance over pi.
+        // The colour of a light is the radiance of a white diffuse surface: illuminance over pi.
         let color = as_bright(self.color, candela / PI);
         PointLight { color, attenuation: Some(Vec3::Z), falloff: None, candela: None, lumens: None, ..self.clone() }
     }
@@ -70,8 +69,8 @@ impl Emitter for PointLight {
         match () {
             () if self.candela.is_some() && self.lumens.is_some() => Err(TWO_UNITS.into()),
             () if unit && (self.attenuation.is_some() || self.falloff.is_some()) => Err(
-                "what shines in candela or lumen fades with the square of the distance: `attenuation` and `falloff` \
-                     have no place beside that"
+                "a light in `candela` or `lumens` fades with the square of the distance: remove `attenuation` and \
+                     `falloff`"
                     .into(),
             ),
             () => Ok(()),

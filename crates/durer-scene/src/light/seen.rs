@@ -1,4 +1,4 @@
-//! Placement of lamps, and points on them as they are seen.
+//! Placement of emitters, and points on them as seen from a receiver.
 
 use crate::math::{Affine, Vec3};
 use glam::DVec3;
@@ -8,17 +8,17 @@ use glam::DVec3;
 pub struct Placement<'a>(pub Option<&'a Affine>);
 
 impl Placement<'_> {
-    /// A point in world space.
+    /// Converts a point to world space.
     pub fn point(&self, p: Vec3) -> DVec3 {
         self.0.map_or(p.as_dvec3(), |to_world| to_world.point64(p))
     }
 
-    /// A vector in world space.
+    /// Converts a vector to world space.
     pub fn vector(&self, v: Vec3) -> Vec3 {
         self.0.map_or(v, |to_world| to_world.vector(v))
     }
 
-    /// A unit normal in world space, by the inverse transpose.
+    /// Converts a unit normal to world space, by the inverse transpose.
     pub fn normal(&self, n: Vec3) -> Vec3 {
         self.0.map_or(n, |to_world| to_world.normal(n))
     }
@@ -27,20 +27,21 @@ impl Placement<'_> {
 /// Point sampled on an emitter, as seen from a receiver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EmitterPoint {
-    /// Unit vector to it.
+    /// Unit vector from the receiver to the point.
     pub wi: Vec3,
-    /// How far it is.
+    /// Distance from the receiver.
     pub distance: f32,
-    /// The cosine of the emitter's normal there to the way back; less than 0 behind it.
+    /// Cosine between the emitter's normal and the direction to the receiver; negative behind the
+    /// emitter.
     pub cosine: f32,
-    /// Density per solid angle with which it was chosen.
+    /// Pdf per solid angle of this point.
     pub pdf: f32,
 }
 
-/// Points within this share of a ball's radius of its surface lie on it.
+/// Distance from the surface of a ball, as a share of its radius, within which points lie on it.
 pub(super) const ON_SURFACE: f32 = 1e-5;
 
-/// 1 - cos of the angle whose sine's square is given, without cancellation.
+/// Value of 1 - cos of an angle, given the square of its sine, without cancellation.
 pub(super) fn one_minus_cosine(sine2: f32) -> f32 {
     sine2 / (1.0 + (1.0 - sine2).max(0.0).sqrt())
 }

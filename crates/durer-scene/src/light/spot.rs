@@ -1,4 +1,4 @@
-//! A light at a point that shines into a cone.
+//! Spot light: a point light with a cone.
 
 use super::{Emitter, Illumination, TWO_UNITS, as_bright};
 use crate::describe::{FileName, Rule, described, described_words};
@@ -8,49 +8,48 @@ use glam::DVec3;
 use std::f32::consts::PI;
 
 described_words! {
-    /// How a cone fades between `innerAngle` and `angle`, by the share s of the cosine's way: s^2,
-    /// as glTF has it, s^2 (3 - 2 s), as pbrt-v4 has it, or s^4, as pbrt-v3 has it.
+    /// Fade between `innerAngle` and `angle`, by the fraction s between their cosines: s^2 as in
+    /// glTF, s^2 (3 - 2 s) as in pbrt-v4, or s^4 as in pbrt-v3.
     Fade { Squared = "squared", Smooth = "smooth", Fourth = "fourth" }
 }
 
 described! {
-    /// Light that comes from one point into a cone, and fades with the square of the distance.
+    /// Light from one point into a cone, fading with the square of the distance.
     SpotLight ["SpotLight" in set::DURER] {
-        /// Where it is.
+        /// Position.
         position: Vec3 = Vec3::ZERO, required, Rule::Any, ["position" in set::DURER];
-        /// Where the middle of the cone points; of any length.
+        /// Direction of the cone's axis, of any length.
         direction: Vec3 = Vec3::NEG_Y, required, Rule::NonZero, ["direction" in set::DURER];
-        /// What arrives in the middle at distance 1.
+        /// Colour and strength: the light that arrives on the axis at distance 1.
         color: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::DURER];
-        /// Degrees from the middle to where the cone ends.
+        /// Angle in degrees from the axis to the edge of the cone.
         angle: f32 = 45.0, optional, Rule::UpTo(180.0), ["angle" in set::DURER];
-        /// Degrees from the middle to where it begins to fade; not more than `angle`.
+        /// Angle in degrees from the axis to where the fade begins; at most `angle`.
         inner_angle: f32 = 0.0, optional, Rule::NonNegative, ["innerAngle" in set::DURER];
-        /// How it fades between the two, by the share s of the cosine's way: `squared` is s^2,
-        /// `smooth` s^2 (3 - 2 s), `fourth` s^4.
+        /// Fade between the two angles, by the fraction s between their cosines: `squared` is s^2,
+        /// `smooth` is s^2 (3 - 2 s), `fourth` is s^4.
         fade: Fade = Fade::Squared, optional, Rule::Any, ["fade" in set::DURER];
-        /// Luminous intensity in candela in its middle: how strong it is, of which `color` is the
-        /// hue.
+        /// Luminous intensity in candela on the axis; `color` then gives only the hue.
         candela: Option<f32> = None, optional, Rule::NonNegative, ["candela" in set::DURER];
-        /// The same by its luminous flux in lumen.
+        /// Luminous flux in lumen; `color` then gives only the hue.
         lumens: Option<f32> = None, optional, Rule::NonNegative, ["lumens" in set::DURER];
-        /// Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`)
-        /// or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried
-        /// as such, else as its colour.
+        /// Measured spectrum, multiplied by `color`: a file (`lamp.csv`, `lamps.csv:column`) or an
+        /// illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum, other modes its
+        /// colour.
         spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
     }
 }
 
 impl SpotLight {
-    /// The cosines of where the cone ends, and of where it begins to fade.
+    /// Cosines of the edge of the cone and of the start of the fade.
     fn cosines(&self) -> [f32; 2] {
         [self.angle, self.inner_angle.min(self.angle)].map(|degrees| fp::sin_cos_degrees(f64::from(degrees)).1 as f32)
     }
 
-    /// The solid angle that has as much light when it is as strong all over as in the middle.
+    /// Solid angle with the same flux at the constant intensity of the axis.
     fn fills(&self) -> f32 {
         let [outer, inner] = self.cosines();
-        // The means of s², of s² (3 - 2 s) and of s⁴.
+        // Means over the fade of s^2, of s^2 (3 - 2 s) and of s^4.
         let fading = match self.fade {
             Fade::Squared => 1.0 / 3.0,
             Fade::Smooth => 0.5,
@@ -67,13 +66,13 @@ impl Emitter for SpotLight {
         let to_light = offset.normalize_or(Vec3::Y);
         let [outer, inner] = self.cosines();
         let seen = -to_light.dot(self.direction.normalize_or(Vec3::NEG_Y));
-        // A cone without a soft edge ends at once.
+        // A cone without a soft edge ends abruptly.
         let share = match inner > outer {
             true => ((seen - outer) / (inner - outer)).clamp(0.0, 1.0),
             false => f32::from(seen >= outer),
         };
-        // Sources: KHR_lights_punctual; *Physically Based Rendering*, 4th edition, section 12.2.1, and
-        // 3rd edition, section 12.3.1.
+        // Sources: KHR_lights_punctual; *Physically Based Rendering*, 4th edition, section 12.2.1,
+        // and 3rd edition, section 12.3.1.
         let share = share
             * share
             * match self.fade {
@@ -100,7 +99,7 @@ impl Emitter for SpotLight {
         let Some(candela) = self.candela.or(self.lumens.map(|lumens| lumens / self.fills())) else {
             return self.clone();
         };
-        // What arrives is what a white matte surface shows: illuminance over pi.
+        // The colour of a light is the radiance of a white diffuse surface: illuminance over pi.
         SpotLight { color: as_bright(self.color, candela / PI), candela: None, lumens: None, ..self.clone() }
     }
 

@@ -1,9 +1,9 @@
-//! What arrives of lights.
+//! Tests of the light that arrives from light sources.
 
 use super::*;
 
 #[test]
-fn directional_lights_come_against_their_direction_from_infinity() {
+fn directional_light_arrives_against_its_direction_from_infinity() {
     let light = DirectionalLight { direction: Vec3::new(0.0, -3.0, 4.0), color: Vec3::X, ..Default::default() };
     let seen = light.illuminate((Vec3::splat(100.0)).as_dvec3());
     assert!((seen.to_light - Vec3::new(0.0, 0.6, -0.8)).length() < 1e-6);
@@ -11,7 +11,7 @@ fn directional_lights_come_against_their_direction_from_infinity() {
 }
 
 #[test]
-fn a_point_at_the_light_itself_has_some_direction_to_it() {
+fn illuminate_at_the_light_has_a_unit_direction() {
     let seen = PointLight::default().illuminate((Vec3::ZERO).as_dvec3());
     assert!(seen.to_light.is_normalized() && seen.distance == 0.0 && seen.color.is_finite());
 }

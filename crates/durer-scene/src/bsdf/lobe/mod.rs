@@ -50,7 +50,7 @@ pub enum Spread {
     Delta,
     /// Mostly a narrow cone, which light samples would rarely hit.
     Glossy,
-    /// All directions, equally or nearly so.
+    /// Every direction, with equal or nearly equal value.
     Diffuse,
 }
 
