@@ -1,4 +1,4 @@
-//! Cubes of two materials in turn.
+//! Checkerboard: unit cubes of two alternating materials.
 
 use super::Pattern;
 use crate::describe::{Rule, described};
@@ -6,11 +6,11 @@ use crate::dialect::set;
 use crate::math::Vec3;
 
 described! {
-    /// Unit cubes of two materials in turn.
+    /// Unit cubes of two alternating materials.
     Checkerboard ["Checkerboard" in set::OLD | set::DURER] {
-        /// The material where the sum of the rounded-down coordinates is even.
+        /// Material of the cubes whose floored coordinates have an even sum.
         material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
-        /// The other.
+        /// Material of the other cubes.
         material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
     }
 }
@@ -18,8 +18,8 @@ described! {
 impl Pattern for Checkerboard {
     fn weight(&self, q: Vec3) -> f32 {
         let floor = q.floor();
-        // Sums and remainders of whole f32 numbers are exact as long as the cells can be told
-        // apart.
+        // Sums and remainders of whole `f32` numbers are exact for coordinates small enough to tell
+        // cells apart.
         let even = floor.rem_euclid(Vec3::splat(2.0)).element_sum().rem_euclid(2.0) == 0.0;
         if even { 1.0 } else { 0.0 }
     }

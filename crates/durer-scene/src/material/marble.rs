@@ -1,4 +1,5 @@
-//! Veins: the first material weighs (sin(frequency x + amplitude N) + 1) / 2.
+//! Marble: veins, in which the first material has the share (sin(frequency x + amplitude N) + 1) /
+//! 2.
 
 use super::{MAX_OCTAVES, Pattern};
 use crate::describe::{Rule, described};
@@ -8,15 +9,15 @@ use crate::math::{Vec3, noise};
 described! {
     /// Two materials in veins across the x axis.
     Marble ["Marble" in set::OLD | set::DURER] {
-        /// The material where the sine is 1.
+        /// Material where the sine is 1.
         material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
-        /// The material where the sine is -1.
+        /// Material where the sine is -1.
         material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
-        /// How many frequencies of noise are summed, each twice the one before.
+        /// Number of noise octaves, each with twice the frequency of the one before.
         octaves: u32 = 0, required, Rule::AtMost(MAX_OCTAVES), ["octaves" in set::ALL];
-        /// Veins per 2 pi along x.
+        /// Number of veins per 2 pi along x.
         frequency: f32 = 1.0, required, Rule::Any, ["frequency" in set::ALL];
-        /// How much noise bends the veins.
+        /// Strength of the noise that distorts the veins.
         amplitude: f32 = 1.0, required, Rule::Any, ["amplitude" in set::ALL];
     }
 }

@@ -1,4 +1,4 @@
-//! Two materials in one proportion, or as a picture says.
+//! Mix of two materials, constant or by a texture.
 
 use super::Pattern;
 use crate::describe::{FileName, Rule, described};
@@ -6,16 +6,16 @@ use crate::dialect::set;
 use crate::math::Vec3;
 
 described! {
-    /// Two materials in the same proportion everywhere, or as a picture says: each scatters its
+    /// Mix of two materials in a proportion that is constant or set by a texture; each scatters its
     /// share of the light.
     Mix ["Mix" in set::DURER] {
-        /// The first material.
+        /// First material.
         material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
-        /// The other.
+        /// Second material.
         material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
-        /// The share of the first, from 0 to 1.
+        /// Share of the first material, from 0 to 1.
         share: f32 = 0.5, optional, Rule::Share, ["share" in set::DURER];
-        /// A picture that multiplies `share`.
+        /// Texture that multiplies `share`.
         share_texture: Option<FileName> = None, optional, Rule::Any, ["shareTexture" in set::DURER];
     }
 }

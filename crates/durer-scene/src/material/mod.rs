@@ -1,4 +1,4 @@
-//! Materials: what a surface does with light. One file each; the list is [`Solid`] beside
+//! Materials: how surfaces scatter light. One file each; the list is [`Solid`] beside
 //! [`PhongMaterial`], [`PrincipledMaterial`] and [`HairMaterial`].
 
 pub mod checkerboard;
@@ -34,7 +34,7 @@ macro_rules! delegate {
 }
 
 described_list! {
-    /// A material made of two earlier ones, mixed by a pattern in space.
+    /// Material that mixes two earlier materials by a pattern in space.
     Solid: Pattern => delegate {
         Checkerboard(checkerboard::Checkerboard),
         Noise(solid_noise::SolidNoise),
@@ -46,8 +46,8 @@ described_list! {
 }
 
 impl Solid {
-    /// Share of the first material at a point of pattern space, from 0 to 1. `conic_rings`: wood has
-    /// the rings of the program of 2004, cones whose grain is stretched along the axis.
+    /// Share of the first material at a point of pattern space, from 0 to 1. With `conic_rings`,
+    /// wood has the rings of the program of 2004: cones with a grain stretched along the axis.
     pub fn share(&self, q: Vec3, conic_rings: bool) -> f32 {
         match self {
             Solid::Wood(wood) if conic_rings => wood.conic(q),
@@ -56,20 +56,20 @@ impl Solid {
     }
 }
 
-/// What every pattern in space can do.
+/// Interface of every pattern in space.
 pub trait Pattern {
-    /// The share of the first material at a point of pattern space, from 0 to 1; on the front of a
-    /// surface, where that matters.
+    /// Share of the first material at a point of pattern space, from 0 to 1. For a two-sided
+    /// material, it is the share on the front.
     fn weight(&self, q: Vec3) -> f32;
 
-    /// Numbers of the two materials.
+    /// Indices of the two materials.
     fn materials(&self) -> [u32; 2];
 }
 
-/// The most octaves that noise may have: beyond, they are finer than numbers can tell.
+/// Maximum number of noise octaves; finer ones are below the precision of `f32`.
 pub const MAX_OCTAVES: u32 = 32;
 
-/// Whether a field holds the number of another material.
+/// True if a field holds the index of another material.
 pub fn is_material_index(field: &Field) -> bool {
     field.name.starts_with("material")
 }

@@ -1,4 +1,4 @@
-//! The numbers of a material in layers at one point, and which of them pictures change.
+//! Parameters of a layered material at one point, and the textures that change them.
 
 use super::principled::{PrincipledMaterial, Switch, Walls};
 use crate::describe::FileName;
@@ -6,21 +6,21 @@ use crate::math::Vec3;
 
 macro_rules! parameters {
     ($($field:ident: $type:ty,)+) => {
-        /// The numbers of a [`PrincipledMaterial`] that say how light is scattered at a point, by
-        /// the same names.
+        /// Parameters of a [`PrincipledMaterial`] that decide the scattering at a point, under the
+        /// same names.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Parameters {
-            $(#[doc = concat!("As [`PrincipledMaterial::", stringify!($field), "`].")] pub $field: $type,)+
-            /// What multiplies the reflection of an opaque base or a metal, at all angles.
+            $(#[doc = concat!("Value of [`PrincipledMaterial::", stringify!($field), "`] at the point.")] pub $field: $type,)+
+            /// Factor of the reflection of an opaque base or a metal, at all angles.
             pub reflection: f32,
-            /// What multiplies the light that enters a body in which it is scattered.
+            /// Factor of the light that enters a scattering body.
             pub entering: Vec3,
-            /// Whether there is a body in which light is scattered, be its share here none.
+            /// True if there is a scattering body, even if its share is 0 at this point.
             pub has_body: bool,
         }
 
         impl Parameters {
-            /// As written, without pictures; `base_color` times `base_weight`.
+            /// Parameters as written, without textures. `base_color` includes `base_weight`.
             pub fn of(m: &PrincipledMaterial) -> Self {
                 let has_body = m.has_subsurface();
                 let written = Parameters { $($field: m.$field,)+ reflection: 1.0, entering: Vec3::ONE, has_body };
@@ -62,7 +62,8 @@ parameters! {
 }
 
 impl Parameters {
-    /// The same with shares from 0 to 1 and colours not below 0, whatever pictures made of them.
+    /// Returns the parameters with shares clamped to [0, 1] and colours to at least 0. Textures can
+    /// exceed these bounds.
     pub fn within_bounds(mut self) -> Self {
         let shares = [
             &mut self.base_diffuse_roughness,
@@ -95,7 +96,7 @@ impl Parameters {
 }
 
 impl PrincipledMaterial {
-    /// Whether some picture lies on it.
+    /// True if the material has a texture.
     pub fn has_pictures(&self) -> bool {
         let others = [&self.emission_texture, &self.normal_texture, &self.bump_texture, &self.opacity_texture];
         TEXTURED.iter().any(|row| (row.picture)(self).is_some())
@@ -104,29 +105,30 @@ impl PrincipledMaterial {
     }
 }
 
-/// What a picture does with a parameter.
+/// Effect of a texture on a parameter.
 #[derive(Clone, Copy, Debug)]
 pub enum Change {
-    /// By one of its channels.
+    /// Change by one channel of the texture.
     Number(fn(&mut Parameters, f32)),
-    /// By its colour.
+    /// Change by the colour of the texture.
     Color(fn(&mut Parameters, Vec3)),
 }
 
-/// A field for a picture, and what that does.
+/// Texture field and its effect.
 #[derive(Clone, Copy, Debug)]
 pub struct Textured {
-    /// Its name.
+    /// Name of the field.
     pub field: &'static str,
-    /// The picture of a material.
+    /// File of a material's texture.
     pub picture: fn(&PrincipledMaterial) -> Option<&FileName>,
-    /// What it does.
+    /// Effect of the texture.
     pub change: Change,
 }
 
 macro_rules! textured {
     ($($field:ident $kind:ident $change:expr;)+) => {
-        /// All parameters that pictures change, but for what shines, is opaque or bends normals.
+        /// Every texture that changes a parameter. Emission, opacity and normals are handled
+        /// elsewhere.
         pub const TEXTURED: &[Textured] =
             &[$(Textured {
                 field: stringify!($field),

@@ -1,4 +1,4 @@
-//! The course's material: diffuse colour, a highlight, and weights for mirrored and transmitted
+//! Material of the course: a diffuse colour, a highlight, and weights for reflected and refracted
 //! rays.
 
 use super::MAX_OCTAVES;
@@ -7,52 +7,52 @@ use crate::dialect::set;
 use crate::math::{Color, Vec3, noise};
 
 described! {
-    /// A material with diffuse colour and highlight, which may reflect and let through light.
+    /// Material with a diffuse colour and a highlight, which may reflect and transmit light.
     PhongMaterial ["PhongMaterial" in set::CLASSIC, "Material" in set::ALL] {
-        /// Share of light scattered evenly; 1 1 1 where nothing is written.
+        /// Diffuse albedo; 1 1 1 if not written.
         diffuse_color: Option<Vec3> = None, optional, Rule::Any, ["diffuseColor" in set::CLASSIC, "diffuse" in set::F23];
-        /// Strength of the highlight; in some dialects also of the mirror.
+        /// Strength of the highlight; in some dialects also of the reflection.
         specular_color: Vec3 = Vec3::ZERO, optional, Rule::Any,
             ["specularColor" in set::CLASSIC, "specular" in set::F23];
-        /// Sharpness of Blinn's highlight.
+        /// Exponent of Blinn's highlight.
         exponent: Option<f32> = None, optional, Rule::NonNegative, ["exponent" in set::OLD | set::DURER];
-        /// Sharpness of Phong's highlight.
+        /// Exponent of Phong's highlight.
         shininess: Option<f32> = None, optional, Rule::NonNegative, ["shininess" in set::NEW | set::F23 | set::DURER];
-        /// Weight of the mirrored ray.
+        /// Weight of the reflected ray.
         reflective_color: Vec3 = Vec3::ZERO, optional, Rule::Any, ["reflectiveColor" in set::OLD | set::DURER];
         /// Weight of the transmitted ray.
         transparent_color: Vec3 = Vec3::ZERO, optional, Rule::Any, ["transparentColor" in set::OLD | set::DURER];
-        /// Index of refraction of transmitted rays that are weighed by `transparentColor` alone.
+        /// Index of refraction of transmitted rays weighted by `transparentColor` alone.
         index_of_refraction: Option<f32> = None, optional, Rule::Positive, ["indexOfRefraction" in set::OLD | set::DURER];
-        /// Index of refraction of glass that divides light by Fresnel; 0 means none.
+        /// Index of refraction of glass that splits light by Fresnel's equations; 0 for none.
         refraction_index: Option<f32> = None, optional, Rule::NonNegative,
             ["refractionIndex" in set::F12A5 | set::DURER];
-        /// A picture that replaces the diffuse colour on meshes with texture coordinates.
+        /// Texture that replaces the diffuse colour on meshes with texture coordinates.
         texture: Option<FileName> = None, optional, Rule::Any, ["texture" in set::F12A4 | set::F12A5 | set::DURER];
-        /// A bump map: read over, as in every year.
+        /// Bump map; ignored, as in the programs of every year.
         bump: Option<FileName> = None, optional, Rule::Any, ["bump" in set::NEW | set::DURER];
     }
 }
 
 described! {
-    /// Two colours in veins bent by noise, instead of the diffuse colour.
+    /// Two colours in veins distorted by noise, in place of the diffuse colour.
     ColorNoise ["Noise" in set::F12A5 | set::DURER] {
-        /// The colour where the sine is 1.
+        /// Colour where the sine is 1.
         color1: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::ALL];
-        /// The colour where the sine is -1.
+        /// Colour where the sine is -1.
         color2: Vec3 = Vec3::ZERO, required, Rule::Any, ["color" in set::ALL];
-        /// How many frequencies of noise are summed, each twice the one before.
+        /// Number of noise octaves, each with twice the frequency of the one before.
         octaves: u32 = 0, optional, Rule::AtMost(MAX_OCTAVES), ["octaves" in set::ALL];
-        /// Veins per 2 pi along x.
+        /// Number of veins per 2 pi along x.
         frequency: f32 = 1.0, optional, Rule::Any, ["frequency" in set::ALL];
-        /// How much noise bends the veins.
+        /// Strength of the noise that distorts the veins.
         amplitude: f32 = 1.0, optional, Rule::Any, ["amplitude" in set::ALL];
     }
 }
 
 impl ColorNoise {
-    /// The colour at a point: w color1 + (1 - w) color2, w = (sin(frequency x + amplitude N) + 1) /
-    /// 2.
+    /// Colour at a point: w color1 + (1 - w) color2, where w = (sin(frequency x + amplitude N) + 1)
+    /// / 2.
     pub fn color(&self, p: Vec3) -> Color {
         let w = noise::veins(p, p.x, self.frequency, self.amplitude, self.octaves);
         w * self.color1 + (1.0 - w) * self.color2

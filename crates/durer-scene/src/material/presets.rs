@@ -1,14 +1,14 @@
-//! Real materials by name.
+//! Presets of real materials, by name.
 //!
-//! The figures are those of OpenPBR's own examples (Academy Software Foundation, *OpenPBR*, 2024),
-//! their colours converted from ACEScg to Rec.709 and kept within 0 to 1. Lengths are in the
-//! examples' units; set `subsurfaceRadius` or `transmissionDepth` for the size of a thing.
+//! The values are those of OpenPBR's own examples (Academy Software Foundation, *OpenPBR*, 2024),
+//! with colours converted from ACEScg to Rec.709 and clamped to [0, 1]. Lengths are in the
+//! examples' units; set `subsurfaceRadius` or `transmissionDepth` to suit the size of an object.
 
 use super::PrincipledMaterial;
 use crate::describe::{Describe, Value};
 use crate::math::Vec3;
 
-/// The material of a name, if there is one.
+/// Preset of a name; `None` if it is unknown.
 pub fn named(name: &str) -> Option<PrincipledMaterial> {
     let (_, values) = PRESETS.iter().find(|row| row.0 == name)?;
     let mut material = PrincipledMaterial::default();
@@ -26,10 +26,10 @@ pub fn named(name: &str) -> Option<PrincipledMaterial> {
     Some(material)
 }
 
-/// A name, and the fields that are not what they are by themselves.
+/// Name, and the fields that differ from their defaults.
 type Preset = (&'static str, &'static [(&'static str, &'static [f32])]);
 
-/// All of them.
+/// List of the presets.
 #[rustfmt::skip]
 pub const PRESETS: &[Preset] = &[
     ("aluminum-brushed", &[
@@ -254,7 +254,7 @@ mod tests {
     use crate::describe::Field;
 
     #[test]
-    fn every_preset_is_a_material_with_values_that_its_fields_may_have() {
+    fn presets_satisfy_the_rules_of_their_fields() {
         assert!(PRESETS.len() > 60);
         for (name, values) in PRESETS {
             let material = named(name).unwrap();

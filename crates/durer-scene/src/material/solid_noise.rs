@@ -1,4 +1,4 @@
-//! Two materials mixed by noise: the first weighs N + 1/2, kept between 0 and 1.
+//! Two materials mixed by noise: the first has the share N + 1/2, clamped to [0, 1].
 
 use super::{MAX_OCTAVES, Pattern};
 use crate::describe::{Rule, described};
@@ -8,11 +8,11 @@ use crate::math::{Vec3, noise};
 described! {
     /// Two materials mixed by noise.
     SolidNoise ["Noise" in set::OLD | set::DURER] {
-        /// The material where noise is high.
+        /// Material where the noise is high.
         material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
-        /// The material where noise is low.
+        /// Material where the noise is low.
         material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
-        /// How many frequencies are summed, each twice the one before.
+        /// Number of noise octaves, each with twice the frequency of the one before.
         octaves: u32 = 0, required, Rule::AtMost(MAX_OCTAVES), ["octaves" in set::ALL];
     }
 }

@@ -1,11 +1,11 @@
-//! Patterns in space against their formulas.
+//! Tests of the patterns in space against their formulas.
 
 use super::*;
 use crate::math::noise::{perlin, turbulence};
 use crate::math::random::Random;
 
 #[test]
-fn cubes_of_a_checkerboard_alternate_across_every_face_also_at_negative_places() {
+fn checkerboard_cubes_alternate_across_every_face() {
     let board = Solid::from(checkerboard::Checkerboard { material1: 3, material2: 5 });
     assert_eq!(board.materials(), [3, 5]);
     for x in -3i32..3 {
@@ -28,14 +28,15 @@ fn marble_wood_and_noise_follow_their_formulas() {
         let q = 20.0 * random.point();
         let (octaves, frequency, amplitude) =
             (random.below(5) as u32, random.between(0.1, 4.0), random.between(0.0, 3.0));
-        // The sum of octaves, written out in double precision.
+        // Sum the octaves in double precision.
         let n: f64 = (0..octaves).map(|i| f64::from(perlin(q * (1 << i) as f32)) / f64::from(1 << i)).sum();
         assert!((f64::from(turbulence(q, octaves)) - n).abs() < 1e-6);
         let sine = |x: f64| 0.5 * (libm::sin(f64::from(frequency) * x + f64::from(amplitude) * n) + 1.0);
         let radius = libm::hypot(f64::from(q.x), f64::from(q.z));
         let marble = marble::Marble { octaves, frequency, amplitude, ..Default::default() };
         let wood = wood::Wood { octaves, frequency, amplitude, ..Default::default() };
-        // Phases up to 100 are rounded by up to 4e-6 in two steps, and the sine follows.
+        // Phases up to 100 have rounding errors up to 4e-6 in two steps, which carry over to the
+        // sine.
         assert!((f64::from(marble.weight(q)) - sine(f64::from(q.x))).abs() < 1e-5);
         assert!((f64::from(wood.weight(q)) - sine(radius)).abs() < 1e-5);
         let noise = solid_noise::SolidNoise { octaves, ..Default::default() };
@@ -47,7 +48,7 @@ fn marble_wood_and_noise_follow_their_formulas() {
 }
 
 #[test]
-fn conic_rings_are_the_programs_of_2004() {
+fn conic_rings_agree_with_the_program_of_2004() {
     let wood = wood::Wood { octaves: 3, frequency: 6.0, amplitude: 2.0, ..Default::default() };
     let mut random = Random(3);
     for _ in 0..2_000 {
@@ -62,12 +63,13 @@ fn conic_rings_are_the_programs_of_2004() {
 }
 
 #[test]
-fn noise_is_within_its_range_and_fills_it() {
+fn noise_stays_in_its_range_and_fills_it() {
     let mut random = Random(2);
     let values: Vec<f32> = (0..100_000).map(|_| perlin(100.0 * random.point())).collect();
     assert!(values.iter().all(|v| v.abs() <= 1.04), "the published bound of improved noise");
     assert!(values.iter().any(|v| *v > 0.7) && values.iter().any(|v| *v < -0.7));
     let mean = values.iter().sum::<f32>() / values.len() as f32;
-    // Values are spread by about 0.25; 5 standard errors of the mean of independent ones.
+    // The standard deviation is about 0.25. Allow 5 standard errors of the mean of independent
+    // values.
     assert!(mean.abs() < 5.0 * 0.25 / 316.0, "{mean}");
 }

@@ -1,4 +1,4 @@
-//! One material on the front, another on the back.
+//! Two-sided material: one material on the front, another on the back.
 
 use super::Pattern;
 use crate::describe::{Rule, described};
@@ -6,12 +6,11 @@ use crate::dialect::set;
 use crate::math::Vec3;
 
 described! {
-    /// A surface whose front has one material and whose back, the side that its normal does not point
-    /// to, another.
+    /// Surface with one material on its front, to which the normal points, and another on its back.
     TwoSided ["TwoSided" in set::DURER] {
-        /// The material of the front.
+        /// Material of the front.
         material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
-        /// That of the back.
+        /// Material of the back.
         material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
     }
 }

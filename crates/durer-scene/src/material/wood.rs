@@ -1,7 +1,7 @@
-//! Rings around the y axis: the first material weighs (sin(frequency r + amplitude N) + 1) / 2,
-//! with r the distance from the axis.
+//! Wood: rings around the y axis. The first material has the share (sin(frequency r + amplitude N)
+//! + 1) / 2, where r is the distance from the axis.
 //!
-//! The course left the profile of the rings free; [`Wood::conic`] is the official program's.
+//! The course does not define the profile of the rings. [`Wood::conic`] is the official program's.
 
 use super::{MAX_OCTAVES, Pattern};
 use crate::describe::{Rule, described};
@@ -11,23 +11,23 @@ use crate::math::{Vec3, fp, noise};
 described! {
     /// Two materials in rings around the y axis.
     Wood ["Wood" in set::OLD | set::DURER] {
-        /// The material where the sine is 1.
+        /// Material where the sine is 1.
         material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
-        /// The material where the sine is -1.
+        /// Material where the sine is -1.
         material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
-        /// How many frequencies of noise are summed, each twice the one before.
+        /// Number of noise octaves, each with twice the frequency of the one before.
         octaves: u32 = 0, required, Rule::AtMost(MAX_OCTAVES), ["octaves" in set::ALL];
-        /// Rings per 2 pi along the radius.
+        /// Number of rings per 2 pi along the radius.
         frequency: f32 = 1.0, required, Rule::Any, ["frequency" in set::ALL];
-        /// How much noise bends the rings.
+        /// Strength of the noise that distorts the rings.
         amplitude: f32 = 1.0, required, Rule::Any, ["amplitude" in set::ALL];
     }
 }
 
 impl Wood {
-    /// The share of the first material where `conic-rings` holds: the axis is that of a trunk, whose
-    /// rings narrow by a twentieth of their height, with bands of full colour and edges that rise
-    /// as a square.
+    /// Share of the first material under the quirk `conic-rings`. The rings are those of a trunk:
+    /// they narrow by a twentieth of their height, with bands of full colour and edges that rise
+    /// quadratically.
     pub fn conic(&self, q: Vec3) -> f32 {
         let radius = (q.x * q.x + q.z * q.z).sqrt() + 0.05 * q.y;
         let grain = noise::turbulence(Vec3::new(q.x, 0.2 * q.y, q.z), self.octaves);

@@ -1,12 +1,12 @@
-//! Density grids, such as smoke or a cloud.
+//! Density grids, for example of smoke or a cloud.
 
 use crate::math::{Aabb, Vec3};
 use crate::source::Digest;
 
-/// Densities of a medium in a box.
+/// Densities of a medium on a grid in a box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DensityGrid {
-    /// Points along x, y and z; at least one each.
+    /// Number of points along x, y and z; at least one each.
     counts: [u32; 3],
     /// Values, x fastest.
     values: Vec<f32>,
@@ -25,7 +25,7 @@ impl DensityGrid {
         Some(DensityGrid { counts, values, most })
     }
 
-    /// Points along x, y and z.
+    /// Number of points along x, y and z.
     pub fn counts(&self) -> [u32; 3] {
         self.counts
     }
@@ -43,7 +43,7 @@ impl DensityGrid {
         hasher.finish()
     }
 
-    /// The greatest value.
+    /// Maximum density.
     pub fn most(&self) -> f32 {
         self.most
     }
@@ -53,7 +53,7 @@ impl DensityGrid {
         self.values.len() * size_of::<f32>()
     }
 
-    /// Density at a point of the grid's box: trilinear between the centres of its cells.
+    /// Density at a point in the space of the box: trilinear between the centres of the cells.
     pub fn at(&self, bounds: &Aabb, point: Vec3) -> f32 {
         let counts = Vec3::from_array(self.counts.map(|n| n as f32));
         let place = (point - bounds.min) / (bounds.max - bounds.min) * counts - 0.5;

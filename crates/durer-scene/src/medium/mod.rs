@@ -49,9 +49,9 @@ impl Place {
 /// Result of sampling a distance along a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Flight {
-    /// The light passed the segment, with this weight.
+    /// The light passed the segment. Throughput factor.
     Passed(Spectrum),
-    /// The light was scattered at this distance, with this weight.
+    /// The light was scattered. Distance and throughput factor.
     Scattered(f32, Spectrum),
 }
 
@@ -74,7 +74,7 @@ impl Way {
     }
 }
 
-/// Maximum steps through a grid: strongly varying densities take many.
+/// Maximum number of steps through a grid. Strongly varying densities take many.
 const MAX_STEPS: u32 = 1 << 16;
 
 impl Medium {

@@ -3,7 +3,7 @@
 use crate::math::{Vec2, Vec3, fp};
 use std::f32::consts::{PI, TAU};
 
-/// The Henyey-Greenstein phase function.
+/// Henyey-Greenstein phase function.
 ///
 /// Source: Henyey and Greenstein, *Diffuse radiation in the Galaxy*, 1941.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -14,7 +14,7 @@ pub struct HenyeyGreenstein {
 }
 
 impl HenyeyGreenstein {
-    /// Phase function for two unit directions, per solid angle; it is also the density of
+    /// Phase function for two unit directions, per solid angle. It is also the pdf of
     /// [`HenyeyGreenstein::sample`].
     pub fn value(&self, before: Vec3, after: Vec3) -> f32 {
         let g = self.anisotropy;

@@ -13,7 +13,7 @@ fn way(to: f32) -> Way {
 }
 
 #[test]
-fn flights_lose_what_they_should() {
+fn flight_agrees_with_beers_law_and_albedo() {
     let mut random = Random(5);
     let extinction = Color::new(0.3, 1.0, 2.5);
     let fog = medium(Color::new(0.9, 0.5, 0.2), extinction);
@@ -37,12 +37,12 @@ fn flights_lose_what_they_should() {
 }
 
 #[test]
-fn a_grid_lets_through_what_its_integral_says() {
-    // Two cells, 1 and 3: linear between their centres, so that the mean along x is 2.
+fn grid_transmittance_agrees_with_the_integral() {
+    // Two cells, 1 and 3. Linear between their centres, the mean along x is 2.
     let grid = DensityGrid::new([2, 1, 1], vec![1.0, 3.0]).unwrap();
     let bounds = Aabb { min: Vec3::new(1.0, -1.0, -1.0), max: Vec3::new(3.0, 1.0, 1.0) };
     let place = Place { bounds, placed: None, density: Some(Arc::new(grid)) };
-    // The same box from its opposite corner, with the unit cube's axes along -x, z and y.
+    // Equal box from its opposite corner, with the unit cube's axes along -x, z and y.
     let edges = DMat3::from_cols(-2.0 * DVec3::X, 2.0 * DVec3::Z, 2.0 * DVec3::Y);
     let placed = Affine::new(DAffine3::from_mat3_translation(edges, DVec3::new(3.0, -1.0, -1.0)));
     let unit = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
@@ -73,7 +73,7 @@ fn lets_through(smoke: &Medium) {
 }
 
 #[test]
-fn phase_functions_integrate_to_one_and_are_sampled_by_their_value() {
+fn phase_function_integrates_to_one_and_agrees_with_samples() {
     for g in [-0.6, 0.0, 0.3, 0.9] {
         let phase = HenyeyGreenstein { anisotropy: g };
         let n = 20_000;
