@@ -1,4 +1,4 @@
-//! Measured spectra: values at wavelengths.
+//! Measured spectra: values by wavelength.
 
 use super::{Lanes, OBSERVER, Spectrum, integral};
 use crate::math::Color;
@@ -13,16 +13,16 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// Creates a reflectance by ascending wavelength; its colour is that under daylight. `None`
-    /// without rows.
+    /// Creates a reflectance from rows of ascending wavelength. Its colour is that under daylight.
+    /// `None` without rows.
     pub fn reflectance(rows: Vec<[f32; 2]>) -> Option<Self> {
         rows.first()?;
         let color = seen(&rows, |[_, _, _, light]| f64::from(OBSERVER.daylight) * light);
         Some(Curve { rows, color })
     }
 
-    /// Creates the emission of a light of any strength, scaled to brightness 1. `None` without
-    /// visible light, or if so little is visible that scaling leaves the range of `f32`.
+    /// Creates the emission of a light of any strength, scaled to luminance 1. `None` without
+    /// visible light, or if the visible part is so small that scaling overflows `f32`.
     pub fn light(mut rows: Vec<[f32; 2]>) -> Option<Self> {
         let bright = integral(|nm, [_, y, _, _]| y * f64::from(at(&rows, nm))) as f32;
         rows.iter_mut().for_each(|row| row[1] /= bright);
@@ -31,7 +31,7 @@ impl Curve {
         (bright > 0.0 && bright.is_finite() && in_range).then_some(Curve { rows, color })
     }
 
-    /// Colour of the curve: of a reflectance under daylight, of an emission at brightness 1.
+    /// Colour of the curve: for a reflectance under daylight, for an emission at luminance 1.
     pub fn color(&self) -> Color {
         self.color
     }
@@ -43,15 +43,15 @@ impl Curve {
 }
 
 impl Lanes {
-    /// Spectrum of a measured reflectance or emission whose colour became `color`: the curve times
-    /// the factor from the curve's own colour to `color`.
+    /// Spectrum of a measured reflectance or emission that appears as `color`: the curve, times the
+    /// factor from its own colour to `color`.
     pub fn measured(&self, color: Color, curve: &Curve) -> Spectrum {
         let Lanes::Waves(waves) = self else { return color.extend(color.y) };
         let known = curve.color.cmpgt(Color::splat(1e-6));
         let ratio = Color::select(known, color / curve.color, Color::ZERO);
-        // A channel that the curve lacks takes the greatest factor of the others.
+        // A channel that the curve lacks takes the largest factor of the others.
         let ratio = Color::select(known, ratio, Color::splat(ratio.max_element()));
-        // Prevents rounding from tinting grey.
+        // Avoid tinting grey by rounding.
         let even = ratio.max_element() - ratio.min_element() <= 1e-5 * ratio.max_element();
         let tint = if even { Spectrum::splat(ratio.max_element()) } else { self.coefficient(ratio) };
         tint * waves.nm.map(|nm| curve.at(nm))
@@ -68,7 +68,7 @@ fn at(rows: &[[f32; 2]], nm: f32) -> f32 {
     }
 }
 
-/// Colour of the curve times a light, for the standard observer.
+/// Colour, for the standard observer, of the curve times a light.
 fn seen(rows: &[[f32; 2]], light: impl Fn([f64; 4]) -> f64) -> Color {
     let channel = |[a, b, c]: [f32; 3]| {
         let [a, b, c] = [a, b, c].map(f64::from);

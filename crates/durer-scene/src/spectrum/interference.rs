@@ -1,4 +1,4 @@
-//! Colour of light whose waves interfere after a shift.
+//! Colour of interfering light, by path difference.
 
 use super::tables::{FIRST, LAST};
 use super::{OBSERVER, integral};
@@ -9,15 +9,15 @@ use std::sync::LazyLock;
 /// Step of the table in nanometres.
 const STEP: f32 = 5.0;
 
-/// Number of entries: beyond 16 micrometres the colours vanish.
+/// Number of entries. Beyond 16 micrometres the colours vanish.
 const ENTRIES: usize = 3_200;
 
-/// Mean of exp(2 pi i s / wavelength) over daylight for the standard observer, for red, green and
-/// blue and a shift `s` in nanometres: 1 for no shift, near 0 for long ones.
+/// Mean of exp(2 pi i s / wavelength) over daylight, for the standard observer's red, green and
+/// blue and a path difference `s` in nanometres: 1 for none, near 0 for long ones.
 ///
-/// Source of summing interference by orders like this: Belcour and Barla, *A Practical Extension to
-/// Microfacet Theory for the Modeling of Varying Iridescence*, SIGGRAPH 2017; they fit the observer
-/// by Gaussians, and this is a table.
+/// Source of this sum by orders: Belcour and Barla, *A Practical Extension to Microfacet Theory for
+/// the Modeling of Varying Iridescence*, SIGGRAPH 2017. They fit the observer by Gaussians; this is
+/// a table.
 pub fn interference(shift: f32) -> [Vec2; 3] {
     static TABLE: LazyLock<Vec<[Vec2; 3]>> = LazyLock::new(|| (0..ENTRIES).map(|i| mean(STEP * i as f32)).collect());
     let place = shift.max(0.0) / STEP;

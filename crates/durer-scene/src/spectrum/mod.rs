@@ -1,8 +1,8 @@
-//! Spectra in light transport: four values at once.
+//! Spectra in light transport: four lanes at once.
 //!
-//! Along a path they are red, green, blue (and green again, so that the fourth lane adds no new
-//! value), or the radiance at four wavelengths. Colours are converted by [`Lanes::reflectance`] and
-//! [`Lanes::light`], and back by [`Lanes::color`].
+//! Along a path the lanes are red, green, blue and green again (so that the fourth adds no new
+//! value), or the radiance at four wavelengths. [`Lanes::reflectance`] and [`Lanes::light`] convert
+//! colours to lanes, and [`Lanes::color`] converts back.
 //!
 //! Source of four wavelengths on one path: Wilkie and others, *Hero Wavelength Spectral Sampling*,
 //! EGSR 2014.
@@ -28,7 +28,7 @@ use space::SRGB_FROM_XYZ;
 use std::sync::LazyLock;
 use tables::{FIRST, LAST, OBSERVER_AND_DAYLIGHT, STEP};
 
-/// Light, or a factor of it, in four lanes.
+/// Radiance, or a factor of it, in four lanes.
 pub type Spectrum = glam::Vec4;
 
 /// Representation of colours in light transport.
@@ -81,20 +81,20 @@ pub enum Lanes {
     Waves(Waves),
 }
 
-/// Four wavelengths, and tabulated values there.
+/// Four wavelengths, and the tabulated values there.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Waves {
-    /// The wavelengths in nanometres; the first is the hero.
+    /// Wavelengths in nanometres. The first is the hero wavelength.
     pub nm: Spectrum,
-    /// Spectrum of the light whose colour is 1 1 1: D65.
+    /// Spectrum of the light with colour 1 1 1: D65.
     #[serde(skip)]
     white: Spectrum,
-    /// Weights of red, green and blue at each wavelength, over 4 times its sampling density.
+    /// Weights of red, green and blue at each wavelength, over 4 times its sampling pdf.
     observer: [Spectrum; 3],
 }
 
 impl Lanes {
-    /// Creates the lanes of a path from a random number in [0, 1).
+    /// Creates the lanes of a path from a uniform random number in [0, 1).
     pub fn new(mode: ColorMode, u: f32) -> Self {
         match mode {
             ColorMode::Rgb => Lanes::Rgb,
@@ -102,7 +102,7 @@ impl Lanes {
         }
     }
 
-    /// Reflectance of a colour.
+    /// Reflectance spectrum of a colour.
     pub fn reflectance(&self, color: Color) -> Spectrum {
         match self {
             Lanes::Rgb => color.extend(color.y),
@@ -114,7 +114,7 @@ impl Lanes {
         }
     }
 
-    /// Emission of a colour, of any strength: a smooth spectrum times that of daylight.
+    /// Emission spectrum of a colour of any strength: a smooth spectrum times daylight.
     pub fn light(&self, color: Color) -> Spectrum {
         match self {
             Lanes::Rgb => color.extend(color.y),
@@ -127,8 +127,8 @@ impl Lanes {
         }
     }
 
-    /// Emission of a colour, with its measured spectrum or a smooth one. `measured` is only called
-    /// in spectral mode.
+    /// Emission spectrum of a colour, by its measured spectrum if there is one. Calls `measured` in
+    /// spectral mode only.
     pub fn light_of<'c>(&self, color: Color, measured: impl FnOnce() -> Option<&'c Curve>) -> Spectrum {
         match self {
             Lanes::Rgb => self.light(color),
@@ -136,7 +136,8 @@ impl Lanes {
         }
     }
 
-    /// An unbounded value such as an absorption coefficient: smooth, and constant for grey.
+    /// Spectrum of an unbounded value such as an absorption coefficient: smooth, and constant for
+    /// grey.
     pub fn coefficient(&self, color: Color) -> Spectrum {
         match self {
             Lanes::Rgb => color.extend(color.y),
@@ -147,7 +148,7 @@ impl Lanes {
         }
     }
 
-    /// Colour of light, which the path adds to the pixel.
+    /// Colour of light at the end of a path, as added to the pixel.
     pub fn color(&self, light: Spectrum) -> Color {
         match self {
             Lanes::Rgb => light.truncate(),
@@ -155,12 +156,12 @@ impl Lanes {
         }
     }
 
-    /// Returns true if the lanes are colours.
+    /// Returns true if the lanes are red, green and blue.
     pub fn is_rgb(&self) -> bool {
         matches!(self, Lanes::Rgb)
     }
 
-    /// Wavelength of the first lane in nanometres; `None` for colours.
+    /// Wavelength of the first lane in nanometres; `None` for RGB lanes.
     pub fn hero(&self) -> Option<f32> {
         match self {
             Lanes::Rgb => None,
@@ -175,7 +176,7 @@ impl Waves {
         &self.observer
     }
 
-    /// Samples four wavelengths by the sensitivity of the eye, from equidistant random numbers.
+    /// Samples four wavelengths by the sensitivity of the eye, from equidistant numbers.
     fn new(u: f32) -> Self {
         let nm = Spectrum::from_array([0.0, 0.25, 0.5, 0.75].map(|step| wavelength((u + step).fract())));
         let at = |column: usize| nm.map(|nm| observer_and_daylight(nm)[column]);
@@ -188,7 +189,7 @@ impl Waves {
 
 /// Maps a random number in [0, 1) to a wavelength in nanometres.
 ///
-/// Source: *Physically Based Rendering*, 4th edition, section 4.5.4, as for the density.
+/// Source: *Physically Based Rendering*, 4th edition, section 4.5.4, also for [`density`].
 fn wavelength(u: f32) -> f32 {
     let x = 0.856_910_6 - 1.827_502 * u;
     // The inverse hyperbolic tangent.
@@ -196,14 +197,14 @@ fn wavelength(u: f32) -> f32 {
     (538.0 - 138.888_89 * atanh).clamp(FIRST, LAST)
 }
 
-/// Sampling density of a wavelength, per nanometre.
+/// Sampling pdf of a wavelength, per nanometre.
 fn density(nm: f32) -> f32 {
     let x = fp::exp(0.0072 * (nm - 538.0));
     let cosh = 0.5 * (x + 1.0 / x);
     0.003_939_804 / (cosh * cosh)
 }
 
-/// CIE 1931 standard observer (x, y, z) and illuminant D65 at a wavelength in nanometres.
+/// CIE 1931 standard observer (x, y, z) and illuminant D65, at a wavelength in nanometres.
 pub fn observer_and_daylight(nm: f32) -> [f32; 4] {
     let place = ((nm - FIRST) / STEP).clamp(0.0, (OBSERVER_AND_DAYLIGHT.len() - 1) as f32);
     let i = (place as usize).min(OBSERVER_AND_DAYLIGHT.len() - 2);
@@ -211,18 +212,18 @@ pub fn observer_and_daylight(nm: f32) -> [f32; 4] {
     std::array::from_fn(|c| a[c] + (b[c] - a[c]) * (place - i as f32))
 }
 
-/// Conversion of the observer's values to colours such that daylight is white.
+/// Conversion from the observer's values to colours, such that daylight is white.
 struct Observer {
     /// From x, y, z to red, green and blue.
     to_rgb: [[f32; 3]; 3],
-    /// Factor of the tabulated daylight.
+    /// Factor for the tabulated daylight.
     daylight: f32,
 }
 
 static OBSERVER: LazyLock<Observer> = LazyLock::new(Observer::new);
 
-/// Integral over wavelengths of a function of nanometres and of the observer's row, by Simpson's
-/// rule between rows: exact for products of two tabulated values.
+/// Integral over wavelengths of a function of nanometres and the observer's row, by Simpson's rule
+/// between rows. Exact for products of two tabulated values.
 fn integral(value: impl Fn(f32, [f64; 4]) -> f64) -> f64 {
     let at = |nm: f32| value(nm, observer_and_daylight(nm).map(f64::from));
     let starts = (0..OBSERVER_AND_DAYLIGHT.len() - 1).map(|i| FIRST + STEP * i as f32);

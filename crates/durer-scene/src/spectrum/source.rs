@@ -1,4 +1,4 @@
-//! Spectra from files and their colours: of surfaces under daylight (D65), of lights, and of
+//! Spectra from files and their colours, for surfaces under daylight (D65), for lights, and for
 //! coefficients.
 
 use super::black_body::planck_ratio;
@@ -7,14 +7,14 @@ use super::space::SRGB_FROM_XYZ;
 use crate::math::{Color, Vec3};
 use glam::DVec3;
 
-/// A colour or a spectrum.
+/// Colour or spectrum.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SpectrumSource {
-    /// A linear sRGB colour.
+    /// Linear sRGB colour.
     Rgb(Color),
-    /// Ascending wavelengths in nanometres, and values.
+    /// Ascending wavelengths in nanometres, with their values.
     Curve(Vec<[f32; 2]>),
-    /// Black body by its temperature in kelvin.
+    /// Black body, by its temperature in kelvin.
     Blackbody(f32),
     /// Colour of a light of luminance 1.
     Illuminant(Color),
@@ -37,7 +37,7 @@ impl SpectrumSource {
         }
     }
 
-    /// Colour of a light. Spectra are scaled to luminance 1, as in pbrt-v4; colours are returned
+    /// Colour of a light. Spectra are scaled to luminance 1, as in pbrt-v4. Colours are returned
     /// unchanged.
     pub fn light(&self) -> Color {
         match self {
@@ -50,8 +50,8 @@ impl SpectrumSource {
         }
     }
 
-    /// Linear sRGB as pbrt-v3 computes it for lights, reflectances and indices alike: a spectrum of
-    /// 1 has luminance 1. A curve is constant beyond its ends, and a black body is 1 at its peak.
+    /// Linear sRGB as pbrt-v3 computes it for lights, reflectances and indices: a spectrum of 1 has
+    /// luminance 1. A curve is constant beyond its ends. A black body is 1 at its peak.
     pub fn plain(&self) -> Color {
         match self {
             SpectrumSource::Rgb(color) | SpectrumSource::Illuminant(color) => *color,
@@ -67,7 +67,8 @@ impl SpectrumSource {
         }
     }
 
-    /// Value at a wavelength in nanometres. A colour is blue below 490 nm, red from 580 nm.
+    /// Value at a wavelength in nanometres. A colour is blue below 490 nm, green to 580 nm, and red
+    /// from there.
     pub fn at(&self, nm: f32) -> f32 {
         match self {
             SpectrumSource::Rgb(c) | SpectrumSource::Illuminant(c) => match nm {
@@ -81,14 +82,14 @@ impl SpectrumSource {
                 match (above.checked_sub(1).map(|i| curve[i]), curve.get(above)) {
                     (Some([a, low]), Some(&[b, high])) => low + (high - low) * (nm - a) / (b - a),
                     (None, Some(&[b, high])) if b == nm => high,
-                    // 0 beyond its ends, as in pbrt.
+                    // The curve is 0 beyond its ends, as in pbrt.
                     _ => 0.0,
                 }
             }
         }
     }
 
-    /// Index of refraction: the value at helium's yellow line, 587.6 nm.
+    /// Index of refraction: the value at the yellow helium line, 587.6 nm.
     pub fn index(&self) -> f32 {
         self.at(587.6)
     }
@@ -116,13 +117,13 @@ fn daylight(nm: f32) -> f32 {
     observer_and_daylight(nm)[3]
 }
 
-/// Colour of a reflectance under daylight; 1 at all wavelengths is 1 1 1.
+/// Colour of a reflectance under daylight. A reflectance of 1 has the colour 1 1 1.
 pub fn under_daylight(share: impl Fn(f32) -> f32) -> Color {
     let lit = |share: &dyn Fn(f32) -> f32| SRGB_FROM_XYZ * xyz_sum(|nm| f64::from(share(nm) * daylight(nm)));
     (lit(&share) / lit(&|_| 1.0)).as_vec3()
 }
 
-/// Colour of a light from its radiance at each wavelength in nanometres; 1 at all wavelengths has
+/// Colour of a light by its radiance at each wavelength in nanometres. A radiance of 1 has
 /// luminance 1.
 pub fn radiance(light: impl Fn(f32) -> f32) -> Color {
     let color = SRGB_FROM_XYZ * xyz_sum(|nm| f64::from(light(nm))) / xyz_sum(|_| 1.0).y;

@@ -3,7 +3,7 @@
 use crate::math::{Color, Vec3};
 use glam::{DMat3, DVec3};
 
-/// Matrix from XYZ to linear sRGB, in columns. Source: IEC 61966-2-1.
+/// Matrix from XYZ to linear sRGB, column-major. Source: IEC 61966-2-1.
 pub const SRGB_FROM_XYZ: DMat3 = DMat3::from_cols_array(&[
     3.240_454_2,
     -0.969_266,
@@ -16,7 +16,7 @@ pub const SRGB_FROM_XYZ: DMat3 = DMat3::from_cols_array(&[
     1.057_225_2,
 ]);
 
-/// An RGB colour space.
+/// RGB colour space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RgbSpace {
     to_srgb: DMat3,
@@ -28,7 +28,7 @@ impl Default for RgbSpace {
     }
 }
 
-/// Names of spaces, with the chromaticities of red, green, blue and white.
+/// Names of the spaces, with the chromaticities of red, green, blue and white.
 const SPACES: [(&str, [[f64; 2]; 4]); 4] = [
     ("srgb", [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]]),
     ("dci-p3", [[0.68, 0.32], [0.265, 0.69], [0.15, 0.06], [0.3127, 0.329]]),
@@ -41,18 +41,18 @@ fn xyz([x, y]: [f64; 2]) -> DVec3 {
     DVec3::new(x / y, 1.0, (1.0 - x - y) / y)
 }
 
-/// Linear sRGB colour of XYZ.
+/// Linear sRGB colour of an XYZ value.
 pub fn color_of_xyz(xyz: DVec3) -> Color {
     (SRGB_FROM_XYZ * xyz).as_vec3()
 }
 
-/// Linear sRGB colour of a chromaticity at luminance 1, without negative values.
+/// Linear sRGB colour of a chromaticity at luminance 1, with negative values clamped to 0.
 pub fn color_of_chromaticity(xy: [f64; 2]) -> Color {
     color_of_xyz(xyz(xy)).max(Vec3::ZERO)
 }
 
 impl RgbSpace {
-    /// Returns the space of a name.
+    /// Returns the space with a name.
     pub fn named(name: &str) -> Option<RgbSpace> {
         let (name, [r, g, b, white]) = SPACES.iter().find(|row| row.0 == name)?;
         if *name == "srgb" {
@@ -68,7 +68,7 @@ impl RgbSpace {
         SPACES.iter().map(|row| row.0)
     }
 
-    /// Converts a colour of this space to linear sRGB; white stays white.
+    /// Converts a colour of this space to linear sRGB. White stays white.
     pub fn color(&self, rgb: Vec3) -> Color {
         if *self == RgbSpace::default() {
             return rgb;

@@ -2,7 +2,7 @@ use super::space::RgbSpace;
 use super::*;
 use crate::math::Vec3;
 
-/// Colours of every kind, including those near the edges.
+/// Colours over the whole range, including those near its edges.
 fn colors() -> Vec<Color> {
     let steps = [0.0, 0.03, 0.2, 0.5, 0.8, 1.0];
     let rows = steps.into_iter().flat_map(|r| steps.into_iter().map(move |g| (r, g)));
@@ -10,8 +10,8 @@ fn colors() -> Vec<Color> {
 }
 
 #[test]
-fn daylight_is_white_whatever_wavelengths_are_chosen() {
-    // The mean over evenly spaced choices is the integral.
+fn wavelength_samples_average_to_the_colour() {
+    // The mean over evenly spaced numbers is the integral.
     let n = 4096;
     let mean = |light: &dyn Fn(&Lanes) -> Spectrum| {
         let lanes = (0..n).map(|i| Lanes::new(ColorMode::Spectral, (i as f32 + 0.5) / n as f32));
@@ -31,8 +31,8 @@ fn daylight_is_white_whatever_wavelengths_are_chosen() {
 }
 
 #[test]
-fn wavelengths_are_chosen_by_their_density() {
-    // The density's integral between quantiles is the step of the random number.
+fn wavelength_samples_agree_with_pdf() {
+    // Between two quantiles, the pdf integrates to the step of the random number.
     for i in 0..100 {
         let (a, b) = (wavelength((i as f32 + 1.0) / 100.0), wavelength(i as f32 / 100.0));
         let (low, high) = (a.min(b), a.max(b));
@@ -43,7 +43,7 @@ fn wavelengths_are_chosen_by_their_density() {
 }
 
 #[test]
-fn smooth_spectra_have_their_colours() {
+fn smooth_spectra_round_trip_to_their_colours() {
     let mut worst = (0.0, Color::ZERO);
     for color in colors() {
         let off = (upsample::color_of(color) - color).abs().max_element();
@@ -58,7 +58,7 @@ fn smooth_spectra_have_their_colours() {
 }
 
 #[test]
-fn grey_is_the_same_at_every_wavelength_and_lanes_of_colours_are_colours() {
+fn grey_is_constant_over_wavelengths_and_rgb_lanes_keep_colours() {
     let waves = Lanes::new(ColorMode::Spectral, 0.3);
     assert_eq!(waves.reflectance(Color::splat(0.4)), Spectrum::splat(0.4));
     let color = Color::new(0.1, 0.7, 2.0);
@@ -67,7 +67,7 @@ fn grey_is_the_same_at_every_wavelength_and_lanes_of_colours_are_colours() {
     assert!(ColorMode::NAMES.iter().all(|name| ColorMode::from_name(name).unwrap().name() == *name));
 }
 
-/// Chromaticities by sums over every 5 nm, as the CIE defines them.
+/// Chromaticity by a sum over every 5 nm, as the CIE defines it.
 fn chromaticity(curve: &Curve) -> [f64; 2] {
     let rows = || (0..95).map(|i| FIRST + STEP * i as f32);
     let here = |nm: f32, i: usize| f64::from(observer_and_daylight(nm)[i] * curve.at(nm));
@@ -78,7 +78,7 @@ fn chromaticity(curve: &Curve) -> [f64; 2] {
 
 #[test]
 fn illuminants_have_their_published_chromaticities() {
-    // CIE 015:2018, tables 3 and 10.3: for the observer of 1931.
+    // CIE 015:2018, tables 3 and 10.3, for the observer of 1931.
     for (name, x, y) in [
         ("A", 0.44758, 0.40745),
         ("D50", 0.34567, 0.35851),
@@ -95,7 +95,7 @@ fn illuminants_have_their_published_chromaticities() {
         assert!((a - x).abs() < 3e-4 && (b - y).abs() < 3e-4, "{name}: {a} {b}, not {x} {y}");
         assert!((curve.color().dot(Color::new(0.2126, 0.7152, 0.0722)) - 1.0).abs() < 1e-3, "{name}");
     }
-    // D65 by the daylight formula agrees with the table that defines white here.
+    // D65 by the daylight formula agrees with the table that defines white.
     let d65 = illuminants::illuminant("D65").unwrap();
     assert!((d65.color() - Color::ONE).abs().max_element() < 2e-3, "{}", d65.color());
     // 2856 K with today's constant matches the definition of A.
@@ -104,9 +104,9 @@ fn illuminants_have_their_published_chromaticities() {
     assert!(["D", "F99", "100K", "K", "warm"].iter().all(|name| illuminants::illuminant(name).is_none()));
 }
 
-/// The visible part is negligible: scaling it to brightness 1 would overflow the rest.
+/// The visible part is negligible. Scaling it to luminance 1 would overflow the rest.
 #[test]
-fn a_lamp_of_next_to_no_visible_light_is_none() {
+fn light_with_negligible_visible_part_is_none() {
     assert_eq!(Curve::light(vec![[791.0, 0.0], [1e36, 2.0]]), None);
     assert_eq!(Curve::light(vec![[400.0, 0.0], [700.0, 0.0]]), None);
     assert!(Curve::light(vec![[791.0, 0.0], [1e30, 2.0]]).is_none_or(|lamp| lamp.color().is_finite()));
@@ -114,9 +114,9 @@ fn a_lamp_of_next_to_no_visible_light_is_none() {
 }
 
 #[test]
-fn measured_things_have_the_colour_of_their_product() {
-    // A filter that transmits above 560 nm only, under a bulb: the visible colour is the integral
-    // of the product, which colours alone cannot give.
+fn measured_spectra_multiply_by_wavelength() {
+    // A filter that transmits only above 560 nm, under a bulb. The visible colour is the integral
+    // of the product, which a product of colours cannot give.
     let steep = Curve::reflectance(vec![[400.0, 0.05], [550.0, 0.05], [570.0, 0.9], [700.0, 0.9]]).unwrap();
     let bulb = illuminants::illuminant("A").unwrap();
     let exact = Color::from(OBSERVER.to_rgb.map(|row| {
@@ -131,14 +131,13 @@ fn measured_things_have_the_colour_of_their_product() {
     let seen = seen.sum::<glam::DVec3>().as_vec3() / n as f32;
     assert!((seen - 2.0 * exact).abs().max_element() < 3e-3, "{seen}, not {}", 2.0 * exact);
     let product = 2.0 * steep.color() * bulb.color();
-    assert!((seen - product).abs().max_element() > 0.05, "colours would do: {seen} {product}");
+    assert!((seen - product).abs().max_element() > 0.05, "the product of colours agrees: {seen} {product}");
     assert_eq!(Lanes::Rgb.measured(steep.color(), &steep).truncate(), steep.color());
 }
 
 #[test]
-fn spectra_from_files_become_colours() {
-    // The rows sum to the same for all three: the equal-energy white, to the accuracy of 10 nm
-    // steps.
+fn spectra_from_files_convert_to_colours() {
+    // All three sums are equal: the equal-energy white, to the accuracy of 10 nm steps.
     let white = xyz_sum(|_| 1.0);
     assert!((white.x - white.y).abs() < 0.002 * white.y && (white.z - white.y).abs() < 0.002 * white.y, "{white}");
     let even = SpectrumSource::Curve(vec![[300.0, 0.4], [900.0, 0.4]]);
@@ -157,6 +156,6 @@ fn white_is_white_in_every_space() {
         assert!((space.color(Vec3::ONE) - Vec3::ONE).abs().max_element() < 1e-5, "{name}");
     }
     assert_eq!(RgbSpace::named("adobe"), None);
-    // The red of a wider space is outside sRGB.
+    // The red of a wider space lies outside sRGB.
     assert!(RgbSpace::named("rec2020").unwrap().color(Vec3::X).x > 1.5);
 }

@@ -1,9 +1,8 @@
 //! Spectral upsampling: smooth spectra for colours.
 //!
 //! Source: Jakob and Hanika, *A Low-Dimensional Function Space for Efficient Spectral Upsampling*,
-//! Computer Graphics Forum 38(2), 2019: a spectrum is a sigmoid of a parabola of the wavelength.
-//! Its three coefficients are fitted at the points of a grid of colours and interpolated between
-//! them.
+//! Computer Graphics Forum 38(2), 2019: a spectrum is a sigmoid of a parabola in the wavelength.
+//! Its three coefficients are fitted on a grid of colours and interpolated between grid points.
 
 #[cfg(test)]
 use super::integral;
@@ -12,7 +11,7 @@ use super::{OBSERVER, Spectrum};
 use crate::math::Color;
 use std::sync::LazyLock;
 
-/// A spectrum from 0 to 1, by its three coefficients.
+/// Spectrum in [0, 1], by its three coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Smooth([f32; 3]);
 
@@ -22,7 +21,7 @@ impl Smooth {
         let [a, b, c] = self.0;
         let place = (nm - FIRST) / (LAST - FIRST);
         let x = (a * place + b) * place + c;
-        // 0.5 + x / (2 sqrt(1 + x^2)), in a form without cancellation near 0.
+        // This is 0.5 + x / (2 sqrt(1 + x^2)), without cancellation for large negative x.
         x.map(|x| {
             let root = (1.0 + x * x).sqrt();
             if x < 0.0 { 0.5 / (root * (root - x)) } else { 0.5 + 0.5 * x / root }
@@ -30,31 +29,31 @@ impl Smooth {
     }
 }
 
-/// Grid points along the axes of the two lesser channels.
+/// Number of grid points along the axes of the two smaller channels.
 const SIDE: usize = 24;
 
-/// Grid points along the axis of the greatest channel.
+/// Number of grid points along the axis of the largest channel.
 const STRENGTHS: usize = 10;
 
-/// Coefficients by greatest channel, its value, and the ratios of the two others to it.
+/// Coefficients by the largest channel, its value, and the ratios of the other two to it.
 struct Table(Vec<[f32; 3]>);
 
 static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
 
-/// Reflectance spectrum of a colour in [0, 1]. A colour darker than 0.5 uses the spectrum of a
-/// brighter colour of its hue, scaled.
+/// Reflectance spectrum of a colour in [0, 1]. A colour darker than 0.5 uses the scaled spectrum of
+/// a brighter colour with its hue.
 pub(super) fn share(color: Color, nm: Spectrum) -> Spectrum {
     let scale = (2.0 * color.max_element()).clamp(1e-12, 1.0);
     scale * TABLE.find(color / scale).at(nm)
 }
 
-/// Grid values from 0.5 to 1, denser near white, where the coefficients change most.
+/// Grid values from 0.5 to 1. They are denser near white, where the coefficients change most.
 fn strength(k: usize) -> f64 {
     let rest = 1.0 - k as f64 / (STRENGTHS - 1) as f64;
     1.0 - 0.5 * rest * rest
 }
 
-/// At 1 the coefficients would be unbounded.
+/// Largest channel value of the fit. At 1 the coefficients are unbounded.
 const NEARLY_WHITE: f64 = 1.0 - 1e-4;
 
 impl Table {
@@ -63,12 +62,12 @@ impl Table {
         let mut all = vec![[0.0; 3]; 3 * STRENGTHS * SIDE * SIDE];
         for greatest in 0..3 {
             for (j, i) in (0..SIDE * SIDE).map(|n| (n / SIDE, n % SIDE)) {
-                // Denser near pure colours.
+                // Place more points near pure colours.
                 let share = |n: usize| {
                     let step = n as f64 / (SIDE - 1) as f64;
                     step * step
                 };
-                // Each fit starts from its neighbour's result.
+                // Start each fit from its neighbour's result.
                 let mut numbers = [0.0; 3];
                 for k in 0..STRENGTHS {
                     let most = strength(k).min(NEARLY_WHITE);
@@ -103,7 +102,7 @@ impl Table {
         let (low, high) = (strength(k) as f32, strength(k + 1) as f32);
         let (x, y) = (share(1), share(2));
         let (i, j) = ((x as usize).min(SIDE - 2), (y as usize).min(SIDE - 2));
-        // Interpolates linearly in the ratio itself.
+        // Interpolate linearly in the ratio itself.
         let part = |x: f32, i: usize| {
             let i = i as f32;
             ((x * x - i * i) / (2.0 * i + 1.0)).clamp(0.0, 1.0)
@@ -123,14 +122,14 @@ impl Table {
 
 /// Forward model of the fit: the colour of a spectrum under daylight.
 struct Fit {
-    /// Normalized wavelengths from 0 to 1, with their weights for red, green and blue.
+    /// Normalized wavelengths in [0, 1], with their weights for red, green and blue.
     rows: Vec<(f64, [f64; 3])>,
 }
 
 impl Fit {
     fn new() -> Self {
         let steps = ((LAST - FIRST) / 2.5) as usize;
-        // Simpson's rule over pairs of steps.
+        // Use Simpson's rule over pairs of steps.
         let rows = (0..=steps).map(|n| {
             let nm = FIRST + 2.5 * n as f32;
             let weight = if n == 0 || n == steps {
@@ -152,7 +151,7 @@ impl Fit {
         Fit { rows: rows.collect() }
     }
 
-    /// Colour of a spectrum and its derivatives by the three coefficients.
+    /// Colour of a spectrum, and its derivatives by the three coefficients.
     fn color(&self, [a, b, c]: [f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
         let (mut color, mut change) = ([0.0; 3], [[0.0; 3]; 3]);
         for &(place, rgb) in &self.rows {
@@ -171,7 +170,8 @@ impl Fit {
         (color, change)
     }
 
-    /// Fits the three coefficients of a colour by the Levenberg-Marquardt method, from nearby ones.
+    /// Fits the three coefficients of a colour by the Levenberg-Marquardt method, starting from
+    /// `start`.
     fn find(&self, wanted: [f64; 3], start: [f64; 3]) -> [f64; 3] {
         let mut numbers = start;
         let (mut color, mut change) = self.color(numbers);

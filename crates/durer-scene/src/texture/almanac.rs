@@ -7,14 +7,14 @@
 
 use crate::math::{Vec3, fp};
 
-/// A moment in the Gregorian calendar, in local time.
+/// Moment in the Gregorian calendar, in local time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     /// Year, month and day.
     pub date: [i32; 3],
     /// Hours since midnight.
     pub hours: f64,
-    /// Hours that the clock is ahead of UTC.
+    /// Offset of the clock from UTC, in hours; positive if ahead.
     pub zone: f64,
 }
 
@@ -25,10 +25,10 @@ impl Moment {
         (1..=12).contains(&month) && (1..=days_of(year, month)).contains(&day)
     }
 
-    /// Days since noon of 1 January 2000 in UTC.
+    /// Days since noon of 1 January 2000, in UTC.
     fn days(&self) -> f64 {
         let [year, month, day] = self.date;
-        // The year begins in March, so that the leap day is its last.
+        // Start the year in March, so that the leap day is its last.
         let (y, m) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
         let before = 365 * y + y.div_euclid(4) - y.div_euclid(100) + y.div_euclid(400) + (153 * m + 2) / 5 + day;
         // The day number of 1 January 2000 is 730426.
@@ -45,7 +45,7 @@ fn days_of(year: i32, month: i32) -> i32 {
     }
 }
 
-/// Altitude above the horizon and azimuth from north over east, in degrees, for a place by its
+/// Altitude above the horizon and azimuth from north over east, in degrees, at a place given in
 /// degrees north and east.
 pub fn sun([latitude, longitude]: [f64; 2], moment: &Moment) -> [f64; 2] {
     let n = moment.days();
@@ -66,7 +66,7 @@ pub fn sun([latitude, longitude]: [f64; 2], moment: &Moment) -> [f64; 2] {
     [degrees(up, (north * north + east * east).sqrt()), degrees(east, north).rem_euclid(360.0)]
 }
 
-/// Unit vector to an altitude and an azimuth in degrees: y is up, -z north, x east.
+/// Unit vector by an altitude and an azimuth in degrees: y is up, -z north, x east.
 pub fn way([altitude, azimuth]: [f64; 2]) -> Vec3 {
     let ((sin, cos), (s, c)) = (fp::sin_cos_degrees(altitude), fp::sin_cos_degrees(azimuth));
     Vec3::new((cos * s) as f32, sin as f32, (-cos * c) as f32)
@@ -83,16 +83,16 @@ mod tests {
     }
 
     #[test]
-    fn it_stands_where_others_say() {
+    fn sun_position_agrees_with_published_values() {
         // Reda and Andreas, *Solar position algorithm*, NREL, 2003, table A5.1: zenith angle 50.111
         // with and 50.128 without refraction; azimuth 194.340.
         let [altitude, azimuth] = at([39.742476, -105.1786], [2003, 10, 17], [12.0, 30.0, 30.0], -7.0);
         assert!((altitude - 39.872).abs() < 0.01 && (azimuth - 194.340).abs() < 0.01, "{altitude} {azimuth}");
-        // Meeus, *Astronomical Algorithms*, example 25.a: declination -7.78507 on 1992 October 13,
-        // which is the altitude seen from the pole.
+        // Meeus, *Astronomical Algorithms*, example 25.a: declination -7.78507 on 1992 October 13.
+        // It is the altitude as seen from the pole.
         let [altitude, _] = at([90.0, 0.0], [1992, 10, 13], [0.0; 3], 0.0);
         assert!((altitude + 7.785).abs() < 0.01, "{altitude}");
-        // Almanac data: the solstice of 21 June 2026, 8:25, and the equinox of 20 March 2026,
+        // Almanac data: the solstice of 21 June 2026 at 8:25, and the equinox of 20 March 2026 at
         // 14:46.
         let [altitude, _] = at([90.0, 0.0], [2026, 6, 21], [8.0, 25.0, 0.0], 0.0);
         assert!((altitude - 23.436).abs() < 0.01, "{altitude}");
@@ -101,15 +101,16 @@ mod tests {
     }
 
     #[test]
-    fn clocks_and_places_agree() {
-        // The same moment on another clock, and on the next day in another time zone.
+    fn sun_position_agrees_across_time_zones() {
+        // The same moment by another clock, and by a clock that already shows the next day.
         let [date, next] = [[2024, 2, 28], [2024, 2, 29]];
         let place = [-33.9, 151.2];
         let here = at(place, date, [20.0, 0.0, 0.0], 0.0);
         for other in [at(place, next, [7.0, 0.0, 0.0], 11.0), at(place, date, [15.0, 30.0, 0.0], -4.5)] {
             assert!((here[0] - other[0]).abs() < 1e-9 && (here[1] - other[1]).abs() < 1e-9, "{here:?} {other:?}");
         }
-        // In the southern hemisphere the sun is in the north at noon, in the east in the morning.
+        // In the southern hemisphere the sun is in the north at noon and in the east in the
+        // morning.
         let [noon, morning] = [[13.0, 0.0, 0.0], [7.0, 0.0, 0.0]].map(|time| at(place, next, time, 11.0));
         assert!(noon[1] < 20.0 || noon[1] > 340.0, "{noon:?}");
         assert!((morning[1] - 90.0).abs() < 20.0, "{morning:?}");
@@ -119,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn days_are_those_of_the_calendar() {
+    fn days_follow_the_calendar() {
         let day = |date| Moment { date, hours: 0.0, zone: 0.0 };
         for (date, exists) in [
             ([2024, 2, 29], true),
@@ -133,7 +134,7 @@ mod tests {
         ] {
             assert_eq!(day(date).exists(), exists, "{date:?}");
         }
-        // Every day follows the one before.
+        // Each day number is one more than that of the day before.
         let mut last = day([1999, 12, 31]).days();
         assert_eq!(last, -1.5);
         for year in 2000..2101 {

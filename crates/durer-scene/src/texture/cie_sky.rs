@@ -1,4 +1,4 @@
-//! The sixteen CIE standard skies, which are used for daylight calculations in architecture.
+//! The sixteen CIE standard skies, for daylight calculations in architecture.
 //!
 //! Source: CIE S 011/E:2003 (ISO 15469:2004), *Spatial distribution of daylight: CIE standard
 //! general sky*.
@@ -6,8 +6,8 @@
 use crate::math::{Color, Vec3, fp};
 use std::f32::consts::PI;
 
-/// Coefficients a, b (gradation from horizon to zenith) and c, d, e (indicatrix around the sun) of
-/// the types 1 to 15.
+/// Coefficients of types 1 to 15: a, b (gradation from horizon to zenith) and c, d, e (indicatrix
+/// around the sun).
 const TYPES: [[f32; 5]; 15] = [
     [4.0, -0.70, 0.0, -1.0, 0.0],
     [4.0, -0.70, 2.0, -1.5, 0.15],
@@ -26,26 +26,27 @@ const TYPES: [[f32; 5]; 15] = [
     [-1.0, -0.15, 24.0, -2.8, 0.15],
 ];
 
-/// Number of the traditional overcast sky, three times as bright at the zenith as at the horizon.
+/// Type number of the traditional overcast sky, three times as bright at the zenith as at the
+/// horizon.
 pub const OVERCAST: u32 = 16;
 
-/// A CIE standard sky. It is white.
+/// CIE standard sky, which is white.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CieSky {
-    /// Coefficients of a type from 1 to 15; `None` for type 16.
+    /// Coefficients of types 1 to 15; `None` for type 16.
     numbers: Option<[f32; 5]>,
-    /// Unit vector to the sun, which does not emit light itself.
+    /// Unit vector to the sun, whose own light is not included.
     sun: Vec3,
-    /// Factor of the relative luminance that gives the requested zenith luminance.
+    /// Factor from relative luminance to cd/m^2.
     scale: f32,
-    /// Luminance below the horizon.
+    /// Luminance below the horizon, in cd/m^2.
     ground: f32,
 }
 
 impl CieSky {
-    /// Creates a sky of type `number`, 1 to 16. `sun` points to the sun, with y upwards; `zenith`
-    /// is the luminance at the zenith in cd/m^2. The ground reflects `ground_reflectance` of its
-    /// illuminance.
+    /// Creates a sky of type `number`, from 1 to 16. `sun` points to the sun, with y up. `zenith`
+    /// is the luminance at the zenith in cd/m^2. The ground reflects the share `ground_reflectance`
+    /// of its illuminance.
     pub fn new(number: u32, sun: Vec3, zenith: f32, ground_reflectance: f32) -> Self {
         let numbers = TYPES.get((number as usize).wrapping_sub(1)).copied();
         let sun = Vec3::new(sun.x, sun.y.max(0.0), sun.z).normalize_or(Vec3::Y);
@@ -54,7 +55,7 @@ impl CieSky {
         CieSky { ground: ground_reflectance * sky.illuminance() / PI, ..sky }
     }
 
-    /// Returns true if a sky of this type depends on the position of the sun.
+    /// Returns true if skies of this type depend on the position of the sun.
     pub fn wants_sun(number: u32) -> bool {
         TYPES.get((number as usize).wrapping_sub(1)).is_some_and(|numbers| numbers[2] != 0.0)
     }
@@ -68,12 +69,12 @@ impl CieSky {
         zenith * (1.0 + c * (fp::exp(d * to_sun) - fp::exp(d * 0.5 * PI)) + e * cosine * cosine)
     }
 
-    /// Luminance in a unit direction, in cd/m^2.
+    /// Luminance from a unit direction, in cd/m^2.
     pub fn luminance(&self, dir: Vec3) -> f32 {
         if dir.y < 0.0 { self.ground } else { self.scale * self.shape(dir) }
     }
 
-    /// Light from a unit direction.
+    /// Radiance from a unit direction.
     pub fn at(&self, dir: Vec3) -> Color {
         Vec3::splat(self.luminance(dir))
     }
@@ -82,7 +83,7 @@ impl CieSky {
     pub fn illuminance(&self) -> f32 {
         const STEPS: u32 = 256;
         let cell = |i: u32| {
-            // Equal areas of the projected hemisphere in each ring.
+            // Each ring of the projected hemisphere has cells of equal area.
             let radius = ((i / STEPS) as f32 + 0.5) / STEPS as f32;
             let (sin, cos) = fp::sin_cos_degrees(360.0 * (f64::from(i % STEPS) + 0.5) / f64::from(STEPS));
             let dir = Vec3::new(radius * cos as f32, (1.0 - radius * radius).sqrt(), radius * sin as f32);
@@ -98,19 +99,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn illuminances_are_those_of_the_formulas() {
-        // The overcast sky has an illuminance of 7 pi L / 9 (Moon and Spencer, 1942), the uniform
-        // one of pi L.
+    fn illuminance_agrees_with_formulas() {
+        // The overcast sky has an illuminance of 7 pi L / 9 (Moon and Spencer, 1942). The uniform
+        // sky has pi L.
         let overcast = CieSky::new(OVERCAST, Vec3::Y, 9_000.0, 0.0);
         assert!((overcast.illuminance() / (7_000.0 * PI) - 1.0).abs() < 1e-4, "{}", overcast.illuminance());
         let even = CieSky::new(5, Vec3::Y, 9_000.0, 0.2);
         assert!((even.illuminance() / (9_000.0 * PI) - 1.0).abs() < 1e-4);
-        // Under a uniform sky the ground is a matte surface with its reflectance.
+        // Under a uniform sky the ground is a diffuse surface with its reflectance.
         assert!((even.luminance(Vec3::NEG_Y) - 1_800.0).abs() < 1.0);
     }
 
     #[test]
-    fn the_zenith_is_as_bright_as_asked_and_the_sun_side_brightest() {
+    fn zenith_has_its_luminance_and_the_side_of_the_sun_is_brightest() {
         let sun = Vec3::new(1.0, 1.0, 0.0).normalize();
         for number in 1..=16 {
             let sky = CieSky::new(number, sun, 5_000.0, 0.2);
@@ -118,9 +119,10 @@ mod tests {
             let (there, away) = (sky.luminance(sun), sky.luminance(Vec3::new(-sun.x, sun.y, 0.0)));
             assert_eq!(there > away, CieSky::wants_sun(number), "{number}: {there} {away}");
         }
-        // Type 12, the standard clear sky: at the horizon below the sun, by hand from the formula.
+        // Type 12, the standard clear sky, at the horizon below the sun, computed by hand from the
+        // formula.
         let sky = CieSky::new(12, sun, 1.0, 0.0);
-        // exp(-3 pi / 4) - exp(-3 pi / 2) = 0.09478 - 0.00898; at the zenith the angle to the sun
+        // exp(-3 pi / 4) - exp(-3 pi / 2) = 0.09478 - 0.00898. At the zenith the angle to the sun
         // is also 45 degrees.
         let (ring, zenith) = (1.0 + 10.0 * (0.09478 - 0.00898) + 0.45 * 0.5, 1.0 - 0.72615);
         let at_horizon = ring / (ring * zenith);

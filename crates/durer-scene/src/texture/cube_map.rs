@@ -1,14 +1,14 @@
-//! Cube maps: six pictures around the scene.
+//! Cube maps: six images around the scene.
 
 use super::Texture;
 use crate::math::{Color, Vec2, Vec3};
 
-/// Surroundings at infinity, as the six faces of a cube.
+/// Environment at infinity, as the six faces of a cube.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CubeMap {
-    /// Pictures in the order of [`CubeMap::FACES`].
+    /// Images in the order of [`CubeMap::FACES`].
     pub faces: [Texture; 6],
-    /// True if [`crate::dialect::Compat::MirroredBack`] applies.
+    /// True if the quirk [`crate::dialect::Compat::MirroredBack`] applies.
     pub mirrored_back: bool,
 }
 
@@ -16,10 +16,11 @@ impl CubeMap {
     /// File names of the faces, without extension: -x, +x, +y, -y, +z, -z.
     pub const FACES: [&'static str; 6] = ["left", "right", "up", "down", "front", "back"];
 
-    /// Colour in a direction. The largest component picks the face; ties go to x, then y.
+    /// Colour in a direction, in world space. The largest component selects the face; ties go to x,
+    /// then y.
     ///
-    /// Seen from inside, every face is upright and not mirrored: the four sides with y upwards,
-    /// `up` with z upwards and `down` with -z upwards, so that the six meet without a seam.
+    /// Seen from inside, every face is upright and not mirrored. The four sides have y up, `up` has
+    /// z up, and `down` has -z up, so that all six meet without a seam.
     pub fn at(&self, direction: Vec3) -> Color {
         let Vec3 { x, y, z } = direction;
         let d = direction.abs();

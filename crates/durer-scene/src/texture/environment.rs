@@ -1,7 +1,7 @@
 //! Environment maps with importance sampling.
 //!
-//! Directions are sampled by how much they exceed the mean radiance: BSDF sampling finds nearly
-//! uniform parts as well, and multiple importance sampling combines both, so light samples are best
+//! Directions are sampled in proportion to the radiance above the mean. BSDF sampling finds nearly
+//! uniform parts too, and multiple importance sampling combines both, so light samples are best
 //! spent on the rest. Source: Karlík, Šik, Vévoda, Skřivan, Křivánek, *MIS Compensation: Optimizing
 //! Sampling Techniques in Multiple Importance Sampling*, SIGGRAPH Asia 2019.
 
@@ -19,47 +19,48 @@ pub struct Place {
     sine: f32,
 }
 
-/// An environment map: its centre is in direction -z, its upper edge at +y, as in
+/// Environment map. Its centre is in direction -z and its upper edge at +y, as in
 /// `EquirectangularCamera`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Environment {
     width: usize,
     height: usize,
-    /// Colours; w is the cumulative weight of the row up to this texel. Values that are used
-    /// together are stored together.
+    /// Colours; w is the cumulative weight of the row up to this texel. Storing both together saves
+    /// cache misses.
     texels: Arc<[Vec4]>,
     /// Rotation about y, as a fraction of a turn from 0 to 1.
     turn: f32,
     scale: Color,
-    /// Mean brightness of all directions, before scaling.
+    /// Mean brightness over all directions, before scaling.
     mean: f32,
     rows: Arc<[Row]>,
-    /// Start indices for the search in a row's cumulative weights, by steps of the wanted fraction.
+    /// Start indices for the search in a row's cumulative weights, one per step of the wanted
+    /// fraction.
     hints: Arc<[u32]>,
-    /// Cumulative weights of the rows from above, and start indices for the search in them.
+    /// Cumulative weights of the rows, from the top.
     columns: Arc<[f32]>,
     column_hints: Arc<[u32]>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Row {
-    /// Sum of the weights of its texels.
+    /// Sum of the weights of the row's texels.
     sum: f32,
-    /// Fraction of the sum of all rows.
+    /// Fraction of the sum over all rows.
     share: f32,
 }
 
-/// Minimum fraction of a direction's brightness in its weight. Some light is found by light
-/// sampling only, such as that behind panes where paths end.
+/// Minimum weight of a direction, as a fraction of its brightness. Only light sampling finds some
+/// light, such as that behind panes where paths end.
 const LEAST: f32 = 0.05;
 
-/// Number of entries that share a start index.
+/// Number of entries per start index.
 const STEP: usize = 4;
 
 /// Number of entries that the search compares at once.
 const AHEAD: usize = 8;
 
-/// For each step of the fraction from 0 to 1, the entry at which it is reached.
+/// For each step of the fraction from 0 to 1, the index of the entry that reaches it.
 fn hints(sums: &[f32]) -> impl Iterator<Item = u32> {
     let steps = sums.len().div_ceil(STEP);
     let mut i = 0;
@@ -72,8 +73,8 @@ fn hints(sums: &[f32]) -> impl Iterator<Item = u32> {
 }
 
 impl Environment {
-    /// Creates a map from linear colours, the upper row first. `None` unless there are width times
-    /// height colours, and some light.
+    /// Creates a map from linear colours, top row first. `None` if the number of colours is not
+    /// width times height, or without light.
     pub fn new(width: u32, height: u32, texels: Vec<Color>, degrees: f32, scale: Color) -> Option<Self> {
         let (width, height) = (width as usize, height as usize);
         if width == 0 || height == 0 || texels.len() != width * height {
@@ -89,8 +90,7 @@ impl Environment {
         for (y, sine) in sines.iter().enumerate() {
             let mut row = 0.0_f64;
             for x in 0..width {
-                // Colours are interpolated between the centres of texels: this is the mean over a
-                // texel.
+                // Colours are interpolated between texel centres, so compute the mean over a texel.
                 let mean = |[before, here, after]: [f32; 3]| 0.125 * (before + after) + 0.75 * here;
                 let column = |x: usize| {
                     let x = x % width;
@@ -133,25 +133,25 @@ impl Environment {
         })
     }
 
-    /// Approximate mean over all directions.
+    /// Approximate mean radiance over all directions.
     pub fn mean(&self) -> Color {
         self.scale * self.mean
     }
 
-    /// Approximate mean of the sampling weights, that is of the light above [`Environment::mean`].
+    /// Approximate mean of the sampling weights, which is the radiance above [`Environment::mean`].
     pub fn mean_above(&self) -> Color {
         // Weights are means over texels, times the sine of the row.
         self.scale * (self.columns[self.height - 1] * PI / 2.0 / (self.width * self.height) as f32)
     }
 
-    /// About the most that one direction brings, over its density: of what is least likely to be
-    /// chosen for its brightness.
+    /// Approximate maximum of radiance over pdf. Directions with the lowest pdf for their
+    /// brightness reach it.
     pub fn most_of_one(&self) -> Color {
         4.0 * PI * self.mean_above() / LEAST
     }
 
-    /// Bytes for each texel that making it takes beside the texels that are given: those once more
-    /// where they stay with their sums, the sums alone, and the hints while they grow.
+    /// Temporary memory of [`Environment::new`] in bytes per texel, beside the given texels: the
+    /// texels with their sums, the sums alone, and the hints while they grow.
     pub const MAKING: usize = size_of::<Vec4>() + size_of::<[f32; 2]>();
 
     /// Size in memory in bytes.
@@ -167,9 +167,9 @@ impl Environment {
         Place { x: u * self.width as f32, y: v * self.height as f32, sine: beside / dir.length() }
     }
 
-    /// Light at a position, interpolated bilinearly.
+    /// Radiance at a position, interpolated bilinearly.
     pub fn light(&self, place: &Place) -> Color {
-        // Integer coordinates from 0, of the texel after the position.
+        // Integer coordinates, from 0, of the texel after the position.
         let (x, y) = (place.x + 0.5, place.y + 0.5);
         let (right, below) = (x as usize, y as usize);
         let part = Vec2::new(x - right as f32, y - below as f32);
@@ -180,13 +180,13 @@ impl Environment {
         self.scale * row(below.saturating_sub(1).min(last)).lerp(row(below.min(last)), part.y).truncate()
     }
 
-    /// Sampling density of a position per solid angle.
+    /// Pdf of a position, per solid angle.
     fn density(&self, place: &Place) -> f32 {
         let (x, y) = ((place.x as usize).min(self.width - 1), (place.y as usize).min(self.height - 1));
         self.density_in((x, y), place.sine)
     }
 
-    /// Sampling density of a texel per solid angle, at the sine of an angle to the y axis.
+    /// Pdf of a texel per solid angle, by the sine of the angle to the y axis.
     fn density_in(&self, (x, y): (usize, usize), sine: f32) -> f32 {
         let (Row { sum, share }, row) = (self.rows[y], self.row(y));
         if sum <= 0.0 {
@@ -201,31 +201,31 @@ impl Environment {
         &self.texels[y * self.width..(y + 1) * self.width]
     }
 
-    /// Light from a direction of any length.
+    /// Radiance from a direction of any length, in world space.
     pub fn at(&self, dir: Vec3) -> Color {
         self.light(&self.place(dir))
     }
 
-    /// Sampling density of a direction per solid angle.
+    /// Pdf of a direction, per solid angle.
     pub fn pdf(&self, dir: Vec3) -> f32 {
         self.density(&self.place(dir))
     }
 
-    /// Light from a direction, and its sampling density per solid angle.
+    /// Radiance from a direction, and its pdf per solid angle.
     pub fn at_with_pdf(&self, dir: Vec3) -> (Color, f32) {
         let place = self.place(dir);
         (self.light(&place), self.density(&place))
     }
 
-    /// Samples a direction by two numbers from 0 to 1; returns it with its light and its density
-    /// per solid angle.
+    /// Samples a direction by two numbers in [0, 1). Returns it with its radiance and its pdf per
+    /// solid angle.
     pub fn sample(&self, u: Vec2) -> Option<(Vec3, Color, f32)> {
         let (dir, place, pdf) = self.direction(u)?;
         Some((dir, self.light(&place), pdf))
     }
 
-    /// Samples a direction by two numbers from 0 to 1; returns it with its position in the map and
-    /// its density per solid angle.
+    /// Samples a direction by two numbers in [0, 1). Returns it with its position in the map and
+    /// its pdf per solid angle.
     pub fn direction(&self, u: Vec2) -> Option<(Vec3, Place, f32)> {
         let steps = self.width.div_ceil(STEP);
         let (y, v) = choose(&self.columns, |sum| *sum, self.columns[self.height - 1], &self.column_hints, u.y);
@@ -240,16 +240,17 @@ impl Environment {
     }
 }
 
-/// Returns the entry at which a fraction `u` of the whole sum is reached, and the position in it.
+/// Returns the index of the entry at which the fraction `u` of the sum is reached, and the position
+/// within it.
 fn choose<T>(entries: &[T], sum: impl Fn(&T) -> f32, whole: f32, hints: &[u32], u: f32) -> (usize, f32) {
     let last = entries.len() - 1;
     let wanted = u * whole;
     let mut i = hints[((u * hints.len() as f32) as usize).min(hints.len() - 1)] as usize;
-    // Rounding may put the start index too far.
+    // Rounding can put the start index too far.
     while i > 0 && sum(&entries[i - 1]) > wanted {
         i -= 1;
     }
-    // Counting several entries at once avoids mispredicted branches.
+    // Compare several entries at once to avoid mispredicted branches.
     while let Some(ahead) = entries[i..last].first_chunk::<AHEAD>() {
         let below = ahead.iter().filter(|entry| sum(entry) <= wanted).count();
         i += below;
@@ -278,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn directions_are_chosen_by_their_density_and_it_integrates_to_one() {
+    fn samples_agree_with_pdf_and_pdf_integrates_to_one() {
         let sky = picture();
         let n = 2000;
         let (mut all, mut flux) = (0.0, 0.0);
@@ -306,9 +307,9 @@ mod tests {
     }
 
     #[test]
-    fn the_middle_is_where_minus_z_points_and_rotation_turns_it() {
+    fn centre_is_at_minus_z_and_rotation_turns_the_map() {
         let mut texels = vec![Vec3::ZERO; 8 * 4];
-        // The column right of the centre, upper half.
+        // Texel in the column right of the centre, in the upper half.
         texels[8 + 4] = Vec3::ONE;
         let at =
             |degrees: f32, dir: Vec3| Environment::new(8, 4, texels.clone(), degrees, Vec3::ONE).unwrap().at(dir).x;

@@ -1,5 +1,5 @@
-//! Mapping of a picture onto a surface, as in glTF: wrapping, filtering, and a transform of the
-//! coordinates.
+//! Mapping of a texture onto a surface, as in glTF: wrapping, filtering, and a coordinate
+//! transform.
 
 use crate::describe::{FieldType, Value};
 use crate::described_words;
@@ -7,14 +7,14 @@ use crate::math::{Vec2, fp};
 use serde::{Deserialize, Serialize};
 
 described_words! {
-    /// What is beyond a picture's border: the picture again, it and its mirror image in turn, or
-    /// the border's texels without end.
+    /// Wrap mode beyond the border of a texture: repeated, repeated with every other copy mirrored,
+    /// or clamped to the border texels.
     Wrap { Repeat = "repeat", Mirror = "mirror", Clamp = "clamp" }
 }
 
 described_words! {
-    /// What of a picture's texel is a number; the angle, in turns, is that of the direction whose
-    /// parts are red and green, 1/2 being 0.
+    /// Channel of a texel to read as a number; `angle` is the direction of the vector in red and
+    /// green (where 1/2 is 0), in turns.
     Channel { Red = "r", Green = "g", Blue = "b", Alpha = "a", Angle = "angle" }
 }
 
@@ -36,10 +36,10 @@ impl Channel {
     }
 }
 
-/// Mapping of a picture onto a surface.
+/// Mapping of a texture onto a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mapping {
-    /// Wrap mode across the left and right border, and across the upper and lower border.
+    /// Wrap mode horizontally and vertically.
     pub wrap: [Wrap; 2],
     /// True for the nearest texel, false for bilinear filtering.
     pub nearest: bool,
@@ -47,16 +47,16 @@ pub struct Mapping {
     pub mipmaps: bool,
     /// True to use the second set of texture coordinates.
     pub second: bool,
-    /// From the surface's coordinates to the picture's, both with v downwards from the upper
+    /// Transform from surface coordinates to texture coordinates, both with v down from the upper
     /// border: two rows of a matrix.
     pub transform: [[f32; 3]; 2],
-    /// Threshold of the picture's alpha: opacity is 1 from it, 0 below; `None`: opacity is alpha.
+    /// Alpha cutoff: opacity is 1 at or above it, 0 below; with `None`, opacity is alpha.
     pub cutoff: Option<f32>,
-    /// Factor of the slopes in a normal map; 1 as stored.
+    /// Factor of the slopes in a normal map; 1 keeps the stored slopes.
     pub strength: f32,
-    /// Channel to read as a number; `None`: red, and for opacity the alpha channel if there is one.
+    /// Channel to read as a number; `None` reads red, or for opacity alpha if there is one.
     pub channel: Option<Channel>,
-    /// Values of a parameter for 0 and 1 in the picture.
+    /// Parameter values for 0 and 1 in the texture.
     pub range: [f32; 2],
 }
 
@@ -77,15 +77,15 @@ impl Default for Mapping {
 }
 
 impl Mapping {
-    /// Position in the picture, in widths from the left and heights from the top, for surface
-    /// coordinates with v upwards.
+    /// Position in the texture, in widths from the left and heights from the top, for surface
+    /// coordinates with v up.
     pub fn place(&self, uv: Vec2) -> Vec2 {
         let (u, v) = (uv.x, 1.0 - uv.y);
         let [x, y] = self.transform.map(|[a, b, c]| a * u + b * v + c);
         Vec2::new(x, y)
     }
 
-    /// Maps a channel's value to the range.
+    /// Maps a channel value to the range.
     pub fn ranged(&self, x: f32) -> f32 {
         let [low, high] = self.range;
         if [low, high] == [0.0, 1.0] { x } else { low + x * (high - low) }
@@ -101,13 +101,13 @@ impl Mapping {
         [r, g, b, alpha]
     }
 
-    /// Directions in which the picture's coordinates grow, from those of the surface's coordinates,
-    /// with v upwards in both.
+    /// Directions of increasing texture coordinates, from those of the surface coordinates, with v
+    /// up in both.
     pub fn directions<V>(&self, [u, v]: [V; 2]) -> [V; 2]
     where
         V: Copy + std::ops::Mul<f32, Output = V> + std::ops::Add<Output = V>,
     {
-        // The rows of the inverse transpose, up to a positive common factor.
+        // Use the rows of the inverse transpose, up to a positive common factor.
         let [[a, b, _], [c, d, _]] = self.transform;
         let side = if a * d - b * c < 0.0 { -1.0 } else { 1.0 };
         [u * (side * d) + v * (side * c), u * (side * b) + v * (side * a)]
@@ -115,7 +115,7 @@ impl Mapping {
 }
 
 impl Wrap {
-    /// Index of the texel for index `i` in a row of `count`, which may be outside.
+    /// Index of the texel for index `i` in a row of `count` texels; `i` may be outside the row.
     pub fn index(self, i: i64, count: u32) -> u32 {
         let count = i64::from(count);
         let folded = match self {

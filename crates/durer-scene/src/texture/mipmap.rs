@@ -1,4 +1,4 @@
-//! Mipmaps: smaller versions of a picture, for samples that cover many texels.
+//! Mipmaps: smaller versions of a texture, for samples that cover many texels.
 //!
 //! Source: Williams, *Pyramidal Parametrics*, SIGGRAPH 1983.
 
@@ -8,20 +8,20 @@ use std::iter::successors;
 use std::sync::Arc;
 
 impl Texture {
-    /// Adds mipmap levels, each half as wide and high as the one before, down to a single texel.
+    /// Adds mipmap levels, each half as wide and high as the one before, down to one texel.
     pub fn with_levels(self) -> Self {
         let first = Texture { mapping: None, levels: Arc::default(), ..self.clone() };
         let levels = successors(Some(first), |level| (level.count() > 1).then(|| level.halved())).skip(1).collect();
         Texture { levels, ..self }
     }
 
-    /// Returns true if it has mipmap levels.
+    /// Returns true if the texture has mipmap levels.
     pub fn has_levels(&self) -> bool {
         !self.levels.is_empty()
     }
 
-    /// Halves width and height. A texel is the mean of the linear values that it covers; 8-bit
-    /// colours are rounded to 8 bits again.
+    /// Returns the texture at half the width and height. A texel is the mean of the linear values
+    /// that it covers. 8-bit colours are rounded to 8 bits again.
     fn halved(&self) -> Texture {
         let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
         let mean = |i: u32, j: u32| {
@@ -58,8 +58,8 @@ impl Texture {
     }
 }
 
-/// Texels of a row of `large` that texel `i` of a row of `small` covers, with their fractions of
-/// it: two or three.
+/// Texels in a row of `large` that texel `i` of a row of `small` covers, with their shares of it:
+/// two or three texels.
 fn covered(i: u32, small: u32, large: u32) -> impl Iterator<Item = (usize, f32)> {
     let size = f64::from(large) / f64::from(small);
     let (from, to) = (f64::from(i) * size, (f64::from(i + 1) * size).min(f64::from(large)));
@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn every_level_has_the_mean_of_the_picture() {
+    fn levels_keep_the_mean() {
         for (width, height) in [(1, 1), (2, 1), (7, 5), (16, 16), (33, 2), (100, 3)] {
             let texels: Vec<Color> = (0..width * height).map(|i| Color::splat((i * i % 17) as f32)).collect();
             let mean = texels.iter().map(|c| c.x).sum::<f32>() / texels.len() as f32;
@@ -94,10 +94,10 @@ mod tests {
     }
 
     #[test]
-    fn eight_bits_are_rounded_to_the_nearest_and_means_are_of_linear_values() {
+    fn levels_average_linear_values_and_round_to_eight_bits() {
         let texture = Texture::new(2, 1, vec![[0, 10, 255], [255, 12, 255]]).unwrap();
         let square = texture.decoded(|x| (f32::from(x) / 255.0) * (f32::from(x) / 255.0)).with_levels();
-        // The mean of 10 and 12 is nearly that of 11: (11 / 255)^2.
+        // The mean of the decoded 10 and 12 is nearly the decoded 11: (11 / 255)^2.
         let [r, g, b] = square.levels[0].color(0);
         assert!((r - 0.5).abs() < 0.004 && (g - 0.00186).abs() < 1e-4 && b == 1.0, "{r} {g} {b}");
         let clear = Texture::new(2, 1, vec![[9; 3]; 2]).unwrap().with_alpha(Some(vec![0, 255])).with_levels();
@@ -105,14 +105,14 @@ mod tests {
     }
 
     #[test]
-    fn levels_are_chosen_by_width_and_mixed_between() {
+    fn levels_are_selected_by_width_and_interpolated() {
         let texture = stripes(64, 64).with_levels();
         let mapping = Mapping { nearest: true, ..Mapping::default() };
         let at = |width: f32| texture.texel(&mapping, Vec2::new(0.5 / 64.0, 0.5), width)[0];
         assert_eq!(at(0.0), 0.0);
         assert_eq!(at(1.0), 0.0);
         assert_eq!(at(2.0), 0.5);
-        // Halfway in the logarithm.
+        // Halfway between two levels in the logarithm.
         assert!((at(2.0_f32.sqrt()) - 0.25).abs() < 1e-6, "{}", at(2.0_f32.sqrt()));
         assert_eq!(at(1e30), 0.5);
         assert_eq!(at(f32::NAN), 0.0);

@@ -1,4 +1,4 @@
-//! Textures on surfaces and around the scene.
+//! Textures on surfaces and in the environment.
 
 pub mod almanac;
 pub mod cie_sky;
@@ -16,23 +16,23 @@ pub use mapping::{Channel, Mapping, Wrap};
 pub use sky::Sky;
 use std::sync::Arc;
 
-/// A decoded picture, looked up by the course's rules or by a [`Mapping`].
+/// Decoded image, looked up by the course's rules or by a [`Mapping`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     width: u32,
     height: u32,
     texels: Texels,
-    /// Opacity of each texel, unless all are opaque.
+    /// Opacity of each texel; `None` if all are opaque.
     alpha: Option<Opacity>,
     mapping: Option<Mapping>,
-    /// Mipmap levels, if there are any.
+    /// Mipmap levels; empty if there are none.
     levels: Arc<[Texture]>,
 }
 
-/// Red, green and blue, row 0 on top.
+/// Texels in red, green and blue, top row first.
 #[derive(Clone, Debug, PartialEq)]
 enum Texels {
-    /// 8 bits per channel, and the meaning of each of the 256 values.
+    /// 8 bits per channel, and the decoded value of each of the 256 codes.
     Eight(Arc<[[u8; 3]]>, Box<[f32; 256]>),
     /// Linear values.
     Float(Arc<[Color]>),
@@ -40,21 +40,21 @@ enum Texels {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Opacity {
-    /// In units of 1/255.
+    /// Opacity in units of 1/255.
     Eight(Arc<[u8]>),
-    /// From 0 to 1.
+    /// Opacity from 0 to 1.
     Float(Arc<[f32]>),
 }
 
 impl Texture {
-    /// Creates a texture from texels, row 0 on top. `None` unless there are width times height of
-    /// them, at least one.
+    /// Creates a texture from 8-bit texels, top row first. `None` unless there are width times
+    /// height of them, and at least one.
     pub fn new(width: u32, height: u32, texels: Vec<[u8; 3]>) -> Option<Self> {
         let values = Box::new(std::array::from_fn(|i| i as f32 / 255.0));
         Texture::of(width, height, texels.len(), || Texels::Eight(texels.into(), values))
     }
 
-    /// Creates a texture from linear `f32` texels, row 0 on top.
+    /// Creates a texture from linear `f32` texels, top row first.
     pub fn from_floats(width: u32, height: u32, texels: Vec<Color>) -> Option<Self> {
         Texture::of(width, height, texels.len(), || Texels::Float(texels.into()))
     }
@@ -64,7 +64,7 @@ impl Texture {
         fits.then(|| Texture { width, height, texels: texels(), alpha: None, mapping: None, levels: Arc::default() })
     }
 
-    /// Replaces the meaning of the 256 values of 8-bit texels.
+    /// Replaces the decoded values of 8-bit codes. Has no effect on `f32` texels.
     pub fn decoded(self, decode: impl Fn(u8) -> f32) -> Self {
         let texels = match self.texels {
             Texels::Eight(texels, _) => Texels::Eight(texels, Box::new(std::array::from_fn(|i| decode(i as u8)))),
@@ -77,7 +77,7 @@ impl Texture {
         self.width as usize * self.height as usize
     }
 
-    /// Colour of a texel.
+    /// Colour of the texel at an index.
     fn color(&self, at: usize) -> [f32; 3] {
         match &self.texels {
             Texels::Eight(texels, values) => texels[at].map(|c| values[usize::from(c)]),
@@ -85,7 +85,7 @@ impl Texture {
         }
     }
 
-    /// Opacity of a texel.
+    /// Opacity of the texel at an index.
     fn opacity(&self, at: usize) -> f32 {
         match &self.alpha {
             None => 1.0,
@@ -94,7 +94,7 @@ impl Texture {
         }
     }
 
-    /// Returns true if some texels are not opaque.
+    /// Returns true if some texel is not opaque.
     pub fn has_alpha(&self) -> bool {
         self.alpha.is_some()
     }
@@ -113,13 +113,14 @@ impl Texture {
         self.count() * (texel + opacity) + self.levels.iter().map(Texture::bytes).sum::<usize>()
     }
 
-    /// Sets the opacity of each texel; opaque if the number of values differs.
+    /// Sets the opacity of each texel. The texture is opaque if the number of values differs from
+    /// the number of texels.
     pub fn with_alpha(self, alpha: Option<Vec<u8>>) -> Self {
         let alpha = alpha.filter(|alpha| alpha.len() == self.count() && alpha.iter().any(|&a| a < 255));
         Texture { alpha: alpha.map(|alpha| Opacity::Eight(alpha.into())), ..self }
     }
 
-    /// Sets the opacity of each texel as `f32`.
+    /// Sets the opacity of each texel, from 0 to 1. See [`Texture::with_alpha`].
     pub fn with_opacity(self, alpha: Vec<f32>) -> Self {
         let is_given = alpha.len() == self.count() && alpha.iter().any(|&a| a < 1.0);
         Texture { alpha: is_given.then(|| Opacity::Float(alpha.into())), ..self }
@@ -133,7 +134,7 @@ impl Texture {
         }
     }
 
-    /// Returns a texture with another mapping that shares the texels.
+    /// Returns a texture that shares the texels but has another mapping.
     pub fn mapped(&self, mapping: Mapping) -> Self {
         Texture { mapping: Some(mapping), ..self.clone() }
     }
@@ -143,9 +144,9 @@ impl Texture {
         self.mapping.as_ref()
     }
 
-    /// Colour and opacity at (u, v), with v upwards, by a mapping. Bilinear filtering uses linear
-    /// values. With mipmap levels, interpolates between the two levels whose texels are about as
-    /// wide as the sample, which covers `width` texels of the full size.
+    /// Colour and opacity at (u, v), with v up, by a mapping. Bilinear filtering uses linear
+    /// values. `width` is the width of the sample, in texels of the full size. With mipmap levels,
+    /// interpolates between the two levels whose texels are about that wide.
     pub fn texel(&self, mapping: &Mapping, uv: Vec2, width: f32) -> [f32; 4] {
         let place = mapping.place(uv);
         if width <= 1.0 || width.is_nan() || self.levels.is_empty() {
@@ -163,17 +164,17 @@ impl Texture {
         mapping.cut(std::array::from_fn(|c| larger[c] + part * (smaller[c] - larger[c])))
     }
 
-    /// Length of a distance in texture coordinates, in texels.
+    /// Converts a length in texture coordinates to texels.
     pub fn texels_in(&self, mapping: &Mapping, length: f32) -> f32 {
         let [[a, b, _], [c, d, _]] = mapping.transform;
         let area = (a * d - b * c).abs() * self.width as f32 * self.height as f32;
         length * area.sqrt()
     }
 
-    /// Gradient of the red channel by u and v.
+    /// Gradient of the red channel in u and v.
     pub fn slope(&self, mapping: &Mapping, uv: Vec2) -> Vec2 {
         let place = mapping.place(uv);
-        // The step is one texel: a smaller one would only show the grid of texels.
+        // Step by one texel. A smaller step would only show the texel grid.
         let step = Vec2::new(1.0 / self.width as f32, 1.0 / self.height as f32);
         let along = |way: Vec2| {
             let [after, before] = [place + 0.5 * way, place - 0.5 * way].map(|at| self.texel_at(mapping, at)[0]);
@@ -181,11 +182,11 @@ impl Texture {
         };
         let (x, y) = (along(Vec2::new(step.x, 0.0)) / step.x, along(Vec2::new(0.0, step.y)) / step.y);
         let [[a, b, _], [c, d, _]] = mapping.transform;
-        // The surface's v points up, the picture's down.
+        // The surface's v points up, the texture's down.
         Vec2::new(a * x + c * y, -(b * x + d * y))
     }
 
-    /// Colour and opacity at a position in the picture, in widths from the left and heights from
+    /// Colour and opacity at a position in the texture, in widths from the left and heights from
     /// the top, before the alpha cutoff.
     fn texel_at(&self, mapping: &Mapping, place: Vec2) -> [f32; 4] {
         let (x, y) = (f64::from(place.x) * f64::from(self.width), f64::from(place.y) * f64::from(self.height));
@@ -210,15 +211,15 @@ impl Texture {
         })
     }
 
-    /// Colour at (u, v), with v upwards: by its mapping, else bilinear without a half-texel shift
-    /// and clamped at the border.
+    /// Colour at (u, v), with v up: by the mapping if there is one, else bilinear without a
+    /// half-texel shift and clamped at the border.
     pub fn at(&self, uv: Vec2) -> Color {
         if let Some(mapping) = &self.mapping {
             let [r, g, b, _] = self.texel(mapping, uv, 0.0);
             return Color::new(r, g, b);
         }
         let (width, height) = (self.width as f32, self.height as f32);
-        // `max` before `min`: NaN becomes 0.
+        // `max` before `min` maps NaN to 0.
         let x = (uv.x * width).max(0.0).min(width);
         let y = ((1.0 - uv.y) * height).max(0.0).min(height);
         let (left, top) = (x.trunc(), y.trunc());

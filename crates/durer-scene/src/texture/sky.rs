@@ -1,4 +1,4 @@
-//! Daylight model: the clear sky and the sun, from the position of the sun and the turbidity of the
+//! Daylight model: a clear sky and the sun, by the position of the sun and the turbidity of the
 //! air.
 //!
 //! Source: Preetham, Shirley and Smits, *A Practical Analytic Model for Daylight*, SIGGRAPH 1999.
@@ -14,25 +14,26 @@ const SUN_OUTSIDE: f32 = 128_000.0;
 /// Angular radius of the sun in degrees.
 pub const SUN_RADIUS: f32 = 0.2665;
 
-/// A clear sky.
+/// Clear sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sky {
     /// Unit vector to the sun.
     sun: Vec3,
-    /// Turbidity from 2 (clear) to 10 (hazy).
+    /// Turbidity, from 2 (clear) to 10 (hazy).
     turbidity: f32,
-    /// Luminance and chromaticity at the zenith.
+    /// Luminance and chromaticity (x, y) at the zenith.
     zenith: Vec3,
-    /// Perez' five coefficients for each of the three.
+    /// Perez's five coefficients for luminance, x and y.
     perez: [[f32; 5]; 3],
-    /// Perez' function at the zenith.
+    /// Perez's function at the zenith.
     there: Vec3,
-    /// Light from below the horizon.
+    /// Radiance from below the horizon.
     ground: Color,
 }
 
 impl Sky {
-    /// Creates a sky. `sun` points to the sun, y is up; a sun below the horizon is moved to it.
+    /// Creates a sky. `sun` points to the sun, and y is up. A sun below the horizon is moved to the
+    /// horizon.
     pub fn new(sun: Vec3, turbidity: f32) -> Self {
         let sun = Vec3::new(sun.x, sun.y.max(0.0), sun.z).normalize_or(Vec3::Y);
         let t = turbidity.clamp(1.7, 10.0);
@@ -63,18 +64,18 @@ impl Sky {
         ];
         let there = Vec3::from(perez.map(|p| shape(&p, 1.0, theta, sun.y)));
         let zenith = Vec3::new(bright.max(0.0), x, y);
-        // A fifth of the zenith luminance.
+        // The ground has a fifth of the zenith luminance.
         Sky { sun, turbidity: t, zenith, perez, there, ground: Vec3::splat(0.2 * zenith.x) }
     }
 
-    /// Returns the sky over a matte ground that reflects a fraction of the light of sun and sky.
+    /// Returns the sky above a diffuse ground that reflects a share of the light of sun and sky.
     pub fn over(self, reflectance: f32) -> Self {
         let ground = reflectance * (self.on_level_ground() + self.sun() * self.sun.y / PI);
         Sky { ground, ..self }
     }
 
-    /// Cosine-weighted mean radiance of the sky: illuminance of horizontal ground over pi, without
-    /// the sun.
+    /// Cosine-weighted mean radiance of the sky, without the sun: the illuminance of horizontal
+    /// ground over pi.
     pub fn on_level_ground(&self) -> Color {
         const ROWS: u32 = 64;
         let mut sky = Color::ZERO;
@@ -90,7 +91,7 @@ impl Sky {
         sky
     }
 
-    /// Light from a unit direction; below the horizon it is that of the ground.
+    /// Radiance from a unit direction. Below the horizon it is that of the ground.
     pub fn at(&self, dir: Vec3) -> Color {
         if dir.y < 0.0 {
             return self.ground;
@@ -101,7 +102,7 @@ impl Sky {
         linear(bright.max(0.0), x, y)
     }
 
-    /// Illuminance by the sun on a surface that faces it, in lux, by colour.
+    /// Illuminance by the sun, in lux, on a surface that faces it, by colour.
     ///
     /// Attenuated by Rayleigh scattering and aerosols, at the wavelengths of red, green and blue.
     pub fn sun(&self) -> Color {
@@ -116,7 +117,7 @@ impl Sky {
     }
 }
 
-/// Environment map of a function of the direction: the centre towards -z, y upwards.
+/// Renders a function of the direction as an environment map, with its centre towards -z and y up.
 pub fn picture(width: u32, height: u32, at: impl Fn(Vec3) -> Color) -> Vec<Color> {
     let pixel = |i: u32| {
         let place = (Vec2::new((i % width) as f32, (i / width) as f32) + 0.5) / Vec2::new(width as f32, height as f32);
@@ -131,12 +132,12 @@ fn angle(cosine: f32) -> f32 {
     fp::atan2((1.0 - cosine * cosine).max(0.0).sqrt(), cosine)
 }
 
-/// Perez' function of the cosine to the zenith and the angle to the sun.
+/// Perez's function of the cosine to the zenith and the angle to the sun.
 fn shape(&[a, b, c, d, e]: &[f32; 5], cos_zenith: f32, to_sun: f32, cos_sun: f32) -> f32 {
     (1.0 + a * fp::exp(b / cos_zenith)) * (1.0 + c * fp::exp(d * to_sun) + e * cos_sun * cos_sun)
 }
 
-/// Linear Rec.709 from CIE Yxy.
+/// Converts CIE Yxy to linear Rec.709.
 fn linear(bright: f32, x: f32, y: f32) -> Color {
     let xyz = Vec3::new(bright * x / y, bright, bright * (1.0 - x - y) / y);
     (SRGB_FROM_XYZ.as_mat3() * xyz).max(Vec3::ZERO)
@@ -157,9 +158,9 @@ mod tests {
     }
 
     #[test]
-    fn the_ground_gives_back_its_share_of_sun_and_sky() {
+    fn ground_reflects_its_share_of_sun_and_sky() {
         let sky = Sky::new(Vec3::new(0.3, 0.6, -0.5), 3.0).over(0.5);
-        // By equal solid angles instead of equal projected areas.
+        // Integrate by equal solid angles instead of equal projected areas.
         let (mut light, steps) = (Color::ZERO, 400);
         for row in 0..steps {
             let up = (row as f32 + 0.5) / steps as f32;
@@ -175,9 +176,10 @@ mod tests {
     }
 
     #[test]
-    fn the_zenith_has_the_published_brightness_and_colour() {
-        // By hand from the paper's formulas at turbidity 3 with the sun at 45 degrees: chi = (4/9 -
-        // 3/120) (pi - pi/2) = 0.6589, Yz = 7.1649 tan chi - 0.6465 + 2.4192 = 7.319 kcd/m^2.
+    fn zenith_has_the_published_luminance_and_is_blue() {
+        // Computed by hand from the paper's formulas, at turbidity 3 with the sun at 45 degrees:
+        // chi = (4/9 - 3/120) (pi - pi/2) = 0.6589, Yz = 7.1649 tan chi - 0.6465 + 2.4192 = 7.319
+        // kcd/m^2.
         let sky = sky(45.0, 3.0);
         assert!((brightness(sky.at(Vec3::Y)) / 7_319.0 - 1.0).abs() < 0.005, "{}", brightness(sky.at(Vec3::Y)));
         let zenith = sky.at(Vec3::Y);
@@ -185,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn daylight_is_as_bright_as_the_paper_says() {
+    fn daylight_illuminance_agrees_with_the_paper() {
         // The paper's formulas, integrated over the sky by an independent program, give 31.53 klx
         // on the ground. That is twice the IES value for a clear sky at this altitude of the sun
         // (0.8 + 15.5 sqrt(sin h)). A high sun gives 60 to 110 klx.
@@ -208,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn the_sky_is_brightest_around_the_sun_and_finite_everywhere() {
+    fn sky_is_brightest_around_the_sun_and_finite_everywhere() {
         for height in [0.0, 1.0, 10.0, 45.0, 90.0] {
             for turbidity in [2.0, 4.0, 9.0] {
                 let sky = sky(height, turbidity);

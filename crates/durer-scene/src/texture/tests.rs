@@ -1,17 +1,18 @@
-//! Tests of lookups in small pictures with known results.
+//! Tests of lookups in small textures with known results.
 
 use super::*;
 use crate::math::Vec3;
 
-/// Two by two: red and green above, blue and white below.
+/// Two by two texels: red and green above, blue and white below.
 fn four() -> Texture {
     Texture::new(2, 2, vec![[255, 0, 0], [0, 255, 0], [0, 0, 255], [255; 3]]).unwrap()
 }
 
 #[test]
-fn texels_are_exact_at_their_corners_and_mixed_between() {
+fn texels_are_exact_at_their_corners_and_interpolated_between() {
     let at = |u: f32, v: f32| four().at(Vec2::new(u, v));
-    // The first row is on top: v = 1. No half-texel shift: texel (i, j) is at (i / 2, 1 - j / 2).
+    // The first row is on top, at v = 1. Texel (i, j) is at (i / 2, 1 - j / 2), without a
+    // half-texel shift.
     assert_eq!(at(0.0, 1.0), Vec3::X);
     assert_eq!(at(0.5, 1.0), Vec3::Y);
     assert_eq!(at(0.0, 0.5), Vec3::Z);
@@ -24,7 +25,7 @@ fn texels_are_exact_at_their_corners_and_mixed_between() {
 }
 
 #[test]
-fn lookups_beyond_the_border_give_the_border() {
+fn lookups_clamp_at_the_border() {
     let at = |u: f32, v: f32| four().at(Vec2::new(u, v));
     assert_eq!(at(-0.25, 1.0), Vec3::X);
     assert_eq!(at(-7.0, 9.0), Vec3::X);
@@ -39,14 +40,14 @@ fn lookups_beyond_the_border_give_the_border() {
 }
 
 #[test]
-fn a_texture_has_as_many_texels_as_it_says() {
+fn texture_needs_width_times_height_texels() {
     assert!(Texture::new(0, 0, Vec::new()).is_none());
     assert!(Texture::new(2, 2, vec![[0; 3]; 3]).is_none());
     assert!(Texture::new(u32::MAX, u32::MAX, vec![[0; 3]; 1]).is_none());
 }
 
 #[test]
-fn directions_see_the_face_that_they_point_to() {
+fn cube_map_directions_select_their_face() {
     // One colour for each face, in the order of the names.
     let face = |i: u8| Texture::new(1, 1, vec![[i * 10; 3]]).unwrap();
     let map = CubeMap { faces: std::array::from_fn(|i| face(i as u8)), mirrored_back: false };
@@ -67,7 +68,7 @@ fn directions_see_the_face_that_they_point_to() {
     assert!(map.at(Vec3::ZERO).is_finite() && map.at(Vec3::NAN).is_finite());
 }
 
-/// A letter on each face, in the order of the faces' names. None of them is symmetric.
+/// Letter on each face, in the order of the faces' names. None of them is symmetric.
 const LETTERS: [[&str; 5]; 6] = [
     ["###  ", "#  # ", "###  ", "# #  ", "#  ##"],
     ["#    ", "#    ", "#    ", "#    ", "#### "],
@@ -77,11 +78,11 @@ const LETTERS: [[&str; 5]; 6] = [
     ["  ###", "   # ", "   # ", "#  # ", " ##  "],
 ];
 
-/// Faces seen from the centre of the cube: the course's pictures of a church meet at their edges
-/// this way. Its programs mirror `back`, as more than half of the pixels of their renderings of the
-/// rabbit in the church show.
+/// Faces seen from the centre of the cube. The course's images of a church meet at their edges this
+/// way. Its programs mirror `back`, as more than half of the pixels show in their renderings of the
+/// rabbit in the church.
 #[test]
-fn letters_are_seen_upright_and_the_course_mirrors_two() {
+fn faces_are_upright_and_the_course_mirrors_two() {
     let face = |rows: &[&str; 5]| {
         let texels = rows.iter().flat_map(|row| row.bytes()).map(|b| [if b == b'#' { 255 } else { 0 }; 3]);
         Texture::new(5, 5, texels.collect()).unwrap()
@@ -95,7 +96,7 @@ fn letters_are_seen_upright_and_the_course_mirrors_two() {
         let side = forward.cross(up);
         let seen = |map: &CubeMap, mirror: bool, flip: bool| -> Vec<String> {
             let cell = |i: usize| (2.0 * i as f32 + 1.0) / 5.0 - 1.0;
-            // Texels are exact at their corners, so each is looked up just inside its corner.
+            // Texels are exact at their corners, so look each up just inside its corner.
             let shift = |turned: bool| if turned { 0.999 / 5.0 } else { -0.999 / 5.0 };
             let pixel = |row: usize, column: usize| {
                 let (u, v) = (cell(column) + shift(mirror), -cell(row) - shift(flip));
@@ -113,12 +114,12 @@ fn letters_are_seen_upright_and_the_course_mirrors_two() {
 }
 
 #[test]
-fn numbers_are_looked_up_as_they_are() {
+fn float_texels_keep_their_values() {
     let texels = vec![Vec3::new(2.0, 0.1, -1.0), Vec3::ZERO];
     let texture = Texture::from_floats(2, 1, texels.clone()).unwrap().with_opacity(vec![0.25, 1.0]);
     let mapping = Mapping { nearest: true, ..Mapping::default() };
     assert_eq!(texture.texel(&mapping, Vec2::new(0.25, 0.5), 0.0), [2.0, 0.1, -1.0, 0.25]);
-    // They have no decoding curve, and take 16 bytes a texel with their opacity.
+    // Float texels have no decoding curve, and take 16 bytes each with their opacity.
     assert_eq!(texture.clone().decoded(|_| 0.5), texture);
     assert!(texture.bytes() == 32 && texture.has_alpha() && !texture.is_flat());
     assert!(Texture::from_floats(1, 1, texels).is_none());

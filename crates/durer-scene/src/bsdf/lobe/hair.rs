@@ -49,8 +49,8 @@ enum Pigment {
 impl Fibre {
     /// Fibre of a material.
     pub fn new(m: &HairMaterial) -> Self {
-        // The scales tilt R back by twice their angle, TT forward by their angle, and TRT forward by
-        // four times their angle.
+        // The scales tilt R back by twice their angle, TT forward by their angle, and TRT forward
+        // by four times their angle.
         let tilt = |by: f64| {
             let (sin, cos) = fp::sin_cos_degrees(by * f64::from(m.scale_tilt));
             Vec2::new(sin as f32, cos as f32)
