@@ -376,7 +376,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
     for (light, words) in [
         ("PointLight { position 0 2 0 color 1 1 1 candela 8 lumens 9 }", "both set the strength"),
         ("SpotLight { position 0 2 0 direction 0 -1 0 color 1 1 1 candela 8 lumens 9 }", "both set the strength"),
-        ("PointLight { position 0 2 0 color 1 1 1 candela 8 attenuation 1 0 0 }", "fades with the square of the distance: remove"),
+        ("PointLight { position 0 2 0 color 1 1 1 candela 8 attenuation 1 0 0 }", "remove `attenuation` and"),
         ("DirectionalLight { direction 0 -1 0 color 1 1 1 lux -1 }", "must not be less than 0"),
     ] {
         let scene = std::fs::read_to_string(place.path("s.txt")).unwrap();

@@ -151,8 +151,8 @@ pub trait Emitter {
     /// File with the intensity in each direction.
     fn profile(&self) -> Option<&FileName>;
 
-    /// Converts a direction from the light to the coordinates of that file: x is horizontal angle
-    /// 0, z is down. Only useful for a light with a file.
+    /// Converts a direction from the light to the coordinates of that file: x points to horizontal
+    /// angle 0, z out of the lower side. Only useful for a light with a file.
     fn in_profile(&self, dir: Vec3) -> Vec3;
 }
 

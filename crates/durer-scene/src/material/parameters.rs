@@ -10,7 +10,7 @@ macro_rules! parameters {
         /// same names.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Parameters {
-            $(#[doc = concat!("Value of [`PrincipledMaterial::", stringify!($field), "`] at the point.")] pub $field: $type,)+
+            $(#[doc = concat!("[`PrincipledMaterial::", stringify!($field), "`] at the point.")] pub $field: $type,)+
             /// Factor of the reflection of an opaque base or a metal, at all angles.
             pub reflection: f32,
             /// Factor of the light that enters a scattering body.

@@ -66,7 +66,7 @@ fn conic_rings_agree_with_the_program_of_2004() {
 fn noise_stays_in_its_range_and_fills_it() {
     let mut random = Random(2);
     let values: Vec<f32> = (0..100_000).map(|_| perlin(100.0 * random.point())).collect();
-    assert!(values.iter().all(|v| v.abs() <= 1.04), "the published bound of improved noise");
+    assert!(values.iter().all(|v| v.abs() <= 1.04), "noise exceeds the published bound of improved noise");
     assert!(values.iter().any(|v| *v > 0.7) && values.iter().any(|v| *v < -0.7));
     let mean = values.iter().sum::<f32>() / values.len() as f32;
     // The standard deviation is about 0.25. Allow 5 standard errors of the mean of independent

@@ -46,7 +46,7 @@ impl ColorMode {
     /// Names on the command line.
     pub const NAMES: [&'static str; 2] = ["rgb", "spectral"];
 
-    /// Returns the mode of a name.
+    /// Returns the mode with this name; `None` if it is unknown.
     pub fn from_name(name: &str) -> Option<Self> {
         [ColorMode::Rgb, ColorMode::Spectral].into_iter().find(|mode| mode.name() == name)
     }

@@ -52,7 +52,7 @@ pub fn color_of_chromaticity(xy: [f64; 2]) -> Color {
 }
 
 impl RgbSpace {
-    /// Returns the space with a name.
+    /// Returns the space with this name; `None` if it is unknown.
     pub fn named(name: &str) -> Option<RgbSpace> {
         let (name, [r, g, b, white]) = SPACES.iter().find(|row| row.0 == name)?;
         if *name == "srgb" {
