@@ -35,7 +35,7 @@ described! {
 }
 
 described! {
-    /// Two colours in veins distorted by noise, in place of the diffuse colour.
+    /// Two colours in veins distorted by noise, instead of the diffuse colour.
     ColorNoise ["Noise" in set::F12A5 | set::DURER] {
         /// Colour where the sine is 1.
         color1: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::ALL];

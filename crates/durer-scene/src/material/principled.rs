@@ -111,7 +111,8 @@ described! {
         /// Colour of the light scattered inside a body, per `transmissionDepth`; 0 0 0 for a clear
         /// body.
         transmission_scatter: Vec3 = Vec3::ZERO, optional, Rule::Any, ["transmissionScatter" in set::DURER];
-        /// Mean cosine of that scattering, from -1 (backward) over 0 (isotropic) to 1 (forward).
+        /// Mean cosine of the scattering in a body, from -1 (backward) over 0 (isotropic) to 1
+        /// (forward).
         transmission_scatter_anisotropy: f32 = 0.0, optional, Rule::Between(-1.0, 1.0),
             ["transmissionScatterAnisotropy" in set::DURER];
         /// Density file (Mitsuba's `.vol`) that multiplies the extinction of the body; its box is
@@ -134,7 +135,7 @@ described! {
         /// Texture that multiplies `subsurfaceWeight`.
         subsurface_weight_texture: Option<FileName> = None, optional, Rule::Any,
             ["subsurfaceWeightTexture" in set::DURER];
-        /// Colour that such a body shows.
+        /// Colour that a subsurface-scattering body shows.
         subsurface_color: Vec3 = Vec3::splat(0.8), optional, Rule::Any, ["subsurfaceColor" in set::DURER];
         /// Texture that multiplies `subsurfaceColor` where light enters, read as sRGB.
         subsurface_color_texture: Option<FileName> = None, optional, Rule::Any, ["subsurfaceColorTexture" in set::DURER];
