@@ -85,7 +85,7 @@ impl Reader<'_> {
         };
         let (width, height) = (side("width", SIZE[0]), side("height", SIZE[1]));
         if u64::from(width) * u64::from(height) > MAX_PIXELS {
-            said.bad(film.at, format!("{width} x {height} pixels are too many"));
+            said.bad(film.at, format!("too many pixels: {width} x {height}"));
         }
         let crop = ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"];
         if crop.iter().any(|name| film.get(name).is_some()) {
@@ -116,7 +116,7 @@ impl Reader<'_> {
         let Some((_, sampler)) = samplers.first() else { return };
         match sampler.number(self.said, "sample_count") {
             Some(count) if (1.0..=1048576.0).contains(&count) => self.scene.wishes.samples = Some(count as u32),
-            Some(_) => self.said.bad(sampler.place("sample_count"), "a pixel needs 1 to 1048576 samples"),
+            Some(_) => self.said.bad(sampler.place("sample_count"), "samples per pixel must be from 1 to 1048576"),
             None => {}
         }
     }
@@ -229,7 +229,7 @@ impl Reader<'_> {
                 plugin.known(&["aovs"]);
             }
             other => {
-                let what = format!("the integrator `{other}` has no counterpart: paths from the camera are followed");
+                let what = format!("the integrator `{other}` has no counterpart: path tracing is used");
                 let known = ["path", "volpath", "volpathmis", "direct", "aov", "moment", "ptracer", "bdpt"];
                 let note = Diagnostic::note(what).code("NO_COUNTERPART").at(plugin.at);
                 said.push(Diagnostic { help: meant(other, known), ..note });

@@ -295,7 +295,7 @@ impl<'a> Loader<'a> {
         } else if self.open.len() > DEEPEST {
             Some(format!("files include each other more than {DEEPEST} deep"))
         } else if self.files > MAX_FILES {
-            Some(format!("more than {MAX_FILES} files are too many"))
+            Some(format!("too many files: more than {MAX_FILES} are included"))
         } else {
             None
         };
@@ -479,7 +479,7 @@ impl<'a> Loader<'a> {
     fn curve(&self, all: Vec<f64>, at: Span) -> Option<Value> {
         let curve: Vec<[f32; 2]> = all.chunks_exact(2).map(|pair| [pair[0] as f32, pair[1] as f32]).collect();
         if let Some(pair) = curve.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
-            let message = format!("the wavelengths of a spectrum must rise: {} comes after {}", pair[1][0], pair[0][0]);
+            let message = format!("the wavelengths of a spectrum must increase: {} comes after {}", pair[1][0], pair[0][0]);
             self.said.bad(at, message);
             return None;
         }

@@ -71,7 +71,7 @@ impl Reader<'_> {
             "diffuse" | "roughdiffuse" => {
                 let (color, picture) = self.colored(plugin, "reflectance", 0.5);
                 m = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
-                plugin.left_out(self.said, &["alpha", "use_fast_approx"], "the surface is Lambert's");
+                plugin.left_out(self.said, &["alpha", "use_fast_approx"], "the surface is Lambertian");
             }
             "dielectric" | "roughdielectric" | "thindielectric" => self.glass(plugin, &mut m),
             "conductor" | "roughconductor" => self.conductor(plugin, &mut m),
@@ -378,7 +378,7 @@ impl Reader<'_> {
             }
             Made::Hair(hair) => {
                 if shine.is_some() {
-                    self.said.once(at, "hair does not shine");
+                    self.said.once(at, "emission of hair has no counterpart: it is ignored");
                 }
                 Material::Hair(hair.clone())
             }

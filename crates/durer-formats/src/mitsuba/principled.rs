@@ -78,7 +78,7 @@ impl Reader<'_> {
             walls: if thin { Walls::Thin } else { Walls::Solid },
             ..PrincipledMaterial::default()
         };
-        let none = "the surface is Lambert's below its boundary";
+        let none = "the surface is Lambertian below its boundary";
         plugin.left_out(self.said, &["flatness"], none);
         plugin.known(&["diffuse_reflectance_sampling_rate", "main_specular_sampling_rate", "clearcoat_sampling_rate"]);
         m

@@ -165,7 +165,7 @@ impl Reader<'_> {
         let radius = plugin.positive(self.said, "radius").unwrap_or(1.0);
         let center = plugin.vector(self.said, "center").unwrap_or(DVec3::ZERO);
         if is_inside_out(plugin, self.said) && !self.parts(plugin, Some("emitter")).is_empty() {
-            let what = "a sphere turned inside out has no counterpart: it shines outwards as well";
+            let what = "a sphere that emits inwards has no counterpart: it emits on both sides";
             self.said.once(plugin.place("flip_normals"), what);
         }
         let map = map * DAffine3::from_translation(center);

@@ -89,7 +89,7 @@ impl<'a> Reader<'a> {
         }
         if self.scene.root.is_none() && !self.said.has_errors() {
             let at = Span { end: all.at.start, ..all.at };
-            let warning = Diagnostic::warning("the file has no shapes that can be shown");
+            let warning = Diagnostic::warning("the file has no visible shapes");
             self.said.push(warning.code("no-objects").at(at));
         }
         self.scene
@@ -167,7 +167,7 @@ impl<'a> Reader<'a> {
         let before = self.count;
         self.count = self.count.saturating_add(more);
         if before <= MAX_OBJECTS && self.count > MAX_OBJECTS {
-            self.said.bad(at, format!("more than {MAX_OBJECTS} objects, those of instances counted, are too many"));
+            self.said.bad(at, format!("too many objects: more than {MAX_OBJECTS}, counting those of every instance"));
         }
         self.count <= MAX_OBJECTS
     }

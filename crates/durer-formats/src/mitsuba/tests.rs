@@ -88,7 +88,7 @@ fn what_is_wrong_is_told_at_its_place() {
         (
             "<shape type='sphere'><float name='radus' value='2'/></shape>",
             "2'/>",
-            "warning the shape `sphere` has no `radus`: it is left out (did you mean `radius`?)",
+            "warning the shape `sphere` has no `radus`: it is ignored (did you mean `radius`?)",
         ),
         (
             "<shape type='sphere'><bsdf type='measured'/></shape>",

@@ -139,7 +139,7 @@ impl Reader<'_> {
             Texture::Even(color) => color,
             Texture::Picture(picture, scale, _) => {
                 let at = plugin.place(name);
-                self.said.once(at, format!("`{name}` by a picture has no counterpart: its mean is taken"));
+                self.said.once(at, format!("a picture for `{name}` has no counterpart: its mean is used"));
                 self.pictures().mean(&picture, at).map_or(usual, |mean| mean * scale)
             }
         }
@@ -170,7 +170,7 @@ impl Reader<'_> {
             "clamp" => [Wrap::Clamp; 2],
             other => {
                 let help = meant(other, ["repeat", "mirror", "clamp"]);
-                said.bad_with(texture.place("wrap_mode"), format!("there is no wrapping `{other}`"), help);
+                said.bad_with(texture.place("wrap_mode"), format!("there is no wrap mode `{other}`"), help);
                 return None;
             }
         };
