@@ -32,7 +32,7 @@ fn clean(text: &str) -> Scene {
 /// Layers and diagnostics of a sphere's material.
 fn material(text: &str) -> (PrincipledMaterial, Vec<String>) {
     let (scene, told) = read(&format!("Camera \"perspective\" WorldBegin {text} Shape \"sphere\""));
-    let scene = scene.unwrap_or_else(|| panic!("{text}: {told:?}"));
+    let scene = scene.unwrap_or_else(|| panic!("{text}: {told:?}")); // prose: keep
     let number = scene.root.as_ref().unwrap().objects[0].material.unwrap() as usize;
     let Material::Principled(layers) = &scene.materials[number].value else { panic!("no layers: {text}") };
     ((**layers).clone(), told)

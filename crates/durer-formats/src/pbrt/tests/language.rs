@@ -170,7 +170,7 @@ fn included_files_are_read_and_errors_name_their_file() {
         ("../a.pbrt", "error there is no file"),
     ] {
         let (scene, told) = read_in(folder.path(), &format!("{head} Include \"{name}\""));
-        assert!(scene.is_none() && told.iter().any(|told| told.contains(wanted)), "{name}: {told:#?}");
+        assert!(scene.is_none() && told.iter().any(|told| told.contains(wanted)), "{name}: {told:#?}"); // prose: keep
     }
 }
 
@@ -198,7 +198,7 @@ fn hostile_files_never_panic() {
         let (scene, told) = read(&text);
         let end: String = text.chars().take(80).collect();
         assert!(scene.is_none() || wanted == "expected", "{end}");
-        assert!(wanted == "expected" || told.iter().any(|told| told.contains(wanted)), "{end}: {told:#?}");
+        assert!(wanted == "expected" || told.iter().any(|told| told.contains(wanted)), "{end}: {told:#?}"); // prose: keep
     }
     // Every prefix of a file, and a change of every byte.
     let text = "Film \"rgb\" \"integer xresolution\" [8] Camera \"perspective\" \"float fov\" 40 WorldBegin\n\
@@ -282,7 +282,7 @@ fn corpus_scenes_are_read() {
             for file in std::fs::read_dir(folder.path()).unwrap().flatten().map(|entry| entry.path()) {
                 if file.extension().is_some_and(|extension| extension == "pbrt") {
                     let (scene, told) = read_in(&folder.path(), &std::fs::read_to_string(&file).unwrap());
-                    assert!(scene.is_some(), "{}: {told:#?}", file.display());
+                    assert!(scene.is_some(), "{}: {told:#?}", file.display()); // prose: keep
                     count += 1;
                 }
             }

@@ -24,7 +24,7 @@ fn lights(text: &str) -> Vec<Light> {
 /// Layers of a sphere's material with their shares; each part of a mix.
 pub(super) fn parts(text: &str) -> Vec<(f32, PrincipledMaterial)> {
     let (scene, told) = read(&format!("{HEAD}{text} Shape \"sphere\""));
-    let scene = scene.unwrap_or_else(|| panic!("{text}: {told:?}"));
+    let scene = scene.unwrap_or_else(|| panic!("{text}: {told:?}")); // prose: keep
     let first = scene.root.as_ref().unwrap().objects[0].material.unwrap();
     let (mut open, mut found) = (vec![(1.0, first)], Vec::new());
     while let Some((share, number)) = open.pop() {
@@ -56,7 +56,7 @@ fn first_unambiguous_word_decides_language() {
     let light = "LightSource \"point\" \"spectrum I\" [ 300 5 900 5 ] Shape \"sphere\"";
     let is_third = |text: &str| {
         let (scene, told) = read(&format!("{text} {light}"));
-        let scene = scene.unwrap_or_else(|| panic!("{text}: {told:?}"));
+        let scene = scene.unwrap_or_else(|| panic!("{text}: {told:?}")); // prose: keep
         let lights = scene.lights.unwrap();
         let point =
             lights.iter().find_map(|light| if let Light::Point(point) = &light.value { Some(point) } else { None });
