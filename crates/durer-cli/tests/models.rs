@@ -145,7 +145,7 @@ fn mitsuba_is_rendered_by_its_sensors_and_becomes_gltf() {
     let usual = hash("a.xml");
     assert_eq!(hash("a.xml --camera one"), usual);
     assert_ne!(hash("a.xml --camera two --size 24x16"), usual);
-    place.refused(2, "render a.xml -o a.png --camera three", &["there is no sensor `three`"]);
+    place.refused(2, "render a.xml -o a.png --camera three", &["unknown sensor `three`"]);
     place.gives(0, "convert a.xml -o a.glb");
     assert!(place.gives(0, "info a.glb").out.contains("in meshes"));
     place.put("b.xml", XML.replace("'40'", "'wide'"));

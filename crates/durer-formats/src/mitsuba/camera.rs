@@ -1,7 +1,7 @@
-//! Sensor, film, sampler and integrator: what the picture is.
+//! Sensor, film, sampler and integrator.
 //!
-//! Source of all meanings: *Mitsuba 3 documentation*, "Sensors", "Films" and "Integrators". A
-//! camera looks along its z, y is up, and x points to the left.
+//! Source: *Mitsuba 3 documentation*, "Sensors", "Films" and "Integrators". A camera looks along
+//! +z; +y is up and +x is to the left.
 
 use super::plugin::Plugin;
 use super::state::Reader;
@@ -13,18 +13,18 @@ use durer_scene::math::fp;
 use glam::{DAffine3, DVec2, DVec3};
 use std::rc::Rc;
 
-/// The size of a film that does not say it.
+/// Default size of a film, in pixels.
 const SIZE: [u32; 2] = [768, 576];
-/// Where Mitsuba's cameras begin and end to see, if nothing is said.
+/// Default near and far plane of Mitsuba's cameras.
 const NEAR: f32 = 0.01;
 const FAR: f32 = 10_000.0;
-/// Bounces of paths that have no end.
+/// Number of bounces of paths without a limit.
 const ENDLESS: u32 = 64;
 
 const KNOWN: [&str; 3] = ["perspective", "thinlens", "orthographic"];
 
 impl Reader<'_> {
-    /// The camera: the one that is asked for by id or number, or the first.
+    /// Reads the camera: the sensor chosen by id or number, or the first.
     pub fn camera(&mut self, sensors: &[Rc<Plugin>]) {
         let Some(sensor) = self.chosen(sensors) else { return };
         let said = self.said;
@@ -42,7 +42,7 @@ impl Reader<'_> {
             "perspective" | "thinlens" => Some(self.perspective(&sensor, to_world, size)),
             "orthographic" => Some(orthographic(to_world, size)),
             other => {
-                let what = format!("the sensor `{other}` has no counterpart: the scene is framed by a camera of ours");
+                let what = format!("the sensor `{other}` has no counterpart: a camera that frames the scene is used");
                 let warning = Diagnostic::warning(what).code("NO_COUNTERPART").at(sensor.at);
                 said.push(Diagnostic { help: meant(other, KNOWN), ..warning });
                 None
@@ -64,7 +64,7 @@ impl Reader<'_> {
         if found.is_none() {
             let known = ids.iter().filter(|(_, plugin)| plugin.class == "sensor").map(|(id, _)| id.as_str());
             let count = sensors.len();
-            let message = format!("there is no sensor `{wanted}`: there are {count}, counted from 0 on");
+            let message = format!("unknown sensor `{wanted}`: the file has {count}, numbered from 0");
             let help = meant(wanted, known);
             self.said.push(Diagnostic { help, ..Diagnostic::error(message).code("bad-value") });
         }
@@ -85,7 +85,7 @@ impl Reader<'_> {
         };
         let (width, height) = (side("width", SIZE[0]), side("height", SIZE[1]));
         if u64::from(width) * u64::from(height) > MAX_PIXELS {
-            said.bad(film.at, format!("{width} x {height} pixels are too many"));
+            said.bad(film.at, format!("too many pixels: {width} x {height}"));
         }
         let crop = ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"];
         if crop.iter().any(|name| film.get(name).is_some()) {
@@ -98,15 +98,15 @@ impl Reader<'_> {
                 self.scene.wishes.crop = Some((left, top, columns, rows));
             } else {
                 let place = crop.iter().find_map(|name| film.get(name)).map_or(film.at, |property| property.at);
-                said.bad(place, format!("the crop does not lie in the picture of {width} x {height} pixels"));
+                said.bad(place, format!("the crop window must lie within the picture of {width} x {height} pixels"));
             }
         }
         if let Some(format) = film.text(said, "pixel_format").filter(|format| !format.to_lowercase().starts_with("rgb"))
         {
-            let what = format!("the pixels `{format}` have no counterpart: red, green and blue are written");
+            let what = format!("the pixel format `{format}` has no counterpart: `rgb` is used");
             said.once(film.place("pixel_format"), what);
         }
-        // What is in the file that Mitsuba writes, and how pixels are weighed, is ours.
+        // Ignore output formats and reconstruction filters.
         film.properties.iter().for_each(|property| property.used.set(true));
         (width, height)
     }
@@ -116,7 +116,7 @@ impl Reader<'_> {
         let Some((_, sampler)) = samplers.first() else { return };
         match sampler.number(self.said, "sample_count") {
             Some(count) if (1.0..=1048576.0).contains(&count) => self.scene.wishes.samples = Some(count as u32),
-            Some(_) => self.said.bad(sampler.place("sample_count"), "a pixel needs 1 to 1048576 samples"),
+            Some(_) => self.said.bad(sampler.place("sample_count"), "samples per pixel must be from 1 to 1048576"),
             None => {}
         }
     }
@@ -125,12 +125,12 @@ impl Reader<'_> {
         let said = self.said;
         let half = self.half_view(sensor, size);
         let (right, up, forward) = axes(to_world);
-        // What is larger across than along sees more; Mitsuba forbids scales here.
+        // Ignore scale: Mitsuba forbids it in a camera's transform.
         let (center, handedness) = (to_world.translation.as_vec3(), handedness(right, up, forward));
         let angle = ((2.0 * fp::atan_f64(half.max_element())).to_degrees() as f32).clamp(1e-4, 179.99);
         let [direction, up] = [forward, up].map(|v| v.normalize_or(DVec3::Y).as_vec3());
         let offset = |name| f64::from(sensor.number(said, name).unwrap_or(0.0));
-        // In widths and heights of the film; the view moves to the right and down.
+        // Offset in widths and heights of the film; it moves the view right and down.
         let offset = 2.0 * DVec2::new(offset("principal_point_offset_x"), offset("principal_point_offset_y"));
         let shift = offset * half / half.max_element();
         let aperture = match sensor.kind.as_str() {
@@ -141,7 +141,7 @@ impl Reader<'_> {
         if sensor.kind == "thinlens" && aperture == 0.0 {
             said.bad(sensor.at, "a `thinlens` needs an `aperture_radius`");
         }
-        // The usual planes cut off nothing that a scene is made for.
+        // Ignore the default planes, which clip nothing that is to be seen.
         let near = sensor.number(said, "near_clip").filter(|near| *near > NEAR).unwrap_or(0.0);
         let far = sensor.positive(said, "far_clip");
         let far = far.filter(|far| *far < FAR);
@@ -164,7 +164,7 @@ impl Reader<'_> {
         ThinLensCamera { shift_right, shift_up, ..lens }.into()
     }
 
-    /// Half of what is seen at distance 1, to the side and upwards.
+    /// Half width and half height of the view at distance 1.
     pub(super) fn half_view(&self, sensor: &Plugin, size: DVec2) -> DVec2 {
         let said = self.said;
         let aspect = size.x / size.y;
@@ -174,15 +174,15 @@ impl Reader<'_> {
             axis = given;
         }
         match (sensor.text(said, "focal_length"), sensor.get("fov")) {
-            (Some(_), Some(fov)) => said.bad(fov.at, "a camera has either `fov` or `focal_length`"),
+            (Some(_), Some(fov)) => said.bad(fov.at, "a camera takes either `fov` or `focal_length`"),
             (given, None) => {
                 let given = given.unwrap_or("50mm".into());
                 let length = given.trim().trim_end_matches("mm").trim().parse::<f64>().ok().filter(|x| *x > 0.0);
                 if length.is_none() {
-                    let message = format!("expected a length in millimetres, found `{given}`");
+                    let message = format!("expected a length in millimetres such as `50mm`, found `{given}`");
                     said.bad(sensor.place("focal_length"), message);
                 }
-                // Across the diagonal of film of 36 x 24 mm.
+                // Field of view across the diagonal of a 36 x 24 mm film.
                 let half = (36f64 * 36.0 + 24.0 * 24.0).sqrt() / 2.0;
                 fov = 2.0 * fp::atan_f64(half / length.unwrap_or(50.0)).to_degrees();
                 axis = "diagonal".into();
@@ -202,14 +202,14 @@ impl Reader<'_> {
             "larger" => tan * aspect.min(1.0),
             other => {
                 let help = meant(other, ["x", "y", "diagonal", "smaller", "larger"]);
-                said.bad_with(sensor.place("fov_axis"), format!("there is no axis `{other}`"), help);
+                said.bad_with(sensor.place("fov_axis"), format!("unknown axis `{other}`"), help);
                 tan
             }
         };
         DVec2::new(x, x / aspect)
     }
 
-    /// Light that is on its way `max_depth` times is scattered two times less after the first time.
+    /// Reads the integrator. `max_depth` counts path segments: `bounces` is two less.
     pub fn integrator(&mut self, plugin: &Plugin, depth: u32) {
         let said = self.said;
         if self.too_deep(depth, plugin.at) {
@@ -221,7 +221,7 @@ impl Reader<'_> {
                 self.scene.wishes.bounces = Some(0);
                 plugin.known(&["emitter_samples", "bsdf_samples", "shading_samples"]);
             }
-            // They hold the one that makes the picture.
+            // These wrap the integrator that makes the picture.
             "aov" | "moment" => {
                 for (_, inner) in self.parts(plugin, Some("integrator")) {
                     self.integrator(&inner, depth + 1);
@@ -229,7 +229,7 @@ impl Reader<'_> {
                 plugin.known(&["aovs"]);
             }
             other => {
-                let what = format!("the integrator `{other}` has no counterpart: paths from the camera are followed");
+                let what = format!("the integrator `{other}` has no counterpart: path tracing is used");
                 let known = ["path", "volpath", "volpathmis", "direct", "aov", "moment", "ptracer", "bdpt"];
                 let note = Diagnostic::note(what).code("NO_COUNTERPART").at(plugin.at);
                 said.push(Diagnostic { help: meant(other, known), ..note });
@@ -247,25 +247,25 @@ impl Reader<'_> {
             None => {}
         }
         if plugin.truth(said, "hide_emitters") == Some(true) {
-            said.once(plugin.place("hide_emitters"), "lights that are not seen have no counterpart: they are seen");
+            said.once(plugin.place("hide_emitters"), "hidden lights have no counterpart: they are visible");
         }
         plugin.known(&["rr_depth", "strict_normals", "samples_per_pass", "block_size", "timeout"]);
         plugin.finish(said);
     }
 }
 
-/// To the right, upwards and forwards, as long as a unit of the camera's own.
+/// Right, up and forward axes; the length of each is one unit of camera space.
 fn axes(to_world: DAffine3) -> (DVec3, DVec3, DVec3) {
     let m = to_world.matrix3;
     (-m.x_axis, m.y_axis, m.z_axis)
 }
 
-/// Which side of the picture is right for somebody who looks along a direction.
+/// Handedness of a picture for a viewer who looks along `forward`.
 fn handedness(right: DVec3, up: DVec3, forward: DVec3) -> Handedness {
     if forward.cross(up).dot(right) < 0.0 { Handedness::Left } else { Handedness::Right }
 }
 
-/// What is seen is 2 wide, by the camera's own unit.
+/// Orthographic camera: the view is 2 wide in units of camera space.
 fn orthographic(to_world: DAffine3, size: DVec2) -> Camera {
     let (right, up, forward) = axes(to_world);
     let across = 2.0 * right.length();

@@ -1,8 +1,8 @@
-//! Colours: of what reflects, of light, of indices.
+//! Colours of reflectances, lights and indices of refraction.
 //!
-//! Source: Mitsuba's variants that render in RGB. A spectrum that reflects is seen by daylight; one
-//! that shines is seen as it is, so that 1 at all wavelengths is a little red; a number or a colour
-//! that shines is itself.
+//! Source: Mitsuba's RGB variants. A reflectance spectrum is converted under daylight. An emission
+//! spectrum is converted as it is, so the value 1 at all wavelengths is slightly red. An emission
+//! given as a number or a colour is used unchanged.
 
 use super::plugin::{Plugin, Property, Value};
 use super::state::Reader;
@@ -11,7 +11,8 @@ use durer_scene::spectrum::black_body::planck;
 use durer_scene::spectrum::{SpectrumSource, radiance};
 
 impl Reader<'_> {
-    /// The colour of what reflects, lets through or absorbs; `None`: it is no colour.
+    /// Colour of a reflectance, transmittance or absorption; `None` if the property is not a
+    /// colour.
     pub fn reflectance(&self, property: &Property) -> Option<Color> {
         match &property.value {
             Value::Number(number) => Some(Vec3::splat(*number as f32)),
@@ -22,7 +23,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The colour of a light; `None`: it is no colour.
+    /// Colour of a light; `None` if the property is not a colour.
     pub fn shining(&self, property: &Property) -> Option<Color> {
         match &property.value {
             Value::Number(number) => Some(Vec3::splat(*number as f32)),
@@ -36,7 +37,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A spectrum that is written as a plugin.
+    /// Colour of a spectrum plugin.
     fn spectrum_plugin(&self, property: &Property, shines: bool) -> Option<Color> {
         let plugin = self.part(property)?;
         let said = self.said;
@@ -85,7 +86,7 @@ impl Reader<'_> {
             values.iter().enumerate().map(|(i, value)| Some([at(i)? as f32, *value as f32])).collect();
         let curve = curve.filter(|curve| curve.len() > 1 && curve.is_sorted_by(|a, b| a[0] < b[0]));
         if curve.is_none() {
-            let message = format!("a `{}` spectrum needs wavelengths that rise, and as many values", plugin.kind);
+            let message = format!("a `{}` spectrum needs increasing wavelengths and as many values", plugin.kind);
             said.bad(plugin.at, message);
         }
         curve

@@ -1,4 +1,4 @@
-//! Files of curves: each line is a point and the radius there, an empty one ends a curve.
+//! Curve files: each line is a point and its radius; an empty line ends a curve.
 
 use crate::files::named_bytes;
 use crate::model::Input;
@@ -10,11 +10,12 @@ use durer_scene::shape::tessellate::tube::{Piece, add_tube, of_spline, places, r
 use glam::DVec4;
 use std::ops::Range;
 
-/// Pieces of all curves at most, and from how many on they have fewer sides. Tests make them all.
+/// Maximum number of segments of all curves, and the number from which they have fewer sides. Low
+/// in tests, which build them all.
 const MAX_PIECES: usize = if cfg!(test) { 1 << 12 } else { 1 << 19 };
 const MANY: usize = 1 << 12;
 
-/// The tubes around all curves of a file, whose points are those of splines or corners.
+/// Tubes around the curves of a file, which are B-splines or polylines.
 pub(super) fn tubes(input: &Input, said: &Said, (path, at): (&str, Span), is_spline: bool) -> Option<MeshData> {
     let (bytes, file) = named_bytes(input, said, "the curves", path, at)?;
     let wrong = |(at, message): Wrong| {
@@ -24,7 +25,7 @@ pub(super) fn tubes(input: &Input, said: &Said, (path, at): (&str, Span), is_spl
     let curves = parse(&bytes, is_spline).map_err(wrong).ok()?;
     let count = curves.iter().map(Vec::len).sum();
     if count > MAX_PIECES {
-        said.once(at, format!("curves of more than {MAX_PIECES} pieces are left out"));
+        said.once(at, format!("these curves are left out: they have more than {MAX_PIECES} segments"));
         return None;
     }
     let mut data = MeshData::default();
@@ -41,8 +42,8 @@ pub(super) fn tubes(input: &Input, said: &Said, (path, at): (&str, Span), is_spl
     Some(data)
 }
 
-/// The pieces of a curve that are one tube: all, or where joints are round those that go on in nearly
-/// the same direction.
+/// Ranges of segments of a curve that make one tube. Where joints are rounded, a sharp bend starts
+/// a new tube.
 fn runs(pieces: &[Piece], is_round: bool) -> Vec<Range<usize>> {
     let along = |i: usize| (pieces[i][3] - pieces[i][0]).truncate().normalize_or_zero();
     let ends = (1..pieces.len()).filter(|&i| is_round && along(i - 1).dot(along(i)) < STRAIGHT).chain([pieces.len()]);
@@ -50,13 +51,13 @@ fn runs(pieces: &[Piece], is_round: bool) -> Vec<Range<usize>> {
     ends.map(|end| std::mem::replace(&mut start, end)..end).collect()
 }
 
-/// The cosine of the angle of a joint that is seen.
+/// Cosine of the smallest bend that starts a new tube.
 const STRAIGHT: f64 = 0.99;
 
-/// What is wrong, and where.
+/// Place and message of an error.
 type Wrong = (Range<usize>, String);
 
-/// The pieces of each curve.
+/// Segments of each curve.
 fn parse(bytes: &[u8], is_spline: bool) -> Result<Vec<Vec<Piece>>, Wrong> {
     let (mut curves, mut points, mut start) = (Vec::new(), Vec::<DVec4>::new(), 0);
     for line in bytes.split_inclusive(|byte| *byte == b'\n').chain([&b""[..]]) {
@@ -71,7 +72,7 @@ fn parse(bytes: &[u8], is_spline: bool) -> Result<Vec<Vec<Piece>>, Wrong> {
                     continue;
                 }
                 _ => {
-                    let message = "a point of a curve is three numbers, and a radius of 0 or more";
+                    let message = "a point of a curve must be three numbers and a radius of 0 or more";
                     return Err((place, message.into()));
                 }
             }
@@ -82,7 +83,7 @@ fn parse(bytes: &[u8], is_spline: bool) -> Result<Vec<Vec<Piece>>, Wrong> {
         };
         if pieces.is_empty() && !points.is_empty() {
             let least = if is_spline { 4 } else { 2 };
-            return Err((place, format!("this ends a curve of {}, which needs {least}", points.len())));
+            return Err((place, format!("a curve that ends here has {} points: it needs {least}", points.len())));
         }
         curves.push(pieces);
         points.clear();
@@ -96,7 +97,7 @@ mod tests {
     use durer_scene::math::random::Random;
 
     #[test]
-    fn changed_bytes_are_refused_or_read() {
+    fn changed_bytes_never_panic() {
         let text = b"0 0 0 .1\n1 0 0 .1\n2 0 1e0 0.1\n3 -1 0 .1\r\n\n\n0 1 0 0\n1 1 0 .2\n2 2 2 .2\n3 1 0 2e-1";
         for is_spline in [true, false] {
             assert_eq!(parse(text, is_spline).unwrap().iter().filter(|curve| !curve.is_empty()).count(), 2);

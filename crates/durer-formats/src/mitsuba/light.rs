@@ -1,6 +1,6 @@
-//! Lights: of surfaces, at points, far away. Their units are those of radiance.
+//! Point, distant, infinite and area lights. Values are radiance.
 //!
-//! Source of all meanings: *Mitsuba 3 documentation*, "Emitters".
+//! Source: *Mitsuba 3 documentation*, "Emitters".
 
 use super::made::{Infinite, Shine};
 use super::plugin::Plugin;
@@ -20,37 +20,37 @@ use glam::{DAffine3, DVec2, DVec3};
 use std::f32::consts::PI;
 use std::rc::Rc;
 
-/// Rows of the picture of a clear sky.
+/// Number of rows of the picture of a clear sky.
 const SKY_ROWS: u32 = 512;
 
-/// Steps of both angles of what throws a picture.
+/// Number of steps of the vertical and horizontal angles of projected pictures.
 const STEPS: [u32; 2] = [360, 720];
 
-/// Of a picture of at least so many rows it makes no difference that Mitsuba has the first and the
-/// last of them at the poles.
+/// Minimum number of rows of a picture that is used without resampling. Mitsuba puts the first and
+/// the last row at the poles; from this height on the difference is negligible.
 const FINE_ROWS: u32 = 256;
 
-/// Rows of a picture of all directions that is turned.
+/// Maximum number of rows of a resampled environment.
 const MAX_ROWS: u32 = 2048;
 
 impl Reader<'_> {
-    /// The colour of a light.
+    /// Colour of a light.
     fn strength(&self, plugin: &Plugin, name: &'static str) -> Color {
         let Some(property) = plugin.get(name) else { return Vec3::ONE };
         let color = self.shining(property).unwrap_or_else(|| self.color(plugin, name, Vec3::ONE));
         if color.min_element() < 0.0 {
-            self.said.once(property.at, "light that is less than 0 has no counterpart: it is taken for 0");
+            self.said.once(property.at, "negative light has no counterpart: 0 is used");
         }
         color.max(Vec3::ZERO)
     }
 
-    /// A light that is no surface.
+    /// Reads a light that is not part of a shape.
     pub fn emitter(&mut self, plugin: &Rc<Plugin>) {
         let said = self.said;
         let to_world = plugin.map(said, "to_world");
         let place = |name| plugin.vector(said, name).unwrap_or(to_world.translation).as_vec3();
         let along = |local: DVec3| to_world.transform_vector3(local).normalize_or(DVec3::Z).as_vec3();
-        // A light's colour is what a white matte surface shows: illuminance over pi.
+        // A light's colour here is the radiance of a white diffuse surface: illuminance over pi.
         let value: Light = match plugin.kind.as_str() {
             "point" => {
                 let color = self.strength(plugin, "intensity") / PI;
@@ -88,10 +88,10 @@ impl Reader<'_> {
                 return self.far(Infinite::Picture { name, at, scale, to_world });
             }
             "sky" | "sun" | "sunsky" => return self.daylight(plugin, to_world),
-            "area" => return said.bad(plugin.at, "an `area` light stands inside of a shape"),
+            "area" => return said.bad(plugin.at, "an `area` light must be inside a shape"),
             other => {
                 let known = ["point", "spot", "projector", "directional", "constant", "envmap", "sunsky", "area"];
-                let message = format!("the light `{other}` has no counterpart: it is left out");
+                let message = format!("the light `{other}` has no counterpart: it is ignored");
                 let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(plugin.at);
                 return said.push(Diagnostic { help: meant(other, known), ..warning });
             }
@@ -101,8 +101,8 @@ impl Reader<'_> {
         self.scene.lights.get_or_insert_default().push(Spanned { value, span: plugin.at });
     }
 
-    /// A spot. One that fades, or throws a picture, is a lamp that shines as it does in each
-    /// direction.
+    /// Spotlight. With falloff or a picture, it is added as a measured light with that directional
+    /// distribution, and `None` is returned.
     fn spot(&mut self, plugin: &Plugin, to_world: DAffine3) -> Option<SpotLight> {
         let said = self.said;
         let angle = plugin.positive(said, "cutoff_angle").unwrap_or(20.0);
@@ -121,7 +121,7 @@ impl Reader<'_> {
         }
         plugin.known(&["sampling_weight"]);
         plugin.finish(said);
-        // It fades evenly by the angle.
+        // The falloff is linear in the angle.
         let shown = |dir: Vec3| {
             let degrees = fp::atan2(dir.truncate().length(), dir.z).to_degrees();
             ((angle - degrees) / (angle - inner_angle).max(1e-6)).clamp(0.0, 1.0)
@@ -130,7 +130,7 @@ impl Reader<'_> {
         let lamps = match image {
             None => Lamps::new([vec![0.0, inner_angle, angle], vec![0.0]], &axes, |dir| Vec3::splat(shown(dir))),
             Some(image) => {
-                // It covers a square as wide as the spot at distance 1.
+                // The picture covers a square as wide as the cone at distance 1.
                 let half = fp::tan_f64(f64::from(angle).to_radians()) as f32;
                 Lamps::new([steps(angle, STEPS[0]), steps(360.0, STEPS[1])], &axes, |dir| {
                     let shown = shown(dir);
@@ -146,13 +146,13 @@ impl Reader<'_> {
         None
     }
 
-    /// A projector: a lamp that shines in each direction as its picture says on the plane at distance
-    /// 1.
+    /// Adds a projector as a measured light with the distribution of its picture on the plane at
+    /// distance 1.
     fn projector(&mut self, plugin: &Plugin, to_world: DAffine3) {
         let said = self.said;
         let image = self.named_part(plugin, "irradiance").and_then(|texture| self.thrown(&texture));
         let Some(image) = image else {
-            return said.once(plugin.at, "a projector without a picture is left out");
+            return said.once(plugin.at, "this projector is ignored: it has no picture");
         };
         let size = DVec2::new(f64::from(image.width), f64::from(image.height));
         let half = self.half_view(plugin, size).as_vec2();
@@ -166,16 +166,16 @@ impl Reader<'_> {
             if dir.z <= 0.0 || place.abs().max_element() > 1.0 {
                 return Vec3::ZERO;
             }
-            // As a camera sees it: x goes to the left, y up.
+            // As seen by a camera: +x is to the left, +y up.
             between(&image, 0.5 - 0.5 * place) / (dir.z * dir.z * dir.z)
         });
         lamps.add(&mut self.scene, self.input.name, (to_world, axes), Vec3::splat(PI * scale), plugin.at);
     }
 
-    /// The picture that a light throws.
+    /// Picture that a light projects.
     fn thrown(&self, texture: &Plugin) -> Option<Image> {
         if texture.kind != "bitmap" {
-            self.said.once(texture.at, "only a `bitmap` is thrown here: this light shines evenly");
+            self.said.once(texture.at, "projecting other textures than `bitmap` has no counterpart: the texture is ignored");
             return None;
         }
         let name = texture.text(self.said, "filename")?;
@@ -188,17 +188,17 @@ impl Reader<'_> {
 
     pub(super) fn far(&mut self, light: Infinite) {
         if let Some(first) = &self.infinite {
-            let error = Diagnostic::error("a scene has one light that is infinitely far away").code("bad-value");
+            let error = Diagnostic::error("a scene may have only one infinite light").code("bad-value");
             return self.said.push(error.at(light.at()).related(first.at(), "the first is here"));
         }
         self.infinite = Some(light);
     }
 
-    /// The light of a shape.
+    /// Emission of a shape.
     pub fn area_light(&mut self, plugin: &Plugin) -> Option<Shine> {
         if plugin.kind != "area" {
             self.said
-                .once(plugin.at, format!("the light `{}` of a shape has no counterpart: it is left out", plugin.kind));
+                .once(plugin.at, format!("the light `{}` of a shape has no counterpart: it is ignored", plugin.kind));
             return None;
         }
         let even = plugin.get("radiance").is_none_or(|property| self.shining(property).is_some());
@@ -220,7 +220,7 @@ impl Reader<'_> {
         Some(Shine { color, picture, both: false, at: plugin.at, key: plugin.key() })
     }
 
-    /// Puts what is infinitely far away behind the scene.
+    /// Sets the scene's environment from the infinite light.
     pub fn surround(&mut self) {
         let background = &mut self.scene.background;
         (background.color, background.ambient_light) = (Vec3::ZERO, Vec3::ZERO);
@@ -231,7 +231,7 @@ impl Reader<'_> {
                 let to_sky = to_world.inverse();
                 let light = |dir: DVec3| {
                     let dir = to_sky.transform_vector3(dir).normalize_or(DVec3::Y).as_vec3();
-                    // Below the horizon nothing shines.
+                    // The sky is black below the horizon.
                     if dir.y < 0.0 { Vec3::ZERO } else { scale * sky.at(dir) }
                 };
                 let name = format!("{}#sky", self.input.name);
@@ -245,8 +245,7 @@ impl Reader<'_> {
                 let is_fine = picture.height >= FINE_ROWS;
                 let rows = picture.height.clamp(FINE_ROWS, MAX_ROWS);
                 let y = to_world.matrix3.y_axis;
-                // The middle of Mitsuba's pictures is where its z points, and of ours where -z
-                // does.
+                // The middle of Mitsuba's pictures is +z; that of ours is -z.
                 if is_fine && y.x == 0.0 && y.z == 0.0 && y.y > 0.0 && to_world.matrix3.determinant() > 0.0 {
                     let z = to_world.matrix3.z_axis.as_vec3();
                     let degrees = 180.0 - fp::atan2(z.x, z.z).to_degrees();

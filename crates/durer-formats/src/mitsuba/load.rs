@@ -1,7 +1,7 @@
-//! From XML to plugins: variables, files in files, and values.
+//! Conversion of XML to plugins: variables, included files and values.
 //!
 //! Source: *Mitsuba 3 documentation*, section "Scene XML file format", 2022 to 2025. Names of
-//! Mitsuba 0.6 (`toWorld`) are read as those of today (`to_world`).
+//! Mitsuba 0.6 (`toWorld`) are read as current names (`to_world`).
 
 use super::plugin::{Plugin, Property, Value};
 use crate::model::Input;
@@ -17,12 +17,12 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Files in files, files in all, and elements in all.
+/// Limits: depth of includes, number of files, number of elements.
 const DEEPEST: usize = 15;
 const MAX_FILES: usize = 4096;
 const MAX_ELEMENTS: usize = 1 << 22;
 
-/// Tags of plugins. The last ones are those of Mitsuba 0.6.
+/// Tags of plugins; `camera` is of Mitsuba 0.6.
 const CLASSES: [&str; 14] = [
     "scene",
     "sensor",
@@ -58,27 +58,27 @@ const OTHERS: [&str; 15] = [
     "path",
 ];
 
-/// What is known of a file and those that it includes.
+/// State shared by a file and those that it includes.
 pub(super) struct Loader<'a> {
     input: &'a Input<'a>,
     said: &'a Said,
     variables: BTreeMap<String, String>,
-    /// Plugins by their ids.
+    /// Plugins by id.
     pub plugins: BTreeMap<String, Rc<Plugin>>,
-    /// Folders in which files are looked for too.
+    /// More folders in which files are searched.
     pub folders: Vec<String>,
-    /// Names of files that are being read.
+    /// Names of the files being read.
     open: Vec<String>,
     files: usize,
     elements: usize,
-    /// Whether the file is older than Mitsuba 2.
+    /// True if the file is older than Mitsuba 2.
     pub(super) is_old: bool,
 }
 
-/// An error was told, and there is no going on.
+/// The file cannot be read on; the error was reported.
 pub(super) struct Broken;
 
-/// A name in words of lower case: `toWorld` is `to_world`, `intIOR` is `int_ior`.
+/// Converts a name to snake case: `toWorld` to `to_world`, `intIOR` to `int_ior`.
 fn today(name: &str) -> String {
     let mut words = String::new();
     let mut small = false;
@@ -92,7 +92,7 @@ fn today(name: &str) -> String {
     words
 }
 
-/// Numbers between blanks and commas.
+/// Numbers separated by whitespace or commas.
 pub(super) fn numbers(text: &str) -> Option<Vec<f64>> {
     let words = text.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty());
     words.map(|word| word.parse::<f64>().ok().filter(|x| (*x as f32).is_finite())).collect()
@@ -113,7 +113,7 @@ impl<'a> Loader<'a> {
         }
     }
 
-    /// The scene of the file; what is not a scene becomes the only thing of one.
+    /// Reads the scene of the file. Another root element becomes the only child of a scene.
     pub fn scene(&mut self) -> Result<Plugin, Broken> {
         let at = Span { file: self.input.file, start: 0, end: 0 };
         let mut scene = Plugin::new("scene", String::new(), at);
@@ -143,14 +143,14 @@ impl<'a> Loader<'a> {
         Ok(())
     }
 
-    /// The next element, or `None` at the end of the one that is open.
+    /// Next element, or `None` at the end of the open element.
     fn next<'x>(&mut self, xml: &mut Xml<'x>) -> Result<Option<Tag<'x>>, Broken> {
         self.elements += 1;
         match xml.next() {
             Ok(Piece::Open(tag)) if self.elements <= MAX_ELEMENTS && !self.said.is_full() => Ok(Some(tag)),
             Ok(Piece::Open(tag)) => {
                 if !self.said.is_full() {
-                    self.said.bad(tag.at, format!("more than {MAX_ELEMENTS} elements are too many"));
+                    self.said.bad(tag.at, format!("too many elements: more than {MAX_ELEMENTS}"));
                 }
                 Err(Broken)
             }
@@ -162,10 +162,10 @@ impl<'a> Loader<'a> {
         }
     }
 
-    /// Passes over what is in an element that has no children; complains of any.
+    /// Skips the content of an element; reports any child.
     fn leaf(&mut self, xml: &mut Xml, of: &str) -> Result<(), Broken> {
         while let Some(tag) = self.next(xml)? {
-            self.said.bad(tag.at, format!("a `{of}` holds no other elements"));
+            self.said.bad(tag.at, format!("a `{of}` must have no child elements"));
             self.skip(xml)?;
         }
         Ok(())
@@ -189,7 +189,7 @@ impl<'a> Loader<'a> {
         Ok(())
     }
 
-    /// An element inside of a plugin.
+    /// Reads a child element of a plugin.
     fn child(&mut self, xml: &mut Xml, tag: &Tag, parent: &mut Plugin) -> Result<(), Broken> {
         match tag.name {
             "default" => self.default(tag),
@@ -214,7 +214,7 @@ impl<'a> Loader<'a> {
                 }
             }
             class if CLASSES.contains(&class) => return self.plugin(xml, tag, parent),
-            // A spectrum is a number, a list, or a plugin.
+            // A spectrum is a number, a list or a plugin.
             "spectrum" if tag.get("type").is_some() => return self.plugin(xml, tag, parent),
             kind if OTHERS.contains(&kind) => {
                 if let (Some(name), Some((value, at))) = (self.name(tag), self.value(tag)) {
@@ -223,7 +223,7 @@ impl<'a> Loader<'a> {
             }
             other => {
                 let help = meant(other, CLASSES.into_iter().chain(OTHERS));
-                self.said.bad_with(tag.at, format!("Mitsuba knows no `<{other}>`"), help);
+                self.said.bad_with(tag.at, format!("unknown element `<{other}>`"), help);
                 return self.skip(xml);
             }
         }
@@ -265,12 +265,12 @@ impl<'a> Loader<'a> {
             Some(plugin) => self.register(other, other_at, plugin),
             None => {
                 let help = meant(&id, self.plugins.keys().map(String::as_str));
-                self.said.bad_with(at, format!("there is nothing with the id `{id}` before this"), help);
+                self.said.bad_with(at, format!("no plugin has the id `{id}` before this"), help);
             }
         }
     }
 
-    /// Adds a property, which must be the only one of its name.
+    /// Adds a property; reports a second one of the same name.
     fn give(&self, parent: &mut Plugin, name: String, value: Value, at: Span) {
         if let Some(other) = parent.properties.iter().find(|other| !name.is_empty() && other.name == name) {
             let error = Diagnostic::error(format!("`{name}` is given twice")).code("bad-value").at(at);
@@ -283,7 +283,7 @@ impl<'a> Loader<'a> {
         let (Some((name, _)), Some((value, _))) = (self.attribute(tag, "name"), self.attribute(tag, "value")) else {
             return;
         };
-        // The first counts: what includes a file may say more than the file.
+        // The first value counts: the including file overrides the included file.
         self.variables.entry(name).or_insert(value);
     }
 
@@ -293,9 +293,9 @@ impl<'a> Loader<'a> {
         let refused = if self.open.contains(&name) {
             Some(format!("`{name}` includes itself"))
         } else if self.open.len() > DEEPEST {
-            Some(format!("files include each other more than {DEEPEST} deep"))
+            Some(format!("includes are nested more than {DEEPEST} deep"))
         } else if self.files > MAX_FILES {
-            Some(format!("more than {MAX_FILES} files are too many"))
+            Some(format!("too many files: more than {MAX_FILES} are included"))
         } else {
             None
         };
@@ -318,20 +318,20 @@ impl<'a> Loader<'a> {
         self.file(&bytes, file, name, parent)
     }
 
-    /// Complains of a file that cannot be had.
+    /// Reports a file that cannot be read.
     fn missing(&self, error: &SourceError, at: Span) {
         let help = error.help();
         self.said.push(Diagnostic { help, ..Diagnostic::error(error.to_string()).code("missing-file").at(at) });
     }
 
-    /// The name of a file as it is found: in the scene's folder, or in one that `<path>` names.
+    /// Path of a file: in the scene's folder, or in one given by `<path>`.
     pub fn path(&self, name: &str) -> String {
         let source = self.input.source;
         let others = self.folders.iter().map(|folder| format!("{folder}/{name}"));
         others.into_iter().find(|path| !source.contains(name) && source.contains(path)).unwrap_or(name.into())
     }
 
-    /// An attribute that must be there, with variables replaced.
+    /// Required attribute, with variables replaced.
     pub fn attribute(&self, tag: &Tag, name: &str) -> Option<(String, Span)> {
         match tag.get(name) {
             Some(attribute) => Some((self.substituted(attribute)?, attribute.at)),
@@ -346,8 +346,8 @@ impl<'a> Loader<'a> {
         self.attribute(tag, "name").map(|(name, _)| today(&name))
     }
 
-    /// A value with what its variables stand for: of names that begin alike the longest counts.
-    /// `None`, and an error, where one stands for nothing.
+    /// Value with its variables replaced; the longest matching name counts. Reports an undefined
+    /// variable and returns `None`.
     pub fn substituted(&self, attribute: &Attribute) -> Option<String> {
         let mut made = String::new();
         let mut rest: &str = &attribute.value;
@@ -365,7 +365,7 @@ impl<'a> Loader<'a> {
                     let word = &rest[..end];
                     let help = meant(word, self.variables.keys().map(String::as_str));
                     let help = help.or_else(|| Some(format!("write `<default name=\"{word}\" value=\"...\"/>`")));
-                    self.said.bad_with(attribute.at, format!("`${word}` stands for nothing"), help);
+                    self.said.bad_with(attribute.at, format!("the variable `${word}` is undefined"), help);
                     return None;
                 }
             }
@@ -373,7 +373,7 @@ impl<'a> Loader<'a> {
         Some(made + rest)
     }
 
-    /// So many numbers of an attribute.
+    /// `N` numbers of an attribute.
     pub fn numbers<const N: usize>(&self, (text, at): &(String, Span)) -> Option<[f64; N]> {
         let found = numbers(text).and_then(|all| <[f64; N]>::try_from(all).ok());
         if found.is_none() {
@@ -383,7 +383,7 @@ impl<'a> Loader<'a> {
         found
     }
 
-    /// Coordinates by `x`, `y` and `z`, or by one attribute for all three.
+    /// Coordinates by `x`, `y` and `z`, or all three by `value`.
     pub fn triple(&self, tag: &Tag, usual: f64) -> Option<DVec3> {
         if let Some(value) = tag.get("value") {
             return self.numbers(&(self.substituted(value)?, value.at)).map(DVec3::from_array);
@@ -420,7 +420,7 @@ impl<'a> Loader<'a> {
             "integer" => {
                 let number = given.0.trim().parse::<i64>().ok();
                 if number.is_none() {
-                    self.said.bad(at, format!("expected a whole number, found `{}`", given.0));
+                    self.said.bad(at, format!("expected an integer, found `{}`", given.0));
                 }
                 number.map(|number| Value::Number(number as f64))
             }
@@ -439,7 +439,7 @@ impl<'a> Loader<'a> {
         value.map(|value| (value, at))
     }
 
-    /// Three numbers, one for all three, or `#rrggbb`, which is sRGB.
+    /// Parses three numbers, one for all three, or `#rrggbb` in sRGB.
     fn rgb(&self, given: &(String, Span), curved: bool) -> Option<Vec3> {
         let text = given.0.trim();
         if let Some(digits) = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii()) {
@@ -459,11 +459,11 @@ impl<'a> Loader<'a> {
         Some(if curved { color.map(|share| decode_srgb((255.0 * share).round() as u8)) } else { color })
     }
 
-    /// A number, or pairs of wavelength and value: `400:0.1, 500:0.2`.
+    /// Parses a number, or pairs of wavelength and value: `400:0.1, 500:0.2`.
     fn spectrum(&self, given: &(String, Span)) -> Option<Value> {
         if !given.0.contains(':') {
             return match numbers(&given.0).as_deref() {
-                // Mitsuba 0.6 has colours too.
+                // Mitsuba 0.6 also allows colours here.
                 Some(&[r, g, b]) => Some(Value::Rgb(DVec3::new(r, g, b).as_vec3())),
                 _ => self.numbers(given).map(|[number]| Value::Even(number as f32)),
             };
@@ -479,14 +479,14 @@ impl<'a> Loader<'a> {
     fn curve(&self, all: Vec<f64>, at: Span) -> Option<Value> {
         let curve: Vec<[f32; 2]> = all.chunks_exact(2).map(|pair| [pair[0] as f32, pair[1] as f32]).collect();
         if let Some(pair) = curve.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
-            let message = format!("the wavelengths of a spectrum must rise: {} comes after {}", pair[1][0], pair[0][0]);
+            let message = format!("the wavelengths of a spectrum must increase: {} comes after {}", pair[1][0], pair[0][0]);
             self.said.bad(at, message);
             return None;
         }
         Some(Value::Curve(curve))
     }
 
-    /// Complains of an element.
+    /// Reports an error in an element.
     pub fn bad(&self, at: Span, message: impl Into<String>, help: Option<String>) {
         self.said.bad_with(at, message, help);
     }
@@ -495,7 +495,7 @@ impl<'a> Loader<'a> {
         self.said.once(at, message);
     }
 
-    /// The next element of a transform, and after it the end of that element.
+    /// Next element of a transform; consumes its end too.
     pub fn next_leaf<'x>(&mut self, xml: &mut Xml<'x>) -> Result<Option<Tag<'x>>, Broken> {
         let Some(tag) = self.next(xml)? else { return Ok(None) };
         self.leaf(xml, tag.name)?;

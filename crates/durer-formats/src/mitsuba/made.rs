@@ -1,4 +1,4 @@
-//! What plugins become: materials, what shines, what is infinitely far away.
+//! Results of plugins: materials, emission and infinite lights.
 
 use super::plugin::Key;
 use durer_diag::Span;
@@ -10,25 +10,25 @@ use durer_scene::texture::Sky;
 use glam::DAffine3;
 use std::rc::Rc;
 
-/// A material as written.
+/// Material as declared.
 pub(super) enum Made {
     Layers(Box<PrincipledMaterial>),
     Hair(HairMaterial),
-    /// Two others, the share of the first, and a picture that multiplies it.
+    /// Mix of two materials, with the share of the first and a picture that multiplies it.
     Mix(Rc<Made>, Rc<Made>, f32, Option<FileName>),
-    /// One on the front and another on the back.
+    /// One material on the front and another on the back.
     Sides(Rc<Made>, Rc<Made>),
-    /// What is not there at all.
+    /// Material of a surface that is not rendered.
     Nothing,
 }
 
 impl Made {
-    /// Matte grey: of 0.5 what shapes have that nothing is said of.
+    /// Matte grey. 0.5 is the default material of shapes.
     pub fn matte(grey: f32) -> Made {
         Made::Layers(Box::new(matte(Vec3::splat(grey))))
     }
 
-    /// The same with all layers changed.
+    /// Copy with `change` applied to all layers.
     pub fn changed(&self, change: &impl Fn(&mut PrincipledMaterial)) -> Made {
         match self {
             Made::Layers(layers) => {
@@ -46,22 +46,22 @@ impl Made {
     }
 }
 
-/// Matte, without a boundary.
+/// Diffuse material without a specular boundary.
 pub(super) fn matte(base_color: Color) -> PrincipledMaterial {
     PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
 }
 
-/// What shines: its radiance, and a picture that multiplies it.
+/// Emission of a shape: radiance, and a picture that multiplies it.
 pub(super) struct Shine {
     pub color: Color,
     pub picture: Option<Picture>,
-    /// Whether it shines to both sides.
+    /// True if both sides emit.
     pub both: bool,
     pub at: Span,
     pub key: Key,
 }
 
-/// What is infinitely far away: Mitsuba has one such light.
+/// Infinite light. A scene of Mitsuba has at most one.
 pub(super) enum Infinite {
     Even(Color, Span),
     Picture {
@@ -70,7 +70,7 @@ pub(super) enum Infinite {
         scale: f32,
         to_world: DAffine3,
     },
-    /// A clear sky with y upwards, and how it lies in the world.
+    /// Clear sky with y up, and its transform to world space.
     Sky {
         sky: Sky,
         at: Span,

@@ -1,7 +1,6 @@
-//! Materials, in the words of OpenPBR.
+//! Materials, converted to OpenPBR's parameters.
 //!
-//! Source of all meanings: *Mitsuba 3 documentation*, "BSDFs". GGX's alpha is the square of our
-//! roughness.
+//! Source: *Mitsuba 3 documentation*, "BSDFs". GGX's alpha is the square of our roughness.
 
 use super::made::{Made, Shine, matte};
 use super::metals;
@@ -46,11 +45,11 @@ const KNOWN: [&str; 18] = [
     "hair",
 ];
 
-/// The index of refraction of air.
+/// Index of refraction of air.
 const AIR: f32 = 1.000277;
 
 impl Reader<'_> {
-    /// The material of a plugin.
+    /// Material of a plugin.
     pub fn material(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<Made> {
         let key = (plugin.key(), self.inside_out);
         if let Some(known) = self.materials.get(&key) {
@@ -71,7 +70,7 @@ impl Reader<'_> {
             "diffuse" | "roughdiffuse" => {
                 let (color, picture) = self.colored(plugin, "reflectance", 0.5);
                 m = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
-                plugin.left_out(self.said, &["alpha", "use_fast_approx"], "the surface is Lambert's");
+                plugin.left_out(self.said, &["alpha", "use_fast_approx"], "the surface is Lambertian");
             }
             "dielectric" | "roughdielectric" | "thindielectric" => self.glass(plugin, &mut m),
             "conductor" | "roughconductor" => self.conductor(plugin, &mut m),
@@ -85,7 +84,7 @@ impl Reader<'_> {
                 return match parts.as_slice() {
                     [(_, front), (_, back)] => {
                         let sides = [front, back].map(|side| both(&self.material(side, depth + 1)));
-                        // A sphere turned inside out has its front where ours has its back.
+                        // The front of an inverted sphere is the back of ours.
                         let [front, back] = sides;
                         Rc::new(if self.inside_out { Made::Sides(back, front) } else { Made::Sides(front, back) })
                     }
@@ -107,22 +106,22 @@ impl Reader<'_> {
                 let (share, picture) = self.pictured(plugin, "weight", 0.5, |weight| 1.0 - weight.clamp(0.0, 1.0));
                 let parts = self.parts(plugin, Some("bsdf"));
                 let [(_, a), (_, b)] = parts.as_slice() else {
-                    self.said.bad(plugin.at, format!("a `blendbsdf` is of two materials, not of {}", parts.len()));
+                    self.said.bad(plugin.at, format!("a `blendbsdf` needs two materials, found {}", parts.len()));
                     return Rc::new(Made::matte(0.5));
                 };
                 let (a, b) = (self.material(a, depth + 1), self.material(b, depth + 1));
                 return Rc::new(Made::Mix(a, b, share, picture));
             }
             other => {
-                let message = format!("the material `{other}` has no counterpart: matte grey is taken");
+                let message = format!("the material `{other}` has no counterpart: diffuse grey is used");
                 let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(plugin.at);
                 self.said.push(Diagnostic { help: meant(other, KNOWN), ..warning });
-                // What it holds was not looked at.
+                // Do not report its properties: they were not read.
                 plugin.properties.iter().for_each(|property| property.used.set(true));
                 return Rc::new(Made::matte(0.5));
             }
         }
-        // All but glass is black from behind, where it is not `twosided`.
+        // Other materials than glass are black from behind unless they are `twosided`.
         let is_open = m.transmission_weight > 0.0 || m.walls == Walls::Thin || m.transmission_weight_texture.is_some();
         if !is_open && !self.inside_out {
             m.backs = Backs::Black;
@@ -130,7 +129,7 @@ impl Reader<'_> {
         Rc::new(Made::Layers(Box::new(m)))
     }
 
-    /// Hair by what it absorbs, or by its melanins.
+    /// Reads hair given by absorption or by melanin.
     fn hair(&self, plugin: &Plugin) -> Made {
         let usual = HairMaterial::default();
         let number = |name| plugin.number(self.said, name);
@@ -150,18 +149,18 @@ impl Reader<'_> {
         })
     }
 
-    /// The material that another holds.
+    /// Material that another material wraps.
     fn inner(&mut self, plugin: &Plugin, depth: u32) -> Rc<Made> {
         match self.parts(plugin, Some("bsdf")).first() {
             Some((_, part)) => self.material(part, depth + 1),
             None => {
-                self.said.bad(plugin.at, format!("a `{}` needs a material inside", plugin.kind));
+                self.said.bad(plugin.at, format!("a `{}` needs a nested material", plugin.kind));
                 Rc::new(Made::matte(0.5))
             }
         }
     }
 
-    /// A material whose surface rises where a picture is bright, by so much as `scale` says.
+    /// Reads a bump map; `scale` is the height where the picture is 1.
     fn bump_map(&mut self, plugin: &Plugin, depth: u32) -> Rc<Made> {
         let inner = self.inner(plugin, depth);
         let height = plugin.number(self.said, "scale").unwrap_or(1.0);
@@ -194,25 +193,25 @@ impl Reader<'_> {
         Rc::new(inner.changed(&|m| (m.normal_texture, m.normal_bending) = (Some(name.clone()), Switch::Off)))
     }
 
-    /// An index of refraction: a number or a name.
+    /// Index of refraction: a number or the name of a material.
     fn index(&self, plugin: &Plugin, name: &'static str, usual: f32) -> f32 {
         let Some(property) = plugin.get(name) else { return usual };
         if let Value::Text(text) = &property.value {
             return metals::clear(text).unwrap_or_else(|| {
                 let help = meant(text, metals::clear_names());
-                self.said.bad_with(property.at, format!("there is no material `{text}` with an index"), help);
+                self.said.bad_with(property.at, format!("unknown material `{text}`: it has no index of refraction"), help);
                 usual
             });
         }
         plugin.positive(self.said, name).unwrap_or(usual)
     }
 
-    /// The index inside over the index outside.
+    /// Interior index over exterior index.
     fn relative_index(&self, plugin: &Plugin, usual: f32) -> f32 {
         self.index(plugin, "int_ior", usual) / self.index(plugin, "ext_ior", AIR)
     }
 
-    /// GGX's alpha along both directions as ours: roughness, anisotropy and turn.
+    /// Sets roughness, anisotropy and rotation from GGX's alpha along both directions.
     fn roughness(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
         m.energy_compensation = Switch::Off;
         if !plugin.kind.starts_with("rough") {
@@ -231,23 +230,23 @@ impl Reader<'_> {
             Some("ggx") => {}
             Some(distribution @ ("beckmann" | "phong" | "as")) => {
                 let what =
-                    format!("the distribution `{distribution}` has no counterpart: GGX of the same alpha is taken");
+                    format!("the distribution `{distribution}` has no counterpart: `ggx` of the same alpha is used");
                 self.said.once(plugin.place("distribution"), what);
             }
             None => {
-                let what = "without `distribution` Mitsuba means `beckmann`, which has no counterpart: GGX of the same \
-                            alpha is taken";
+                let what = "the default distribution `beckmann` has no counterpart: `ggx` of the same alpha \
+                            is used";
                 self.said.once(plugin.at, what);
             }
             Some(other) => {
                 let help = meant(other, ["beckmann", "ggx"]);
-                self.said.bad_with(plugin.place("distribution"), format!("there is no distribution `{other}`"), help);
+                self.said.bad_with(plugin.place("distribution"), format!("unknown distribution `{other}`"), help);
             }
         }
         plugin.known(&["sample_visible"]);
     }
 
-    /// What a reflection is multiplied by.
+    /// Reads the colour of the specular reflection.
     fn tint(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
         (m.specular_color, m.specular_color_texture) = self.colored(plugin, "specular_reflectance", 1.0);
         m.specular_color = m.specular_color.min(Vec3::ONE);
@@ -258,7 +257,7 @@ impl Reader<'_> {
         let index = self.relative_index(plugin, 1.5046);
         let is_thin = plugin.kind == "thindielectric";
         m.specular_ior = if self.inside_out && !is_thin { 1.0 / index } else { index };
-        // `ext_ior` is what the file says, and not what lies around.
+        // `ext_ior` replaces the index of any surrounding medium.
         m.surroundings = Surroundings::Ignored;
         self.tint(plugin, m);
         (m.transmission_color, m.transmission_color_texture) = self.colored(plugin, "specular_transmittance", 1.0);
@@ -271,7 +270,7 @@ impl Reader<'_> {
         let name = plugin.text(self.said, "material").unwrap_or("none".into());
         let by_numbers = ["eta", "k"].iter().any(|name| plugin.get(name).is_some());
         if by_numbers && plugin.get("material").is_some() {
-            self.said.bad(plugin.place("material"), "a metal has either `material` or `eta` and `k`");
+            self.said.bad(plugin.place("material"), "a conductor takes either `material`, or `eta` and `k`");
         }
         let [f0, f82] = if !by_numbers && name == "none" {
             [Vec3::ONE; 2]
@@ -279,7 +278,7 @@ impl Reader<'_> {
             let named = metals::metal(&name).unwrap_or_else(|| {
                 if !by_numbers {
                     let help = meant(&name, metals::metal_names());
-                    self.said.bad_with(plugin.place("material"), format!("there is no metal `{name}`"), help);
+                    self.said.bad_with(plugin.place("material"), format!("unknown metal `{name}`"), help);
                 }
                 [[0.0; 3], [1.0; 3]]
             });
@@ -287,7 +286,7 @@ impl Reader<'_> {
                 .map(|(name, usual)| SpectrumSource::Rgb(self.color(plugin, name, Vec3::from_array(usual))));
             conductor_colors(&eta, &k, self.index(plugin, "ext_eta", 1.0))
         };
-        // A tint counts at all angles: it is in what is reflected at 82 degrees too, over Schlick's.
+        // The tint applies at all angles, so it is part of the reflectance at 82 degrees too.
         let over = |tint: Vec3| f82 * tint / schlick_82(f0 * tint).max(Vec3::splat(1e-6));
         let (tint, picture) = self.colored(plugin, "specular_reflectance", 1.0);
         let at = plugin.place("specular_reflectance");
@@ -314,19 +313,19 @@ impl Reader<'_> {
             let beckmann = plugin.text(self.said, "distribution").is_none_or(|distribution| distribution != "ggx");
             let boundary = Boundary::new(index, m.specular_roughness, beckmann);
             m.base_color = match m.base_color_texture.is_some() {
-                // Of a picture, as of a middle grey.
+                // For a picture, use middle grey.
                 true => m.base_color * boundary.below(nonlinear.then_some(0.5)),
                 false => m.base_color.map(|color| boundary.base(color, nonlinear)),
             };
         }
         if nonlinear {
-            // Light that goes to and fro below the skin is a coat's darkening.
+            // Diffuse light between base and boundary becomes a coat's darkening.
             (m.coat_weight, m.coat_ior, m.coat_roughness) = (1.0, index, m.specular_roughness);
             m.coat_roughness_texture = m.specular_roughness_texture.take();
             m.specular_weight = 0.0;
             if m.specular_color != Vec3::ONE || m.specular_color_texture.take().is_some() {
                 self.said
-                    .once(plugin.place("specular_reflectance"), "what a coat reflects has no colour: white is taken");
+                    .once(plugin.place("specular_reflectance"), "a coloured reflection of a coat has no counterpart: white is used");
             }
         } else {
             m.specular_ior = index;
@@ -336,8 +335,8 @@ impl Reader<'_> {
         }
     }
 
-    /// The number in the scene of a material with a light and something inside; `None` for what is
-    /// not there.
+    /// Index in the scene of a material with emission and an interior medium; `None` for a material
+    /// that is not rendered.
     pub fn number(
         &mut self,
         bsdf: Option<&Rc<Plugin>>,
@@ -350,7 +349,7 @@ impl Reader<'_> {
         if let Some(known) = self.numbers.get(&key) {
             return *known;
         }
-        // A lamp of which no more is said scatters nothing.
+        // An emitter without a material does not scatter.
         let grey = if shine.is_some() { 0.0 } else { 0.5 };
         let mut made = bsdf.map_or_else(|| Rc::new(Made::matte(grey)), |bsdf| self.material(bsdf, 0));
         if let Some((medium, _)) = inside {
@@ -378,7 +377,7 @@ impl Reader<'_> {
             }
             Made::Hair(hair) => {
                 if shine.is_some() {
-                    self.said.once(at, "hair does not shine");
+                    self.said.once(at, "emission of hair has no counterpart: it is ignored");
                 }
                 Material::Hair(hair.clone())
             }
@@ -394,7 +393,7 @@ impl Reader<'_> {
                     Material::Solid(Solid::from(mix), Vec::new())
                 }
                 (Some(only), None) | (None, Some(only)) => {
-                    self.said.once(at, "a blend with what is not there has no counterpart: the other counts alone");
+                    self.said.once(at, "a blend with a `null` material has no counterpart: only the other is used");
                     return Some(only);
                 }
                 (None, None) => return None,
@@ -405,7 +404,7 @@ impl Reader<'_> {
     }
 }
 
-/// A material with something inside.
+/// Material filled with a medium.
 fn filled(made: &Made, medium: &Medium) -> Made {
     match made {
         Made::Nothing => {
@@ -414,7 +413,7 @@ fn filled(made: &Made, medium: &Medium) -> Made {
             medium.fill(&mut m);
             Made::Layers(Box::new(m))
         }
-        // Nothing gets into what is not clear.
+        // Light does not enter opaque materials.
         _ => made.changed(&|m| {
             if m.transmission_weight > 0.0 && m.walls == Walls::Solid {
                 medium.fill(m);

@@ -1,4 +1,4 @@
-//! Media: homogeneous ones, and those that are as dense as a volume says.
+//! Participating media: homogeneous, or with the density of a volume.
 
 use super::plugin::{Key, Plugin};
 use super::state::Reader;
@@ -13,11 +13,11 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 impl Reader<'_> {
-    /// A medium, if light loses something in it.
+    /// Medium with its key; `None` for a medium without a counterpart.
     pub fn medium(&mut self, plugin: &Rc<Plugin>) -> Option<(Medium, Key)> {
         let said = self.said;
         if !matches!(plugin.kind.as_str(), "homogeneous" | "heterogeneous") {
-            let what = format!("the medium `{}` has no counterpart: light goes through it freely", plugin.kind);
+            let what = format!("the medium `{}` has no counterpart: it is ignored", plugin.kind);
             said.once(plugin.at, what);
             return None;
         }
@@ -25,10 +25,10 @@ impl Reader<'_> {
         let density = self.density(plugin);
         let color = |name, usual| self.volume_color(plugin, name, usual).max(Vec3::ZERO);
         let (absorption, scattering) = match plugin.get("sigma_s").is_some() || plugin.get("sigma_a").is_some() {
-            // Of Mitsuba 0.6.
+            // Parameters of Mitsuba 0.6.
             true => (color("sigma_a", Vec3::ZERO), color("sigma_s", Vec3::ZERO)),
             false => {
-                // A volume says how dense it is, of what is 1.
+                // A volume is the density of a medium with extinction 1.
                 let extinction = if density.is_some() { Vec3::ONE } else { color("sigma_t", Vec3::ONE) };
                 let albedo = color("albedo", Vec3::splat(0.75)).min(Vec3::ONE);
                 (extinction * (Vec3::ONE - albedo), extinction * albedo)
@@ -40,7 +40,7 @@ impl Reader<'_> {
                 "isotropic" => {}
                 "hg" => anisotropy = phase.number(said, "g").unwrap_or(0.8).clamp(-0.99, 0.99),
                 other => said
-                    .once(phase.at, format!("the phase function `{other}` has no counterpart: light goes evenly on")),
+                    .once(phase.at, format!("the phase function `{other}` has no counterpart: isotropic scattering is used")),
             }
         }
         plugin.known(&["sample_emitters", "has_spectral_extinction", "majorant_resolution_factor"]);
@@ -49,7 +49,7 @@ impl Reader<'_> {
         Some((medium, plugin.key()))
     }
 
-    /// A colour, which may be a volume: of a grid the mean is taken.
+    /// Colour that may be a volume; the mean of a grid.
     fn volume_color(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Color {
         let volume = self.named_part(plugin, name).filter(|volume| volume.kind.ends_with("volume"));
         let Some(volume) = volume else {
@@ -61,7 +61,7 @@ impl Reader<'_> {
                 let at = volume.at;
                 self.said.once(
                     at,
-                    format!("`{name}` that is not the same everywhere has no counterpart: its mean is taken"),
+                    format!("a `{name}` that varies has no counterpart: its mean is used"),
                 );
                 let bytes = volume.text(self.said, "filename");
                 let bytes = bytes.and_then(|path| named_bytes(self.input, self.said, "the volume", &path, at));
@@ -75,7 +75,7 @@ impl Reader<'_> {
         color
     }
 
-    /// What is read, after what was found has been said.
+    /// Runs a reader that reports to diagnostics, and passes these on.
     fn told<T>(&self, read: impl FnOnce(&mut Diagnostics) -> T) -> T {
         let mut found = Diagnostics::default();
         let made = read(&mut found);
@@ -83,7 +83,7 @@ impl Reader<'_> {
         made
     }
 
-    /// The densities of a medium whose extinction is a `gridvolume`.
+    /// Density of a medium whose extinction is a `gridvolume`.
     fn density(&mut self, plugin: &Plugin) -> Option<Density> {
         let volume = self.named_part(plugin, "sigma_t").filter(|volume| volume.kind == "gridvolume")?;
         let said = self.said;

@@ -1,9 +1,9 @@
-//! Indices of refraction of metals and of what is clear, by name.
+//! Indices of refraction of metals and of transparent materials, by name.
 
-/// Indices of metals: the real part and the imaginary part, for red, green and blue.
+/// Complex indices of refraction of metals: real and imaginary part for red, green and blue.
 ///
 /// Source: the spectra of Palik, *Handbook of Optical Constants of Solids*, 1985, and of the SOPRA
-/// and Luxpop collections, as Mitsuba 3.9 has them in RGB.
+/// and Luxpop collections, as Mitsuba 3.9 converts them to RGB.
 #[rustfmt::skip]
 const METALS: [(&str, [f32; 3], [f32; 3]); 37] = [
     ("a-C", [2.944, 2.2271, 1.9682], [0.8875, 0.7993, 0.8153]),
@@ -45,8 +45,8 @@ const METALS: [(&str, [f32; 3], [f32; 3]); 37] = [
     ("W", [4.3708, 3.3002, 2.9984], [3.5006, 2.6049, 2.2732]),
 ];
 
-/// Indices of what is clear. Source: *Mitsuba 3 documentation*, "Smooth dielectric material", the
-/// table of names.
+/// Indices of refraction of transparent materials. Source: *Mitsuba 3 documentation*, "Smooth
+/// dielectric material", table of names.
 #[rustfmt::skip]
 const CLEAR: [(&str, f32); 23] = [
     ("vacuum", 1.0), ("helium", 1.000036), ("hydrogen", 1.000132), ("air", 1.000277), ("carbon dioxide", 1.00045),
@@ -56,22 +56,22 @@ const CLEAR: [(&str, f32); 23] = [
     ("amber", 1.55), ("pet", 1.575), ("diamond", 2.419),
 ];
 
-/// The indices of a metal.
+/// Real and imaginary index of a metal.
 pub(super) fn metal(name: &str) -> Option<[[f32; 3]; 2]> {
     METALS.iter().find(|row| row.0.eq_ignore_ascii_case(name)).map(|row| [row.1, row.2])
 }
 
-/// Names of metals.
+/// Names of metals, for suggestions.
 pub(super) fn metal_names() -> impl Iterator<Item = &'static str> {
     METALS.iter().map(|row| row.0).chain(["none"])
 }
 
-/// The index of what is clear.
+/// Index of a transparent material.
 pub(super) fn clear(name: &str) -> Option<f32> {
     CLEAR.iter().find(|row| row.0.eq_ignore_ascii_case(name)).map(|row| row.1)
 }
 
-/// Names of what is clear.
+/// Names of transparent materials, for suggestions.
 pub(super) fn clear_names() -> impl Iterator<Item = &'static str> {
     CLEAR.iter().map(|row| row.0)
 }

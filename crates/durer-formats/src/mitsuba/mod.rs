@@ -1,8 +1,8 @@
-//! Scenes of Mitsuba 3, in XML; those of Mitsuba 0.6 as far as they use the same plugins.
+//! Scenes of Mitsuba 3 in XML, and those of Mitsuba 0.6 that use the same plugins.
 //!
-//! Source of all meanings: *Mitsuba 3 documentation*, "Plugin reference", 2022 to 2025. A scene
-//! holds plugins (a shape, a material, a light), which hold properties and other plugins. A pixel
-//! of value 1 shows radiance 1.
+//! Source: *Mitsuba 3 documentation*, "Plugin reference", 2022 to 2025. A scene holds plugins
+//! (shapes, materials, lights), which hold properties and other plugins. A pixel of value 1 shows
+//! radiance 1.
 
 mod camera;
 mod color;
@@ -35,7 +35,7 @@ use durer_scene::scene::{Axis, Scene};
 use load::Loader;
 use state::Reader;
 
-/// The format of scenes.
+/// Scene format entry for Mitsuba.
 pub(super) const FORMAT: SceneFormat = SceneFormat {
     name: "Mitsuba",
     extensions: &["xml"],
@@ -45,11 +45,11 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     up: Axis::Y,
     whole: true,
     shines: Some(
-        "write `<emitter type=\"area\"/>` in a shape, or `<emitter type=\"constant\"/>` in the scene: what is all around is light too",
+        "write `<emitter type=\"area\"/>` in a shape, or `<emitter type=\"constant\"/>` in the scene: an environment is a light too",
     ),
 };
 
-/// Whether a file begins as Mitsuba's do.
+/// Returns true if a file begins with `<scene>`.
 fn recognise(bytes: &[u8]) -> bool {
     xml::begins_with(bytes, &["scene"])
 }

@@ -1,4 +1,4 @@
-//! A plugin as it is written: its kind, and its properties by name.
+//! Plugin: a type, and properties by name.
 
 use crate::said::{Said, meant};
 use durer_diag::Span;
@@ -7,32 +7,32 @@ use glam::{DAffine3, DVec3};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
-/// Where a plugin is written.
+/// Place of a plugin in the files: file index and byte offset.
 pub(super) type Key = (u32, u32);
 
-/// What has a tag and a `type`: `<shape type="sphere">`.
+/// Element with a `type`, such as `<shape type="sphere">`.
 pub(super) struct Plugin {
-    /// Its tag.
+    /// Tag of the element.
     pub class: String,
-    /// Its `type`; empty for the scene.
+    /// Value of `type`; empty for the scene.
     pub kind: String,
-    /// Its type in the file, or its tag.
+    /// Place of the type, or of the tag.
     pub at: Span,
     pub properties: Vec<Property>,
-    /// Names of properties that were asked for.
+    /// Names of the known properties.
     asked: RefCell<Vec<&'static str>>,
 }
 
-/// A property with its name, which nested plugins may lack.
+/// Property. Nested plugins may have no name.
 pub(super) struct Property {
     pub name: String,
     pub value: Value,
-    /// Its value in the file.
+    /// Place of the value.
     pub at: Span,
     pub used: Cell<bool>,
 }
 
-/// The value of a property.
+/// Value of a property.
 #[derive(Clone)]
 pub(super) enum Value {
     Number(f64),
@@ -40,13 +40,13 @@ pub(super) enum Value {
     Text(String),
     Vector(DVec3),
     Rgb(Vec3),
-    /// The same number at all wavelengths.
+    /// Constant spectrum.
     Even(f32),
-    /// Wavelengths in nanometres, rising, and values.
+    /// Wavelengths in nanometres, ascending, with values.
     Curve(Vec<[f32; 2]>),
     Map(DAffine3),
     Plugin(Rc<Plugin>),
-    /// The `id` of a plugin.
+    /// `id` of a plugin.
     Ref(String),
 }
 
@@ -71,34 +71,34 @@ impl Plugin {
         Plugin { class: class.into(), kind, at, properties: Vec::new(), asked }
     }
 
-    /// What no other plugin shares with it.
+    /// Key that is unique to the plugin.
     pub fn key(&self) -> Key {
         (self.at.file, self.at.start)
     }
 
-    /// Says that properties are known, whatever they say.
+    /// Marks properties as known, so that they are not reported.
     pub fn known(&self, names: &[&'static str]) {
         self.asked.borrow_mut().extend(names);
     }
 
-    /// A property by name.
+    /// Property by name; marks it as used.
     pub fn get(&self, name: &'static str) -> Option<&Property> {
         self.known(&[name]);
         let found = self.properties.iter().find(|property| property.name == name);
         found.inspect(|property| property.used.set(true))
     }
 
-    /// Where a property's value is, or failing that the plugin.
+    /// Place of a property's value, or of the plugin without such a property.
     pub fn place(&self, name: &'static str) -> Span {
         self.get(name).map_or(self.at, |property| property.at)
     }
 
-    /// A property of some type.
+    /// Property of one type; reports an error for another type.
     fn typed<T>(&self, said: &Said, name: &'static str, what: &str, get: impl Fn(&Value) -> Option<T>) -> Option<T> {
         let property = self.get(name)?;
         let value = get(&property.value);
         if value.is_none() {
-            said.bad(property.at, format!("`{name}` must be {what}, and this is {}", property.value.kind()));
+            said.bad(property.at, format!("`{name}` must be {what}, not {}", property.value.kind()));
         }
         value
     }
@@ -111,7 +111,7 @@ impl Plugin {
         })
     }
 
-    /// A number that must be more than 0.
+    /// Number that must be more than 0.
     pub fn positive(&self, said: &Said, name: &'static str) -> Option<f32> {
         let number = self.number(said, name)?;
         if number <= 0.0 {
@@ -141,7 +141,7 @@ impl Plugin {
         })
     }
 
-    /// A transform; none where nothing is said.
+    /// Transform; the identity if it is not given.
     pub fn map(&self, said: &Said, name: &'static str) -> DAffine3 {
         let map = self.typed(said, name, "a transform", |value| match value {
             Value::Map(map) => Some(*map),
@@ -150,7 +150,7 @@ impl Plugin {
         map.unwrap_or(DAffine3::IDENTITY)
     }
 
-    /// Warns of properties without counterpart, if they are there.
+    /// Warns of properties that have no counterpart; `instead` names the substitute.
     pub fn left_out(&self, said: &Said, names: &[&'static str], instead: &str) {
         for name in names {
             if let Some(property) = self.get(name) {
@@ -159,7 +159,7 @@ impl Plugin {
         }
     }
 
-    /// Warns of properties that nobody asked for.
+    /// Warns of unknown properties.
     pub fn finish(&self, said: &Said) {
         let asked = self.asked.borrow();
         for property in &self.properties {
@@ -168,8 +168,8 @@ impl Plugin {
                 continue;
             }
             let message = match (nested, property.name.as_str()) {
-                (true, "") => format!("the {} `{}` has no use for this: it is left out", self.class, self.kind),
-                (_, name) => format!("the {} `{}` has no `{name}`: it is left out", self.class, self.kind),
+                (true, "") => format!("the {} `{}` does not use this: it is ignored", self.class, self.kind),
+                (_, name) => format!("the {} `{}` has no property `{name}`: it is ignored", self.class, self.kind),
             };
             let help = meant(&property.name, asked.iter().copied());
             let warning = durer_diag::Diagnostic::warning(message).code("unknown-property").at(property.at);
@@ -178,8 +178,8 @@ impl Plugin {
     }
 }
 
-/// Whether a shape is a sphere whose normals point inwards, by `flip_normals` or by a transform that
-/// mirrors.
+/// Returns true if a shape is a sphere with inward normals, by `flip_normals` or by a mirroring
+/// transform.
 pub(super) fn is_inside_out(plugin: &Plugin, said: &Said) -> bool {
     let flipped = || plugin.truth(said, "flip_normals").unwrap_or(false);
     plugin.kind == "sphere" && flipped() != (plugin.map(said, "to_world").matrix3.determinant() < 0.0)

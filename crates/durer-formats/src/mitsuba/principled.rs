@@ -1,7 +1,7 @@
-//! Disney's material, which Mitsuba calls `principled`.
+//! Disney's material, Mitsuba's `principled`.
 //!
 //! Source: Burley, *Physically-Based Shading at Disney*, SIGGRAPH 2012, and *Extending the Disney
-//! BRDF to a BSDF*, 2015, as *Mitsuba 3 documentation* has their parameters.
+//! BRDF to a BSDF*, 2015, with the parameters of *Mitsuba 3 documentation*.
 
 use super::plugin::Plugin;
 use super::state::Reader;
@@ -12,7 +12,7 @@ use durer_scene::material::principled::{Surroundings, Switch, Walls};
 use durer_scene::math::{LUMINANCE, Vec3};
 
 impl Reader<'_> {
-    /// The layers of `principled` and `principledthin`.
+    /// Layers of `principled` and `principledthin`.
     pub fn principled(&mut self, plugin: &Plugin) -> PrincipledMaterial {
         let thin = plugin.kind == "principledthin";
         let (base_color, base_color_texture) = self.colored(plugin, "base_color", 0.5);
@@ -27,7 +27,7 @@ impl Reader<'_> {
         let tinted = |tint: f32| Vec3::ONE.lerp(base_color / luminance, tint).clamp(Vec3::ZERO, Vec3::ONE);
         let ior = match plugin.get("eta") {
             Some(_) => self.value(plugin, "eta", 1.5).max(1e-3),
-            // The reflectance at right angles is 0.08 times `specular`.
+            // The reflectance at normal incidence is 0.08 times `specular`.
             None => {
                 let root = (0.08 * share("specular", 0.5)).sqrt();
                 (1.0 + root) / (1.0 - root)
@@ -35,7 +35,7 @@ impl Reader<'_> {
         };
         let clear = share("spec_trans", 0.0);
         let metallic = if thin { 0.0 } else { metalness };
-        // Of pictures something between.
+        // Use a medium roughness for a picture.
         let rough = if roughness_texture.is_some() { 0.5 } else { roughness };
         let matte = match (thin, &metalness_texture) {
             (true, _) => disney::matte_mean(rough) * base_color,
@@ -44,7 +44,7 @@ impl Reader<'_> {
         };
         let sheen = share("sheen", 0.0);
         let fuzz_weight = if sheen > 0.0 { sheen * disney::sheen_of_fuzz() } else { 0.0 };
-        // From 0, all on the lit side, to 2, all on the other.
+        // From 0, all on the lit side, to 2, all on the other side.
         let through = if thin { self.value(plugin, "diff_trans", 0.0).clamp(0.0, 2.0) } else { 0.0 };
         let m = PrincipledMaterial {
             base_color: matte,
@@ -55,7 +55,7 @@ impl Reader<'_> {
             subsurface_scatter_anisotropy: (through - 1.0).max(0.0),
             base_metalness: metallic,
             base_metalness_texture: metalness_texture.filter(|_| !thin),
-            // A thin sheet mirrors only where it is clear.
+            // A thin sheet has specular reflection only with `spec_trans`.
             specular_weight: if thin { 0.0 } else { 1.0 },
             specular_ior: if thin { one_sided(ior) } else { ior },
             specular_color: tinted(share("spec_tint", 0.0)),
@@ -65,9 +65,9 @@ impl Reader<'_> {
             energy_compensation: Switch::Off,
             surroundings: Surroundings::Ignored,
             transmission_weight: clear,
-            // Disney's glass takes the root of the colour at each of two surfaces.
+            // Disney's glass takes the square root of the colour at each of two surfaces.
             transmission_color: if thin { base_color } else { base_color.map(f32::sqrt) }.clamp(Vec3::ZERO, Vec3::ONE),
-            // The coat has a quarter of the weight, and an index of 1.5.
+            // The coat has a quarter of the weight and an index of 1.5.
             coat_weight: if thin { 0.0 } else { 0.25 * share("clearcoat", 0.0) },
             coat_ior: 1.5,
             coat_darkening: 0.0,
@@ -78,15 +78,15 @@ impl Reader<'_> {
             walls: if thin { Walls::Thin } else { Walls::Solid },
             ..PrincipledMaterial::default()
         };
-        let none = "the surface is Lambert's below its boundary";
+        let none = "the base stays diffuse";
         plugin.left_out(self.said, &["flatness"], none);
         plugin.known(&["diffuse_reflectance_sampling_rate", "main_specular_sampling_rate", "clearcoat_sampling_rate"]);
         m
     }
 }
 
-/// The index of a pane that reflects at right angles what one surface of another index does: theirs
-/// has no second one.
+/// Index of a thin pane that reflects at normal incidence as much as one surface of index `ior`:
+/// `principledthin` has no second surface.
 fn one_sided(ior: f32) -> f32 {
     let root = (ior - 1.0) / (ior + 1.0);
     let r0 = root * root;
@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_pane_reflects_what_one_surface_does() {
+    fn one_sided_pane_reflects_like_one_surface() {
         let root = (one_sided(1.5) - 1.0) / (one_sided(1.5) + 1.0);
         let r = root * root;
         assert!((2.0 * r / (1.0 + r) - 0.04).abs() < 1e-5, "{r}");

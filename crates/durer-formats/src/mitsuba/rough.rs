@@ -1,29 +1,28 @@
-//! What rough boundaries let through in Mitsuba, which does not give back what goes from facet to
-//! facet.
+//! Transmittance of Mitsuba's rough boundaries, which lose the light that bounces between facets.
 
 use crate::disney::passing;
 use durer_scene::bsdf::albedo::single_means;
 use durer_scene::bsdf::fresnel;
 use durer_scene::math::{Vec3, fp};
 
-/// A rough boundary.
+/// Rough boundary of a plastic.
 pub(super) struct Boundary {
     index: f32,
-    /// What goes through from outside and is kept inside, and the same of a smooth one.
+    /// Mean transmittance from outside and mean reflectance from inside, rough and smooth.
     rough: [f32; 2],
     smooth: [f32; 2],
-    /// What ours lets through to the base and out again.
+    /// Mean transmittance to the base and out again here.
     passing: f32,
-    /// What ours mirrors more than theirs.
+    /// Mean reflectance here minus Mitsuba's.
     lost: f32,
 }
 
 impl Boundary {
-    /// `roughness` is the root of alpha, and not 0.
+    /// `roughness` is the square root of alpha and not 0.
     pub fn new(index: f32, roughness: f32, beckmann: bool) -> Boundary {
         let theirs = |index: f32| means(index, roughness * roughness, beckmann);
         let ([reflected, all], [inside, _]) = (theirs(index), theirs(1.0 / index));
-        // Mitsuba sums it over 64 cosines from 0 to 1, both ends as much as the others.
+        // Mitsuba sums 64 cosines from 0 to 1, with both ends at full weight.
         let straight = (index - 1.0) / (index + 1.0);
         let inside = (63.0 * inside + straight * straight) / 64.0;
         let ([mirrored, sum], [within, _]) = (single_means(index, 0.0), single_means(1.0 / index, 0.0));
@@ -37,31 +36,31 @@ impl Boundary {
         }
     }
 
-    /// The colour of a matte base that shows below it what one does in Mitsuba. `fades`: light that
-    /// goes to and fro below takes on more of the colour each time.
+    /// Colour of a diffuse base that has the same look below this boundary as `color` has in
+    /// Mitsuba. If `fades`, light reflected between base and boundary is tinted again each time.
     pub fn base(&self, color: f32, fades: bool) -> f32 {
         let below = color * self.below(fades.then_some(color));
         if fades { below } else { (below - self.lost / self.passing).max(0.0) }
     }
 
-    /// What a matte base shows through it in Mitsuba, over what it does here, on the mean over all
-    /// directions: theirs loses on the way in and on the way out. `left`, where light that goes to and
-    /// fro below changes its colour, is the share that is left each time.
+    /// Mean radiance of a diffuse base through the boundary in Mitsuba, over that here. Mitsuba
+    /// loses light on the way in and on the way out. `left` is the share that stays at each bounce
+    /// if bounces change the colour.
     pub fn below(&self, left: Option<f32>) -> f32 {
         let shown = |[through, inside]: [f32; 2]| {
             let through = through / self.index;
             through * through / (1.0 - inside * left.unwrap_or(1.0))
         };
-        // A coat's darkening is as theirs where it is smooth.
+        // A smooth coat darkens as Mitsuba's does.
         shown(self.rough) / if left.is_some() { shown(self.smooth) } else { self.passing }
     }
 }
 
-/// What [`single_means`] is of ours, with Mitsuba's masking: of each direction by itself, so that it
-/// hides more than both together do.
+/// Mean albedos as in [`single_means`], with Mitsuba's separable masking, which hides more than
+/// height-correlated masking.
 ///
 /// Source: Walter, Marschner, Li and Torrance, *Microfacet Models for Refraction through Rough
-/// Surfaces*, EGSR 2007, with their fit of the masking by Beckmann's facets.
+/// Surfaces*, EGSR 2007, with their fit of Beckmann's masking.
 fn means(eta: f32, alpha: f32, beckmann: bool) -> [f32; 2] {
     const STEPS: usize = 16;
     let step = |i: usize| (i as f32 + 0.5) / STEPS as f32;
@@ -76,7 +75,7 @@ fn means(eta: f32, alpha: f32, beckmann: bool) -> [f32; 2] {
     for (i, j, k) in (0..STEPS.pow(3)).map(|n| (n % STEPS, n / STEPS % STEPS, n / (STEPS * STEPS))) {
         let z = step(i).sqrt();
         let wo = Vec3::new((1.0 - z * z).sqrt(), 0.0, z);
-        // Facets by their number; half a turn is like the other.
+        // Sample microfacets by their distribution; half a turn is enough by symmetry.
         let u = step(j);
         let slope = alpha * alpha * if beckmann { -fp::ln(1.0 - u) } else { u / (1.0 - u) };
         let cosine = 1.0 / (1.0 + slope).sqrt();
@@ -108,8 +107,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rough_boundaries_lose_more_the_rougher_they_are() {
-        // Nearly smooth, all is there.
+    fn rough_boundaries_lose_more_with_roughness() {
+        // A nearly smooth boundary loses nothing.
         let [reflected, all] = means(1.5, 0.02, true);
         let [smooth, _] = single_means(1.5, 0.0);
         assert!((reflected - smooth).abs() < 0.01 && (all - 1.0).abs() < 0.01, "{reflected} {smooth} {all}");
@@ -120,7 +119,7 @@ mod tests {
                 let of = |roughness: f32| below(roughness, beckmann, left);
                 assert!(of(0.3) > of(0.5) && of(0.5) > of(0.8) && of(0.8) > 0.2, "{beckmann} {left:?}");
             }
-            // Beckmann's facets lean less far.
+            // Beckmann's facets are less steep.
             assert!(below(0.6, true, left) > below(0.6, false, left));
         }
     }

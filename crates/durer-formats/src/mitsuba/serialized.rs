@@ -1,10 +1,10 @@
-//! Meshes in files `.serialized`, of which one may hold several.
+//! Meshes in `.serialized` files, each of which may hold several.
 //!
-//! All is little-endian. Each mesh begins with the mark 0x041C and the version (3 or 4), 16 bits
-//! each, and is a stream of zlib: flags, of version 4 a name that ends with 0, the numbers of
-//! vertices and of triangles, then lists of positions, normals, texture coordinates, colours and
-//! corners. The file ends with the places of all meshes and their number. Source: Mitsuba 3's
-//! documentation, `serialized`.
+//! All values are little-endian. Each mesh begins with the mark 0x041C and the version (3 or 4), 16
+//! bits each, followed by a zlib stream: flags, a zero-terminated name (version 4 only), the
+//! numbers of vertices and triangles, then lists of positions, normals, texture coordinates,
+//! colours and vertex indices. The file ends with the offsets of the meshes and their number.
+//! Source: Mitsuba 3's documentation, `serialized`.
 
 use crate::files::named_bytes;
 use crate::model::Input;
@@ -16,25 +16,25 @@ use flate2::bufread::ZlibDecoder;
 use std::io::{ErrorKind, Read};
 
 const MARK: u16 = 0x041c;
-/// Bytes of the mark and the version.
+/// Size of the mark and the version in bytes.
 const HEAD: usize = 4;
 
-/// Flags of a mesh: which lists it has, and whether their numbers have 64 bits.
+/// Flags of a mesh: lists that are present, and numbers of 64 bits.
 const NORMALS: u32 = 0x0001;
 const UVS: u32 = 0x0002;
 const COLORS: u32 = 0x0008;
 const DOUBLE: u32 = 0x2000;
 
 const LONGEST_NAME: usize = 1 << 12;
-/// Bytes that may come of one byte of the file, and of the smallest file. Meshes are seldom packed
-/// to less than a tenth.
+/// Maximum number of unpacked bytes per byte of the file, and for the smallest file. Meshes rarely
+/// compress to less than a tenth.
 const MAX_TIMES: u64 = 200;
 const FREE: u64 = 1 << 24;
 
-/// What is wrong, and at which byte.
+/// Byte offset and message of an error.
 type Wrong = (usize, String);
 
-/// A mesh of a file, by its number.
+/// Reads a mesh of a file by its index.
 pub(super) fn mesh(input: &Input, said: &Said, (path, at): (&str, Span), number: u32) -> Option<MeshData> {
     let (bytes, file) = named_bytes(input, said, "the mesh", path, at)?;
     let tell = |(place, message): Wrong| {
@@ -65,13 +65,13 @@ fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, Wrong> {
     let size = if has(DOUBLE) { 8 } else { 4 };
     let lists = [(true, 3), (has(NORMALS), 3), (has(UVS), 2), (has(COLORS), 3)];
     let row = lists.iter().filter(|(there, _)| *there).map(|(_, width)| size * width).sum::<u64>();
-    // Corners have 64 bits only where there are more vertices than this.
+    // Indices have 64 bits only for more vertices than this.
     if vertices > u64::from(u32::MAX) {
-        return Err((unpacked.place(), format!("{vertices} vertices are too many")));
+        return Err((unpacked.place(), format!("{vertices} vertices are more than 32-bit indices allow")));
     }
     let wanted = triangles.saturating_mul(12).saturating_add(vertices * row);
     if wanted > budget {
-        let message = format!("{vertices} vertices and {triangles} triangles are more than such a file may unpack to");
+        let message = format!("{vertices} vertices and {triangles} triangles are more than a file of this size may hold");
         return Err((unpacked.place(), message));
     }
     let mut list = |what: &str, there: bool, width: u64| match there {
@@ -81,12 +81,12 @@ fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, Wrong> {
     let positions = list("positions", true, 3)?;
     let normals = list("normals", has(NORMALS), 3)?;
     let uvs = list("texture coordinates", has(UVS), 2)?;
-    // Mitsuba 3 shows them nowhere.
+    // Mitsuba 3 does not use these colours.
     list("colours", has(COLORS), 3)?;
     let corners = unpacked.bytes("corners", triangles * 12)?;
     let corners: Vec<u32> = corners.as_chunks().0.iter().map(|four| u32::from_le_bytes(*four)).collect();
     if let Some(i) = corners.iter().position(|corner| u64::from(*corner) >= vertices) {
-        let message = format!("triangle {} has the vertex {}, and there are {vertices}", i / 3, corners[i]);
+        let message = format!("triangle {} has the vertex {}, but there are only {vertices}", i / 3, corners[i]);
         return Err((unpacked.place(), message));
     }
     let triangles = corners.as_chunks().0.to_vec();
@@ -103,17 +103,17 @@ fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, Wrong> {
     })
 }
 
-/// Where a mesh begins, and the file's version.
+/// Offset of a mesh, and the file's version.
 fn found(bytes: &[u8], number: u32) -> Result<(usize, u16), Wrong> {
     let begins = |at: usize| {
         let found =
             at.checked_add(HEAD).and_then(|end| bytes.get(at..end)).filter(|head| head[..2] == MARK.to_le_bytes());
         let found = found.map(|head| u16::from_le_bytes([head[2], head[3]]));
-        found.ok_or((at, "here should be a mesh of Mitsuba's, which begins with the bytes 1C 04".to_string()))
+        found.ok_or((at, "expected a mesh of Mitsuba, which begins with the bytes 1C 04".to_string()))
     };
     let version = begins(0)?;
     if !matches!(version, 3 | 4) {
-        return Err((2, format!("files `.serialized` of version {version} are not known: 3 and 4 are")));
+        return Err((2, format!("version {version} of `.serialized` files is not supported: use 3 or 4")));
     }
     if number == 0 {
         return Ok((0, version));
@@ -122,43 +122,43 @@ fn found(bytes: &[u8], number: u32) -> Result<(usize, u16), Wrong> {
     let last = |at: usize| bytes.get(at..).and_then(|rest| rest.first_chunk());
     let count = last(count_at).map_or(0, |four| u32::from_le_bytes(*four));
     if number >= count {
-        let message = format!("there is no mesh {number}: the file says that it has {count}, counted from 0 on");
+        let message = format!("the file has no mesh {number}: it has {count}, numbered from 0");
         return Err((count_at, message));
     }
     let size = if version == 4 { 8 } else { 4 };
     let entry = count_at.checked_sub((count - number) as usize * size);
     let place = entry.and_then(|at| Some((at, bytes.get(at..at + size)?)));
     let Some((entry, place)) = place else {
-        return Err((count_at, format!("the file is too short for the places of {count} meshes")));
+        return Err((count_at, format!("the file is too short for the offsets of {count} meshes")));
     };
     let place = place.iter().rev().fold(0u64, |all, byte| all << 8 | u64::from(*byte));
     match usize::try_from(place).map(begins) {
         Ok(Ok(_)) => Ok((place as usize, version)),
-        _ => Err((entry, format!("mesh {number} should begin at byte {place}, and there is none"))),
+        _ => Err((entry, format!("mesh {number} should begin at byte {place}, but no mesh begins there"))),
     }
 }
 
-/// A mesh as it is unpacked.
+/// Stream of a mesh while it is decompressed.
 struct Unpacked<'a> {
     inner: ZlibDecoder<&'a [u8]>,
-    /// Where its bytes begin in the file.
+    /// Offset of the compressed data in the file.
     start: usize,
 }
 
 impl Unpacked<'_> {
-    /// How far the file was read.
+    /// Offset in the file up to which data was read.
     fn place(&self) -> usize {
         self.start + self.inner.total_in() as usize
     }
 
-    /// The next bytes; memory is taken for those that are there.
+    /// Reads `count` bytes. Allocates only for bytes that exist.
     fn bytes(&mut self, what: &str, count: u64) -> Result<Vec<u8>, Wrong> {
         let mut bytes = Vec::new();
         let read = (&mut self.inner).take(count).read_to_end(&mut bytes);
         match read {
             Ok(_) if bytes.len() as u64 == count => Ok(bytes),
             Err(error) if error.kind() != ErrorKind::UnexpectedEof => {
-                Err((self.place(), format!("the mesh cannot be unpacked: {error}")))
+                Err((self.place(), format!("the mesh cannot be decompressed: {error}")))
             }
             _ => Err((self.place(), format!("the mesh ends within its {what}"))),
         }
@@ -175,10 +175,10 @@ impl Unpacked<'_> {
                 return Ok(());
             }
         }
-        Err((self.place(), format!("a name of more than {LONGEST_NAME} bytes is too long")))
+        Err((self.place(), format!("the name of the mesh is too long: more than {LONGEST_NAME} bytes")))
     }
 
-    /// So many numbers of 32 bits or of 64.
+    /// Reads `count` numbers of 32 or 64 bits.
     fn numbers(&mut self, what: &str, count: u64, double: bool) -> Result<Vec<f32>, Wrong> {
         let bytes = self.bytes(what, count * if double { 8 } else { 4 })?;
         let numbers: Vec<f32> = match double {
@@ -186,7 +186,7 @@ impl Unpacked<'_> {
             false => bytes.as_chunks().0.iter().map(|four| f32::from_le_bytes(*four)).collect(),
         };
         match numbers.iter().position(|number| !number.is_finite()) {
-            Some(i) => Err((self.place(), format!("number {i} of the {what} is not finite"))),
+            Some(i) => Err((self.place(), format!("number {i} of the {what} must be finite"))),
             None => Ok(numbers),
         }
     }
@@ -200,7 +200,7 @@ pub(super) mod tests {
     use flate2::write::ZlibEncoder;
     use std::io::Write;
 
-    /// Two triangles with all lists, unpacked.
+    /// Uncompressed mesh of two triangles with the lists of `flags`.
     pub fn stream(version: u16, flags: u32) -> Vec<u8> {
         let mut bytes = flags.to_le_bytes().to_vec();
         if version == 4 {
@@ -225,7 +225,7 @@ pub(super) mod tests {
         bytes
     }
 
-    /// A file of several meshes.
+    /// File of several meshes.
     pub fn file(version: u16, streams: &[Vec<u8>]) -> Vec<u8> {
         let (mut bytes, mut places) = (Vec::new(), Vec::new());
         for stream in streams {
@@ -247,38 +247,38 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_at_its_byte() {
+    fn error_has_byte_offset() {
         const MEMORY: u64 = 1 << 20;
         let good = file(4, &[stream(4, 0x1000), stream(4, 0x1003)]);
         assert!(parse(&good, 0, MEMORY).unwrap().uvs.is_empty() && parse(&good, 1, MEMORY).unwrap().uvs.len() == 4);
         let refused = |bytes: &[u8], number: u32, memory: u64, message: &str| {
             let (at, told) = parse(bytes, number, memory).unwrap_err();
-            assert!(at <= bytes.len() && told.contains(message), "{at} {told}");
+            assert!(at <= bytes.len() && told.contains(message), "{at} {told}"); // prose: keep
             at
         };
-        assert_eq!(refused(b"ply\n", 0, MEMORY, "should be a mesh"), 0);
-        assert_eq!(refused(b"\x1c\x04\x05\x00", 0, MEMORY, "of version 5 are not known"), 2);
-        assert_eq!(refused(&good, 2, MEMORY, "there is no mesh 2: the file says that it has 2"), good.len() - 4);
-        refused(b"\x1c\x04\x04\x00\x09\x00\x00\x00", 5, MEMORY, "too short for the places of 9");
-        refused(&good, 1, 100, "more than such a file may unpack to");
-        // Counts that promise much, indices that lead nowhere, numbers that are none.
+        assert_eq!(refused(b"ply\n", 0, MEMORY, "expected a mesh"), 0);
+        assert_eq!(refused(b"\x1c\x04\x05\x00", 0, MEMORY, "version 5 of `.serialized` files is not supported"), 2);
+        assert_eq!(refused(&good, 2, MEMORY, "the file has no mesh 2: it has 2"), good.len() - 4);
+        refused(b"\x1c\x04\x04\x00\x09\x00\x00\x00", 5, MEMORY, "too short for the offsets of 9");
+        refused(&good, 1, 100, "more than a file of this size may hold");
+        // Excessive counts, indices out of range, numbers that are not finite.
         let changed = |at: usize, byte: u8, message: &str| {
             let mut inner = stream(3, 0x1000);
             inner[at] = byte;
             refused(&file(3, &[inner]), 0, u64::MAX, message);
         };
-        changed(8, 1, "4294967300 vertices are too many");
-        changed(19, 1, "more than such a file may unpack to");
-        changed(7, 128, "more than such a file may unpack to");
+        changed(8, 1, "4294967300 vertices are more than 32-bit indices allow");
+        changed(19, 1, "more than a file of this size may hold");
+        changed(7, 128, "more than a file of this size may hold");
         changed(4, 5, "the mesh ends within its corners");
-        changed(68, 9, "triangle 0 has the vertex 9, and there are 4");
+        changed(68, 9, "triangle 0 has the vertex 9, but there are only 4");
         let mut inner = stream(3, 0x1000);
         inner[24..28].copy_from_slice(&f32::NAN.to_le_bytes());
-        refused(&file(3, &[inner]), 0, MEMORY, "number 1 of the positions is not finite");
+        refused(&file(3, &[inner]), 0, MEMORY, "number 1 of the positions must be finite");
     }
 
     #[test]
-    fn changed_bytes_are_refused_or_read() {
+    fn changed_bytes_never_panic() {
         let mut random = Random(31);
         let (mut read, mut refused) = (0, 0);
         for round in 0..6_000 {
@@ -295,7 +295,7 @@ pub(super) mod tests {
                     }
                 }
             };
-            // Half of them are changed before they are packed.
+            // Half of the meshes are changed before compression.
             if round % 4 < 2 {
                 change(&mut inner);
             }

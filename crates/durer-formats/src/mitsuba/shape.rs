@@ -1,6 +1,6 @@
 //! Shapes.
 //!
-//! Source of all meanings: *Mitsuba 3 documentation*, "Shapes".
+//! Source: *Mitsuba 3 documentation*, "Shapes".
 
 use super::curve;
 use super::plugin::{Key, Plugin, is_inside_out};
@@ -38,7 +38,7 @@ const KNOWN: [&str; 13] = [
 ];
 
 impl Reader<'_> {
-    /// Adds what a plugin shows.
+    /// Adds the objects of a shape plugin to a list.
     pub fn shape(&mut self, plugin: &Rc<Plugin>, objects: &mut Vec<Object>, depth: u32) {
         if self.too_deep(depth, plugin.at) {
             return;
@@ -46,7 +46,7 @@ impl Reader<'_> {
         let (said, at) = (self.said, plugin.at);
         let map = plugin.map(said, "to_world");
         let found = match plugin.kind.as_str() {
-            // What a group holds is shown by instances.
+            // Shape groups are shown by instances.
             "shapegroup" => return,
             "instance" => self.instance(plugin, map, objects, depth),
             "merge" => {
@@ -63,7 +63,7 @@ impl Reader<'_> {
             "obj" | "ply" | "serialized" => self.file(plugin, map),
             "bsplinecurve" | "linearcurve" => self.curves(plugin, map),
             other => {
-                let message = format!("the shape `{other}` has no counterpart: it is left out");
+                let message = format!("the shape `{other}` has no counterpart: it is ignored");
                 let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(at);
                 return said.push(Diagnostic { help: meant(other, KNOWN), ..warning });
             }
@@ -82,11 +82,11 @@ impl Reader<'_> {
                     let inner = Object { node, material: Some(number), span: at };
                     self.add(objects, inner.placed(map));
                 }
-                None if shine.is_some() => said.once(at, "what is not there (`null`) does not shine"),
+                None if shine.is_some() => said.once(at, "a `null` surface does not emit light"),
                 None => {}
             }
         } else if !matches!(plugin.kind.as_str(), "instance" | "merge") {
-            // Why there is no shape was said, and what lies on it is not to blame.
+            // The shape was reported; do not report its materials as unused too.
             for class in ["bsdf", "emitter", "medium"] {
                 self.parts(plugin, Some(class));
             }
@@ -126,33 +126,33 @@ impl Reader<'_> {
         None
     }
 
-    /// What is inside of a shape.
+    /// Medium inside a shape.
     fn inside(&mut self, plugin: &Plugin) -> Option<(Medium, Key)> {
         let media = self.parts(plugin, Some("medium"));
-        // What is outside of a shape is inside of another, or around the camera.
+        // Ignore `exterior`: it is the interior of another shape, or around the camera.
         let (_, medium) = media.into_iter().find(|(property, _)| property.name == "interior")?;
         self.medium(&medium)
     }
 
-    /// Whether a picture lies on a shape.
+    /// Returns true if a shape has a picture.
     fn is_pictured(&self, plugin: &Plugin) -> bool {
         self.has_texture(plugin, &["bitmap", "checkerboard"])
     }
 
-    /// Whether a shape has a texture of some kinds.
+    /// Returns true if a shape has a texture of one of the kinds.
     fn has_texture(&self, plugin: &Plugin, kinds: &[&str]) -> bool {
         let parts = self.reachable(plugin, &["texture", "bsdf", "emitter"]);
         parts.iter().any(|part| part.class == "texture" && kinds.contains(&part.kind.as_str()))
     }
 
-    /// Whether highlights on a shape are longer than wide, so that it matters where u grows.
+    /// Returns true if a shape has an anisotropic material, for which the direction of u matters.
     fn is_brushed(&self, plugin: &Plugin) -> bool {
         let words = ["alpha_u", "alpha_v", "anisotropic"];
         let parts = self.reachable(plugin, &["bsdf"]);
         parts.iter().flat_map(|part| &part.properties).any(|property| words.contains(&property.name.as_str()))
     }
 
-    /// Whether the material of a shape leans its normals.
+    /// Returns true if a shape has a normal map.
     fn is_leaning(&self, plugin: &Plugin) -> bool {
         self.reachable(plugin, &["bsdf"]).iter().any(|part| part.kind == "normalmap")
     }
@@ -165,12 +165,12 @@ impl Reader<'_> {
         let radius = plugin.positive(self.said, "radius").unwrap_or(1.0);
         let center = plugin.vector(self.said, "center").unwrap_or(DVec3::ZERO);
         if is_inside_out(plugin, self.said) && !self.parts(plugin, Some("emitter")).is_empty() {
-            let what = "a sphere turned inside out has no counterpart: it shines outwards as well";
+            let what = "a sphere that emits inwards has no counterpart: it emits on both sides";
             self.said.once(plugin.place("flip_normals"), what);
         }
         let map = map * DAffine3::from_translation(center);
         let (center, map) = match self.is_pictured(plugin) || self.is_brushed(plugin) {
-            // Mitsuba's poles are on z, and u begins at x; ours are on y, and u = 1/2 is at -z.
+            // Mitsuba's poles are on z and u begins at x; ours are on y and u = 1/2 is at -z.
             true => {
                 let turned = DMat3::from_cols(DVec3::NEG_Y, DVec3::Z, DVec3::X);
                 (Vec3::ZERO, map * DAffine3::from_mat3(turned))
@@ -182,7 +182,7 @@ impl Reader<'_> {
     }
 
     fn disk(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
-        // Our discs have other coordinates.
+        // Our discs have other texture coordinates.
         if self.is_pictured(plugin) || self.is_brushed(plugin) || self.is_leaning(plugin) {
             return self.mesh(plugin, "disk", map, || Some(solid::with_tangents(solid::disk())));
         }
@@ -198,7 +198,7 @@ impl Reader<'_> {
         let radius = plugin.positive(said, "radius").unwrap_or(1.0);
         let along = ends[1] - ends[0];
         if along == DVec3::ZERO {
-            said.bad(plugin.place("p1"), "the ends of a cylinder must not be the same point");
+            said.bad(plugin.place("p1"), "`p0` and `p1` of a cylinder must differ");
             return None;
         }
         let axes = frame(along.normalize()) * DMat3::from_diagonal(DVec3::new(1.0, 1.0, along.length()));
@@ -206,7 +206,7 @@ impl Reader<'_> {
         self.mesh(plugin, &format!("cylinder-{radius}"), map, || Some(solid::with_tangents(solid::cylinder(radius))))
     }
 
-    /// The file that a shape is in, and where it is named.
+    /// Name of the shape's file and its place in the scene.
     fn path(&self, plugin: &Plugin) -> Option<(String, Span)> {
         let Some(name) = plugin.text(self.said, "filename") else {
             self.said.bad(plugin.at, format!("the shape `{}` needs a `filename`", plugin.kind));
@@ -215,11 +215,11 @@ impl Reader<'_> {
         Some((self.loader.path(&name), plugin.place("filename")))
     }
 
-    /// Which mesh of a file a shape is.
+    /// Index of the shape's mesh in its file.
     fn shape_index(&self, plugin: &Plugin) -> Option<u32> {
         let number = plugin.number(self.said, "shape_index").unwrap_or(0.0);
         if !(0.0..=16_777_216.0).contains(&number) || number.fract() != 0.0 {
-            self.said.bad(plugin.place("shape_index"), "`shape_index` must be a whole number from 0 on");
+            self.said.bad(plugin.place("shape_index"), "`shape_index` must be an integer of 0 or more");
             return None;
         }
         Some(number as u32)
@@ -234,8 +234,7 @@ impl Reader<'_> {
         };
         let flat = plugin.truth(said, "face_normals").unwrap_or(false);
         let is_obj = plugin.kind == "obj";
-        // Mitsuba turns the coordinates of OBJ over, which have v upwards as ours, and leaves those
-        // of PLY.
+        // Mitsuba flips v of OBJ files, which have v upwards as ours, but not v of PLY files.
         let over = plugin.truth(said, "flip_tex_coords").unwrap_or(is_obj);
         let mirrored = map.matrix3.determinant() < 0.0;
         let input = self.input;
@@ -258,17 +257,17 @@ impl Reader<'_> {
             if flat {
                 (data.normals, data.triangle_normals) = (Vec::new(), Vec::new());
             }
-            // The sides of faces without normals are told by their corners in the world.
+            // Faces without normals are oriented by their corners in world space.
             if mirrored && data.triangle_normals.is_empty() {
                 data = data.oriented(true);
             }
             if !flat && data.triangle_normals.is_empty() {
-                // Vertices at one place with other texture coordinates are others.
+                // Vertices at one position with different texture coordinates are not merged.
                 let uvs = std::mem::take(&mut data.triangle_uvs);
                 smoothed(&mut data, |i, k| Some(uvs.get(i).map_or(0, |uvs| uvs[k])));
                 data.triangle_uvs = uvs;
             }
-            // Vertices have colours where a texture asks for them; those of PLY have no curve here.
+            // Keep vertex colours only if a texture reads them. Convert those of PLY to sRGB.
             let number = |x: f32| f32::from(Transfer::Srgb.encode(x)) / 255.0;
             data.colors
                 .iter_mut()
@@ -284,7 +283,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Curves of a file, as tubes.
+    /// Tubes of a curve file.
     fn curves(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
         let said = self.said;
         let (path, at) = self.path(plugin)?;
@@ -293,7 +292,7 @@ impl Reader<'_> {
         self.mesh(plugin, &key, map, || curve::tubes(input, said, (&path, at), is_spline))
     }
 
-    /// A mesh with v downwards, in its place.
+    /// Mesh with v downwards and its transform.
     fn mesh(
         &mut self,
         plugin: &Plugin,

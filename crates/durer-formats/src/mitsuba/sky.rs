@@ -1,7 +1,8 @@
 //! Daylight: `sunsky`, and `sky` and `sun` of Mitsuba 0.6.
 //!
-//! Mitsuba's sky is that of Hosek and Wilkie, *An Analytic Model for Full Spectral Sky-Dome Radiance*,
-//! SIGGRAPH 2012. Ours is Preetham's, made as bright; the sun is Preetham's.
+//! Mitsuba uses the sky of Hosek and Wilkie, *An Analytic Model for Full Spectral Sky-Dome
+//! Radiance*, SIGGRAPH 2012. Dürer uses Preetham's sky, scaled to the same illuminance, and
+//! Preetham's sun.
 
 use super::made::Infinite;
 use super::plugin::Plugin;
@@ -15,13 +16,13 @@ use durer_scene::texture::sky::SUN_RADIUS;
 use glam::{DAffine3, DMat3, DVec3};
 use std::f32::consts::PI;
 
-/// Lumens of a watt of each nanometre of visible light together: Mitsuba's unit is the watt of one
-/// nanometre on the mean. 683 lm/W times the integral of the CIE's y over wavelengths.
+/// Lumens per watt of a constant spectrum. Mitsuba's unit is the mean in watts per nanometre: 683
+/// lm/W times the integral of the CIE's y over wavelengths.
 const LUMENS: f32 = 683.0 * 106.856_9;
 
-/// What the sky of Hosek and Wilkie brings to level ground in lux, over a ground that gives back a
-/// fifth: for each turbidity a row, for each height of the sun a column. Sums over 1,152 directions
-/// of `sunsky` of Mitsuba 3.9.1, times [`LUMENS`].
+/// Illuminance of level ground by the Hosek-Wilkie sky in lux, with ground albedo 0.2. Rows are
+/// turbidities, columns are elevations of the sun in degrees. Sums over 1,152 directions of
+/// `sunsky` of Mitsuba 3.9.1, times [`LUMENS`].
 const TURBIDITIES: [f32; 4] = [2.0, 3.0, 5.0, 8.0];
 const HEIGHTS: [f32; 5] = [5.0, 20.0, 40.0, 60.0, 85.0];
 const LEVEL: [[f32; 5]; 4] = [
@@ -31,14 +32,14 @@ const LEVEL: [[f32; 5]; 4] = [
     [8416.0, 21362.0, 34504.0, 40648.0, 38652.0],
 ];
 
-/// The illuminance of the table, linear between its entries.
+/// Bilinear interpolation of the table.
 fn level(turbidity: f32, height: f32) -> f32 {
     let ((i, a), (j, b)) = (place(&TURBIDITIES, turbidity), place(&HEIGHTS, height));
     let row = |i: usize| LEVEL[i][j] + b * (LEVEL[i][j + 1] - LEVEL[i][j]);
     row(i) + a * (row(i + 1) - row(i))
 }
 
-/// The step of a row of growing numbers that a number is in, and how far.
+/// Interval of an ascending list that holds `x`, and the fraction within it.
 fn place(steps: &[f32], x: f32) -> (usize, f32) {
     let x = x.clamp(steps[0], steps[steps.len() - 1]);
     let i = steps[1..steps.len() - 1].iter().take_while(|step| **step < x).count();
@@ -46,14 +47,14 @@ fn place(steps: &[f32], x: f32) -> (usize, f32) {
 }
 
 impl Reader<'_> {
-    /// A clear sky, the sun, or both.
+    /// Adds a clear sky, the sun, or both.
     pub(super) fn daylight(&mut self, plugin: &Plugin, to_world: DAffine3) {
         let said = self.said;
         let number = |name, usual: f32| plugin.number(said, name).unwrap_or(usual);
         let turbidity = number("turbidity", 3.0);
         let all = number("scale", 1.0);
         let [sky_scale, sun_scale] = ["sky_scale", "sun_scale"].map(|name| (all * number(name, 1.0)).max(0.0));
-        // To a space with y upwards, x east and z south: theirs has x south, y west and z upwards.
+        // Rotation to axes x east, y up and z south. Mitsuba 3 has x south, y west and z up.
         let up = match self.loader.is_old {
             true => DMat3::IDENTITY,
             false => DMat3::from_cols(DVec3::Z, DVec3::NEG_X, DVec3::Y),
@@ -63,11 +64,11 @@ impl Reader<'_> {
             None => self.way_by_time(plugin).as_dvec3(),
         };
         plugin.known(&["sun_aperture", "sun_radius_scale", "resolution", "stretch", "sampling_weight", "complex_sun"]);
-        plugin.left_out(said, &["albedo"], "the sky is as bright as over a ground that gives back a fifth");
+        plugin.left_out(said, &["albedo"], "the ground's albedo is 0.2");
         plugin.finish(said);
-        said.once(plugin.at, "the sky is Preetham's here, made as bright as that of Hosek and Wilkie");
+        said.once(plugin.at, "the sky of Hosek and Wilkie has no counterpart: Preetham's is used, with the same illuminance");
         let Some(way) = way.try_normalize().filter(|way| way.y > 0.0) else {
-            return said.once(plugin.at, "the sun is below the horizon: nothing shines");
+            return said.once(plugin.at, "the sun is below the horizon: this light is left out");
         };
         let sky = Sky::new(way.as_vec3(), turbidity);
         let to_world = to_world * DAffine3::from_mat3(up.transpose());
@@ -86,14 +87,14 @@ impl Reader<'_> {
         }
     }
 
-    /// The way to the sun by place, date and time.
+    /// Direction to the sun by place, date and time.
     fn way_by_time(&self, plugin: &Plugin) -> Vec3 {
         let number = |name, usual: f32| f64::from(plugin.number(self.said, name).unwrap_or(usual));
         let date = [number("year", 2010.0), number("month", 7.0), number("day", 10.0)].map(|x| x as i32);
         let hours = number("hour", 15.0) + number("minute", 0.0) / 60.0 + number("second", 0.0) / 3600.0;
         let moment = Moment { date, hours, zone: number("timezone", 9.0) };
         if !(moment.exists() && (-9999..=9999).contains(&date[0])) {
-            self.said.bad(plugin.at, "there is no such day");
+            self.said.bad(plugin.at, "this date does not exist");
             return Vec3::Y;
         }
         almanac::way(almanac::sun([number("latitude", 35.689), number("longitude", 139.6917)], &moment))
@@ -105,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_table_is_linear_between_its_entries() {
+    fn illuminance_is_linear_between_table_entries() {
         assert_eq!((level(3.0, 20.0), level(1.0, 0.0), level(10.0, 90.0)), (12653.0, 6175.0, 38652.0));
         assert_eq!(level(4.0, 40.0), 0.5 * (16295.0 + 23228.0));
         assert_eq!(level(2.0, 50.0), 0.5 * (14080.0 + 15241.0));

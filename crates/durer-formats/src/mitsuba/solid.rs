@@ -1,12 +1,12 @@
-//! Shapes that are meshes here.
+//! Mitsuba's shapes that become meshes here.
 
 use durer_scene::math::{Vec2, Vec3, fp};
 use durer_scene::shape::MeshData;
 use durer_scene::shape::mesh::NO_INDEX;
 use durer_scene::shape::tessellate::revolution;
 
-/// Corners of the faces of a cube, each with its normal; the texture's four corners lie on them in
-/// the order of [`AROUND`].
+/// Corners of the faces of a cube, each face with its normal. Their texture coordinates are
+/// [`AROUND`], in the same order.
 const FACES: [([[f32; 3]; 4], [f32; 3]); 6] = [
     ([[1.0, -1.0, -1.0], [1.0, -1.0, 1.0], [-1.0, -1.0, 1.0], [-1.0, -1.0, -1.0]], [0.0, -1.0, 0.0]),
     ([[1.0, 1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, 1.0, 1.0], [1.0, 1.0, 1.0]], [0.0, 1.0, 0.0]),
@@ -15,11 +15,11 @@ const FACES: [([[f32; 3]; 4], [f32; 3]); 6] = [
     ([[-1.0, -1.0, 1.0], [-1.0, 1.0, 1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, -1.0]], [-1.0, 0.0, 0.0]),
     ([[1.0, 1.0, -1.0], [1.0, -1.0, -1.0], [-1.0, -1.0, -1.0], [-1.0, 1.0, -1.0]], [0.0, 0.0, -1.0]),
 ];
-/// Sides of a disc that is a mesh.
+/// Number of sides of a disc that is a mesh.
 const SIDES: u32 = 128;
 const AROUND: [[f32; 2]; 4] = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
 
-/// A cube from -1 to 1, with v downwards.
+/// Cube from -1 to 1, with v downwards.
 pub(super) fn cube() -> MeshData {
     let mut data = MeshData { flat: true, ..MeshData::default() };
     for (corners, normal) in FACES {
@@ -33,7 +33,7 @@ pub(super) fn cube() -> MeshData {
     data
 }
 
-/// A square from -1 to 1 that faces z, with v downwards.
+/// Square from -1 to 1 that faces +z, with v downwards.
 pub(super) fn rectangle() -> MeshData {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(Vec2::from_array);
     let triangles = vec![[0, 1, 2], [0, 2, 3]];
@@ -49,8 +49,8 @@ pub(super) fn rectangle() -> MeshData {
     }
 }
 
-/// A disc of radius 1 that faces z, as many triangles: u grows from its middle outwards, v around it,
-/// beginning at x.
+/// Disc of radius 1 that faces +z, as triangles: u grows outwards from the centre, v around it from
+/// +x.
 pub(super) fn disk() -> MeshData {
     let rim = |i: f32| {
         let (sin, cos) = fp::sin_cos_degrees(f64::from(360.0 * i / SIDES as f32));
@@ -62,7 +62,8 @@ pub(super) fn disk() -> MeshData {
         data.positions.push(rim(i as f32));
         data.uvs.push(Vec2::new(1.0, around(i as f32)));
         if i < SIDES {
-            // Each triangle has its own middle, whose v is half way between its corners'.
+            // Each triangle has its own centre vertex, whose v is halfway between those of its
+            // corners.
             data.positions.push(Vec3::ZERO);
             data.uvs.push(Vec2::new(0.0, around(i as f32 + 0.5)));
             data.triangles.push([2 * i + 1, 2 * i, 2 * i + 2]);
@@ -73,13 +74,13 @@ pub(super) fn disk() -> MeshData {
     data
 }
 
-/// A tube about z of length 1, with v downwards.
+/// Open cylinder about z of length 1, with v downwards.
 pub(super) fn cylinder(radius: f32) -> MeshData {
     revolution::cylinder(radius, [0.0, 1.0], 360.0)
 }
 
-/// The same with tangents: across the normal from where u grows lies the other, whatever way v
-/// grows.
+/// Adds tangents in the direction of growing u. The bitangent follows from the normal and the
+/// tangent, whichever way v grows.
 pub(super) fn with_tangents(mut data: MeshData) -> MeshData {
     let mut tangents = vec![Vec3::ZERO; data.positions.len()];
     for (corners, uvs) in data.triangles.iter().zip(&data.triangle_uvs).filter(|(_, uvs)| !uvs.contains(&NO_INDEX)) {
@@ -93,7 +94,7 @@ pub(super) fn with_tangents(mut data: MeshData) -> MeshData {
     data
 }
 
-/// The same with v upwards, as ours has it.
+/// Converts a mesh from v downwards to v upwards, and back.
 pub(super) fn turned_over(mut data: MeshData) -> MeshData {
     data.uvs.iter_mut().chain(&mut data.second_uvs).for_each(|uv| uv.y = 1.0 - uv.y);
     data

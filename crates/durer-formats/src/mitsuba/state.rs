@@ -1,4 +1,4 @@
-//! From plugins to a scene.
+//! Conversion of plugins to a scene.
 
 use super::load::Loader;
 use super::made::{Infinite, Made};
@@ -15,29 +15,30 @@ use std::collections::{BTreeMap, HashSet};
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Objects of a scene, those of instances counted each time.
+/// Maximum number of objects in a scene, counting those of every instance.
 const MAX_OBJECTS: usize = 1 << 20;
-/// Plugins in plugins, those counted to which others refer.
+/// Maximum depth of nested plugins, counting references.
 pub(super) const DEEPEST: u32 = 32;
 
-/// A file on its way to a scene.
+/// Reader of a scene's plugins.
 pub(super) struct Reader<'a> {
     pub input: &'a Input<'a>,
     pub said: &'a Said,
     pub loader: Loader<'a>,
-    /// Materials by their plugins, and whether they are turned inside out.
+    /// Materials by their plugin, and whether their shape is turned inside out.
     pub materials: BTreeMap<(Key, bool), Rc<Made>>,
-    /// Numbers in the scene of materials with a light, with something inside, turned inside out.
+    /// Indices in the scene of materials, by plugins of the material, light and interior medium,
+    /// and whether the shape is turned inside out.
     pub numbers: BTreeMap<([Option<Key>; 3], bool), Option<u32>>,
-    /// Meshes of files, by name and how they are turned.
+    /// Meshes by file name and the changes made to them.
     pub meshes: BTreeMap<String, Option<Arc<MeshData>>>,
-    /// What shape groups hold, and how many objects that is.
+    /// Contents of shape groups, with their number of objects.
     pub groups: BTreeMap<Key, (Rc<Group>, usize)>,
     pub count: usize,
-    /// Whether the shape at hand is turned inside out: the index inside of its glass is outside.
+    /// True if the current shape is turned inside out: the interior index of its glass is outside.
     pub inside_out: bool,
     pub infinite: Option<Infinite>,
-    /// Whether light that was scattered is not to be seen.
+    /// True if scattered light is not rendered (`max_depth` below 2).
     pub emitters_only: bool,
     pub scene: Scene,
 }
@@ -60,7 +61,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The scene of its plugins.
+    /// Converts the plugins to a scene.
     pub fn read(mut self, all: &Plugin) -> Scene {
         let mut sensors = Vec::new();
         for (property, plugin) in self.parts(all, None) {
@@ -77,7 +78,7 @@ impl<'a> Reader<'a> {
                 "emitter" => self.emitter(&plugin),
                 "sensor" => sensors.push(plugin),
                 "integrator" => self.integrator(&plugin, 0),
-                // What nothing refers to has no place: it is not looked at.
+                // Ignore plugins without a place, such as materials: shapes refer to them.
                 _ => {}
             }
         }
@@ -89,14 +90,14 @@ impl<'a> Reader<'a> {
         }
         if self.scene.root.is_none() && !self.said.has_errors() {
             let at = Span { end: all.at.start, ..all.at };
-            let warning = Diagnostic::warning("the file has no shapes that can be shown");
+            let warning = Diagnostic::warning("the file has no visible shapes");
             self.said.push(warning.code("no-objects").at(at));
         }
         self.scene
     }
 
-    /// All plugins inside of one, of some tags and through such, each once. Nothing is told, and
-    /// nothing counts as used.
+    /// Plugins of the given classes that are reachable from a plugin through such plugins, each
+    /// once. Reports nothing and marks nothing as used.
     pub fn reachable(&self, plugin: &Plugin, classes: &[&str]) -> Vec<Rc<Plugin>> {
         let part = |property: &Property| match &property.value {
             Value::Plugin(part) => Some(part.clone()),
@@ -121,7 +122,7 @@ impl<'a> Reader<'a> {
         Pictures { input: self.input, said: self.said }
     }
 
-    /// The plugins inside another, of a class or of all, in their order.
+    /// Child plugins in their order, of one class or of any.
     pub fn parts<'p>(&self, plugin: &'p Plugin, class: Option<&str>) -> Vec<(&'p Property, Rc<Plugin>)> {
         let found = plugin.properties.iter().filter_map(|property| {
             let part = self.part(property)?;
@@ -130,12 +131,12 @@ impl<'a> Reader<'a> {
         found.inspect(|(property, _)| property.used.set(true)).collect()
     }
 
-    /// The plugin of the property of a name.
+    /// Plugin of a named property.
     pub fn named_part(&self, plugin: &Plugin, name: &'static str) -> Option<Rc<Plugin>> {
         plugin.get(name).and_then(|property| self.part(property))
     }
 
-    /// The plugin of a property.
+    /// Plugin of a property.
     pub fn part(&self, property: &Property) -> Option<Rc<Plugin>> {
         match &property.value {
             Value::Plugin(plugin) => Some(plugin.clone()),
@@ -143,7 +144,7 @@ impl<'a> Reader<'a> {
                 let found = self.loader.plugins.get(id).cloned();
                 if found.is_none() {
                     let help = meant(id, self.loader.plugins.keys().map(String::as_str));
-                    let message = format!("there is nothing with the id `{id}`");
+                    let message = format!("no plugin has the id `{id}`");
                     if !property.used.replace(true) {
                         self.said.bad_with(property.at, message, help);
                     }
@@ -154,7 +155,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whether this is too deep: plugins may refer to each other in a circle.
+    /// Reports nesting beyond [`DEEPEST`], for example of plugins that refer to each other in a
+    /// circle.
     pub fn too_deep(&self, depth: u32, at: Span) -> bool {
         if depth > DEEPEST {
             self.said.bad(at, format!("plugins are nested more than {DEEPEST} deep: does one refer to itself?"));
@@ -162,17 +164,17 @@ impl<'a> Reader<'a> {
         depth > DEEPEST
     }
 
-    /// Whether so many objects more are allowed.
+    /// Counts `more` objects; returns false and reports an error if the limit is exceeded.
     pub fn room_for(&mut self, more: usize, at: Span) -> bool {
         let before = self.count;
         self.count = self.count.saturating_add(more);
         if before <= MAX_OBJECTS && self.count > MAX_OBJECTS {
-            self.said.bad(at, format!("more than {MAX_OBJECTS} objects, those of instances counted, are too many"));
+            self.said.bad(at, format!("too many objects: more than {MAX_OBJECTS}, counting those of every instance"));
         }
         self.count <= MAX_OBJECTS
     }
 
-    /// Adds an object to others.
+    /// Adds an object to a list.
     pub fn add(&mut self, objects: &mut Vec<Object>, object: Object) {
         if self.room_for(1, object.span) {
             objects.push(object);

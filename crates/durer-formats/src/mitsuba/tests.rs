@@ -1,4 +1,4 @@
-//! Mitsuba's files: what is read of them, conventions in closed form, and errors with their places.
+//! Tests of the Mitsuba reader: syntax, conventions against closed forms, and places of errors.
 
 mod bright;
 mod conventions;
@@ -14,20 +14,20 @@ fn read(text: &str) -> (Option<Scene>, Vec<String>) {
     read_in(&std::env::temp_dir(), "scene.xml", text)
 }
 
-/// Elements inside of a scene, of which nothing is to be said.
+/// Reads elements inside a scene and expects no diagnostics.
 fn clean(inner: &str) -> Scene {
     let (scene, told) = read(&format!("<scene version='3.0.0'>{inner}</scene>"));
     assert_eq!(told, [""; 0], "{inner}");
     scene.unwrap()
 }
 
-/// All objects with a node of their own, in their order.
+/// Objects with a shape, in order.
 fn objects(scene: &Scene) -> Vec<&Object> {
     fn gather<'a>(object: &'a Object, all: &mut Vec<&'a Object>) {
         match &object.node {
             Node::Group(group) => group.objects.iter().for_each(|object| gather(object, all)),
             Node::Transform(_, inner) => gather(inner, all),
-            // The ground of the studio.
+            // Ground of the default studio.
             Node::Primitive(Primitive::Plane(_)) => {}
             _ => all.push(object),
         }
@@ -37,13 +37,13 @@ fn objects(scene: &Scene) -> Vec<&Object> {
     all
 }
 
-/// The material of the first object.
+/// Material of the first object.
 fn material(scene: &Scene) -> &Material {
     &scene.materials[objects(scene)[0].material.unwrap() as usize].value
 }
 
 #[test]
-fn variables_includes_and_names_of_old() {
+fn variables_includes_and_old_names_are_read() {
     let folder = folder(&[
         ("a.xml", b"<scene version='3.0.0'><default name='r' value='3'/><default name='rr' value='5'/><include filename='sub/b.xml'/></scene>"),
         ("sub/b.xml", b"<scene><default name='r' value='7'/><shape type='sphere'><float name='radius' value='$r'/></shape>\
@@ -67,33 +67,33 @@ fn variables_includes_and_names_of_old() {
 }
 
 #[test]
-fn what_is_wrong_is_told_at_its_place() {
-    // What stands at the place, in the last of its occurrences, and what is told there.
+fn diagnostics_have_their_place() {
+    // Scene, text at whose last occurrence the diagnostic is, and the diagnostic.
     for (inner, there, expected) in [
         ("<shape type='sphere'><float name='radius' value='x'/></shape>", "x'/>", "error expected a number, found `x`"),
         ("<shape type='sphere'><float name='radius' value='-1'/></shape>", "-1", "error `radius` must be more than 0"),
         (
             "<shape type='sphere'><float name='radius' value='$a'/></shape>",
             "$a",
-            "error `$a` stands for nothing (write",
+            "error the variable `$a` is undefined (write",
         ),
         (
             "<shape type='spher'/>",
             "spher",
-            "warning the shape `spher` has no counterpart: it is left out (did you mean `sphere`?)",
+            "warning the shape `spher` has no counterpart: it is ignored (did you mean `sphere`?)",
         ),
         ("<shape/>", "shape", "error `<shape>` needs `type=\"...\"`"),
-        ("<shap type='sphere'/>", "shap", "error Mitsuba knows no `<shap>` (did you mean `shape`?)"),
-        ("<shape type='sphere'><ref id='m'/></shape>", "m'/>", "error there is nothing with the id `m`"),
+        ("<shap type='sphere'/>", "shap", "error unknown element `<shap>` (did you mean `shape`?)"),
+        ("<shape type='sphere'><ref id='m'/></shape>", "m'/>", "error no plugin has the id `m`"),
         (
             "<shape type='sphere'><float name='radus' value='2'/></shape>",
             "2'/>",
-            "warning the shape `sphere` has no `radus`: it is left out (did you mean `radius`?)",
+            "warning the shape `sphere` has no property `radus`: it is ignored (did you mean `radius`?)",
         ),
         (
             "<shape type='sphere'><bsdf type='measured'/></shape>",
             "measured",
-            "warning the material `measured` has no counterpart: matte grey is taken",
+            "warning the material `measured` has no counterpart: diffuse grey is used",
         ),
         (
             "<shape type='sphere'><float name='a' value='1'/><float name='a' value='2'/></shape>",
@@ -105,7 +105,7 @@ fn what_is_wrong_is_told_at_its_place() {
         (
             "<shape type='serialized'><string name='filename' value='none.serialized'/><integer name='shape_index' value='-1'/></shape>",
             "-1",
-            "error `shape_index` must be a whole number from 0 on",
+            "error `shape_index` must be an integer of 0 or more",
         ),
         (
             "<shape type='ply'><string name='filename' value='none.ply'/></shape>",
@@ -126,18 +126,18 @@ fn what_is_wrong_is_told_at_its_place() {
         (
             "<sensor type='perspective'><film type='hdrfilm'><string name='pixel_format' value='luminance'/></film></sensor>",
             "luminance",
-            "warning the pixels `luminance` have no counterpart: red, green and blue are written",
+            "warning the pixel format `luminance` has no counterpart: `rgb` is used",
         ),
         ("<sensor type='fisheye'/>", "fisheye", "warning the sensor `fisheye` has no counterpart"),
         (
             "<emitter type='constant'/><emitter type='constant'/>",
             "constant",
-            "error a scene has one light that is infinitely far away",
+            "error a scene may have only one infinite light",
         ),
         (
             "<shape type='sphere'><transform name='to_world'><scale value='0'/></transform></shape>",
             "scale",
-            "error after this the transform is not invertible",
+            "error this makes the transform not invertible",
         ),
         (
             "<shape type='sphere'><transform name='to_world'><turn/></transform></shape>",
@@ -147,7 +147,7 @@ fn what_is_wrong_is_told_at_its_place() {
         (
             "<shape type='sphere'><bsdf type='conductor'><string name='material' value='Gold'/></bsdf></shape>",
             "Gold",
-            "error there is no metal `Gold`",
+            "error unknown metal `Gold`",
         ),
         (
             "<shape type='sphere'><bsdf type='roughplastic'><string name='distribution' value='beckmann'/></bsdf></shape>",
@@ -157,18 +157,18 @@ fn what_is_wrong_is_told_at_its_place() {
         (
             "<shape type='sphere'><bsdf type='roughplastic'/></shape>",
             "roughplastic",
-            "warning without `distribution` Mitsuba means `beckmann`",
+            "warning the default distribution `beckmann` has no counterpart",
         ),
     ] {
         let text = format!("<scene>{inner}</scene>");
         let (_, told) = read(&text);
         let expected = format!("scene.xml:1:{} {expected}", 1 + text.rfind(there).unwrap());
-        assert!(told.iter().any(|line| line.starts_with(&expected)), "{expected}: {told:#?}");
+        assert!(told.iter().any(|line| line.starts_with(&expected)), "{expected}: {told:#?}"); // prose: keep
     }
 }
 
 #[test]
-fn what_is_wrong_is_told_once() {
+fn errors_are_reported_once() {
     let told = |inner: &str| read(&format!("<scene>{inner}</scene>")).1;
     for inner in [
         "<shape type='sphere'><float name='radius' value='$a'/></shape>",
@@ -177,7 +177,7 @@ fn what_is_wrong_is_told_once() {
         "<bsdf type='diffuse' id='$a'/>",
     ] {
         let told = told(inner);
-        assert!(told.len() == 1 && told[0].contains("`$a` stands for nothing"), "{told:?}");
+        assert!(told.len() == 1 && told[0].contains("the variable `$a` is undefined"), "{told:?}");
     }
     let told = told(
         "<shape type='ply'><string name='filename' value='none.ply'/><bsdf type='diffuse'/>\
@@ -188,8 +188,7 @@ fn what_is_wrong_is_told_once() {
 
 #[test]
 fn hostile_files_are_refused() {
-    // A circle of materials, of shapes, of files; a bomb of entities; much nesting; many instances
-    // of instances.
+    // Cycles of materials, shapes and files; an entity bomb; deep nesting; instances of instances.
     let (scene, told) = read(
         "<scene><bsdf type='twosided' id='a'><ref id='b'/></bsdf><bsdf type='twosided' id='b'><ref id='a'/></bsdf>\
         <shape type='sphere'><ref id='a'/></shape></scene>",
@@ -223,7 +222,7 @@ fn hostile_files_are_refused() {
 }
 
 #[test]
-fn parts_of_a_file_and_changed_bytes_cause_no_panic() {
+fn truncated_and_changed_files_never_panic() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds/xml/own.xml");
     let Ok(text) = std::fs::read(path) else { return };
     for end in (0..text.len()).step_by(7) {

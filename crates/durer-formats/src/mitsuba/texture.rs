@@ -1,4 +1,4 @@
-//! Textures: one value everywhere, or a picture.
+//! Textures: a constant or a picture.
 
 use super::plugin::{Plugin, Property};
 use super::state::Reader;
@@ -12,21 +12,22 @@ use durer_scene::scene::{Picture, PictureBytes};
 use durer_scene::texture::{Mapping, Wrap};
 use glam::DAffine3;
 
-/// What a texture is here.
+/// Texture: a constant or a picture.
 #[derive(Clone)]
 pub(super) enum Texture {
     Even(Color),
-    /// A picture, what multiplies it, and whether its bytes are numbers without a curve.
+    /// Picture, its factor, and true if its bytes are linear (`raw`).
     Picture(Picture, Color, bool),
 }
 
 impl Reader<'_> {
-    /// A property that may be a texture.
+    /// Value of a property that may be a texture.
     pub fn texture(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Texture {
         plugin.get(name).map_or(Texture::Even(usual), |property| self.texture_of(property, usual))
     }
 
-    /// The same with pictures brighter than 1, which are divided by their greatest number.
+    /// Value of a property that may be a picture brighter than 1; the picture is divided by its
+    /// greatest value. See [`Reader::texture`].
     pub fn bright_texture(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Texture {
         let bitmap = self.named_part(plugin, name).filter(|part| part.kind == "bitmap");
         let Some(bitmap) = bitmap else { return self.texture(plugin, name, usual) };
@@ -36,7 +37,7 @@ impl Reader<'_> {
         picture.map_or(Texture::Even(usual), |(picture, scale)| Texture::Picture(picture, Vec3::splat(scale), raw))
     }
 
-    /// A picture of colours whose bytes are numbers without a curve, if they are `raw`.
+    /// Picture with an sRGB curve; converts the picture if its bytes are linear (`raw`).
     pub fn without_curve(&self, picture: Picture, raw: bool, at: Span) -> Picture {
         if raw { self.pictures().recoded(&picture, at, true, |x| x).unwrap_or(picture) } else { picture }
     }
@@ -57,13 +58,13 @@ impl Reader<'_> {
                 self.bitmap(&texture).map(|picture| Texture::Picture(picture, Vec3::ONE, raw))
             }
             "checkerboard" => Some(self.checkerboard(&texture, [("color0", 0.4), ("color1", 0.2)])),
-            // Colours of vertices multiply what a material says.
+            // Vertex colours multiply the material's colour.
             "mesh_attribute" if texture.text(self.said, "name").is_some_and(|name| name == "vertex_color") => {
                 texture.known(&["scale"]);
                 Some(Texture::Even(Vec3::ONE))
             }
             other => {
-                let message = format!("the texture `{other}` has no counterpart: a middle value is taken");
+                let message = format!("the texture `{other}` has no counterpart: the default value is used");
                 let known = ["bitmap", "checkerboard", "mesh_attribute"];
                 let known = known.into_iter().filter(|word| *word != other);
                 let warning = durer_diag::Diagnostic::warning(message).code("NO_COUNTERPART").at(texture.at);
@@ -75,13 +76,13 @@ impl Reader<'_> {
         made.unwrap_or(Texture::Even(usual))
     }
 
-    /// A colour, and the picture that it multiplies.
+    /// Colour of a property, and the picture that it multiplies.
     pub fn colored(&mut self, plugin: &Plugin, name: &'static str, usual: f32) -> (Color, Option<FileName>) {
         match self.texture(plugin, name, Vec3::splat(usual)) {
             Texture::Even(color) => {
                 if color.min_element() < 0.0 {
                     self.said
-                        .once(plugin.place(name), format!("less than 0 of `{name}` has no counterpart: 0 is taken"));
+                        .once(plugin.place(name), format!("a negative `{name}` has no counterpart: 0 is used"));
                 }
                 (color.max(Vec3::ZERO), None)
             }
@@ -92,8 +93,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A number that may be a texture: what a change makes of the number, or 1 and what it makes of
-    /// the picture.
+    /// Number that may be a texture: `change` of the number, or 1 and the changed picture.
     pub fn pictured(
         &mut self,
         plugin: &Plugin,
@@ -107,11 +107,12 @@ impl Reader<'_> {
         }
     }
 
-    /// What a change makes of the numbers of a picture; `None` of what is no picture.
+    /// Picture of a property with `change` applied to its luminance; `None` if the property is not
+    /// a picture.
     pub fn numbers(&mut self, property: &Property, change: impl Fn(f32) -> f32) -> Option<FileName> {
         let fields = self.part(property).filter(|part| part.class == "texture" && part.kind == "checkerboard");
         let texture = match fields {
-            // Mitsuba exchanges the fields where it asks for a number.
+            // Mitsuba swaps the fields where it reads a number.
             Some(fields) => {
                 let made = self.checkerboard(&fields, [("color1", 0.2), ("color0", 0.4)]);
                 fields.finish(self.said);
@@ -127,31 +128,31 @@ impl Reader<'_> {
         Some(asset(&mut self.scene, picture, property.at))
     }
 
-    /// A number that may be a texture: of a picture the mean is taken.
+    /// Number that may be a texture; the mean of a picture.
     pub fn value(&self, plugin: &Plugin, name: &'static str, usual: f32) -> f32 {
         let color = self.color(plugin, name, Vec3::splat(usual));
         color.dot(LUMINANCE)
     }
 
-    /// A colour that may be a texture: of a picture the mean is taken.
+    /// Colour that may be a texture; the mean of a picture.
     pub fn color(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Color {
         match self.texture(plugin, name, usual) {
             Texture::Even(color) => color,
             Texture::Picture(picture, scale, _) => {
                 let at = plugin.place(name);
-                self.said.once(at, format!("`{name}` by a picture has no counterpart: its mean is taken"));
+                self.said.once(at, format!("a picture for `{name}` has no counterpart: its mean is used"));
                 self.pictures().mean(&picture, at).map_or(usual, |mean| mean * scale)
             }
         }
     }
 
-    /// The picture of a texture `bitmap`.
+    /// Picture of a `bitmap` texture.
     pub fn bitmap(&self, texture: &Plugin) -> Option<Picture> {
         let eight_bits = |name: &str, at| Some((self.pictures().eight_bits(name, at)?, 1.0));
         self.bitmap_as(texture, eight_bits).map(|(picture, _)| picture)
     }
 
-    /// The same as something makes it of the file, with what multiplies it.
+    /// Picture of a `bitmap` texture and its factor; `make` reads the file.
     fn bitmap_as(
         &self,
         texture: &Plugin,
@@ -170,34 +171,33 @@ impl Reader<'_> {
             "clamp" => [Wrap::Clamp; 2],
             other => {
                 let help = meant(other, ["repeat", "mirror", "clamp"]);
-                said.bad_with(texture.place("wrap_mode"), format!("there is no wrapping `{other}`"), help);
+                said.bad_with(texture.place("wrap_mode"), format!("unknown wrap mode `{other}`"), help);
                 return None;
             }
         };
         mapping.nearest = match word("filter_type", "bilinear").as_str() {
-            // Mitsuba 0.6 has the last two.
+            // The last two are of Mitsuba 0.6.
             "bilinear" | "ewa" | "trilinear" => false,
             "nearest" => true,
             other => {
                 let help = meant(other, ["bilinear", "nearest"]);
-                said.bad_with(texture.place("filter_type"), format!("there is no filter `{other}`"), help);
+                said.bad_with(texture.place("filter_type"), format!("unknown filter `{other}`"), help);
                 return None;
             }
         };
         texture.known(&["raw", "accel", "format"]);
-        // Colours have no opacity here: `mask` has.
+        // A picture's alpha does not cut holes here; `mask` does.
         mapping.cutoff = Some(0.0);
         let (bytes, scale) = make(&self.loader.path(&name), texture.place("filename"))?;
         Some((Picture { bytes, mapping }, scale))
     }
 
-    /// How a texture lies: Mitsuba's coordinates of pictures go down from the upper border, as ours
-    /// do.
+    /// Mapping of a texture. In Mitsuba v grows downwards from the upper edge, as in our pictures.
     fn mapping(&self, texture: &Plugin) -> Mapping {
         let said = self.said;
         let mut map = texture.map(said, "to_uv");
         let old = |name, usual: f32| f64::from(texture.number(said, name).unwrap_or(usual));
-        // Of Mitsuba 0.6.
+        // Parameters of Mitsuba 0.6.
         let scale = glam::DVec3::new(old("uscale", 1.0), old("vscale", 1.0), 1.0);
         map *= DAffine3::from_scale(scale);
         map.translation += glam::DVec3::new(old("uoffset", 0.0), old("voffset", 0.0), 0.0);
@@ -205,14 +205,15 @@ impl Reader<'_> {
         Mapping { transform: [[x.x, y.x, t.x], [x.y, y.y, t.y]], ..Mapping::default() }
     }
 
-    /// Fields of half a unit, as a picture of four texels; the first lies at the origin.
+    /// Checkerboard with fields of half a unit, as a picture of 2 x 2 texels; the first field is at
+    /// the origin.
     fn checkerboard(&self, texture: &Plugin, fields: [(&'static str, f32); 2]) -> Texture {
         let mapping = Mapping { nearest: true, ..self.mapping(texture) };
         let [one, other] = fields.map(|(name, usual)| {
             let made = self.texture(texture, name, Vec3::splat(usual));
             if matches!(made, Texture::Picture(..)) {
                 let at: Span = texture.place(name);
-                self.said.once(at, "a picture in a field has no counterpart: the field has one colour");
+                self.said.once(at, "a picture in a field has no counterpart: the default colour is used");
             }
             match made {
                 Texture::Even(color) => color,

@@ -1,4 +1,4 @@
-//! Transforms: what is written first acts first.
+//! Transforms. The first element is applied first.
 
 use super::load::{Broken, Loader, numbers};
 use crate::said::meant;
@@ -10,7 +10,7 @@ use glam::{DAffine3, DMat3, DMat4, DVec3};
 const KNOWN: [&str; 6] = ["translate", "rotate", "scale", "matrix", "lookat", "lookAt"];
 
 impl Loader<'_> {
-    /// The map of a `<transform>`.
+    /// Map of a `<transform>`.
     pub(super) fn transform(&mut self, xml: &mut Xml) -> Result<DAffine3, Broken> {
         let mut map = DAffine3::IDENTITY;
         while let Some(tag) = self.next_leaf(xml)? {
@@ -18,7 +18,7 @@ impl Loader<'_> {
             map = step * map;
             let finite = |map: &DAffine3| map.to_cols_array().iter().all(|x| (*x as f32).is_finite());
             if !finite(&map) || map.matrix3.determinant() == 0.0 || !finite(&map.inverse()) {
-                self.bad(tag.at, "after this the transform is not invertible", None);
+                self.bad(tag.at, "this makes the transform not invertible", None);
                 map = DAffine3::IDENTITY;
             }
         }
@@ -26,7 +26,7 @@ impl Loader<'_> {
     }
 }
 
-/// What Rodrigues's formula makes of an axis of any length.
+/// Matrix of Rodrigues' formula for an axis of any length. It is a rotation only for length 1.
 fn stretched(axis: DVec3, degrees: f64) -> DMat3 {
     let (sin, cos) = fp::sin_cos_degrees(degrees);
     let across = DMat3::from_cols(
@@ -38,7 +38,7 @@ fn stretched(axis: DVec3, degrees: f64) -> DMat3 {
     DMat3::from_diagonal(DVec3::splat(cos)) + across * sin + along * (1.0 - cos)
 }
 
-/// The axes that Mitsuba gives a direction, which is the third.
+/// Mitsuba's orthonormal basis around a direction, the third axis.
 ///
 /// Source: Duff and others, *Building an Orthonormal Basis, Revisited*, JCGT 6(1), 2017.
 pub(super) fn frame(n: DVec3) -> DMat3 {
@@ -56,7 +56,7 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
     match tag.name {
         "translate" => loader.triple(tag, 0.0).map(DAffine3::from_translation),
         "scale" => {
-            // One number is for all three.
+            // A single number is for all three axes.
             let one = match tag.get("value") {
                 Some(value) => numbers(&loader.substituted(value)?),
                 None => None,
@@ -70,14 +70,14 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
             let [angle] = loader.numbers(&loader.attribute(tag, "angle")?)?;
             let axis = loader.triple(tag, 0.0)?;
             if axis == DVec3::ZERO {
-                loader.bad(tag.at, "a rotation needs an axis, `x=\"1\"` say", None);
+                loader.bad(tag.at, "a rotation needs an axis, for example `x=\"1\"`", None);
                 return None;
             }
             let turned = MatrixOp::Rotate(axis.normalize().as_vec3(), angle as f32).matrix();
             if loader.is_old || (axis.length() - 1.0).abs() < 1e-4 {
                 return Some(turned);
             }
-            loader.warn(tag.at, "the axis of this rotation is not of length 1: things are stretched, as in Mitsuba 3");
+            loader.warn(tag.at, "the axis of this rotation is not of length 1: it also scales, as in Mitsuba 3");
             Some(DAffine3::from_mat3(stretched(axis, angle)))
         }
         "matrix" => {
@@ -102,11 +102,11 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
             let (origin, target) = (point("origin")?, point("target")?);
             let forward = (target - origin).try_normalize();
             let up = if tag.get("up").is_some() { point("up")? } else { DVec3::ZERO };
-            // Where nothing is up, it is the first axis of Mitsuba's around the direction.
+            // Without `up`, it is the first axis of Mitsuba's basis around the direction.
             let up = if up == DVec3::ZERO { frame(forward.unwrap_or(DVec3::Z)).x_axis } else { up };
             let left = forward.and_then(|forward| up.cross(forward).try_normalize());
             let (Some(forward), Some(left)) = (forward, left) else {
-                loader.bad(tag.at, "`origin`, `target` and `up` must not lie on a line", None);
+                loader.bad(tag.at, "the direction from `origin` to `target` must have a length and not be along `up`", None);
                 return None;
             };
             let axes = DMat3::from_cols(left, forward.cross(left), forward);
@@ -124,8 +124,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn axes_of_any_length_stretch_as_in_mitsuba_3() {
-        // As Mitsuba 3.9 gives `rotate([1, 2, .5], 40)`, by columns.
+    fn rotation_about_axis_of_any_length_is_that_of_mitsuba_3() {
+        // Columns of `rotate([1, 2, .5], 40)` in Mitsuba 3.9.
         let theirs = [
             1.0,
             0.789_304_9,

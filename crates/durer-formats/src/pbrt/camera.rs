@@ -1,4 +1,4 @@
-//! Film, camera, sampler and integrator: what the picture is.
+//! Film, camera, sampler and integrator.
 
 use super::language::Language;
 use super::params::Params;
@@ -11,12 +11,12 @@ use durer_scene::camera::{
 use durer_scene::math::fp;
 use glam::{DAffine3, DVec2, DVec3};
 
-/// The size of a film that does not say it, in pbrt-v4 and in pbrt-v3.
+/// Default resolution of a film in pbrt-v4 and in pbrt-v3.
 const SIZE: (u32, u32) = (1280, 720);
 const OLD_SIZE: (u32, u32) = (640, 480);
 
-/// A camera in the world: its place and axes, to the right, upwards and forwards, as long as a unit
-/// of its own.
+/// Camera in world space: its position and its right, up and forward axes. The length of an axis is
+/// one unit of camera space.
 struct Placed {
     center: DVec3,
     axes: [DVec3; 3],
@@ -28,19 +28,19 @@ impl Placed {
         Placed { center: to_world.translation, axes: [m.x_axis, m.y_axis, m.z_axis] }
     }
 
-    /// Which side of the picture is right for somebody who looks along a direction.
+    /// Handedness of a picture for a viewer who looks along `forward`.
     fn handedness(right: DVec3, up: DVec3, forward: DVec3) -> Handedness {
         if forward.cross(up).dot(right) < 0.0 { Handedness::Left } else { Handedness::Right }
     }
 }
 
-/// First column and row, columns and rows.
+/// First column, first row, number of columns and number of rows.
 type Part = (u32, u32, u32, u32);
 
-/// The part of a film that is made.
+/// Crop window of a film.
 ///
-/// Source: *Physically Based Rendering*, 4th edition, section 5.4.2: pixels from, to, from, to, or
-/// shares of the sides that are rounded up; it ends before the second and the fourth.
+/// Source: *Physically Based Rendering*, 4th edition, section 5.4.2: `pixelbounds` in pixels or
+/// `cropwindow` in fractions, rounded up; x from, to, y from, to. The ends are excluded.
 fn crop(params: &Params, (width, height): (u32, u32)) -> Option<Part> {
     let sides = [width, width, height, height].map(f64::from);
     let mut part = [0.0, sides[0], 0.0, sides[2]];
@@ -63,14 +63,14 @@ fn crop(params: &Params, (width, height): (u32, u32)) -> Option<Part> {
     given.map(|_| (left, top, right - left, bottom - top))
 }
 
-/// The part of a plane before the camera that is seen, y upwards.
+/// Visible part of the plane in front of the camera, y up.
 struct Window {
     middle: DVec2,
     half: DVec2,
 }
 
 impl Reader<'_> {
-    /// Makes a camera of what was said of it, for the film.
+    /// Creates the scene's camera from the camera and film directives.
     pub fn frame(&mut self) {
         let ((width, height), crop) = self.film_size();
         let Some(asked) = self.camera.take() else { return };
@@ -78,12 +78,12 @@ impl Reader<'_> {
         self.scene.wishes.crop = crop;
         let params = self.params_of(&asked);
         if asked.transforms.moves() {
-            self.said.once(asked.at, "motion has no counterpart: all stands as when the shutter opens");
+            self.said.once(asked.at, "motion has no counterpart: everything stays where it is when the shutter opens");
         }
         let placed = Placed::new(asked.transforms.maps[0].inverse());
         let [a, b, c] = placed.axes.map(DVec3::normalize_or_zero);
         if a.dot(b).abs().max(a.dot(c).abs()).max(b.dot(c).abs()) > 1e-4 {
-            self.said.other(asked.at, "the camera's transform is sheared: it looks straight ahead instead");
+            self.said.other(asked.at, "a sheared camera has no counterpart: perpendicular axes are used");
         }
         let camera = match asked.kind.as_str() {
             "perspective" => Some(self.perspective(&placed, &params, (width, height), None)),
@@ -91,8 +91,8 @@ impl Reader<'_> {
             "spherical" => Some(self.spherical(&placed, &params)),
             "environment" if self.language == Language::Third => Some(self.spherical(&placed, &params)),
             "realistic" => {
-                let what = "a camera of lenses has no counterpart: one with a field of view of 38 degrees across the film's \
-                            diagonal is taken";
+                let what = "a realistic camera has no counterpart: a field of view of 38 degrees across the film's \
+                            diagonal is used";
                 self.said.other(asked.at, what);
                 params.known(&["lensfile", "aperturediameter", "focusdistance", "aperture", "scale"]);
                 let diagonal = DVec2::new(f64::from(width), f64::from(height));
@@ -101,7 +101,7 @@ impl Reader<'_> {
             }
             other => {
                 let help = meant(other, ["perspective", "orthographic", "spherical", "realistic"]);
-                self.said.bad_with(asked.at, format!("there is no camera `{other}`"), help);
+                self.said.bad_with(asked.at, format!("unknown camera `{other}`"), help);
                 None
             }
         };
@@ -111,7 +111,7 @@ impl Reader<'_> {
         self.scene.camera_span = asked.at;
     }
 
-    /// Its columns and rows, and the part of it that is made.
+    /// Resolution of the film and its crop window.
     fn film_size(&self) -> ((u32, u32), Option<Part>) {
         let third = self.language == Language::Third;
         let usual = if third { OLD_SIZE } else { SIZE };
@@ -120,7 +120,7 @@ impl Reader<'_> {
         let kinds = if third { &["image"][..] } else { &["rgb", "gbuffer", "spectral"][..] };
         if !kinds.contains(&film.kind.as_str()) {
             let help = meant(&film.kind, kinds.iter().copied());
-            self.said.bad_with(film.at, format!("there is no film `{}`", film.kind), help);
+            self.said.bad_with(film.at, format!("unknown film `{}`", film.kind), help);
         }
         let side = |name: &'static str, usual: u32| match params.whole(name) {
             Some(value) if (1..=1 << 20).contains(&value) => value as u32,
@@ -132,13 +132,13 @@ impl Reader<'_> {
         };
         let (width, height) = (side("xresolution", usual.0), side("yresolution", usual.1));
         if u64::from(width) * u64::from(height) > MAX_PIXELS {
-            params.said.bad(film.at, format!("{width} x {height} pixels are too many"));
+            params.said.bad(film.at, format!("too many pixels: {width} x {height}"));
         }
         if let Some(sensor) = params.text("sensor").filter(|sensor| *sensor != "cie1931") {
-            let what = format!("the sensor `{sensor}` has no counterpart: the eye's, `cie1931`, is taken");
+            let what = format!("the sensor `{sensor}` has no counterpart: `cie1931` is used");
             params.said.other(params.place("sensor"), what);
         }
-        params.left_out(&["whitebalance"], "light keeps its colour");
+        params.left_out(&["whitebalance"], "colours are not white-balanced");
         let crop = crop(&params, (width, height));
         let unseen = ["filename", "diagonal", "iso", "maxcomponentvalue", "savefp16", "coordinatesystem"];
         params.known(&unseen);
@@ -150,11 +150,11 @@ impl Reader<'_> {
         ((width, height), crop)
     }
 
-    /// What the film makes of radiance 1: how long the shutter is open, times ISO over 100.
+    /// Factor from radiance to pixel values: shutter time times ISO / 100 in pbrt-v4, `scale` of
+    /// the film in pbrt-v3.
     ///
-    /// In pbrt-v3 its `scale`.
-    ///
-    /// Source: *Physically Based Rendering*, 4th edition, section 5.4.2, and 3rd edition, section 7.9.
+    /// Source: *Physically Based Rendering*, 4th edition, section 5.4.2, and 3rd edition, section
+    /// 7.9.
     pub fn exposure(&self) -> f32 {
         if self.language == Language::Third {
             let scale = self.film.as_ref().and_then(|film| self.params_of(film).float("scale"));
@@ -168,7 +168,7 @@ impl Reader<'_> {
         (open.unwrap_or(1.0) * film.unwrap_or(100.0) / 100.0).max(0.0)
     }
 
-    /// What is seen of the plane where the picture's shorter half is 1 long.
+    /// Screen window, in units of half the picture's shorter side.
     fn window(&self, params: &Params, (width, height): (u32, u32)) -> Window {
         let aspect = params.positive("frameaspectratio").unwrap_or(width as f32 / height as f32);
         let aspect = f64::from(aspect);
@@ -188,18 +188,19 @@ impl Reader<'_> {
         }
     }
 
-    /// Half the larger side, and by how much of that the middle lies aside; complains of pixels
-    /// that are not square.
+    /// Half the larger side, and the offset of the middle as a fraction of it. Warns of pixels that
+    /// are not square.
     fn larger(&self, window: &Window, (width, height): (u32, u32), params: &Params) -> (f64, DVec2) {
         let (x, y) = (window.half.x / f64::from(width), window.half.y / f64::from(height));
         if (x / y - 1.0).abs() > 2e-3 {
-            params.said.other(params.at, "the film's pixels are not square: the view across its larger side is taken");
+            params.said.other(params.at, "pixels that are not square have no counterpart: the view across the larger side is used");
         }
         let half = if width >= height { window.half.x } else { window.half.y };
         (half, window.middle / half)
     }
 
-    /// `half` is half the shorter side at distance 1, where no field of view says that.
+    /// Perspective camera. `half` is half the shorter side at distance 1 and replaces the field of
+    /// view.
     fn perspective(&self, placed: &Placed, params: &Params, size: (u32, u32), half: Option<f64>) -> Camera {
         let [a, b, c] = placed.axes;
         let (usual, mut window) = (half.map_or(90.0, |_| 90.0), self.window(params, size));
@@ -209,7 +210,7 @@ impl Reader<'_> {
             params.said.bad(params.place("fov"), "a field of view must be more than 0 and less than 180 degrees");
         }
         let scale = half.unwrap_or_else(|| fp::tan_f64(f64::from(fov.clamp(1e-3, 179.9)).to_radians() / 2.0));
-        // A camera whose own units are longer across than along sees more.
+        // A non-uniform scale of camera space widens the view.
         let across = scale * DVec2::new(a.length(), b.length()) / c.length();
         (window.half, window.middle) = (window.half * across, window.middle * across);
         let (half, shift) = self.larger(&window, size, params);
@@ -242,7 +243,7 @@ impl Reader<'_> {
         let middle = placed.center + window.middle.x * a + window.middle.y * b;
         window.half *= DVec2::new(a.length(), b.length());
         let (half, _) = self.larger(&window, size, params);
-        params.left_out(&["lensradius"], "without perspective everything is sharp");
+        params.left_out(&["lensradius"], "everything is in focus");
         params.known(&["focaldistance"]);
         let camera = OrthographicCamera {
             center: middle.as_vec3(),
@@ -255,13 +256,13 @@ impl Reader<'_> {
         Some(camera.into())
     }
 
-    /// The middle of the picture is where -x points.
+    /// Spherical camera. The middle of the picture is the direction -x.
     fn spherical(&self, placed: &Placed, params: &Params) -> Camera {
         let [a, b, c] = placed.axes;
         if self.language == Language::Third {
             params.known(&["frameaspectratio", "screenwindow", "lensradius", "focaldistance"]);
         } else if params.text("mapping").unwrap_or("equalarea") != "equirectangular" {
-            params.said.other(params.at, "the mapping `equalarea` has no counterpart: `equirectangular` is taken");
+            params.said.other(params.at, "the mapping `equalarea` has no counterpart: `equirectangular` is used");
         }
         EquirectangularCamera {
             center: placed.center.as_vec3(),
@@ -273,7 +274,7 @@ impl Reader<'_> {
         .into()
     }
 
-    /// Light scattered `maxdepth` times is scattered once less after the first time.
+    /// Reads the integrator. `maxdepth` counts the first scattering too; `bounces` does not.
     pub fn integrator(&mut self, asked: &Asked) {
         const OLD: [&str; 9] =
             ["path", "volpath", "bdpt", "mlt", "sppm", "ambientocclusion", "ao", "directlighting", "whitted"];
@@ -294,10 +295,10 @@ impl Reader<'_> {
         let known = if self.language == Language::Third { &OLD[..] } else { &KNOWN[..] };
         if !known.contains(&asked.kind.as_str()) {
             let help = meant(&asked.kind, known.iter().copied());
-            self.said.bad_with(asked.at, format!("there is no integrator `{}`", asked.kind), help);
+            self.said.bad_with(asked.at, format!("unknown integrator `{}`", asked.kind), help);
         } else if !asked.kind.ends_with("path") {
             let what =
-                format!("the integrator `{}` has no counterpart: paths from the camera are followed", asked.kind);
+                format!("the integrator `{}` has no counterpart: path tracing is used", asked.kind);
             self.said.push(durer_diag::Diagnostic::note(what).code("NO_COUNTERPART").at(asked.at));
         }
         match params.whole("maxdepth").unwrap_or(5) {
@@ -325,7 +326,7 @@ impl Reader<'_> {
         let known = if self.language == Language::Third { &OLD[..] } else { &KNOWN[..] };
         if !known.contains(&asked.kind.as_str()) {
             let help = meant(&asked.kind, known.iter().copied());
-            self.said.bad_with(asked.at, format!("there is no sampler `{}`", asked.kind), help);
+            self.said.bad_with(asked.at, format!("unknown sampler `{}`", asked.kind), help);
         }
         let samples = match (params.whole("xsamples"), params.whole("ysamples")) {
             (None, None) => params.whole("pixelsamples"),
@@ -334,7 +335,7 @@ impl Reader<'_> {
         match samples {
             Some(samples @ 1..=1_048_576) => self.scene.wishes.samples = Some(samples as u32),
             None => {}
-            Some(_) => self.said.bad(asked.at, "a pixel needs 1 to 1048576 samples"),
+            Some(_) => self.said.bad(asked.at, "samples per pixel must be from 1 to 1048576"),
         }
         params.known(&["pixelsamples", "randomization", "seed", "jitter"]);
         if self.language == Language::Third {

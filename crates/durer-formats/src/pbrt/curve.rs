@@ -1,7 +1,6 @@
-//! Curves with a width: round ones as tubes, ribbons as strips, both of triangles.
+//! Curves with a width: tubes and ribbons, tessellated into triangles.
 //!
-//! Source of meanings: *Physically Based Rendering*, 4th edition, section 6.7, and 3rd edition,
-//! section 3.7.
+//! Source: *Physically Based Rendering*, 4th edition, section 6.7, and 3rd edition, section 3.7.
 
 use super::params::Params;
 use crate::said::meant;
@@ -9,30 +8,30 @@ use durer_scene::shape::MeshData;
 use durer_scene::shape::tessellate::tube::{add_tube, of_spline, places, raised, ribbon, widened};
 use glam::{DVec3, DVec4};
 
-/// Points of one curve.
+/// Maximum number of control points of a curve.
 const MAX_POINTS: usize = 1 << 14;
 
-/// A curve, which may be one of very many.
+/// Tessellates a curve; with fewer sides if `many`.
 pub(super) fn mesh(params: &Params, reversed: bool, many: bool) -> Option<MeshData> {
     let said = params.said;
     params.known(&["splitdepth"]);
     let kind = params.text("type").unwrap_or("flat");
     if !["flat", "cylinder", "ribbon"].contains(&kind) {
         let help = meant(kind, ["flat", "cylinder", "ribbon"]);
-        said.bad_with(params.place("type"), format!("there is no curve of type `{kind}`"), help);
+        said.bad_with(params.place("type"), format!("unknown type of curve `{kind}`"), help);
         return None;
     }
     let pieces = pieces(params)?;
     let width = params.float("width").unwrap_or(1.0);
     let widths = [params.float("width0").unwrap_or(width), params.float("width1").unwrap_or(width)].map(f64::from);
     if widths.iter().any(|width| *width < 0.0) {
-        said.bad(params.at, "the width of a curve must not be less than 0");
+        said.bad(params.at, "the width of a curve must be 0 or more");
         return None;
     }
     let normals = params.triples("N").unwrap_or_default();
     if kind == "ribbon" && normals.len() != pieces.len() + 1 {
         let message = format!(
-            "a ribbon of {} pieces needs {} normals `N`, found {}",
+            "a ribbon of {} segments needs {} normals `N`, found {}",
             pieces.len(),
             pieces.len() + 1,
             normals.len()
@@ -41,7 +40,7 @@ pub(super) fn mesh(params: &Params, reversed: bool, many: bool) -> Option<MeshDa
         return None;
     }
     if kind == "flat" {
-        said.once(params.at, "flat curves turn to where they are seen from; here they are round");
+        said.once(params.at, "curves of type `flat` have no counterpart: round tubes are used");
     }
     let places = places(&widened(&pieces, widths), pieces.len());
     if places.len() < 2 {
@@ -58,7 +57,7 @@ pub(super) fn mesh(params: &Params, reversed: bool, many: bool) -> Option<MeshDa
     Some(data.oriented(reversed))
 }
 
-/// The pieces of a curve, as cubic ones of Bézier's.
+/// Segments of a curve as cubic Bézier curves.
 fn pieces(params: &Params) -> Option<Vec<[DVec3; 4]>> {
     let said = params.said;
     let Some(points) = params.triples("P") else {
@@ -76,22 +75,22 @@ fn pieces(params: &Params) -> Option<Vec<[DVec3; 4]>> {
         "bspline" => 1,
         other => {
             let help = meant(other, ["bezier", "bspline"]);
-            said.bad_with(params.place("basis"), format!("there is no basis `{other}`"), help);
+            said.bad_with(params.place("basis"), format!("unknown basis `{other}`"), help);
             return None;
         }
     };
     if points.len() <= degree || !(points.len() - 1 - degree).is_multiple_of(step) {
         let message = match basis {
             "bezier" => {
-                format!("{} points make no curve of degree {degree}: 1 and a multiple of {degree} do", points.len())
+                format!("{} points do not make a curve of degree {degree}: give 1 more than a multiple of {degree}", points.len())
             }
-            _ => format!("{} points make no curve of degree {degree}: more than {degree} do", points.len()),
+            _ => format!("{} points do not make a curve of degree {degree}: give more than {degree}", points.len()),
         };
         said.bad(params.place("P"), message);
         return None;
     }
     if points.len() > MAX_POINTS {
-        said.bad(params.place("P"), format!("more than {MAX_POINTS} points of a curve are too many"));
+        said.bad(params.place("P"), format!("too many points: a curve may have at most {MAX_POINTS}"));
         return None;
     }
     let points: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();

@@ -1,4 +1,4 @@
-//! The directives, one after the other.
+//! Execution of directives, in the order of the file.
 
 use super::language::Language;
 use super::lexer::{Lexer, Token};
@@ -13,7 +13,7 @@ use durer_scene::spectrum::space::RgbSpace;
 use glam::{DAffine3, DVec3};
 use std::rc::Rc;
 
-/// All directives, and whether a string follows them.
+/// Directives; true if a string follows.
 pub(super) const DIRECTIVES: [(&str, bool); 44] = [
     ("Accelerator", true),
     ("ActiveTransform", false),
@@ -55,14 +55,14 @@ pub(super) const DIRECTIVES: [(&str, bool); 44] = [
     ("TransformTimes", false),
     ("Translate", false),
     ("WorldBegin", false),
-    // Of pbrt-v3 and before.
+    // Only in pbrt-v3 and earlier.
     ("WorldEnd", false),
     ("SurfaceIntegrator", true),
     ("VolumeIntegrator", true),
     ("Renderer", true),
 ];
 
-/// Directives of the world, and of what comes before it.
+/// Directives allowed only after `WorldBegin`, and only before it.
 const OF_WORLD: [&str; 10] = [
     "AreaLightSource",
     "LightSource",
@@ -78,16 +78,16 @@ const OF_WORLD: [&str; 10] = [
 const BEFORE_WORLD: [&str; 8] =
     ["Accelerator", "Camera", "Film", "Integrator", "Option", "PixelFilter", "Sampler", "TransformTimes"];
 
-/// What `Attribute` may be said of, in the order of [`State::given`](super::state::State).
+/// Targets of `Attribute`, in the order of [`State::given`](super::state::State).
 const TARGETS: [&str; 5] = ["shape", "light", "material", "medium", "texture"];
 
-/// Files that are included, files in files, and scopes in scopes.
+/// Limits: number of included files, depth of includes, depth of scopes.
 const MAX_FILES: usize = 1 << 16;
 const DEEPEST_FILES: usize = 64;
 const DEEPEST_SCOPES: usize = 1 << 12;
 
 impl Reader<'_> {
-    /// The scene, if nothing is wrong with it.
+    /// Reads the whole file and returns the scene. Errors are in `said`.
     pub fn read(mut self) -> Scene {
         while !self.said.is_full() {
             let said = self.said;
@@ -98,8 +98,8 @@ impl Reader<'_> {
             };
             if found.token != Token::Word {
                 let message = match found.token {
-                    Token::Open | Token::Close => "a bracket stands here, and no parameter before it".to_string(),
-                    _ => "a string stands here, and no directive before it".to_string(),
+                    Token::Open | Token::Close => "unexpected bracket: no parameter comes before it".to_string(),
+                    _ => "unexpected string: no directive comes before it".to_string(),
                 };
                 said.bad(found.at, message);
                 self.skip();
@@ -125,12 +125,12 @@ impl Reader<'_> {
     }
 
     fn text(&mut self) -> &mut Lexer {
-        // A directive is only read while a file is open.
+        // A directive is only executed while a file is open.
         let last = self.texts.len() - 1;
         &mut self.texts[last].text
     }
 
-    /// Goes on to the next word that is a directive.
+    /// Skips to the next directive.
     fn skip(&mut self) {
         let said = self.said;
         let text = self.text();
@@ -143,7 +143,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The string after a directive.
+    /// String after a directive, with its place.
     fn name(&mut self, directive: Span) -> Option<(String, Span)> {
         let said = self.said;
         let text = self.text();
@@ -164,14 +164,14 @@ impl Reader<'_> {
         numbers(self.text(), directive, said)
     }
 
-    /// Does what a directive says; `None` where it cannot be read to its end.
+    /// Executes a directive; `None` if its arguments cannot be read.
     fn directive(&mut self, word: &str, at: Span) -> Option<()> {
         let said = self.said;
         if !self.in_world && OF_WORLD.contains(&word) {
             self.early.get_or_insert(at);
         }
         if self.in_world && BEFORE_WORLD.contains(&word) {
-            said.bad(at, format!("`{word}` must stand before `WorldBegin`"));
+            said.bad(at, format!("`{word}` must come before `WorldBegin`"));
         }
         match word {
             "Identity" => self.state.transforms.change(|_| DAffine3::IDENTITY),
@@ -190,7 +190,7 @@ impl Reader<'_> {
             },
             "LookAt" => match look_at(self.numbers(at)?) {
                 Some(map) => self.state.transforms.apply(map),
-                None => said.bad(at, "a camera cannot look at where it is, nor along its way up"),
+                None => said.bad(at, "the eye and the target of `LookAt` must differ, and `up` must not be along the view"),
             },
             "Transform" | "ConcatTransform" => {
                 let map = matrix(self.numbers(at)?, at, said);
@@ -209,14 +209,14 @@ impl Reader<'_> {
             "ReverseOrientation" => self.state.reversed = !self.state.reversed,
             "WorldBegin" => self.world_begin(at),
             "WorldEnd" if self.language == Language::Third => {}
-            "WorldEnd" => said.once(at, "`WorldEnd` is of pbrt-v3 and means nothing"),
+            "WorldEnd" => said.once(at, "`WorldEnd` is of pbrt-v3 and is ignored"),
             "ObjectEnd" => self.close(Scope::Object, at),
             _ => return self.named(word, at),
         }
         Some(())
     }
 
-    /// A directive after which a string stands.
+    /// Executes a directive that is followed by a string.
     fn named(&mut self, word: &str, at: Span) -> Option<()> {
         let (said, language) = (self.said, self.language);
         let (name, name_at) = self.name(at)?;
@@ -226,14 +226,14 @@ impl Reader<'_> {
                 Some(maps) => self.state.transforms.maps = *maps,
                 None => {
                     let help = meant(&name, self.systems.keys().map(String::as_str));
-                    said.bad_with(name_at, format!("there is no coordinate system `{name}`"), help);
+                    said.bad_with(name_at, format!("unknown coordinate system `{name}`"), help);
                 }
             },
             "ColorSpace" => match RgbSpace::named(&name) {
                 Some(space) => self.state.space = space,
                 None => {
                     let help = meant(&name, RgbSpace::names());
-                    said.bad_with(name_at, format!("there is no space of colours `{name}`"), help);
+                    said.bad_with(name_at, format!("unknown colour space `{name}`"), help);
                 }
             },
             "Include" | "Import" => self.include(name, name_at, word == "Import"),
@@ -260,7 +260,7 @@ impl Reader<'_> {
         Some(())
     }
 
-    /// A directive with a string and parameters.
+    /// Executes a directive that is followed by a string and parameters.
     fn with_params(&mut self, word: &str, name: String, at: Span, list: Vec<Rc<super::params::Param>>) {
         let keep = |reader: &Self, list| {
             let (transforms, space) = (reader.state.transforms, reader.state.space);
@@ -269,14 +269,14 @@ impl Reader<'_> {
         match word {
             "Attribute" => match TARGETS.iter().position(|target| *target == name) {
                 Some(target) => {
-                    // What is said later counts.
+                    // Later values replace earlier ones.
                     let given = &mut self.state.given[target];
                     given.retain(|old| list.iter().all(|new| new.name != old.name));
                     given.extend(list);
                 }
                 None => {
                     let help = meant(&name, TARGETS);
-                    self.said.bad_with(at, format!("`Attribute` knows no `{name}`"), help);
+                    self.said.bad_with(at, format!("unknown target `{name}` of `Attribute`"), help);
                 }
             },
             "Camera" => {
@@ -294,12 +294,12 @@ impl Reader<'_> {
             "MakeNamedMaterial" => self.make_named_material(name, at, list),
             "MakeNamedMedium" => self.make_named_medium(name, at, list),
             "Shape" => self.shape(&name, at, list),
-            // What finds hits and how pixels are weighed is ours.
+            // Ignore accelerators and pixel filters: they have no counterpart.
             _ => {}
         }
     }
 
-    /// The value of an `Option`, whose string is the parameter: it says nothing here.
+    /// Skips the value of an `Option`, whose string is its parameter. Options have no effect here.
     fn skip_value(&mut self) {
         let said = self.said;
         let text = self.text();
@@ -329,11 +329,11 @@ impl Reader<'_> {
 
     fn world_begin(&mut self, at: Span) {
         if self.in_world {
-            self.said.bad(at, "the world begins twice");
+            self.said.bad(at, "`WorldBegin` is given twice");
         }
         if let Some(early) = self.early {
-            let error = Diagnostic::error("this must stand after `WorldBegin`").code("bad-place").at(early);
-            self.said.push(error.related(at, "which is here"));
+            let error = Diagnostic::error("this must come after `WorldBegin`").code("bad-place").at(early);
+            self.said.push(error.related(at, "`WorldBegin` is here"));
         }
         self.in_world = true;
         self.state.transforms = super::transform::Transforms::default();
@@ -358,12 +358,12 @@ impl Reader<'_> {
             Some((open, ..)) if *open == scope => {}
             Some((open, _, begun)) if *open != Scope::Import => {
                 let error =
-                    Diagnostic::error(format!("`{end}` closes what is not open: something else was opened last"));
+                    Diagnostic::error(format!("`{end}` does not match the scope that is open"));
                 self.said.push(error.code("unclosed").at(at).related(*begun, "this is still open"));
                 return;
             }
             _ => {
-                let error = Diagnostic::error(format!("`{end}` closes nothing: nothing is open"));
+                let error = Diagnostic::error(format!("`{end}` without a scope to close"));
                 return self.said.push(error.code("unclosed").at(at));
             }
         }
@@ -389,11 +389,11 @@ impl Reader<'_> {
 
     fn instance(&mut self, name: &str, at: Span) {
         if self.defining.is_some() {
-            return self.said.bad(at, "objects cannot be shown inside objects: `ObjectEnd` must come first");
+            return self.said.bad(at, "objects cannot be instanced inside objects: add an `ObjectEnd` before");
         }
         let Some(group) = self.objects.get(name).cloned() else {
             let help = meant(name, self.objects.keys().map(String::as_str));
-            return self.said.bad_with(at, format!("there is no object `{name}`"), help);
+            return self.said.bad_with(at, format!("unknown object `{name}`"), help);
         };
         if !self.room_for(group.objects.len(), at) {
             return;
@@ -403,19 +403,19 @@ impl Reader<'_> {
         self.add(object);
     }
 
-    /// Begins with a file that is asked for.
+    /// Opens an included or imported file.
     fn include(&mut self, name: String, at: Span, imported: bool) {
         if let Some(open) = self.texts.iter().find(|open| open.name == name) {
             let error = Diagnostic::error(format!("`{name}` includes itself")).code("bad-value").at(at);
             let own = open.at.start == 0 && open.at.end == 0;
-            return self.said.push(if own { error } else { error.related(open.at, "it is asked for here first") });
+            return self.said.push(if own { error } else { error.related(open.at, "it is first included here") });
         }
         self.included += 1;
         if self.included > MAX_FILES {
-            return self.said.bad(at, format!("more than {MAX_FILES} files are too many"));
+            return self.said.bad(at, format!("too many files: more than {MAX_FILES} are included"));
         }
         if self.texts.len() >= DEEPEST_FILES {
-            return self.said.bad(at, format!("files include each other more than {DEEPEST_FILES} deep"));
+            return self.said.bad(at, format!("includes are nested more than {DEEPEST_FILES} deep"));
         }
         let bytes = match self.input.source.read_unpacked(&name) {
             Ok(bytes) => bytes,
@@ -443,7 +443,7 @@ impl Reader<'_> {
         if !open.imported {
             return;
         }
-        // What an imported file changed is forgotten.
+        // Restore the state from before the import.
         while let Some((scope, state, at)) = self.stack.pop() {
             if scope == Scope::Import {
                 self.state = state;
@@ -470,7 +470,7 @@ impl Reader<'_> {
         self.frame();
         self.surround();
         if self.scene.root.is_none() && !self.said.has_errors() {
-            let warning = Diagnostic::warning("the file has no shapes that can be shown");
+            let warning = Diagnostic::warning("the file has no visible shapes");
             self.said.push(warning.code("no-objects"));
         }
     }

@@ -1,4 +1,4 @@
-//! Light from infinitely far away: even, or pictures of all directions, which become one picture of
+//! Infinite lights: constant, or pictures of all directions. They are merged into one picture of
 //! longitude and latitude.
 
 use super::made::{Infinite, Map};
@@ -11,10 +11,10 @@ use durer_scene::math::{Color, LUMINANCE, Vec2, Vec3, fp};
 use glam::{DAffine3, DVec3};
 use std::f32::consts::{FRAC_2_PI, PI, TAU};
 
-/// Rows of the picture that is made.
+/// Maximum number of rows of the merged picture.
 const MAX_ROWS: u32 = 2048;
 
-/// A picture with what turns and scales it.
+/// Picture of an infinite light with its transform and scale.
 struct Source {
     image: Image,
     to_light: DAffine3,
@@ -23,7 +23,7 @@ struct Source {
 }
 
 impl Reader<'_> {
-    /// Puts what is infinitely far away behind the scene.
+    /// Merges the infinite lights into the scene's environment.
     pub fn surround(&mut self) {
         let mut even = Color::ZERO;
         let mut sources = Vec::new();
@@ -45,7 +45,8 @@ impl Reader<'_> {
         }
         (self.scene.background.color, self.scene.background.ambient_light) = (even, Color::ZERO);
         let Some((name, at)) = first else { return };
-        // What is fine about a pole lies elsewhere in the picture that is made.
+        // Double the rows of a longitude picture: its fine detail near the poles lies elsewhere in
+        // the result.
         let finer = |source: &Source| source.image.height * if source.map == Map::Longitude { 2 } else { 1 };
         let rows = sources.iter().map(finer).max().unwrap_or(1).min(MAX_ROWS);
         let light = |dir: DVec3| even + sources.iter().map(|source| source.at(dir)).sum::<Color>();
@@ -55,7 +56,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A picture of all directions, and how they lie in it.
+    /// Reads a picture of all directions and its mapping.
     fn environment(&self, name: &str, at: Span, map: Map, memory: u64) -> Option<(Image, Map)> {
         let bytes = match self.input.source.read(name) {
             Ok(bytes) => bytes,
@@ -64,20 +65,20 @@ impl Reader<'_> {
                 return None;
             }
         };
-        // pbrt-v3 takes the bytes of a light's picture for light itself.
+        // pbrt-v3 reads the bytes of a light's picture as linear values.
         let decode = if map == Map::Longitude { image::decode_linear } else { image::decode_srgb };
         let read = Encoded::open(&bytes, name).and_then(|encoded| encoded.read(memory, decode));
         match read {
             Ok(picture) if map == Map::Longitude => Some((picture, map)),
             Ok(picture) if picture.width == picture.height => Some((picture, map)),
             Ok(picture) if picture.width == 2 * picture.height => {
-                let what = "this picture is twice as wide as high: it is taken for longitude and latitude, as pbrt-v3 has them, \
-                            z upwards";
+                let what = "this picture is twice as wide as high: it is read as longitude and latitude, as in pbrt-v3, \
+                            with z up";
                 self.said.other(at, what);
                 Some((picture, Map::Longitude))
             }
             Ok(Image { width, height, .. }) => {
-                let message = format!("{width} x {height} pixels are no picture of all directions: it must be square");
+                let message = format!("an environment picture must be square, found {width} x {height} pixels");
                 self.said.bad_with(at, message, Some("pbrt's `imgtool makeequiarea` makes such a picture".into()));
                 None
             }
@@ -90,8 +91,8 @@ impl Reader<'_> {
 }
 
 impl Source {
-    /// The light from a direction of the world: of the nearest texel, as pbrt-v4 has it, and
-    /// between texels, as pbrt-v3 has it.
+    /// Radiance from a direction in world space: the nearest texel as in pbrt-v4, bilinear as in
+    /// pbrt-v3.
     fn at(&self, dir: DVec3) -> Color {
         let dir = self.to_light.transform_vector3(dir).normalize_or(DVec3::Z).as_vec3();
         let (width, height) = (self.image.width, self.image.height);
@@ -112,22 +113,21 @@ impl Source {
     }
 }
 
-/// The place of a unit vector in the square onto which the sphere is laid with all areas in
-/// proportion.
+/// Position of a unit vector in the unit square of the equal-area mapping.
 ///
 /// Source: Petrik Clarberg, *Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD*, Journal of
 /// Graphics Tools 13(3), 2008.
 pub(super) fn equal_area(dir: Vec3) -> Vec2 {
     let Vec3 { x, y, z } = dir.abs();
     let radius = (1.0 - z).max(0.0).sqrt();
-    // The share of the quarter turn from x to y.
+    // Fraction of the quarter turn from x to y.
     let turn = if x == 0.0 && y == 0.0 { 0.0 } else { FRAC_2_PI * fp::atan2(y, x) };
     let upper = Vec2::new(radius * (1.0 - turn), radius * turn);
     let place = if dir.z < 0.0 { Vec2::new(1.0 - upper.y, 1.0 - upper.x) } else { upper };
     0.5 * (Vec2::new(place.x.copysign(dir.x), place.y.copysign(dir.y)) + 1.0)
 }
 
-/// The unit vector of a place in that square.
+/// Unit vector of a position in the square of the equal-area mapping.
 pub(super) fn of_equal_area(place: Vec2) -> Vec3 {
     let place = 2.0 * place - 1.0;
     let across = place.abs();
@@ -139,7 +139,7 @@ pub(super) fn of_equal_area(place: Vec2) -> Vec3 {
     Vec3::new((fp::cos(turn) * flat).copysign(place.x), (fp::sin(turn) * flat).copysign(place.y), z)
 }
 
-/// The illuminance that the upper half of a picture (z > 0) makes from above.
+/// Illuminance from the upper half (z > 0) of a picture on a surface facing +z.
 fn upper_illuminance(image: &Image, map: Map) -> f32 {
     let mut sum = 0.0_f64;
     let (width, height) = (image.width, image.height);

@@ -1,4 +1,4 @@
-//! Which pbrt a file is written for. Nothing in a file says so: its words do.
+//! Detection of the pbrt version. A file does not state it; the words in it decide.
 //!
 //! Sources: *Input File Format* of pbrt-v3 and of pbrt-v4, pbrt.org/fileformat-v3 and
 //! pbrt.org/fileformat-v4.
@@ -8,28 +8,28 @@ use crate::model::Input;
 use crate::said::Said;
 use durer_diag::Span;
 
-/// The edition of pbrt whose meaning words have.
+/// Version of pbrt that a file is written for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Language {
     Third,
     Fourth,
 }
 
-/// What a file is written in, and the word of it that says so; none where no word does, or one of a
-/// file that it includes.
+/// Detected language and the word that decided it; `by` is `None` by default or if the word is in
+/// an included file.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Decided {
     pub language: Language,
     pub by: Option<Span>,
 }
 
-/// Directives that only the third has.
+/// Directives only in pbrt-v3.
 const OLD_DIRECTIVES: [&str; 4] = ["Renderer", "SurfaceIntegrator", "VolumeIntegrator", "WorldEnd"];
 
-/// Directives that only the fourth has.
+/// Directives only in pbrt-v4.
 const NEW_DIRECTIVES: [&str; 4] = ["Attribute", "ColorSpace", "Import", "Option"];
 
-/// What stands after a directive in the third alone, and in the fourth alone.
+/// Names after a directive: the directives, names only in pbrt-v3, names only in pbrt-v4.
 const NAMES: [(&[&str], &[&str], &[&str]); 9] = [
     (&["Film"], &["image"], &["rgb", "gbuffer", "spectral"]),
     (&["Camera"], &["environment"], &["spherical"]),
@@ -64,7 +64,7 @@ const OLD_MATERIALS: [&str; 11] = [
     "uber",
 ];
 
-/// Materials that only the fourth has.
+/// Materials only in pbrt-v4.
 pub(super) const NEW_MATERIALS: [&str; 9] = [
     "coatedconductor",
     "coateddiffuse",
@@ -77,15 +77,15 @@ pub(super) const NEW_MATERIALS: [&str; 9] = [
     "thindielectric",
 ];
 
-/// Names of parameters, and types, that only the third has.
+/// Parameter names and types only in pbrt-v3.
 const OLD_PARAMETERS: [&str; 8] = ["Kd", "Ks", "Kr", "Kt", "bumpmap", "mapname", "namedmaterial1", "namedmaterial2"];
 const OLD_TYPES: [&str; 2] = ["color", "xyz"];
 
-/// Files that are looked into, and how deep they include each other.
+/// Maximum number of included files searched, and maximum depth of includes.
 const MAX_FILES: usize = 64;
 const DEEPEST: usize = 8;
 
-/// The first word that only one of the two has decides.
+/// Decides by the first word that only one of the two languages has.
 pub(super) fn decide(input: &Input) -> Decided {
     let mut left = MAX_FILES;
     let found = search(Lexer::new(input.bytes.clone(), input.file), input, &mut left, 0);
@@ -93,11 +93,12 @@ pub(super) fn decide(input: &Input) -> Decided {
     Decided { language, by }
 }
 
-/// What decides, and its place where that is in the first file: others have no number yet.
+/// Finds the deciding word, and its place if it is in the first file. Included files have no index
+/// yet.
 fn search(mut text: Lexer, input: &Input, left: &mut usize, depth: usize) -> Option<(Language, Option<Span>)> {
-    // What is wrong is told when the file is read.
+    // Ignore errors here: they are reported when the file is read.
     let said = Said::default();
-    // The directive, how many strings stood after it, and the last that is a parameter's type and
+    // Current directive, number of strings after it, and last string that is a parameter's type and
     // name.
     let (mut directive, mut names, mut head) = (String::new(), 0, String::new());
     while let Some(found) = text.next(&said) {
@@ -111,7 +112,7 @@ fn search(mut text: Lexer, input: &Input, left: &mut usize, depth: usize) -> Opt
                 if NEW_DIRECTIVES.contains(&word) {
                     return Some((Language::Fourth, here));
                 }
-                // Numbers begin with no letter.
+                // Numbers do not begin with a letter.
                 if word.starts_with(|first: char| first.is_ascii_uppercase()) {
                     (directive, names, head) = (word.to_string(), 0, String::new());
                 }
@@ -143,7 +144,8 @@ fn search(mut text: Lexer, input: &Input, left: &mut usize, depth: usize) -> Opt
     None
 }
 
-/// What a string says: the so-many-th after a directive, behind a parameter's type and name.
+/// Language implied by string number `number` after a directive; `head` is the preceding
+/// parameter's type and name.
 fn told(directive: &str, number: usize, head: &str, text: &str) -> Option<Language> {
     let mut words = text.split_ascii_whitespace();
     if let (Some(kind), Some(name), None) = (words.next(), words.next(), words.next()) {

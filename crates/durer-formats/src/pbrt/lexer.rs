@@ -1,16 +1,17 @@
-//! Words of a text: directives, numbers, strings in quotes, brackets. `#` begins a comment.
+//! Tokens of a scene file: words (directives and numbers), quoted strings, brackets. `#` begins a
+//! comment.
 
 use crate::report::shown;
 use crate::said::Said;
 use durer_diag::{Diagnostic, Span};
 use std::sync::Arc;
 
-/// A word.
+/// Kind of a token.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Token {
     /// A directive, a number, `true` or `false`.
     Word,
-    /// What stands in quotes.
+    /// Quoted string, with its escapes resolved.
     Text(String),
     /// `[`
     Open,
@@ -18,14 +19,14 @@ pub(super) enum Token {
     Close,
 }
 
-/// A word and where it is.
+/// Token with its place.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Found {
     pub token: Token,
     pub at: Span,
 }
 
-/// A text on its way to words.
+/// Lexer with one token of lookahead.
 pub(super) struct Lexer {
     bytes: Arc<[u8]>,
     file: u32,
@@ -34,23 +35,23 @@ pub(super) struct Lexer {
 }
 
 impl Lexer {
-    /// Of a file's bytes; there are less than 2^32 of them.
+    /// Makes a lexer of a file's bytes, fewer than 2^32. Skips a byte order mark.
     pub fn new(bytes: Arc<[u8]>, file: u32) -> Self {
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         Lexer { bytes, file, at, peeked: None }
     }
 
-    /// The bytes of a word.
+    /// Bytes of a token.
     pub fn bytes(&self, at: Span) -> &[u8] {
         &self.bytes[at.start as usize..at.end as usize]
     }
 
-    /// A word's letters, if they are such.
+    /// Text of a token; empty if it is not UTF-8.
     pub fn word(&self, at: Span) -> &str {
         std::str::from_utf8(self.bytes(at)).unwrap_or_default()
     }
 
-    /// A word as it is shown in messages.
+    /// Text of a token as shown in messages.
     pub fn shown(&self, at: Span) -> String {
         shown(self.bytes(at))
     }
@@ -59,7 +60,7 @@ impl Lexer {
         Span { file: self.file, start: start as u32, end: end as u32 }
     }
 
-    /// The next word, which stays the next.
+    /// Returns the next token without consuming it.
     pub fn peek(&mut self, said: &Said) -> Option<&Found> {
         if self.peeked.is_none() {
             self.peeked = self.read(said);
@@ -67,7 +68,7 @@ impl Lexer {
         self.peeked.as_ref()
     }
 
-    /// The next word.
+    /// Consumes and returns the next token.
     pub fn next(&mut self, said: &Said) -> Option<Found> {
         self.peeked.take().or_else(|| self.read(said))
     }
@@ -95,8 +96,7 @@ impl Lexer {
         Some(Found { token, at: self.span(start, self.at) })
     }
 
-    /// A string in quotes, whose place is without them. One that does not end in its line is an
-    /// error.
+    /// Reads a quoted string. Its span excludes the quotes. A string must end on its line.
     fn text(&mut self, start: usize, said: &Said) -> Found {
         let mut text = Vec::new();
         self.at = start + 1;
@@ -114,15 +114,15 @@ impl Lexer {
                         Some(letter @ (b'"' | b'\\' | b'\'')) => letter,
                         _ => {
                             let at = self.span(self.at, (self.at + 2).min(self.bytes.len()));
-                            said.bad(at, "`\\` is followed by b, f, n, r, t, a quote or another `\\`");
+                            said.bad(at, "unknown escape: `\\` must be followed by b, f, n, r, t, a quote or another `\\`");
                             b'\\'
                         }
                     });
-                    // What is no escape counts as it stands.
+                    // Skip the backslash and the next byte, also after an unknown escape.
                     self.at = (self.at + 2).min(self.bytes.len());
                 }
                 Some(b'\n') | None => {
-                    let error = Diagnostic::error("this string is not closed: it has no second `\"` in its line");
+                    let error = Diagnostic::error("this string is not closed: add a `\"` on the same line");
                     said.push(error.code("unclosed").at(self.span(start, self.at)));
                     let at = self.span(start + 1, self.at);
                     return Found { token: Token::Text(String::from_utf8_lossy(&text).into_owned()), at };

@@ -1,9 +1,9 @@
-//! Lights: at points, far away, and of surfaces. Their units are those of radiance; a pixel of
-//! value 1 shows radiance 1.
+//! Point, distant, infinite and area lights. Values are radiance: a pixel of value 1 shows radiance
+//! 1.
 //!
-//! Source of all meanings: *Physically Based Rendering*, 4th edition, chapter 12. What is given as
-//! a spectrum has luminance 1 times `scale`; `power` is luminous flux. In pbrt-v3 (3rd edition,
-//! chapter 12) a light is as strong as is written, and `scale` is a colour.
+//! Source: *Physically Based Rendering*, 4th edition, chapter 12. A spectrum has luminance 1 times
+//! `scale`; `power` is luminous flux. In pbrt-v3 (3rd edition, chapter 12) values are absolute and
+//! `scale` is a colour.
 
 use super::language::Language;
 use super::made::{AreaLight, Infinite, Map};
@@ -18,7 +18,7 @@ use glam::DVec3;
 use std::f32::consts::PI;
 use std::rc::Rc;
 
-/// The colour of a light by one of its parameters, with `scale`.
+/// Colour of a light from the parameter `name`, times `scale`.
 fn color(params: &Params, name: &'static str) -> Color {
     if params.language == Language::Third {
         return params.spectrum(name).map_or(Vec3::ONE, |spectrum| spectrum.plain()) * colored_scale(params);
@@ -27,13 +27,13 @@ fn color(params: &Params, name: &'static str) -> Color {
     color * params.float("scale").unwrap_or(1.0).max(0.0)
 }
 
-/// The `scale` of pbrt-v3, which is a colour. It passes over a number, and so do we.
+/// `scale` of pbrt-v3, a colour. A number is ignored, as in pbrt-v3.
 fn colored_scale(params: &Params) -> Color {
     match params.get("scale") {
         Some(param) if param.kind == Kind::Float => {
             params
                 .said
-                .once(param.at, "`scale` of a light is a colour in pbrt-v3, which passes over a number: so do we");
+                .once(param.at, "`scale` of a light is a colour in pbrt-v3: this number is ignored");
             Vec3::ONE
         }
         _ => params.spectrum("scale").map_or(Vec3::ONE, |spectrum| spectrum.plain()),
@@ -51,14 +51,14 @@ impl Reader<'_> {
         let aimed = || {
             let direction = direction.try_normalize();
             if direction.is_none() {
-                params.said.bad(params.place("to"), "a light must not be aimed at where it is");
+                params.said.bad(params.place("to"), "`to` of a light must differ from `from`");
             }
             direction.unwrap_or(DVec3::Z).as_vec3()
         };
         let third = self.language == Language::Third;
         let flux = || params.float("power").filter(|power| *power > 0.0);
         let power = if third { None } else { flux() };
-        // A light's colour is what a white matte surface shows: illuminance over pi.
+        // A light's colour here is the radiance of a white diffuse surface: illuminance over pi.
         let value: Light = match kind {
             "goniometric" | "projection" => {
                 let color = color(&params, "I") * exposure;
@@ -78,7 +78,7 @@ impl Reader<'_> {
                 }
                 let [outer, inner] = [cone[0], (cone[0] - cone[1]).max(0.0)];
                 let cosine = |degrees: f32| fp::sin_cos_degrees(f64::from(degrees)).1 as f32;
-                // Half of what is between the two cones.
+                // Count half of the solid angle between the two cones.
                 let solid_angle = PI * (2.0 - cosine(inner) - cosine(outer));
                 let strength = power.map_or(1.0, |power| power / solid_angle);
                 let color = color(&params, "I") * (strength * exposure / PI);
@@ -104,7 +104,7 @@ impl Reader<'_> {
             }
             other => {
                 let known = ["point", "distant", "spot", "goniometric", "projection", "infinite"];
-                return self.said.bad_with(at, format!("there is no light `{other}`"), meant(other, known));
+                return self.said.bad_with(at, format!("unknown light `{other}`"), meant(other, known));
             }
         };
         params.known(&["from", "to", "scale"]);
@@ -131,7 +131,7 @@ impl Reader<'_> {
             return self.infinite.push(infinite);
         }
         let illuminance = params.float("illuminance").filter(|e| *e > 0.0);
-        params.left_out(&["portal"], "light is looked for all around");
+        params.left_out(&["portal"], "the whole environment is sampled");
         let infinite = match params.text("filename") {
             Some(name) => {
                 let at = params.get("filename").map_or(params.at, |param| param.values_at);
@@ -151,14 +151,14 @@ impl Reader<'_> {
         if kind != "diffuse" && !(third && kind == "area") {
             return self.said.bad_with(
                 at,
-                format!("there is no light of surfaces `{kind}`"),
-                Some("there is `diffuse`".into()),
+                format!("unknown area light `{kind}`"),
+                Some("write `diffuse`".into()),
             );
         }
         let params = self.params(list, Some(LIGHT), at);
         let picture = if third { None } else { params.text("filename").map(str::to_string) };
         if picture.is_some() && params.get("L").is_some() {
-            self.said.bad(params.place("filename"), "a light has either `L` or `filename`");
+            self.said.bad(params.place("filename"), "a light takes either `L` or `filename`");
         }
         let light = AreaLight {
             radiance: color(&params, "L") * self.exposure(),

@@ -1,4 +1,4 @@
-//! What directives become: materials, textures, media, what shines.
+//! Results of directives: materials, textures, media and lights.
 
 use durer_diag::Span;
 use durer_scene::describe::FileName;
@@ -7,74 +7,74 @@ use durer_scene::math::Color;
 use durer_scene::scene::Picture;
 use glam::DAffine3;
 
-/// A material as written.
+/// Material as declared.
 pub(super) enum Made {
     Layers(Box<PrincipledMaterial>, Span),
     Hair(HairMaterial, Span),
-    /// Two others, by number, and the share of the first.
+    /// Mix of two materials by index, with the share of the first.
     Mix {
         parts: [usize; 2],
         share: f32,
-        /// A picture that multiplies the share.
+        /// Picture that multiplies the share.
         picture: Option<FileName>,
         depth: u32,
         pictured: bool,
         at: Span,
     },
-    /// What is not there at all.
+    /// Material of a surface that is not rendered.
     Nothing,
 }
 
-/// How much of a shape is there: everywhere, or by a picture.
+/// Opacity of a shape: a constant share, and a picture that multiplies it.
 #[derive(Debug)]
 pub(super) struct Opacity {
     pub share: f32,
     pub picture: Option<FileName>,
 }
 
-/// What a texture is here.
+/// Texture: a constant or a picture.
 #[derive(Clone)]
 pub(super) enum Texture {
     Even(Color),
-    /// A picture, and what multiplies it.
+    /// Picture and its factor.
     Picture(Picture, Color),
 }
 
-/// The light of a surface.
+/// Area light.
 #[derive(Clone, Debug)]
 pub(super) struct AreaLight {
-    /// Its radiance where no power is given; else the colour of its power.
+    /// Radiance; the colour of the power if `power` is given.
     pub radiance: Color,
-    /// Flux of each shape or triangle.
+    /// Flux of each shape or triangle, in lumens.
     pub power: Option<f32>,
     pub two_sided: bool,
-    /// The name of a picture that multiplies it.
+    /// Name of a picture that multiplies the radiance.
     pub picture: Option<String>,
     pub at: Span,
 }
 
-/// How directions lie in a picture of all of them.
+/// Mapping of directions to a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Map {
-    /// In a square, all areas in proportion: pbrt-v4's.
+    /// Equal-area square of pbrt-v4.
     EqualArea,
-    /// By longitude and latitude, z upwards: pbrt-v3's.
+    /// Longitude and latitude of pbrt-v3, z up.
     Longitude,
 }
 
-/// A light that is infinitely far away.
+/// Infinite light.
 pub(super) enum Infinite {
-    /// The same from everywhere.
+    /// Constant radiance.
     Even(Color),
     Picture {
         name: String,
         at: Span,
-        /// What multiplies it.
+        /// Factor on the picture's values.
         scale: Color,
         map: Map,
-        /// From the world's directions to the picture's.
+        /// Map from world space to the picture's space.
         to_light: DAffine3,
-        /// The illuminance that its upper half is to have.
+        /// Illuminance that the upper half is scaled to.
         illuminance: Option<f32>,
     },
 }

@@ -1,7 +1,7 @@
-//! Media: what is inside of shapes, and around the camera.
+//! Participating media: inside shapes and around the camera.
 //!
-//! Source of meanings and of the default coefficients: *Physically Based Rendering*, 4th edition,
-//! chapter 11. Coefficients are per unit of the world.
+//! Source, also of the default coefficients: *Physically Based Rendering*, 4th edition, chapter 11.
+//! Coefficients are per unit of world space.
 
 use super::language::Language;
 use super::made::Made;
@@ -19,10 +19,10 @@ use glam::{DAffine3, DQuat, DVec3};
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// What is scattered, as if evenly, and absorbed in a millimetre, for red, green and blue.
+/// Reduced scattering and absorption coefficients per millimetre, for red, green and blue.
 ///
-/// Source: Jensen, Marschner, Levoy and Hanrahan, *A Practical Model for Subsurface Light Transport*,
-/// SIGGRAPH 2001, table 5.
+/// Source: Jensen, Marschner, Levoy and Hanrahan, *A Practical Model for Subsurface Light
+/// Transport*, SIGGRAPH 2001, table 5.
 const MEASURED: [(&str, [f32; 3], [f32; 3]); 12] = [
     ("Apple", [2.29, 2.39, 1.97], [0.003, 0.0034, 0.046]),
     ("Chicken1", [0.15, 0.21, 0.38], [0.015, 0.077, 0.19]),
@@ -38,16 +38,16 @@ const MEASURED: [(&str, [f32; 3], [f32; 3]); 12] = [
     ("Wholemilk", [2.55, 3.21, 3.77], [0.0011, 0.0024, 0.014]),
 ];
 
-/// What is absorbed and scattered where nothing is written.
+/// Default absorption and scattering coefficients.
 const USUAL: [[f32; 3]; 2] = [[0.0011, 0.0024, 0.014], [2.55, 3.21, 3.77]];
 
-/// By the parameters `sigma_a`, `sigma_s`, `g` and `scale`, or by the name of something measured,
-/// which a parameter has.
+/// Medium of `sigma_a`, `sigma_s`, `g` and `scale`, or of a measured preset named by the parameter
+/// `preset`.
 pub(super) fn medium_of(params: &Params, preset: &'static str) -> Medium {
     with(params, preset, USUAL)
 }
 
-/// The same where nothing that is written means some absorption and scattering.
+/// Medium with the given default absorption and scattering. See [`medium_of`].
 fn with(params: &Params, preset: &'static str, [usual_a, usual_s]: [[f32; 3]; 2]) -> Medium {
     let scale = params.float("scale").unwrap_or(1.0).max(0.0);
     if let Some(name) = params.text(preset).filter(|name| !name.is_empty()) {
@@ -58,7 +58,7 @@ fn with(params: &Params, preset: &'static str, [usual_a, usual_s]: [[f32; 3]; 2]
                 return Medium { absorption, scattering, anisotropy: 0.0, density: None };
             }
             None => {
-                let message = format!("the medium `{name}` is not known here: its coefficients count");
+                let message = format!("the medium `{name}` is unknown: its coefficients are used");
                 params.said.once(params.place(preset), message);
             }
         }
@@ -67,7 +67,7 @@ fn with(params: &Params, preset: &'static str, [usual_a, usual_s]: [[f32; 3]; 2]
         let given = params.spectrum(name).map(|spectrum| spectrum.coefficient());
         scale * given.unwrap_or(Vec3::from_array(usual))
     };
-    params.left_out(&["Le", "Lescale", "Le_scale"], "the medium does not shine");
+    params.left_out(&["Le", "Lescale", "Le_scale"], "the medium emits no light");
     Medium {
         absorption: coefficient("sigma_a", usual_a),
         scattering: coefficient("sigma_s", usual_s),
@@ -89,29 +89,29 @@ impl Reader<'_> {
             "uniformgrid" | "heterogeneous" => self.grid(&name, &params),
             "rgbgrid" | "cloud" | "nanovdb" => {
                 let what = format!(
-                    "media of type `{kind}` have no counterpart: light goes through them as if they were not there"
+                    "media of type `{kind}` have no counterpart: they are ignored"
                 );
                 self.said.once(at, what);
                 None
             }
             other => {
                 let help = meant(other, ["homogeneous", "uniformgrid", "rgbgrid", "cloud", "nanovdb"]);
-                return self.said.bad_with(at, format!("there is no medium of type `{other}`"), help);
+                return self.said.bad_with(at, format!("unknown type of medium `{other}`"), help);
             }
         };
         if self.media.insert(name.clone(), medium).is_some() {
-            self.said.bad(at, format!("there is a medium `{name}` already"));
+            self.said.bad(at, format!("the medium `{name}` is already defined"));
         }
     }
 
-    /// A medium that is as dense as a grid says, whose values lie in the middles of cells.
+    /// Medium whose density is a grid of values at cell centres.
     fn grid(&mut self, name: &str, params: &Params) -> Option<Medium> {
         let usual = match params.language {
             Language::Third => USUAL,
             Language::Fourth => [[1.0; 3]; 2],
         };
         let medium = with(params, "preset", usual);
-        params.left_out(&["temperature", "temperaturescale", "temperatureoffset"], "the medium does not shine");
+        params.left_out(&["temperature", "temperaturescale", "temperatureoffset"], "the medium emits no light");
         let counts = ["nx", "ny", "nz"].map(|name| params.whole(name).unwrap_or(1));
         let corner = |name, usual| params.triple(name).unwrap_or(usual).as_dvec3();
         let (low, high) = (corner("p0", Vec3::ZERO), corner("p1", Vec3::ONE));
@@ -134,7 +134,7 @@ impl Reader<'_> {
             self.said.bad(place, format!("density {} is {}: it must be 0 or more", bad + 1, densities[bad]));
             return None;
         }
-        // Beyond the outermost values there is nothing: a shell of zeros says so.
+        // Surround the grid with zeros: the density is 0 outside.
         let [nx, ny, nz] = counts.map(|n| n as usize);
         let mut values = vec![0.0; (nx + 2) * (ny + 2) * (nz + 2)];
         for (i, row) in densities.chunks_exact(nx).enumerate() {
@@ -151,17 +151,17 @@ impl Reader<'_> {
         Some(Medium { density: Some(Density { name: FileName { path, span: place }, placed }), ..medium })
     }
 
-    /// What is inside and outside of shapes: it must have been made.
+    /// Sets the media inside and outside shapes; they must be defined.
     pub fn medium_interface(&mut self, names: &[String; 2], at: Span) {
         for name in names.iter().filter(|name| !name.is_empty() && !self.media.contains_key(*name)) {
             let help = meant(name, self.media.keys().map(String::as_str));
-            self.said.bad_with(at, format!("there is no medium `{name}`"), help);
+            self.said.bad_with(at, format!("unknown medium `{name}`"), help);
         }
         let [inside, outside] = names.clone().map(|name| (!name.is_empty()).then_some(name));
         (self.state.inside, self.state.outside) = (inside, outside);
     }
 
-    /// The number of the current material with what is inside of the shape.
+    /// Index of the current material, filled with the medium inside the shape.
     pub fn filled(&mut self) -> usize {
         let plain = self.state.material;
         let Some(name) = self.state.inside.clone() else { return plain };
@@ -181,7 +181,7 @@ impl Reader<'_> {
                 medium.fill(&mut m);
                 Made::Layers(m, *at)
             }
-            // Nothing gets into the others.
+            // Light does not enter other materials.
             _ => return plain,
         };
         self.materials.push(made);
@@ -190,7 +190,7 @@ impl Reader<'_> {
         number
     }
 
-    /// What the camera is in, as fog.
+    /// Sets the medium around the camera as fog.
     pub fn fog(&mut self, at: Span) {
         let Some(Some(medium)) = self.state.outside.as_ref().and_then(|name| self.media.get(name)).cloned() else {
             return;

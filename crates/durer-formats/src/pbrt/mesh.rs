@@ -1,4 +1,4 @@
-//! Meshes in the text.
+//! Meshes whose vertices are in the scene file.
 
 use super::params::Params;
 use durer_scene::math::{Vec2, Vec3};
@@ -7,10 +7,10 @@ use durer_scene::shape::tessellate::net::{self, Patches};
 use durer_scene::shape::tessellate::revolution;
 use durer_scene::shape::tessellate::subdivision::loop_surface;
 
-/// Triangles that one subdivided surface becomes at most. Tests make them all.
+/// Maximum number of triangles of a subdivided surface. Low in tests, which build them all.
 const MAX_TRIANGLES: usize = if cfg!(test) { 1 << 14 } else { 1 << 20 };
 
-/// What the corners of a mesh in the text have, and lists of them by `size`.
+/// Vertex attributes and faces of a mesh; each face has `size` indices.
 struct Written {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
@@ -18,7 +18,8 @@ struct Written {
     faces: Vec<Vec<u32>>,
 }
 
-/// Reads corners and faces of so many corners; `usual` are the corners of a mesh of one face.
+/// Reads vertices and faces of `size` corners. Without `indices`, `usual` are the corners of the
+/// only face.
 fn written(params: &Params, size: usize, usual: &[u32]) -> Option<Written> {
     let said = params.said;
     let Some(positions) = params.triples("P") else {
@@ -52,18 +53,18 @@ fn written(params: &Params, size: usize, usual: &[u32]) -> Option<Written> {
     };
     let place = params.get("indices").map_or(params.at, |param| param.values_at);
     if indices.len() % size != 0 {
-        said.bad(place, format!("`indices` has {} numbers: a multiple of {size} is needed", indices.len()));
+        said.bad(place, format!("`indices` has {} numbers: it must be a multiple of {size}", indices.len()));
         sound = false;
     }
     if let Some(wrong) = indices.iter().find(|&&i| i < 0 || i >= count as i64) {
-        said.bad(place, format!("`indices` has {wrong}, and there are points 0 to {}", count as i64 - 1));
+        said.bad(place, format!("`indices` has {wrong}, but points are numbered 0 to {}", count as i64 - 1));
         sound = false;
     }
     let faces = indices.chunks_exact(size).map(|face| face.iter().map(|&i| i as u32).collect()).collect();
     sound.then_some(Written { positions, normals, uvs, faces })
 }
 
-/// A `trianglemesh`.
+/// Reads a `trianglemesh`.
 pub(super) fn triangles(params: &Params, reversed: bool) -> Option<MeshData> {
     let Written { positions, normals, uvs, faces } = written(params, 3, &[0, 1, 2])?;
     let triangles: Vec<[u32; 3]> = faces.iter().map(|face| [face[0], face[1], face[2]]).collect();
@@ -73,15 +74,15 @@ pub(super) fn triangles(params: &Params, reversed: bool) -> Option<MeshData> {
     Some(data.oriented(reversed))
 }
 
-/// A `bilinearmesh`: patches of four corners, (0, 0), (1, 0), (0, 1) and (1, 1).
+/// Reads a `bilinearmesh`: patches of four corners at (u, v) = (0, 0), (1, 0), (0, 1) and (1, 1).
 pub(super) fn bilinear(params: &Params, reversed: bool) -> Option<MeshData> {
-    params.left_out(&["emissionfilename"], "the patch shines evenly");
+    params.left_out(&["emissionfilename"], "the patch emits evenly");
     let Written { positions, normals, uvs, faces } = written(params, 4, &[0, 1, 2, 3])?;
     let faces = faces.iter().map(|face| [face[0], face[1], face[2], face[3]]).collect();
     Some(net::bilinear(&Patches { positions, normals, uvs, faces }).oriented(reversed))
 }
 
-/// A `loopsubdiv` of at most `left` triangles.
+/// Reads a `loopsubdiv` and subdivides it into at most `left` triangles.
 pub(super) fn subdivided(params: &Params, reversed: bool, left: usize) -> Option<MeshData> {
     params.known(&["scheme"]);
     let levels = params.whole("levels").or_else(|| params.whole("nlevels")).unwrap_or(3);
@@ -93,13 +94,13 @@ pub(super) fn subdivided(params: &Params, reversed: bool, left: usize) -> Option
     let most = left.min(MAX_TRIANGLES);
     let (data, done) = loop_surface(&control, levels as u32, most);
     if i64::from(done) < levels {
-        let what = format!("more than {most} triangles are too many: it is subdivided {done} times");
+        let what = format!("more than {most} triangles: the surface is subdivided only {done} times");
         params.said.once(params.place("levels"), what);
     }
     Some(data.oriented(reversed))
 }
 
-/// An open tube, as flat strips with the normals of a round one.
+/// Open cylinder as flat strips with the normals of the round surface.
 pub(super) fn cylinder(params: &Params, reversed: bool) -> Option<MeshData> {
     let radius = params.positive("radius").unwrap_or(1.0);
     let (low, high) = (params.float("zmin").unwrap_or(-1.0), params.float("zmax").unwrap_or(1.0));

@@ -1,8 +1,9 @@
-//! Scenes of pbrt-v4 and of pbrt-v3: the whole language, and what of it has a counterpart here.
+//! Scenes of pbrt-v4 and pbrt-v3. Every directive is parsed; features without a counterpart here
+//! are reported.
 //!
-//! Sources: *Input File Format*, pbrt.org/fileformat-v4 and pbrt.org/fileformat-v3; Pharr, Jakob and
-//! Humphreys, *Physically Based Rendering*, 4th edition, 2023, and 3rd edition, 2016. A text changes a state, and what is written then (a shape,
-//! a light) takes the state as it is.
+//! Sources: *Input File Format*, pbrt.org/fileformat-v4 and pbrt.org/fileformat-v3; Pharr, Jakob
+//! and Humphreys, *Physically Based Rendering*, 4th edition, 2023, and 3rd edition, 2016.
+//! Directives change a graphics state; a shape or light takes the current state.
 
 mod camera;
 mod curve;
@@ -38,7 +39,7 @@ use durer_scene::scene::{Axis, Scene};
 use lexer::{Lexer, Token};
 use state::Reader;
 
-/// The format of scenes.
+/// Scene format entry for pbrt.
 pub(super) const FORMAT: SceneFormat = SceneFormat {
     name: "pbrt",
     extensions: &["pbrt"],
@@ -48,12 +49,12 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     up: Axis::Y,
     whole: true,
     shines: Some(
-        "write `AreaLightSource \"diffuse\"` before a shape, or `LightSource \"infinite\"`: what is all around is light too",
+        "write `AreaLightSource \"diffuse\"` before a shape, or `LightSource \"infinite\"`: an environment is a light too",
     ),
 };
 
-/// Whether a file begins with a directive that only pbrt has. `Transform` and `Material` begin
-/// texts of the course's too.
+/// Returns true if a file begins with a directive that only pbrt has. `Transform` and `Material`
+/// also begin files in the course's format.
 fn recognise(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(1 << 12)];
     let (mut text, said) = (Lexer::new(head.into(), 0), Said::default());

@@ -1,15 +1,15 @@
-//! Spectra that pbrt knows by name, and colours of light by wavelength.
+//! Named spectra of pbrt, as RGB or by chromaticity.
 
 use durer_scene::math::Vec3;
 use durer_scene::spectrum::SpectrumSource;
 use durer_scene::spectrum::space::color_of_chromaticity;
 
-/// Indices of metals, for red, green and blue: such that what is reflected at 0 and at 82 degrees
-/// has the colour that the spectrum's reflectance has under D65, to 0.002; red of gold, which
-/// linear sRGB cannot hold, to 0.03.
+/// Complex indices of refraction of metals (eta, k) for red, green and blue. Chosen so that the
+/// reflectance at 0 and at 82 degrees has the colour of the spectral reflectance under D65, to
+/// 0.002; the red of gold, which linear sRGB cannot hold, to 0.03.
 ///
 /// Source of the spectra: Palik, *Handbook of Optical Constants of Solids*, 1985, and the SOPRA
-/// collection, as pbrt-v4 has them.
+/// collection, as distributed with pbrt-v4.
 const METALS: [(&str, [f32; 3], [f32; 3]); 7] = [
     ("Ag", [0.13, 0.124, 0.152], [4.1206, 3.3342, 2.4194]),
     ("Al", [1.432, 0.93, 0.592], [7.7499, 6.6079, 5.3675]),
@@ -20,7 +20,7 @@ const METALS: [(&str, [f32; 3], [f32; 3]); 7] = [
     ("TiO2", [2.8601, 2.9571, 3.1855], [0.0; 3]),
 ];
 
-/// Indices of glasses at 587.6 nm. Source: Schott's data sheets.
+/// Indices of refraction of glasses at 587.6 nm. Source: Schott's data sheets.
 const GLASSES: [(&str, f32); 10] = [
     ("BK7", 1.5168),
     ("BAF10", 1.67),
@@ -55,7 +55,7 @@ const ILLUMINANTS: [(&str, [f64; 2]); 16] = [
     ("illum-acesD60", [0.32168, 0.33767]),
 ];
 
-/// The spectrum of a name.
+/// Spectrum of a name.
 pub(super) fn spectrum(name: &str) -> Option<SpectrumSource> {
     if let Some((metal, which)) = name.strip_prefix("metal-").and_then(|rest| rest.rsplit_once('-')) {
         let (_, eta, k) = METALS.iter().find(|row| row.0 == metal)?;
@@ -71,7 +71,7 @@ pub(super) fn spectrum(name: &str) -> Option<SpectrumSource> {
     ILLUMINANTS.iter().find(|row| row.0 == name).map(|row| SpectrumSource::Illuminant(color_of_chromaticity(row.1)))
 }
 
-/// Names, for messages.
+/// Names of spectra, for suggestions in messages.
 pub(super) fn names() -> impl Iterator<Item = &'static str> {
     const METAL_NAMES: [&str; 14] = [
         "metal-Ag-eta",

@@ -1,17 +1,17 @@
-//! Height fields and NURBS, which only pbrt-v3 has.
+//! Height fields and NURBS of pbrt-v3.
 //!
-//! Source of meanings: *Input File Format* of pbrt-v3.
+//! Source: *Input File Format*, pbrt.org/fileformat-v3.
 
 use super::params::Params;
 use durer_scene::shape::MeshData;
 use durer_scene::shape::tessellate::net::{self, NurbsSide};
 use glam::DVec4;
 
-/// Points of a net at most, and the highest order.
+/// Maximum number of control points of a net, and maximum order.
 const MAX_POINTS: i64 = 1 << 24;
 const HIGHEST: i64 = 32;
 
-/// Points along both sides, at least so many.
+/// Number of points along u and v, each at least `least`.
 fn counts(params: &Params, least: i64) -> Option<[u32; 2]> {
     let counts = ["nu", "nv"].map(|name| params.whole(name).unwrap_or(0));
     if counts.iter().any(|count| *count < least) || counts[0].saturating_mul(counts[1]) > MAX_POINTS {
@@ -22,7 +22,7 @@ fn counts(params: &Params, least: i64) -> Option<[u32; 2]> {
     Some(counts.map(|count| count as u32))
 }
 
-/// Heights over the unit square.
+/// Height field over the unit square.
 pub(super) fn heights(params: &Params, reversed: bool) -> Option<MeshData> {
     let [columns, rows] = counts(params, 2)?;
     let heights = params.floats("Pz").unwrap_or_default();
@@ -34,7 +34,7 @@ pub(super) fn heights(params: &Params, reversed: bool) -> Option<MeshData> {
     Some(net::heights([columns, rows], heights.iter().map(|height| *height as f32)).oriented(reversed))
 }
 
-/// A surface of NURBS.
+/// NURBS surface.
 pub(super) fn nurbs(params: &Params, reversed: bool) -> Option<MeshData> {
     let counts = counts(params, 2)?;
     let sides = [
@@ -47,7 +47,7 @@ pub(super) fn nurbs(params: &Params, reversed: bool) -> Option<MeshData> {
     };
     let wanted = counts[0] as usize * counts[1] as usize;
     if points.len() != wanted || points.iter().any(|p| p.w <= 0.0) {
-        let message = format!("a surface of NURBS needs {wanted} points, `P` or `Pw`, of weights above 0");
+        let message = format!("a NURBS surface needs {wanted} points, `P` or `Pw`, with weights above 0");
         params.said.bad(params.at, message);
         return None;
     }
@@ -61,7 +61,7 @@ fn knots<'a>(params: &'a Params, names: [&'static str; 4], count: u32) -> Option
     if !(2..=HIGHEST.min(i64::from(count))).contains(&order) || all.len() != count as usize + order as usize || !rising
     {
         let message = format!(
-            "`{}` must be from 2 to the number of points, and `{}` as many rising numbers as both together",
+            "`{}` must be from 2 to the number of points, and `{}` needs as many increasing numbers as order plus points",
             names[0], names[1]
         );
         params.said.bad(params.place(names[1]), message);
@@ -72,7 +72,7 @@ fn knots<'a>(params: &'a Params, names: [&'static str; 4], count: u32) -> Option
     let end = |name, usual: f64| params.float(name).map_or(usual, f64::from).clamp(first, last);
     let (from, to) = (end(names[2], first), end(names[3], last));
     if from >= to {
-        params.said.bad(params.at, "nothing of this surface of NURBS is shown: its knots do not rise");
+        params.said.bad(params.at, "this NURBS surface is empty: its parameter range has no length");
         return None;
     }
     Some(NurbsSide { knots: all, order, from, to })

@@ -1,4 +1,4 @@
-//! Lists of parameters: `"float radius" [ 2 ]`.
+//! Parameter lists, such as `"float radius" [ 2 ]`.
 
 use super::language::Language;
 use super::lexer::{Found, Lexer, Token};
@@ -19,9 +19,9 @@ pub(super) enum Kind {
     Bool,
     Text,
     Texture,
-    /// Two numbers each.
+    /// Rows of two numbers.
     Pair,
-    /// Three numbers each.
+    /// Rows of three numbers.
     Triple,
     Rgb,
     Xyz,
@@ -29,7 +29,7 @@ pub(super) enum Kind {
     Spectrum,
 }
 
-/// Names of types; the last three are those of pbrt-v3.
+/// Type names; `color` and `xyz` are of pbrt-v3.
 const KINDS: [(&str, Kind); 18] = [
     ("integer", Kind::Integer),
     ("float", Kind::Float),
@@ -51,7 +51,7 @@ const KINDS: [(&str, Kind); 18] = [
     ("xyz", Kind::Xyz),
 ];
 
-/// What stands behind a name.
+/// Values of a parameter.
 #[derive(Clone, Debug)]
 pub(super) enum Values {
     Numbers(Vec<f64>),
@@ -60,12 +60,12 @@ pub(super) enum Values {
 }
 
 impl Values {
-    /// How many of what they are.
+    /// Number of values with their kind, for messages.
     fn counted(&self) -> String {
         let (one, many) = match self {
             Values::Numbers(_) => ("number", "numbers"),
             Values::Texts(_) => ("string", "strings"),
-            Values::Bools(_) => ("truth value", "truth values"),
+            Values::Bools(_) => ("boolean", "booleans"),
         };
         counted(self.len(), one, many)
     }
@@ -79,21 +79,21 @@ impl Values {
     }
 }
 
-/// A parameter.
+/// Parameter of a directive.
 #[derive(Debug)]
 pub(super) struct Param {
     pub kind: Kind,
     pub name: String,
     pub values: Values,
-    /// Its type and name.
+    /// Place of its type and name.
     pub at: Span,
-    /// Its values.
+    /// Place of its values.
     pub values_at: Span,
     used: Cell<bool>,
 }
 
 impl Param {
-    /// The first number.
+    /// First number; 0 if there is none.
     pub fn number(&self) -> f32 {
         match &self.values {
             Values::Numbers(all) => all.first().copied().unwrap_or_default() as f32,
@@ -101,12 +101,12 @@ impl Param {
         }
     }
 
-    /// All numbers.
+    /// Every number; empty for other values.
     pub fn numbers(&self) -> &[f64] {
         if let Values::Numbers(all) = &self.values { all } else { &[] }
     }
 
-    /// The first string.
+    /// First string; empty if there is none.
     pub fn text(&self) -> &str {
         match &self.values {
             Values::Texts(all) => all.first().map_or("", String::as_str),
@@ -114,28 +114,28 @@ impl Param {
         }
     }
 
-    /// Rows of three numbers.
+    /// Numbers in rows of three.
     pub fn triples(&self) -> Vec<Vec3> {
         self.numbers().chunks_exact(3).map(|p| Vec3::new(p[0] as f32, p[1] as f32, p[2] as f32)).collect()
     }
 }
 
-/// Parameters of one directive, those of `Attribute` after its own.
+/// Parameters of a directive, followed by those set by `Attribute`.
 pub(super) struct Params<'s> {
     list: Vec<Rc<Param>>,
-    /// How many are the directive's own.
+    /// Number of the directive's own parameters.
     own: usize,
-    /// The directive's word, or the string after it.
+    /// Place of the directive's word, or of the string after it.
     pub at: Span,
     pub said: &'s Said,
     pub input: &'s Input<'s>,
-    /// What red, green and blue are.
+    /// Colour space of RGB values.
     pub space: RgbSpace,
     pub language: Language,
     asked: RefCell<Vec<&'static str>>,
 }
 
-/// Reads parameters as long as strings follow.
+/// Reads parameters while strings follow.
 pub(super) fn read(text: &mut Lexer, language: Language, said: &Said) -> Vec<Rc<Param>> {
     let mut list: Vec<Rc<Param>> = Vec::new();
     while !said.is_full() {
@@ -155,33 +155,33 @@ pub(super) fn read(text: &mut Lexer, language: Language, said: &Said) -> Vec<Rc<
     list
 }
 
-/// The type and name of `"float radius"`.
+/// Type and name of a parameter such as `"float radius"`.
 fn declared(head: &str, at: Span, language: Language, said: &Said) -> Option<(Kind, String)> {
     let mut words = head.split_ascii_whitespace();
     let (Some(kind), Some(name), None) = (words.next(), words.next(), words.next()) else {
         said.bad_with(
             at,
             "expected the type and the name of a parameter",
-            Some("parameters are written as in `\"float radius\" [ 2 ]`".into()),
+            Some("for example `\"float radius\" [ 2 ]`".into()),
         );
         return None;
     };
     let found = KINDS.iter().find(|row| row.0 == kind);
     if found.is_none() {
         let help = meant(kind, KINDS.iter().map(|row| row.0));
-        said.bad_with(at, format!("`{kind}` is no type of a parameter"), help);
+        said.bad_with(at, format!("`{kind}` is not a type of a parameter"), help);
     }
     if kind == "xyz" && language == Language::Fourth {
-        said.bad_with(at, "colours by XYZ are of pbrt-v3", Some("write `rgb`".into()));
+        said.bad_with(at, "`xyz` colours are only in pbrt-v3", Some("write `rgb`".into()));
         return None;
     }
     Some((found?.1, name.to_string()))
 }
 
-/// What follows a parameter's name: one value, or several in brackets.
+/// Reads the values after a parameter's name: one value, or several in brackets.
 fn values(text: &mut Lexer, head: Span, said: &Said) -> Option<(Values, Span)> {
     let Some(first) = text.peek(said).cloned() else {
-        said.bad(head, "a value must follow this parameter");
+        said.bad(head, "this parameter has no value");
         return None;
     };
     let (mut numbers, mut texts, mut bools) = (Vec::new(), Vec::new(), Vec::new());
@@ -228,7 +228,7 @@ fn values(text: &mut Lexer, head: Span, said: &Said) -> Option<(Values, Span)> {
         }
     } else {
         if first.token == Token::Close {
-            said.bad(first.at, "a value must stand before this `]`");
+            said.bad(first.at, "this `]` has no value before it");
             text.next(said);
             return None;
         }
@@ -240,7 +240,7 @@ fn values(text: &mut Lexer, head: Span, said: &Said) -> Option<(Values, Span)> {
         kinds += u32::from(filled);
     }
     if kinds > 1 {
-        said.bad(at, "numbers, strings and truth values cannot be mixed");
+        said.bad(at, "numbers, strings and booleans cannot be mixed");
         return None;
     }
     sound.then_some(match (texts.is_empty(), bools.is_empty()) {
@@ -250,7 +250,7 @@ fn values(text: &mut Lexer, head: Span, said: &Said) -> Option<(Values, Span)> {
     })
 }
 
-/// A word as a number.
+/// Parses a word as a number.
 pub(super) fn number(text: &Lexer, at: Span, said: &Said) -> Option<f64> {
     let word = text.word(at);
     match word.parse::<f64>() {
@@ -270,7 +270,7 @@ pub(super) fn number(text: &Lexer, at: Span, said: &Said) -> Option<f64> {
     None
 }
 
-/// Whether values are of a type.
+/// Checks that the values fit the type.
 fn fits(kind: Kind, name: &str, values: &Values, at: Span, said: &Said) -> bool {
     let complain = |wanted: &str| {
         let found = match values.len() {
@@ -286,7 +286,7 @@ fn fits(kind: Kind, name: &str, values: &Values, at: Span, said: &Said) -> bool 
     };
     match (kind, values) {
         (Kind::Bool, Values::Bools(_)) => true,
-        // As pbrt-v3 has them.
+        // pbrt-v3 writes booleans as strings.
         (Kind::Bool, Values::Texts(all)) if all.iter().all(|word| word == "true" || word == "false") => true,
         (Kind::Bool, _) => complain("`true` or `false`"),
         (Kind::Text | Kind::Texture, Values::Texts(_)) => true,
@@ -299,7 +299,7 @@ fn fits(kind: Kind, name: &str, values: &Values, at: Span, said: &Said) -> bool 
         (Kind::Rgb | Kind::Xyz, _) if !rows(3) || values.len() == 0 => complain("three numbers"),
         (Kind::Integer, Values::Numbers(all)) => {
             let whole = all.iter().all(|x| x.fract() == 0.0 && x.abs() < f64::from(i32::MAX));
-            whole || complain("whole numbers of 32 bits")
+            whole || complain("32-bit integers")
         }
         (Kind::Float | Kind::Integer | Kind::Blackbody, Values::Texts(_) | Values::Bools(_)) => complain("numbers"),
         _ => true,
@@ -307,7 +307,7 @@ fn fits(kind: Kind, name: &str, values: &Values, at: Span, said: &Said) -> bool 
 }
 
 impl<'s> Params<'s> {
-    /// A directive's own parameters before those that `Attribute` set.
+    /// Combines a directive's own parameters with those that `Attribute` set; its own come first.
     pub fn new(
         own: Vec<Rc<Param>>,
         others: &[Rc<Param>],
@@ -320,7 +320,7 @@ impl<'s> Params<'s> {
         Params { list, own: count, at, said, input, space, language, asked: RefCell::default() }
     }
 
-    /// The parameter of a name.
+    /// Parameter by name; marks it as used.
     pub fn get(&self, name: &'static str) -> Option<&Param> {
         self.asked.borrow_mut().push(name);
         let found = self.list.iter().find(|param| param.name == name)?;
@@ -328,7 +328,7 @@ impl<'s> Params<'s> {
         Some(found)
     }
 
-    /// The parameter of a name and one of some types, with at least one value.
+    /// Parameter by name with at least one value; reports an error for a type not in `kinds`.
     pub(super) fn of(&self, name: &'static str, kinds: &[Kind], wanted: &str) -> Option<&Param> {
         let found = self.get(name)?;
         if !kinds.contains(&found.kind) {
@@ -342,7 +342,7 @@ impl<'s> Params<'s> {
         Some(found)
     }
 
-    /// Where a parameter is, or the directive.
+    /// Place of a parameter, or of the directive.
     pub fn place(&self, name: &'static str) -> Span {
         self.get(name).map_or(self.at, |param| param.at)
     }
@@ -351,7 +351,7 @@ impl<'s> Params<'s> {
         self.of(name, &[Kind::Float, Kind::Integer], "a float").map(Param::number)
     }
 
-    /// A number that must be more than zero.
+    /// Value that must be more than 0.
     pub fn positive(&self, name: &'static str) -> Option<f32> {
         let value = self.float(name)?;
         if value <= 0.0 {
@@ -386,24 +386,24 @@ impl<'s> Params<'s> {
     }
 
     pub fn pairs(&self, name: &'static str) -> Option<Vec<Vec2>> {
-        let param = self.of(name, &[Kind::Pair, Kind::Float], "points of two numbers")?;
+        let param = self.of(name, &[Kind::Pair, Kind::Float], "rows of two numbers")?;
         Some(param.numbers().chunks_exact(2).map(|p| Vec2::new(p[0] as f32, p[1] as f32)).collect())
     }
 
     pub fn triples(&self, name: &'static str) -> Option<Vec<Vec3>> {
-        self.of(name, &[Kind::Triple], "points of three numbers").map(Param::triples)
+        self.of(name, &[Kind::Triple], "rows of three numbers").map(Param::triples)
     }
 
     pub fn triple(&self, name: &'static str) -> Option<Vec3> {
         self.triples(name).map(|all| all[0])
     }
 
-    /// Takes note that parameters are known which have no counterpart here.
+    /// Marks parameters that have no counterpart here as known.
     pub fn known(&self, names: &[&'static str]) {
         names.iter().for_each(|name| _ = self.get(name));
     }
 
-    /// The same, and says what becomes of those that are there.
+    /// Marks parameters as known, and warns of each one given; `what` names the substitute.
     pub fn left_out(&self, names: &[&'static str], what: &str) {
         for name in names {
             if let Some(param) = self.get(name) {
@@ -412,10 +412,10 @@ impl<'s> Params<'s> {
         }
     }
 
-    /// Warns of parameters that nobody asked for.
+    /// Warns of unknown parameters.
     pub fn finish(&self, what: &str) {
         for param in self.list[..self.own].iter().filter(|param| !param.used.get()) {
-            let warning = Diagnostic::warning(format!("{what} has no parameter `{}`: it is left out", param.name));
+            let warning = Diagnostic::warning(format!("{what} has no parameter `{}`: it is ignored", param.name));
             let help = meant(&param.name, self.asked.borrow().iter().copied());
             self.said.push(Diagnostic { help, ..warning.code("unknown-word").at(param.at) });
         }

@@ -1,8 +1,7 @@
-//! Lights at points that shine as a picture says: measured lamps here, one for each of red, green
-//! and blue.
+//! Goniometric lights and projectors, as measured point lights: one each for red, green and blue.
 //!
-//! Source of meanings: *Physically Based Rendering*, 3rd edition, sections 12.3.2 and 12.3.3, and 4th
-//! edition, sections 12.2.2 and 12.2.3.
+//! Source: *Physically Based Rendering*, 3rd edition, sections 12.3.2 and 12.3.3, and 4th edition,
+//! sections 12.2.2 and 12.2.3.
 
 use super::environment::equal_area;
 use super::language::Language;
@@ -16,13 +15,14 @@ use durer_scene::math::{Color, Vec2, Vec3, fp};
 use glam::DAffine3;
 use std::f32::consts::{PI, TAU};
 
-/// Steps of an angle at most.
+/// Maximum number of steps of an angle.
 const STEPS: u32 = 720;
 
-/// Steps of both angles of what a projector lights.
+/// Number of steps of a projector's vertical and horizontal angles.
 const PROJECTED: [u32; 2] = [360, 720];
 
-/// What a light throws, and the angles at which that is looked up: vertical and horizontal ones.
+/// Directional distribution of a light, and the vertical and horizontal angles in degrees at which
+/// it is sampled.
 struct Pattern {
     axes: Axes,
     angles: [Vec<f32>; 2],
@@ -30,7 +30,8 @@ struct Pattern {
 }
 
 impl Reader<'_> {
-    /// Adds what shines from the origin; `color` is its intensity where the picture is 1.
+    /// Adds a light at the origin of the current space; `color` is its intensity where the picture
+    /// is 1.
     pub fn pictured_light(&mut self, kind: &str, params: &Params, map: DAffine3, (color, power): (Color, Option<f32>)) {
         let third = self.language == Language::Third;
         let fov = if kind == "projection" { Some(self.fov(params, third)) } else { None };
@@ -58,7 +59,7 @@ impl Reader<'_> {
         lamps.add(&mut self.scene, self.input.name, (map, axes), color * strength, params.at);
     }
 
-    /// The field of view of a projector across the shorter side of its picture, in degrees.
+    /// Field of view of a projector across the shorter side of its picture, in degrees.
     fn fov(&self, params: &Params, third: bool) -> f32 {
         let fov = params.float("fov").unwrap_or(if third { 45.0 } else { 90.0 });
         if !(fov > 0.0 && fov < 180.0) {
@@ -67,7 +68,7 @@ impl Reader<'_> {
         fov.clamp(1e-2, 179.0)
     }
 
-    /// The picture of a light; white where pbrt-v3 has none.
+    /// Picture of a light; white if pbrt-v3 gives none.
     fn light_picture(&self, kind: &str, params: &Params, third: bool) -> Option<Image> {
         let name = if third { "mapname" } else { "filename" };
         let Some(file) = params.text(name).filter(|file| !file.is_empty()).map(str::to_string) else {
@@ -79,7 +80,7 @@ impl Reader<'_> {
         };
         let at = params.get(name).map_or(params.at, |param| param.values_at);
         let bytes = Pictures { input: self.input, said: self.said }.bytes(&file, at)?;
-        // pbrt-v3 takes the bytes of a light's picture for light itself.
+        // pbrt-v3 reads the bytes of a light's picture as linear values.
         let decode = if third { image::decode_linear } else { image::decode_srgb };
         let image = match Encoded::open(&bytes, &file).and_then(|encoded| encoded.read(self.input.memory, decode)) {
             Ok(image) => image,
@@ -90,7 +91,7 @@ impl Reader<'_> {
         };
         if !third && kind == "goniometric" && image.width != image.height {
             let message = format!(
-                "{} x {} pixels are no picture of all directions: it must be square",
+                "the picture of a `goniometric` light must be square, found {} x {} pixels",
                 image.width, image.height
             );
             self.said.bad_with(at, message, Some("pbrt's `imgtool makeequiarea` makes such a picture".into()));
@@ -100,7 +101,7 @@ impl Reader<'_> {
     }
 }
 
-/// What a projector's picture covers of the plane at distance 1.
+/// Half extent of a projector's picture on the plane at distance 1.
 struct Screen {
     half: Vec2,
 }
@@ -112,12 +113,12 @@ impl Screen {
         Screen { half: short * Vec2::new(aspect.max(1.0), (1.0 / aspect).max(1.0)) }
     }
 
-    /// The angle between the middle and a corner, in degrees.
+    /// Angle between the axis and a corner, in degrees.
     fn widest(&self) -> f32 {
         fp::atan2(self.half.length(), 1.0).to_degrees()
     }
 
-    /// The first row of the picture is where y is least, as pbrt has it.
+    /// Value of a direction. The first row of the picture is at the least y, as in pbrt.
     fn at(&self, image: &Image, dir: Vec3) -> Color {
         let place = Vec2::new(dir.x, dir.y) / (dir.z * self.half);
         if dir.z <= 0.0 || place.abs().max_element() > 1.0 {
@@ -127,14 +128,14 @@ impl Screen {
     }
 }
 
-/// The value of a direction in a picture of longitude, from x towards z, and of angles from y.
+/// Value of a direction in a picture of longitude, from x towards z, and of the polar angle from y.
 fn of_angles(image: &Image, dir: Vec3) -> Color {
     let turn = fp::atan2(dir.z, dir.x) / TAU;
     let down = fp::atan2((dir.x * dir.x + dir.z * dir.z).sqrt(), dir.y) / PI;
     between(image, Vec2::new(turn - turn.floor(), down))
 }
 
-/// The value of a direction in a square picture of equal areas: one number.
+/// Grey value of a direction in a square equal-area picture: the mean of its channels.
 fn of_areas(image: &Image, dir: Vec3) -> Color {
     let place = equal_area(dir);
     let texel = |share: f32, count: u32| ((share * count as f32) as u32).min(count - 1);

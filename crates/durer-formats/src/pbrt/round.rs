@@ -1,13 +1,13 @@
-//! Parameters of parts of round shapes.
+//! Parameters of partial quadrics.
 //!
-//! Source of meanings: *Physically Based Rendering*, 3rd edition, chapter 3.
+//! Source: *Physically Based Rendering*, 3rd edition, chapter 3.
 
 use super::params::Params;
 use durer_scene::shape::MeshData;
 use durer_scene::shape::tessellate::revolution;
 use glam::DVec3;
 
-/// How far around a shape goes.
+/// Sweep about the z axis in degrees, `phimax`; (0, 360], default 360.
 pub(super) fn turn(params: &Params) -> f32 {
     let degrees = params.float("phimax").unwrap_or(360.0);
     if degrees <= 0.0 {
@@ -20,52 +20,52 @@ fn degrees(params: &Params) -> f64 {
     f64::from(turn(params))
 }
 
-/// Where a shape begins and ends along z, of what is there at most.
+/// Ends along z, `zmin` and `zmax` in ascending order. The defaults are `low` and `high`.
 pub(super) fn ends(params: &Params, [low, high]: [f32; 2]) -> [f32; 2] {
     let given = [params.float("zmin").unwrap_or(low), params.float("zmax").unwrap_or(high)];
     [given[0].min(given[1]), given[0].max(given[1])]
 }
 
-/// The part of a sphere between two heights.
+/// Part of a sphere between two heights.
 pub(super) fn sphere(params: &Params, radius: f32, [low, high]: [f32; 2], flipped: bool) -> Option<MeshData> {
     let (low, high, radius) = (low.max(-radius), high.min(radius), f64::from(radius));
     if low >= high {
-        params.said.bad(params.place("zmin"), "nothing of this sphere is between `zmin` and `zmax`");
+        params.said.bad(params.place("zmin"), "no part of this sphere is between `zmin` and `zmax`");
         return None;
     }
     Some(revolution::sphere(radius, [low, high], degrees(params)).oriented(flipped))
 }
 
-/// A part of a disc, or of a ring; v grows inwards.
+/// Part of a disc or of a ring; v grows inwards.
 pub(super) fn disk(params: &Params, [inner, outer]: [f32; 2], height: f32, flipped: bool) -> MeshData {
     let [inner, outer, height] = [inner, outer, height].map(f64::from);
     revolution::ring([inner, outer], height, degrees(params)).oriented(flipped)
 }
 
-/// A cone without its base, which is at z = 0.
+/// Cone without a base; the base is at z = 0.
 pub(super) fn cone(params: &Params, flipped: bool) -> MeshData {
     let radius = f64::from(params.positive("radius").unwrap_or(1.0));
     let height = f64::from(params.positive("height").unwrap_or(1.0));
     revolution::cone(radius, height, degrees(params)).oriented(flipped)
 }
 
-/// A bowl, as wide as its radius at the upper end.
+/// Paraboloid that reaches its radius at `zmax`.
 pub(super) fn paraboloid(params: &Params, flipped: bool) -> Option<MeshData> {
     let radius = f64::from(params.positive("radius").unwrap_or(1.0));
     let [low, high] = ends(params, [0.0, 1.0]).map(f64::from);
     if low < 0.0 || low >= high {
-        params.said.bad(params.at, "a paraboloid goes from `zmin`, which is not less than 0, to `zmax`");
+        params.said.bad(params.at, "a paraboloid needs 0 <= `zmin` < `zmax`");
         return None;
     }
     Some(revolution::paraboloid(radius, [low, high], degrees(params)).oriented(flipped))
 }
 
-/// What a straight line between two points makes.
+/// Surface swept by the line from `p1` to `p2` about z.
 pub(super) fn hyperboloid(params: &Params, flipped: bool) -> Option<MeshData> {
     let end = |name: &'static str, usual: DVec3| params.triple(name).map_or(usual, |p| p.as_dvec3());
     let (from, to) = (end("p1", DVec3::ZERO), end("p2", DVec3::ONE));
     if from.x * from.x + from.y * from.y + to.x * to.x + to.y * to.y == 0.0 || from == to {
-        params.said.bad(params.at, "a hyperboloid needs two points, `p1` and `p2`, that are not both on z");
+        params.said.bad(params.at, "a hyperboloid needs two different points, `p1` and `p2`, not both on the z axis");
         return None;
     }
     Some(revolution::hyperboloid([from, to], degrees(params)).oriented(flipped))

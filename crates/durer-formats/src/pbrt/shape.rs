@@ -1,4 +1,4 @@
-//! Shapes.
+//! Shapes and their lights.
 
 use super::language::Language;
 use super::made::{AreaLight, Opacity};
@@ -16,20 +16,20 @@ use std::f32::consts::PI;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Triangles that all shapes together become which are written by few numbers, and from how many on
-/// curves have fewer sides. Tests make them all.
+/// Maximum number of triangles of all tessellated shapes together, and the number from which curves
+/// have fewer sides. Low in tests, which build them all.
 const MAX_GROWN: usize = if cfg!(test) { 1 << 18 } else { 1 << 24 };
 const MANY: usize = 1 << 20;
 
-/// A shape where it is written, before it has a place and a material.
+/// Shape before it has a material.
 struct Made {
     node: Node,
-    /// Area in the world of all of it, and of how many lights it is.
+    /// Total area in world space, and the number of lights that it counts as.
     area: f32,
     lights: usize,
-    /// Where it is in the world.
+    /// Map from object space to world space.
     map: DAffine3,
-    /// Whether its normals point inwards and ours outwards.
+    /// True if pbrt's normals point inwards and ours outwards.
     inside_out: bool,
 }
 
@@ -38,7 +38,7 @@ impl Reader<'_> {
         let params = self.params(list, Some(SHAPE), at);
         let opacity = self.opacity(&params);
         let map = self.map(at);
-        // The sides of a quadric are told in its own space, those of a triangle in the world.
+        // The side of a quadric is defined in object space, that of a triangle in world space.
         let flipped = self.state.reversed != (map.matrix3.determinant() < 0.0);
         let third = self.language == Language::Third;
         let made = match kind {
@@ -91,14 +91,14 @@ impl Reader<'_> {
                 }
                 let mut help = meant(other, known);
                 if ["cone", "hyperboloid", "paraboloid", "heightfield", "nurbs"].contains(&other) {
-                    help = Some("this is of pbrt-v3: pbrt-v4 has it no more".into());
+                    help = Some("this shape is of pbrt-v3, not of pbrt-v4".into());
                 }
-                return self.said.bad_with(at, format!("there is no shape `{other}`"), help);
+                return self.said.bad_with(at, format!("unknown shape `{other}`"), help);
             }
         };
         params.known(&["alpha"]);
         if third {
-            params.left_out(&["shadowalpha"], "shadows are as what is seen");
+            params.left_out(&["shadowalpha"], "shadows use `alpha`");
         }
         params.finish(&format!("the shape `{kind}`"));
         if let Some(made) = made {
@@ -106,13 +106,13 @@ impl Reader<'_> {
         }
     }
 
-    /// Gives a shape its material and light, and puts it in its place.
+    /// Adds a shape with its material and light to the scene.
     fn show(&mut self, made: Made, opacity: &Opacity, at: Span) {
         let light = self.state.area.clone();
         let light = light.filter(|light| {
             let inside = self.defining.is_some();
             if inside {
-                self.said.once(light.at, "objects that are shown several times do not shine, as in pbrt");
+                self.said.once(light.at, "instanced objects do not emit light, as in pbrt");
             }
             !inside
         });
@@ -124,7 +124,7 @@ impl Reader<'_> {
         let radiance = light.as_ref().map(|(light, radiance)| (&**light, *radiance));
         let Some(material) = self.number(material, radiance, opacity) else {
             if light.is_some() {
-                self.said.once(at, "what is not there (`interface`) does not shine");
+                self.said.once(at, "an `interface` surface does not emit light");
             }
             return;
         };
@@ -147,11 +147,11 @@ impl Reader<'_> {
             return self.grown(data, map, params.at);
         }
         if flipped && self.state.area.as_ref().is_some_and(|light| !light.two_sided) {
-            self.said.once(params.at, "a sphere turned inside out has no counterpart: it shines outwards as well");
+            self.said.once(params.at, "a sphere that emits inwards has no counterpart: it emits on both sides");
         }
         let world = radius * map.transform_vector3(DVec3::X).length() as f32;
         let (center, map) = match map.matrix3 == DAffine3::IDENTITY.matrix3 {
-            // pbrt's poles are on z, and u begins at x; ours are on y, and u = 1/2 is at -z.
+            // pbrt's poles are on z and u begins at x; ours are on y and u = 1/2 is at -z.
             _ if self.is_pictured() || params.get("alpha").is_some_and(|param| param.kind == Kind::Texture) => {
                 let turned = DMat3::from_cols(DVec3::NEG_Y, DVec3::Z, DVec3::X);
                 (Vec3::ZERO, map * DAffine3::from_mat3(turned))
@@ -182,27 +182,27 @@ impl Reader<'_> {
         Some(Made { node, area, lights: 1, map, inside_out: false })
     }
 
-    /// A mesh that is made of few numbers. All of a file may have so many triangles and no more.
+    /// Tessellated mesh. All of them together have at most `MAX_GROWN` triangles.
     fn grown(&mut self, data: MeshData, map: DAffine3, at: Span) -> Option<Made> {
         self.grown = self.grown.saturating_add(data.triangles.len());
         if self.grown > MAX_GROWN {
             self.grown = MAX_GROWN;
             let what =
-                format!("round shapes, curves and smooth surfaces of more than {MAX_GROWN} triangles are left out");
+                format!("tessellated shapes beyond {MAX_GROWN} triangles are left out");
             self.said.once(at, what);
             return None;
         }
         self.mesh(None, Arc::new(data), map, at)
     }
 
-    /// A mesh with a name of its own, or one that it shares.
+    /// Mesh with a name shared by shapes, or with a new name.
     fn mesh(&mut self, name: Option<String>, data: Arc<MeshData>, map: DAffine3, at: Span) -> Option<Made> {
         if data.triangles.is_empty() {
             return None;
         }
         let corner = |i: u32| map.transform_point3(data.positions[i as usize].as_dvec3());
         let twice = |[a, b, c]: &[u32; 3]| (corner(*b) - corner(*a)).cross(corner(*c) - corner(*a)).length();
-        // Only what has a power asks.
+        // The area is only needed for a light with a power.
         let asked = self.state.area.as_ref().is_some_and(|light| light.power.is_some());
         let area = if asked { 0.5 * data.triangles.iter().map(twice).sum::<f64>() as f32 } else { 1.0 };
         let name = name.unwrap_or_else(|| format!("{}#{}", self.input.name, self.scene.assets.meshes.len()));
@@ -212,7 +212,7 @@ impl Reader<'_> {
     }
 
     fn ply(&mut self, params: &Params, map: DAffine3, at: Span) -> Option<Made> {
-        params.left_out(&["displacement"], "the surface stays as it is");
+        params.left_out(&["displacement"], "the surface is not displaced");
         params.known(&["edgelength"]);
         let Some(name) = params.text("filename").map(str::to_string) else {
             self.said.bad(at, "a `plymesh` needs a `filename`");
@@ -234,8 +234,8 @@ impl Reader<'_> {
     }
 }
 
-/// The radiance of a shape that shines. A power is that of each of its lights: of each triangle of
-/// a mesh.
+/// Radiance of an area light. A power is divided over the shape's lights; a mesh has one per
+/// triangle.
 fn radiance(light: &AreaLight, made: &Made) -> Color {
     let Some(power) = light.power else { return light.radiance };
     let sides = if light.two_sided { 2.0 } else { 1.0 };

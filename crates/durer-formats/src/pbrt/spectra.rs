@@ -1,4 +1,4 @@
-//! Spectra of parameters: a colour, a black body, numbers, a name or a file.
+//! Spectra of parameters: RGB, XYZ, blackbody, sampled values, a name or a file.
 
 use super::language::Language;
 use super::named;
@@ -11,20 +11,20 @@ use durer_scene::spectrum::SpectrumSource;
 use durer_scene::spectrum::space::color_of_xyz;
 
 impl Params<'_> {
-    /// Reads a colour or spectrum that is not a texture.
+    /// Spectrum of a parameter that is not a texture.
     pub fn spectrum(&self, name: &'static str) -> Option<SpectrumSource> {
         let kinds = [Kind::Rgb, Kind::Xyz, Kind::Blackbody, Kind::Spectrum];
         spectrum_of(self.of(name, &kinds, "rgb, a spectrum or a blackbody")?, self)
     }
 }
 
-/// Reads the spectrum of a parameter; of pbrt-v3 as RGB.
+/// Spectrum of a parameter; as RGB in pbrt-v3.
 fn spectrum_of(param: &Param, params: &Params) -> Option<SpectrumSource> {
     let found = written(param, params)?;
     if params.language == Language::Fourth {
         return Some(found);
     }
-    // What is not 1 by its unit, but by a number behind the temperature.
+    // A blackbody of pbrt-v3 has a scale after the temperature.
     let factor = match (&found, param.numbers()) {
         (SpectrumSource::Blackbody(_), [_, factor, ..]) => *factor as f32,
         _ => 1.0,
@@ -43,7 +43,7 @@ fn written(param: &Param, params: &Params) -> Option<SpectrumSource> {
         (Kind::Blackbody, _) => {
             let kelvin = param.number();
             if !(kelvin > 0.0 && kelvin < 1e6) {
-                said.bad(param.values_at, "a black body needs more than 0 kelvin, and less than a million");
+                said.bad(param.values_at, "the temperature of a blackbody must be more than 0 and less than 1000000 kelvin");
                 return None;
             }
             Some(SpectrumSource::Blackbody(kelvin))
@@ -62,14 +62,14 @@ fn rising(mut curve: Vec<[f32; 2]>, at: Span, params: &Params) -> Option<Spectru
         curve.dedup_by_key(|row| row[0]);
     }
     if let Some(pair) = curve.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
-        let message = format!("the wavelengths of a spectrum must rise: {} comes after {}", pair[1][0], pair[0][0]);
+        let message = format!("the wavelengths of a spectrum must increase: {} comes after {}", pair[1][0], pair[0][0]);
         params.said.bad(at, message);
         return None;
     }
     Some(SpectrumSource::Curve(curve))
 }
 
-/// A spectrum by name: one that pbrt knows, or a file of wavelengths and values.
+/// Spectrum by name: a named spectrum of pbrt-v4, or a file of wavelengths and values.
 fn named(name: &str, at: Span, params: &Params) -> Option<SpectrumSource> {
     if params.language == Language::Fourth
         && let Some(known) = named::spectrum(name)
@@ -84,7 +84,7 @@ fn named(name: &str, at: Span, params: &Params) -> Option<SpectrumSource> {
         }
         Err(error) => {
             let (help, message) = match params.language {
-                Language::Third => (error.help(), format!("the spectrum cannot be had: {error}")),
+                Language::Third => (error.help(), format!("cannot read the spectrum: {error}")),
                 Language::Fourth => {
                     (meant(name, named::names()), format!("pbrt has no spectrum of that name, and {error}"))
                 }

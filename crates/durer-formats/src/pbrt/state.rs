@@ -1,4 +1,4 @@
-//! What the directives change, and what comes of them.
+//! State of the reader: the graphics state that directives change, and the scene built so far.
 
 use super::language::{Decided, Language};
 use super::lexer::Lexer;
@@ -17,43 +17,43 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Objects of a scene, those of instances counted each time.
+/// Maximum number of objects in a scene, counting those of every instance.
 const MAX_OBJECTS: usize = 1 << 20;
 
-/// What `Attribute` may be said of: places in [`State::given`].
+/// Targets of `Attribute`: indices into [`State::given`].
 pub(super) const SHAPE: usize = 0;
 pub(super) const LIGHT: usize = 1;
 pub(super) const MATERIAL: usize = 2;
 pub(super) const MEDIUM: usize = 3;
 pub(super) const TEXTURE: usize = 4;
 
-/// What `AttributeBegin` keeps.
+/// Graphics state, saved by `AttributeBegin`.
 #[derive(Clone, Default)]
 pub(super) struct State {
     pub transforms: Transforms,
     pub reversed: bool,
-    /// Number of the current material.
+    /// Index of the current material.
     pub material: usize,
     pub area: Option<Rc<AreaLight>>,
-    /// Names of the media inside and outside of shapes.
+    /// Names of the media inside and outside shapes.
     pub inside: Option<String>,
     pub outside: Option<String>,
-    /// What `Attribute` gives shapes, lights, materials, media and textures.
+    /// Parameters from `Attribute` for shapes, lights, materials, media and textures.
     pub given: [Vec<Rc<Param>>; 5],
     pub space: RgbSpace,
 }
 
-/// What a directive opened, and so what must close it.
+/// Kind of an open scope; determines the directive that closes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scope {
     Attribute,
     Transform,
     Object,
-    /// A file that is imported.
+    /// Imported file.
     Import,
 }
 
-/// A directive that counts when all are read.
+/// Directive that is evaluated after the file is read.
 pub(super) struct Asked {
     pub kind: String,
     pub list: Vec<Rc<Param>>,
@@ -62,22 +62,22 @@ pub(super) struct Asked {
     pub space: RgbSpace,
 }
 
-/// A file that is being read.
+/// File being read.
 pub(super) struct Open {
     pub text: Lexer,
     pub name: String,
-    /// Where it is asked for.
+    /// Place of the directive that includes it.
     pub at: Span,
-    /// Whether it is imported: its end closes all that it opened.
+    /// True if the file is imported: its end closes every scope that it opened.
     pub imported: bool,
 }
 
-/// A file on its way to a scene.
+/// Reader of a scene file.
 pub(super) struct Reader<'a> {
     pub input: &'a Input<'a>,
     pub said: &'a Said,
     pub language: Language,
-    /// The word that says so.
+    /// Word that decided the language.
     pub decided_by: Option<Span>,
     pub texts: Vec<Open>,
     pub state: State,
@@ -85,28 +85,28 @@ pub(super) struct Reader<'a> {
     pub systems: BTreeMap<String, [DAffine3; 2]>,
     pub materials: Vec<Made>,
     pub named_materials: BTreeMap<String, usize>,
-    /// Numbers in the scene of materials as shapes need them.
+    /// Indices in the scene of the materials as used by shapes, with emission and opacity.
     pub numbers: BTreeMap<(usize, String), Option<u32>>,
     pub textures: BTreeMap<(bool, String), Texture>,
-    /// Media by name; `None`: one without counterpart.
+    /// Media by name; `None` for a medium without a counterpart.
     pub media: BTreeMap<String, Option<Medium>>,
-    /// Numbers of materials with what is inside.
+    /// Indices of materials filled with a medium.
     pub filled: BTreeMap<(usize, String), usize>,
     pub objects: BTreeMap<String, Rc<Group>>,
-    /// The object that is being defined.
+    /// Object being defined.
     pub defining: Option<(String, Group)>,
     pub count: usize,
-    /// Triangles that were made of few numbers.
+    /// Number of triangles tessellated from compact shapes so far.
     pub grown: usize,
-    /// Files that were included.
+    /// Number of files included so far.
     pub included: usize,
     pub camera: Option<Asked>,
     pub film: Option<Asked>,
-    /// The first directive that needs a world, if there was none yet.
+    /// First directive before `WorldBegin` that must come after it.
     pub early: Option<Span>,
     pub in_world: bool,
     pub infinite: Vec<Infinite>,
-    /// Whether light that was scattered is not to be seen.
+    /// True if scattered light is not rendered (`maxdepth` 0).
     pub emitters_only: bool,
     pub meshes: BTreeMap<(String, bool), Arc<MeshData>>,
     pub scene: Scene,
@@ -147,27 +147,26 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The parameters of a directive, with those that `Attribute` gives its kind.
+    /// Parameters of a directive, with those that `Attribute` sets for its kind.
     pub fn params(&self, list: Vec<Rc<Param>>, given: Option<usize>, at: Span) -> Params<'a> {
         let given = given.map_or(&[][..], |kind| &self.state.given[kind]);
         Params::new(list, given, at, (self.input, self.said), (self.language, self.state.space))
     }
 
-    /// The parameters of a directive that was kept.
+    /// Parameters of a deferred directive.
     pub fn params_of(&self, asked: &Asked) -> Params<'a> {
         Params::new(asked.list.clone(), &[], asked.at, (self.input, self.said), (self.language, asked.space))
     }
 
-    /// From the coordinates of what is written now to the world. What moves stands as when the
-    /// shutter opens.
+    /// Map from the current space to world space when the shutter opens.
     pub fn map(&self, at: Span) -> DAffine3 {
         if self.state.transforms.moves() {
-            self.said.once(at, "motion has no counterpart: all stands as when the shutter opens");
+            self.said.once(at, "motion has no counterpart: everything stays where it is when the shutter opens");
         }
         self.state.transforms.maps[0]
     }
 
-    /// Adds an object to the scene, or to what is being defined.
+    /// Adds an object to the scene or to the object being defined.
     pub fn add(&mut self, object: Object) {
         self.count += 1;
         match &mut self.defining {
@@ -176,11 +175,11 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whether so many objects more are allowed.
+    /// Counts `more` objects; returns false and reports an error if the limit is exceeded.
     pub fn room_for(&mut self, more: usize, at: Span) -> bool {
         self.count = self.count.saturating_add(more);
         if self.count > MAX_OBJECTS {
-            self.said.bad(at, format!("more than {MAX_OBJECTS} objects, those of instances counted, are too many"));
+            self.said.bad(at, format!("too many objects: more than {MAX_OBJECTS}, counting those of every instance"));
             return false;
         }
         true

@@ -1,4 +1,4 @@
-//! pbrt's language: what is read of it, conventions in closed form, and errors with their places.
+//! Tests of the pbrt reader: syntax, conventions against closed forms, and places of errors.
 
 mod conventions;
 mod language;
@@ -13,7 +13,7 @@ use durer_scene::material::PrincipledMaterial;
 use durer_scene::scene::{Material, Scene};
 use std::path::Path;
 
-/// Reads a text in a folder; see [`testing`].
+/// Reads a scene whose files are in `folder`; see [`testing`].
 fn read_in(folder: &Path, text: &str) -> (Option<Scene>, Vec<String>) {
     testing::read_in(folder, "scene.pbrt", text)
 }
@@ -22,17 +22,17 @@ fn read(text: &str) -> (Option<Scene>, Vec<String>) {
     read_in(&std::env::temp_dir(), text)
 }
 
-/// A text of which nothing is to be said.
+/// Reads a scene and expects no diagnostics.
 fn clean(text: &str) -> Scene {
     let (scene, told) = read(text);
     assert_eq!(told, [""; 0], "{text}");
     scene.unwrap()
 }
 
-/// A scene with a sphere of a material.
+/// Layers and diagnostics of a sphere's material.
 fn material(text: &str) -> (PrincipledMaterial, Vec<String>) {
     let (scene, told) = read(&format!("Camera \"perspective\" WorldBegin {text} Shape \"sphere\""));
-    let scene = scene.unwrap_or_else(|| panic!("{text}: {told:?}"));
+    let scene = scene.unwrap_or_else(|| panic!("{text}: {told:?}")); // prose: keep
     let number = scene.root.as_ref().unwrap().objects[0].material.unwrap() as usize;
     let Material::Principled(layers) = &scene.materials[number].value else { panic!("no layers: {text}") };
     ((**layers).clone(), told)

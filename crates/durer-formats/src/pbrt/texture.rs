@@ -1,4 +1,4 @@
-//! Textures: one value everywhere, or a picture.
+//! Textures: a constant or a picture.
 
 use super::language::Language;
 use super::made::Texture;
@@ -53,7 +53,7 @@ impl Reader<'_> {
             "scale" if third => match (of("tex1", 1.0), of("tex2", 1.0)) {
                 (texture, Texture::Even(by)) | (Texture::Even(by), texture) => texture.scaled(by),
                 (texture, other) => self.together([&texture, &other], at, |a, b| a * b).unwrap_or_else(|| {
-                    instead("of two pictures that lie otherwise the first is shown");
+                    instead("pictures with different mappings cannot be combined, the first is used");
                     texture
                 }),
             },
@@ -64,7 +64,7 @@ impl Reader<'_> {
                     (texture, Texture::Even(by)) => texture.scaled(by),
                     (Texture::Even(by), texture) => texture.scaled(by),
                     (texture, _) => {
-                        instead("of two pictures the first is shown");
+                        instead("two pictures cannot be combined, the first is used");
                         texture
                     }
                 }
@@ -74,12 +74,12 @@ impl Reader<'_> {
                 let amount = self.pattern(&params, "amount", false, Vec3::splat(0.5)).even().map(|c| c.x);
                 params.known(&["dir"]);
                 let share = amount.unwrap_or_else(|| {
-                    instead("its amount is no picture, one half is taken");
+                    instead("its `amount` cannot be a picture, 0.5 is used");
                     0.5
                 });
                 let mixed = || self.together([&first, &second], at, |a, b| a.lerp(b, share));
                 both(&first, &second, share).or_else(mixed).unwrap_or_else(|| {
-                    instead("pictures that lie otherwise are not mixed, the first is shown");
+                    instead("pictures with different mappings cannot be mixed, the first is used");
                     if first.even().is_some() { second } else { first }
                 })
             }
@@ -89,7 +89,7 @@ impl Reader<'_> {
                 match (even.even(), odd.even(), params.whole("dimension").unwrap_or(2)) {
                     (Some(a), Some(b), 2) => self.checkerboard(a, b, &params),
                     _ => {
-                        instead("the mean of its two sides is taken");
+                        instead("the mean of its two textures is used");
                         both(&even, &odd, 0.5).unwrap_or(even)
                     }
                 }
@@ -99,18 +99,18 @@ impl Reader<'_> {
                 match corners.each_ref().map(Texture::even) {
                     [Some(a), Some(b), Some(c), Some(d)] => self.corners([a, b, c, d], &params),
                     all => {
-                        instead("the mean of its corners is taken");
+                        instead("the mean of its corners is used");
                         Texture::Even(all.into_iter().flatten().sum::<Color>() / 4.0)
                     }
                 }
             }
             "dots" => {
-                instead("its outside is taken");
+                instead("`outside` is used");
                 params.known(&["inside"]);
                 of("outside", 0.0)
             }
             "fbm" | "wrinkled" | "windy" | "marble" | "ptex" => {
-                instead("a middle value is taken");
+                instead("0.5 is used");
                 params.known(&["octaves", "roughness", "scale", "variation", "filename", "encoding"]);
                 Texture::Even(Vec3::splat(0.5))
             }
@@ -130,7 +130,7 @@ impl Reader<'_> {
                     "windy",
                     "wrinkled",
                 ];
-                return self.said.bad_with(at, format!("there is no texture `{other}`"), meant(other, known));
+                return self.said.bad_with(at, format!("unknown texture `{other}`"), meant(other, known));
             }
         };
         if third {
@@ -141,7 +141,7 @@ impl Reader<'_> {
         self.textures.insert((is_color, name), made);
     }
 
-    /// A parameter that may be a texture.
+    /// Value of a parameter that may be a texture.
     pub fn pattern(&self, params: &Params, name: &'static str, is_color: bool, usual: Color) -> Texture {
         let Some(param) = params.get(name) else { return Texture::Even(usual) };
         if param.kind == Kind::Texture {
@@ -150,7 +150,7 @@ impl Reader<'_> {
             }
             let known = self.textures.keys().filter(|key| key.0 == is_color).map(|key| key.1.as_str());
             let what = if is_color { "spectrum" } else { "float" };
-            let message = format!("there is no texture `{}` of type `{what}`", param.text());
+            let message = format!("unknown texture `{}` of type `{what}`", param.text());
             self.said.bad_with(param.values_at, message, meant(param.text(), known));
             return Texture::Even(usual);
         }
@@ -160,7 +160,7 @@ impl Reader<'_> {
         })
     }
 
-    /// A number that may be a texture: of a picture the mean is taken.
+    /// Value of a float parameter that may be a texture; the mean of a picture.
     pub fn value(&self, params: &Params, name: &'static str, usual: f32) -> f32 {
         match self.pattern(params, name, false, Vec3::splat(usual)) {
             Texture::Even(color) => color.x,
@@ -170,14 +170,15 @@ impl Reader<'_> {
         }
     }
 
-    /// The mean of the picture that a parameter is, where only a number has a counterpart.
+    /// Mean of the picture of a parameter for which only a number has a counterpart.
     pub fn mean_of(&self, params: &Params, name: &'static str, picture: &Picture) -> Option<f32> {
         let at = params.place(name);
-        self.said.once(at, format!("`{name}` by a picture has no counterpart: its mean is taken"));
+        self.said.once(at, format!("a picture for `{name}` has no counterpart: its mean is used"));
         self.pictures().mean(picture, at)
     }
 
-    /// A picture that a number is, with its values made others; `None` where it is no picture.
+    /// Picture of a parameter with `change` applied to its values; `None` if the parameter is not a
+    /// picture.
     pub fn changed(
         &mut self,
         params: &Params,
@@ -192,7 +193,7 @@ impl Reader<'_> {
         Some(self.asset(picture, at))
     }
 
-    /// A number that may be a picture: what a change makes of it, or 1 and the picture so changed.
+    /// Float parameter that may be a picture: `change` of the value, or 1 and the changed picture.
     pub fn pictured(
         &mut self,
         params: &Params,
@@ -206,7 +207,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A parameter that is a colour or a picture: the colour that multiplies, and the picture's
+    /// Colour parameter that may be a picture: the colour, or the colour factor and the picture's
     /// name.
     pub fn colored(&mut self, params: &Params, name: &'static str, usual: f32) -> (Color, Option<FileName>) {
         match self.pattern(params, name, true, Vec3::splat(usual)) {
@@ -215,7 +216,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A name for a picture.
+    /// Adds a picture to the scene and returns its name.
     pub fn asset(&mut self, picture: Picture, span: Span) -> FileName {
         pictures::asset(&mut self.scene, picture, span)
     }
@@ -224,7 +225,7 @@ impl Reader<'_> {
         Pictures { input: self.input, said: self.said }
     }
 
-    /// A file as a picture of eight bits, which other formats become.
+    /// Returns a file as a picture of 8 bits per channel. Converts other formats.
     pub fn eight_bits(&self, name: &str, at: Span) -> Option<PictureBytes> {
         self.pictures().eight_bits(name, at)
     }
@@ -240,18 +241,18 @@ impl Reader<'_> {
             "repeat" => {}
             "clamp" => mapping.wrap = [Wrap::Clamp; 2],
             "black" => {
-                self.said.once(params.place("wrap"), "the wrapping `black` has no counterpart: `clamp` is taken");
+                self.said.once(params.place("wrap"), "the wrap mode `black` has no counterpart: `clamp` is used");
                 mapping.wrap = [Wrap::Clamp; 2];
             }
             other => {
                 let help = meant(other, ["repeat", "clamp", "black"]);
-                self.said.bad_with(params.place("wrap"), format!("there is no wrapping `{other}`"), help);
+                self.said.bad_with(params.place("wrap"), format!("unknown wrap mode `{other}`"), help);
             }
         }
         mapping.nearest = params.text("filter") == Some("point");
         mapping.mipmaps = matches!(params.text("filter"), Some("trilinear" | "ewa" | "EWA"));
         if self.language == Language::Third {
-            // Its own default are smaller versions of the picture, which sampling does not need.
+            // Ignore the mipmap settings of pbrt-v3: sampling needs no mipmaps.
             params.known(&["trilinear", "maxanisotropy"]);
             let scale = Vec3::splat(params.float("scale").unwrap_or(1.0));
             let plain = params.truth("gamma") == Some(false);
@@ -276,7 +277,7 @@ impl Reader<'_> {
         Some(Texture::Picture(recoded.unwrap_or(picture), scale))
     }
 
-    /// The power that makes light of the bytes of a picture; `None` where that is sRGB's curve.
+    /// Exponent that decodes the picture's values to linear; `None` for the sRGB curve.
     fn encoding(&self, params: &Params) -> Option<f32> {
         let text = params.text("encoding").filter(|encoding| *encoding != "sRGB")?;
         if text == "linear" {
@@ -285,7 +286,7 @@ impl Reader<'_> {
         let words: Vec<&str> = text.split_whitespace().collect();
         let gamma = if let ["gamma", x] = words[..] { x.parse::<f32>().ok().filter(|x| *x > 0.0) } else { None };
         if gamma.is_none() {
-            let message = format!("there is no encoding `{text}`: it is `sRGB`, `linear`, or `gamma` and a number");
+            let message = format!("unknown encoding `{text}`: use `sRGB`, `linear`, or `gamma` with a number");
             self.said.bad(params.place("encoding"), message);
         }
         gamma
@@ -293,20 +294,21 @@ impl Reader<'_> {
 
     fn mapping(&self, params: &Params) -> Mapping {
         if let Some(other) = params.text("mapping").filter(|mapping| *mapping != "uv") {
-            let what = format!("the mapping `{other}` has no counterpart: the surface's own coordinates are taken");
+            let what = format!("the mapping `{other}` has no counterpart: the surface's uv coordinates are used");
             self.said.once(params.place("mapping"), what);
         }
         let number = |name: &'static str, usual: f32| params.float(name).unwrap_or(usual);
         let (su, sv) = (number("uscale", 1.0), number("vscale", 1.0));
         let (du, dv) = (number("udelta", 0.0), number("vdelta", 0.0));
-        // Both have v upwards; a picture's rows go down.
+        // v grows upwards in both; a picture's rows go down.
         Mapping { transform: [[su, 0.0, du], [0.0, sv, 1.0 - sv - dv]], ..Mapping::default() }
     }
 
-    /// What lies between the values at (0, 0), (0, 1), (1, 0) and (1, 1), as a picture of four texels.
+    /// Bilinear interpolation of the values at (u, v) = (0, 0), (0, 1), (1, 0) and (1, 1), as a
+    /// picture of 2 x 2 texels.
     fn corners(&self, [v00, v01, v10, v11]: [Color; 4], params: &Params) -> Texture {
         let mut mapping = self.mapping(params);
-        // From the middle of a texel to that of the next; rows go down.
+        // Map [0, 1] to the range between texel centres; rows go down.
         let [[su, _, du], [_, sv, dv]] = mapping.transform;
         mapping.transform = [[0.5 * su, 0.0, 0.25 + 0.5 * du], [0.0, 0.5 * sv, 0.25 + 0.5 * dv]];
         mapping.wrap = [Wrap::Clamp; 2];
@@ -316,7 +318,7 @@ impl Reader<'_> {
         }
     }
 
-    /// One picture of two textures, texel by texel; `None` where both are pictures that lie otherwise.
+    /// Combines two textures texel by texel; `None` for pictures with different mappings.
     fn together(&self, textures: [&Texture; 2], at: Span, join: impl Fn(Color, Color) -> Color) -> Option<Texture> {
         let pictures = self.pictures();
         let (picture, most) = match textures {
@@ -330,11 +332,10 @@ impl Reader<'_> {
         Some(Texture::Picture(picture, Vec3::splat(most)))
     }
 
-    /// Two fields and two more, as a picture of four texels.
+    /// Checkerboard as a picture of 2 x 2 texels.
     fn checkerboard(&self, even: Color, odd: Color, params: &Params) -> Texture {
         let mut mapping = self.mapping(params);
-        // A texel is a unit of the surface's coordinates; their origin is the lower left corner of
-        // an even one.
+        // One texel covers one unit of uv; the origin is the lower left corner of an even texel.
         let [[su, _, du], [_, sv, _]] = mapping.transform;
         let dv = params.float("vdelta").unwrap_or(0.0);
         mapping.transform = [[0.5 * su, 0.0, 0.5 * du], [0.0, 0.5 * sv, 1.0 - 0.5 * sv - 0.5 * dv]];

@@ -1,4 +1,4 @@
-//! The current transform, as the directives change it.
+//! Current transformation matrix and the directives that change it.
 
 use super::lexer::{Lexer, Token};
 use super::params::number;
@@ -7,12 +7,12 @@ use durer_diag::{Diagnostic, Span};
 use durer_scene::math::fp;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 
-/// From the coordinates of what follows to the world, or of the camera's directives from the world
-/// to the camera: when the shutter opens and when it closes.
+/// Maps from the current space to world space, when the shutter opens and when it closes. Before
+/// `WorldBegin`: from world space to camera space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Transforms {
     pub maps: [DAffine3; 2],
-    /// Which of the two are changed.
+    /// Maps that directives change.
     pub active: [bool; 2],
 }
 
@@ -23,7 +23,7 @@ impl Default for Transforms {
 }
 
 impl Transforms {
-    /// Multiplies from the right: what is written last is applied first.
+    /// Multiplies from the right: the last directive applies first.
     pub fn apply(&mut self, map: DAffine3) {
         self.change(|now| now * map);
     }
@@ -36,13 +36,13 @@ impl Transforms {
         }
     }
 
-    /// Whether things move while the shutter is open.
+    /// Returns true if the two maps differ: objects move while the shutter is open.
     pub fn moves(&self) -> bool {
         self.maps[0] != self.maps[1]
     }
 }
 
-/// So many numbers after a directive, in brackets or not.
+/// Reads `N` numbers after a directive, with or without brackets.
 pub(super) fn numbers<const N: usize>(text: &mut Lexer, directive: Span, said: &Said) -> Option<[f64; N]> {
     let open = text.peek(said).filter(|found| found.token == Token::Open).map(|found| found.at);
     if open.is_some() {
@@ -68,19 +68,19 @@ pub(super) fn numbers<const N: usize>(text: &mut Lexer, directive: Span, said: &
     Some(all)
 }
 
-/// The matrix of 16 numbers, column by column.
+/// Affine map of a matrix of 16 numbers in column-major order.
 pub(super) fn matrix(m: [f64; 16], at: Span, said: &Said) -> Option<DAffine3> {
     let matrix = DMat4::from_cols_array(&m);
     let [a, b, c, d] = [m[3], m[7], m[11], m[15]];
     if d == 0.0 || [a, b, c].iter().any(|x| (x / d).abs() > 1e-9) {
-        said.bad(at, "this matrix is a projection: its columns must end in 0 0 0 1");
+        said.bad(at, "this matrix is not affine: its columns must end in 0 0 0 1");
         return None;
     }
     let map = DAffine3::from_mat4(matrix * (1.0 / d));
     sound(map, at, said)
 }
 
-/// A map that can be undone.
+/// Returns an invertible map, or reports it as singular.
 pub(super) fn sound(map: DAffine3, at: Span, said: &Said) -> Option<DAffine3> {
     let determinant = map.matrix3.determinant();
     if determinant == 0.0 || !determinant.is_finite() || !map.inverse().is_finite() {
@@ -94,7 +94,7 @@ pub(super) fn sound(map: DAffine3, at: Span, said: &Said) -> Option<DAffine3> {
     Some(map)
 }
 
-/// Turns about an axis of any length, in degrees.
+/// Rotation by an angle in degrees about an axis of any length.
 pub(super) fn rotation([degrees, x, y, z]: [f64; 4]) -> Option<DAffine3> {
     let axis = DVec3::new(x, y, z).try_normalize()?;
     let (sin, cos) = fp::sin_cos_degrees(degrees);
@@ -102,8 +102,8 @@ pub(super) fn rotation([degrees, x, y, z]: [f64; 4]) -> Option<DAffine3> {
     Some(DAffine3::from_mat3(DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z))))
 }
 
-/// From the world to a camera at a place that looks at another along its z; x is to the right, in
-/// coordinates of the left hand.
+/// Map from world space to the space of a camera at `e`, which looks along +z at `l`; +x is to the
+/// right (left-handed).
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 3.9.7.
 pub(super) fn look_at([ex, ey, ez, lx, ly, lz, ux, uy, uz]: [f64; 9]) -> Option<DAffine3> {

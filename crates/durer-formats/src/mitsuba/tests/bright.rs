@@ -1,5 +1,5 @@
-//! How bright things are, beside what Mitsuba 3.9.1 shows: lights that throw pictures, daylight,
-//! materials in even light, smoke.
+//! Brightness compared with Mitsuba 3.9.1: projected pictures, daylight, materials in uniform
+//! light, smoke.
 
 use super::conventions::{clean_in, picture};
 use super::{folder, material, read, read_in};
@@ -14,8 +14,9 @@ use durer_scene::sampler::SampleId;
 use durer_scene::scene::{Material, PictureBytes};
 
 #[test]
-fn projectors_and_spots_throw_pictures() {
-    // Red on the left, which is where Mitsuba's x goes, of a projector; of a spot on the other side.
+fn projectors_and_spots_project_pictures() {
+    // A projector shows red on the left, towards Mitsuba's +x; a spotlight shows it on the other
+    // side.
     let files: &[(&str, &[u8])] = &[("a.pfm", &picture([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]))];
     let texture =
         |name: &str| format!("<texture type='bitmap' name='{name}'><string name='filename' value='a.pfm'/></texture>");
@@ -40,7 +41,7 @@ fn projectors_and_spots_throw_pictures() {
         let lamp = red.unwrap();
         let profile = &scene.assets.profiles[&lamp.file.path];
         let rows = profile.vertical.len();
-        // The middle of a pixel of the projector, where angles across begin and half around.
+        // Middle of a pixel of the projector, at horizontal angle 0 and at half a turn.
         let vertical = profile.vertical.iter().position(|angle| *angle >= 16.102).unwrap();
         let at = |horizontal: usize| profile.candela[horizontal * rows + vertical];
         let half = profile.horizontal.len() / 2;
@@ -55,7 +56,7 @@ fn projectors_and_spots_throw_pictures() {
 }
 
 #[test]
-fn daylight_is_as_bright_on_level_ground_as_theirs() {
+fn daylight_illuminance_on_level_ground_matches_mitsuba() {
     let text = "<emitter type='sunsky'><float name='turbidity' value='3'/><vector name='sun_direction' value='0,.8660254,.5'/>\
                 <transform name='to_world'><rotate x='1' angle='-90'/></transform></emitter><shape type='sphere'/>";
     let (scene, told) = read(&format!("<scene version='3.0.0'>{text}</scene>"));
@@ -63,7 +64,8 @@ fn daylight_is_as_bright_on_level_ground_as_theirs() {
     let scene = scene.unwrap();
     let Light::Directional(sun) = &scene.lights.as_ref().unwrap()[0].value else { panic!() };
     assert!((sun.direction + Vec3::new(0.0, 0.866_025_4, 0.5)).length() < 1e-5, "{}", sun.direction);
-    // Mitsuba's sun 60 degrees high brings 1.276 of green to what faces it; Preetham's a little less.
+    // Mitsuba's sun at an elevation of 60 degrees gives 1.276 of green at normal incidence;
+    // Preetham's slightly less.
     let illuminance = std::f32::consts::PI * sun.color.y;
     assert!((1.1..1.4).contains(&illuminance), "{illuminance}");
     let name = &scene.background.environment.as_ref().unwrap().path;
@@ -71,7 +73,7 @@ fn daylight_is_as_bright_on_level_ground_as_theirs() {
     let texels = &bytes[bytes.len() - 1024 * 512 * 12..];
     let mut level = 0.0;
     for (i, texel) in texels.chunks_exact(12).enumerate() {
-        // From the lowest row up.
+        // Rows of PFM go from the bottom up.
         let angle = 180.0 * (511 - i / 1024) as f64 / 512.0 + 90.0 / 512.0;
         let (sin, cos) = fp::sin_cos_degrees(angle);
         let number =
@@ -82,7 +84,7 @@ fn daylight_is_as_bright_on_level_ground_as_theirs() {
     }
     let lux = level * 683.0 * 106.856_9;
     assert!((lux / 17_668.0 - 1.0).abs() < 0.02, "{lux}");
-    // By time: Mitsuba says where the sun is then, x south, y west, z up.
+    // By time, against Mitsuba's direction to the sun: x south, y west, z up.
     let text = "<emitter type='sun'><float name='latitude' value='48.8'/><float name='longitude' value='2.3'/>\
                 <float name='timezone' value='2'/><integer name='year' value='2024'/><integer name='month' value='6'/>\
                 <integer name='day' value='21'/><float name='hour' value='15'/><float name='minute' value='30'/></emitter>\
@@ -93,7 +95,7 @@ fn daylight_is_as_bright_on_level_ground_as_theirs() {
     assert!((sun.direction + Vec3::new(0.367_118, 0.377_866, 0.849_966)).length() < 5e-3, "{}", sun.direction);
 }
 
-/// What a ball of a material shows in even light on the mean.
+/// Mean radiance of a ball of a material in uniform light.
 fn ball(bsdf: &str) -> Vec3 {
     let text = format!(
         "<scene version='3.0.0'><sensor type='perspective'/><emitter type='constant'/><shape type='sphere'>{bsdf}</shape></scene>"
@@ -114,8 +116,8 @@ fn ball(bsdf: &str) -> Vec3 {
 }
 
 #[test]
-fn balls_are_as_bright_as_theirs() {
-    // Means of what Mitsuba 3.9.1 gives for 200,000 pairs of directions by their cosines.
+fn ball_albedo_matches_mitsuba() {
+    // Means by Mitsuba 3.9.1 over 200,000 cosine-weighted pairs of directions.
     for (bsdf, expected) in [
         ("<float name='specular' value='0'/><float name='roughness' value='1'/>", [0.7456, 0.4260, 0.2130]),
         ("<float name='specular' value='.5'/><float name='roughness' value='.5'/>", [0.7638, 0.4614, 0.2597]),
@@ -134,7 +136,7 @@ fn balls_are_as_bright_as_theirs() {
 }
 
 #[test]
-fn volumes_are_densities_where_their_transform_puts_them() {
+fn volumes_become_density_grids_with_their_transform() {
     // Two cells along x, 0.5 and 4, of a box from 0 to (2, 1, 1).
     let mut volume = b"VOL\x03".to_vec();
     [1_i32, 2, 1, 1, 1].iter().for_each(|n| volume.extend(n.to_le_bytes()));
@@ -156,13 +158,13 @@ fn volumes_are_densities_where_their_transform_puts_them() {
         assert_eq!(m.transmission_density_box, [[5.0, 0.0, 0.0], edge, [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]]);
         let scattered = m.transmission_scatter / m.transmission_depth;
         assert!((scattered - Vec3::new(2.7, 1.8, 0.9)).abs().max_element() < 1e-5, "{scattered}");
-        // Beside the scene's text it is the same file.
+        // Written beside a scene, it is the same file.
         let (made, beside) = put_beside(&scene, "kept", &FolderSource::new(&std::env::temp_dir()));
         let Material::Principled(m) = material(&made) else { panic!() };
         assert_eq!(m.transmission_density.as_ref().unwrap().path, "kept/smoke.vol");
         assert!(beside.contains(&("kept/smoke.vol".to_string(), volume.clone())));
     }
-    // Of an albedo by a volume the mean is taken; what is no volume is refused.
+    // An albedo by a volume becomes its mean; an invalid volume is an error.
     let told = |files: &[(&str, &[u8])], albedo: &str| {
         let folder = folder(files);
         read_in(folder.path(), "scene.xml", &format!("<scene version='3.0.0'>{}</scene>", medium("", albedo)))
@@ -173,7 +175,7 @@ fn volumes_are_densities_where_their_transform_puts_them() {
     let (scene, said) = told(&[files[0], ("albedo.vol", &albedo)], by_volume);
     let Material::Principled(m) = material(scene.as_ref().unwrap()).clone() else { panic!() };
     assert!((m.transmission_scatter / m.transmission_depth - Vec3::splat(3.0 * 0.375)).abs().max_element() < 1e-5);
-    assert!(said.iter().all(|said| said.contains("its mean is taken")), "{said:?}");
+    assert!(said.iter().all(|said| said.contains("its mean is used")), "{said:?}");
     let (_, said) = told(&[("smoke.vol", &volume[..55])], even);
     assert!(said.iter().any(|said| said.contains("the file ends after 1 of 2 densities")), "{said:?}");
     let (_, said) = told(&[], even);

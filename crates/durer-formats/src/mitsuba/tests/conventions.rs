@@ -1,5 +1,5 @@
-//! Conventions of Mitsuba, in closed form. Where the documents do not tell, Mitsuba 3.9.1 was
-//! asked.
+//! Conventions of Mitsuba in closed form. Where its documentation is silent, values are from
+//! Mitsuba 3.9.1.
 
 use super::{clean, folder, material, objects, read, read_in};
 use durer_scene::camera::{Camera, Handedness};
@@ -16,7 +16,7 @@ pub(super) fn layers(bsdf: &str) -> PrincipledMaterial {
     (**layers).clone()
 }
 
-/// The camera of a film of 200 x 100 pixels.
+/// Camera with a film of 200 x 100 pixels.
 fn camera(more: &str) -> Camera {
     let film = "<film type='hdrfilm'><integer name='width' value='200'/><integer name='height' value='100'/></film>";
     clean(&format!("<sensor {more}{film}</sensor><shape type='sphere'/>")).camera.unwrap()
@@ -29,8 +29,8 @@ fn tan(degrees: f32) -> f32 {
 const LOOK: &str = "<transform name='to_world'><lookat origin='0,0,5' target='0,0,0' up='0,1,0'/></transform>";
 
 #[test]
-fn views_are_told_across_any_side() {
-    // 90 degrees across x: half is 1; the film is twice as wide as high.
+fn field_of_view_is_across_given_axis() {
+    // 90 degrees across x gives a half width of 1; the film is twice as wide as high.
     for (axis, fov, half) in [
         ("x", 90.0, 1.0),
         ("larger", 90.0, 1.0),
@@ -45,7 +45,7 @@ fn views_are_told_across_any_side() {
         assert!((tan(0.5 * camera.angle) - half).abs() < 1e-5, "{axis}: {}", camera.angle);
         assert_eq!((camera.center, camera.direction, camera.up), (Vec3::new(0.0, 0.0, 5.0), Vec3::NEG_Z, Vec3::Y));
     }
-    // 50 mm on film of 36 x 24 mm, across the diagonal: 0.43267 half.
+    // Default: 50 mm on 36 x 24 mm film, across the diagonal; half is 0.43267.
     let Camera::Perspective(usual) = camera(&format!("type='perspective'>{LOOK}")) else { panic!() };
     let half = (36f32 * 36.0 + 24.0 * 24.0).sqrt() / 100.0 * 2.0 / 5f32.sqrt();
     assert!((tan(0.5 * usual.angle) - half).abs() < 1e-5);
@@ -60,8 +60,8 @@ fn views_are_told_across_any_side() {
 }
 
 #[test]
-fn what_is_up_where_nothing_is_said() {
-    // As Mitsuba 3.9.1 has it: an axis across the direction.
+fn default_up_is_that_of_mitsuba() {
+    // As in Mitsuba 3.9.1: an axis perpendicular to the direction.
     for (origin, target, up) in [
         ("0,2,6", "0,.6,0", [1.0, 0.0, 0.0]),
         ("1,0,0", "0,3,-2", [0.953452, 0.139643, -0.267261]),
@@ -78,7 +78,7 @@ fn what_is_up_where_nothing_is_said() {
 }
 
 #[test]
-fn what_the_picture_is_to_be() {
+fn settings_come_from_film_sampler_and_integrator() {
     let scene = clean(
         "<integrator type='path'><integer name='max_depth' value='7'/></integrator><sensor type='perspective'>\
          <sampler type='multijitter'><integer name='sample_count' value='36'/></sampler></sensor><shape type='cube'/>",
@@ -95,12 +95,12 @@ fn what_the_picture_is_to_be() {
     assert_eq!((scene.unwrap().wishes.crop, told), (Some((10, 20, 86, 32)), Vec::new()));
     for wrong in [number("width", 87), number("width", 0), number("width", -1), String::new()] {
         let (scene, told) = film(&(part.clone() + &wrong));
-        assert!(scene.is_none() && told[0].contains("the crop does not lie in the picture of 96 x 576"), "{told:?}");
+        assert!(scene.is_none() && told[0].contains("the crop window must lie within the picture of 96 x 576"), "{told:?}");
     }
 }
 
 #[test]
-fn lights_have_their_units() {
+fn lights_have_mitsuba_units() {
     let of = |text: &str| clean(&format!("{text}<shape type='sphere'/>")).lights.unwrap()[0].value.clone();
     let Light::Point(point) = of("<emitter type='point'><float name='intensity' value='2'/></emitter>") else {
         panic!()
@@ -110,7 +110,7 @@ fn lights_have_their_units() {
         "<emitter type='spot'><float name='cutoff_angle' value='40'/><float name='beam_width' value='40'/></emitter>";
     let Light::Spot(spot) = of(spot) else { panic!() };
     assert_eq!((spot.angle, spot.inner_angle, spot.direction), (40.0, 40.0, Vec3::Z));
-    // One that fades does so by the angle: a lamp of its intensity.
+    // A spotlight with falloff is linear in the angle: a measured light of its intensity.
     let text = "<emitter type='spot'><float name='intensity' value='3'/></emitter><shape type='sphere'/>";
     let scene = clean(text);
     let Light::Photometric(lamp) = &scene.lights.as_ref().unwrap()[0].value else { panic!() };
@@ -118,7 +118,7 @@ fn lights_have_their_units() {
     assert_eq!((lamp.direction, lamp.color), (Vec3::Z, Vec3::splat(3.0)));
     assert_eq!(profile.vertical, [0.0, 15.0, 20.0]);
     assert!(profile.candela.iter().zip([1.0, 1.0, 0.0]).all(|(found, wanted)| (found - wanted).abs() < 1e-6));
-    // An even spectrum that shines is not white, and one that reflects is.
+    // A constant emission spectrum is not white; a constant reflectance spectrum is.
     let lit = |radiance: &str| {
         let emitter = format!("<emitter type='area'>{radiance}</emitter>");
         let m = layers(&emitter);
@@ -143,7 +143,7 @@ fn materials_have_their_indices_and_alphas() {
     );
     assert_eq!((rough.specular_roughness, rough.base_metalness, rough.base_color), (0.5, 1.0, Vec3::ONE));
     let gold = layers("<bsdf type='conductor'><string name='material' value='Au'/></bsdf>");
-    // Fresnel's equations at right angles, for red.
+    // Fresnel reflectance at normal incidence, for red.
     let (n, k) = (0.143f32, 3.983f32);
     let expected = ((n - 1.0) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k);
     assert!((gold.base_color.x - expected).abs() < 1e-5);
@@ -152,7 +152,7 @@ fn materials_have_their_indices_and_alphas() {
     let disney = layers(
         "<bsdf type='principled'><float name='specular' value='.5'/><float name='roughness' value='.3'/></bsdf>",
     );
-    // A reflectance of 0.04 at right angles.
+    // A reflectance of 0.04 at normal incidence.
     let root = (disney.specular_ior - 1.0) / (disney.specular_ior + 1.0);
     assert!((root * root - 0.04).abs() < 1e-6 && (disney.specular_roughness - 0.3).abs() < 1e-6);
     let scene = clean(
@@ -163,15 +163,15 @@ fn materials_have_their_indices_and_alphas() {
 }
 
 #[test]
-fn pictures_say_numbers_too() {
+fn textures_of_numbers_become_linear_pictures() {
     let fields = |name: &str, one: f32, other: f32| {
         format!(
             "<texture name='{name}' type='checkerboard'><rgb name='color0' value='{one}'/>\
              <rgb name='color1' value='{other}'/></texture>"
         )
     };
-    // The values of a picture that a material names: numbers without a curve. Mitsuba exchanges
-    // fields where it asks for numbers.
+    // Values of the picture of a material, which are linear. Mitsuba swaps the fields where it
+    // reads numbers.
     let check = |bsdf: &str, get: &dyn Fn(&PrincipledMaterial) -> Option<&FileName>, [other, one]: [f32; 2]| {
         let wanted = [one, other];
         let scene = clean(&format!("<shape type='sphere'>{bsdf}</shape>"));
@@ -180,12 +180,12 @@ fn pictures_say_numbers_too() {
         let PictureBytes::Here(path, bytes) = &scene.assets.pictures[&name.path].bytes else { panic!() };
         let image = durer_image::read(bytes, path).unwrap();
         for (pixel, wanted) in image.pixels.iter().zip(wanted) {
-            // Fields have eight bits, and so has what is made of them.
+            // Fields have 8 bits, before and after the change.
             assert!((pixel.x - wanted).abs() < 1.5 / 255.0, "{bsdf}: {} and not {wanted}", pixel.x);
         }
         (**layers).clone()
     };
-    // The root of alpha is our roughness.
+    // Our roughness is the square root of alpha.
     let (ggx, alpha) = ("<string name='distribution' value='ggx'/>", fields("alpha", 0.04, 0.25));
     let metal = format!("<bsdf type='roughconductor'>{ggx}{alpha}</bsdf>");
     let metal = check(&metal, &|m| m.specular_roughness_texture.as_ref(), [0.2, 0.5]);
@@ -193,7 +193,7 @@ fn pictures_say_numbers_too() {
     let inner = "<bsdf type='diffuse'/>";
     let mask = format!("<bsdf type='mask'>{}{inner}</bsdf>", fields("opacity", 0.0, 1.0));
     check(&mask, &|m| m.opacity_texture.as_ref(), [0.0, 1.0]);
-    // The weight is that of the second.
+    // `weight` is the share of the second material.
     let weight = fields("weight", 0.2, 0.7);
     let blend = format!("<bsdf type='blendbsdf'>{weight}{inner}<bsdf type='conductor'/></bsdf>");
     let scene = clean(&format!("<shape type='sphere'>{blend}</shape>"));
@@ -210,7 +210,7 @@ fn pictures_say_numbers_too() {
     let bump =
         format!("<bsdf type='bumpmap'>{}<float name='scale' value='.3'/>{inner}</bsdf>", fields("arbitrary", 0.5, 0.9));
     assert_eq!(check(&bump, &|m| m.bump_texture.as_ref(), [0.5, 0.9]).bump_height, 0.3);
-    // Of colours it is the luminance.
+    // The number of a colour is its luminance.
     let colors = "<texture name='opacity' type='checkerboard'><rgb name='color0' value='0,1,0'/>\
         <rgb name='color1' value='1,0,0'/></texture>";
     check(&format!("<bsdf type='mask'>{colors}{inner}</bsdf>"), &|m| m.opacity_texture.as_ref(), [0.7152, 0.2126]);
@@ -227,9 +227,9 @@ pub(super) fn mesh(scene: &Scene) -> &durer_scene::shape::MeshData {
 }
 
 #[test]
-fn coordinates_of_textures_are_turned_over() {
-    // Mitsuba has v = 0 at the upper border of a picture, and the lower left corner of a rectangle
-    // at 0 0.
+fn texture_v_is_flipped() {
+    // In Mitsuba v = 0 is the upper edge of a picture, and the lower left corner of a rectangle is
+    // (0, 0).
     let scene = clean("<shape type='rectangle'/>");
     let lower_left = mesh(&scene).positions.iter().position(|p| p.x < 0.0 && p.y < 0.0).unwrap();
     assert_eq!(mesh(&scene).uvs[lower_left], Vec2::new(0.0, 1.0));
@@ -240,7 +240,7 @@ fn coordinates_of_textures_are_turned_over() {
 }
 
 #[test]
-fn what_is_inside_is_extinction_times_albedo() {
+fn interior_scattering_is_extinction_times_albedo() {
     let scene = clean(
         "<medium type='homogeneous' id='m'><float name='sigma_t' value='2'/><float name='albedo' value='.25'/></medium>\
          <shape type='sphere'><bsdf type='null'/><ref id='m' name='interior'/></shape>",
@@ -249,13 +249,13 @@ fn what_is_inside_is_extinction_times_albedo() {
     assert_eq!((m.specular_ior, m.transmission_depth, m.transmission_scatter), (1.0, 0.5, Vec3::splat(0.25)));
     assert!((m.transmission_color.x - fp::exp(-1.0)).abs() < 1e-6);
     assert_eq!(objects(&scene).len(), 1);
-    // Nothing alone is not shown.
+    // A `null` surface without a medium is not rendered.
     let (scene, told) = read("<scene><shape type='sphere'><bsdf type='null'/></shape></scene>");
     assert!(scene.is_some_and(|scene| objects(&scene).is_empty()), "{told:?}");
 }
 
 #[test]
-fn axes_that_are_not_of_length_1_are_told() {
+fn rotation_axis_not_of_length_1_is_reported() {
     let told = |version: &str, axis: &str| {
         let rotate = format!("<transform name='to_world'><rotate {axis} angle='40'/></transform>");
         read(&format!("<scene version='{version}'><shape type='sphere'>{rotate}</shape></scene>")).1
@@ -264,7 +264,7 @@ fn axes_that_are_not_of_length_1_are_told() {
     assert!(told("0.6.0", "x='1' y='2' z='.5'").is_empty() && told("3.0.0", "x='.6' y='.8'").is_empty());
 }
 
-/// A scene of a folder's files, of which nothing is to be said.
+/// Reads a scene with files of a folder and expects no diagnostics.
 pub(super) fn clean_in(files: &[(&str, &[u8])], inner: &str) -> Scene {
     let folder = folder(files);
     let (scene, told) = read_in(folder.path(), "scene.xml", &format!("<scene version='3.0.0'>{inner}</scene>"));
@@ -272,7 +272,7 @@ pub(super) fn clean_in(files: &[(&str, &[u8])], inner: &str) -> Scene {
     scene.unwrap()
 }
 
-/// A picture of 2 x 1 pixels.
+/// PFM file of 2 x 1 pixels.
 pub(super) fn picture(pixels: [[f32; 3]; 2]) -> Vec<u8> {
     let mut bytes = b"PF\n2 1\n-1.0\n".to_vec();
     pixels.as_flattened().iter().for_each(|number| bytes.extend(number.to_le_bytes()));
@@ -280,22 +280,22 @@ pub(super) fn picture(pixels: [[f32; 3]; 2]) -> Vec<u8> {
 }
 
 #[test]
-fn lamps_scatter_nothing_unless_they_say_so() {
+fn emitters_without_material_do_not_scatter() {
     let lamp = "<emitter type='area'><rgb name='radiance' value='2'/></emitter>";
     let alone = layers(lamp);
     assert_eq!((alone.base_color, alone.emission_luminance), (Vec3::ZERO, 2.0));
-    assert_eq!(layers(&format!("{lamp}<bsdf type='diffuse'/>")).base_color, Vec3::splat(0.5));
+    assert_eq!(layers(&format!("{lamp}<bsdf type='diffuse'/>")).base_color, Vec3::splat(0.5)); // prose: keep
     assert_eq!(layers("").base_color, Vec3::splat(0.5));
-    // A sphere turned inside out is a dome around what it lights.
-    let dome = format!("<boolean name='flip_normals' value='true'/>{lamp}");
+    // An inverted sphere is a dome that lights its inside.
+    let dome = format!("<boolean name='flip_normals' value='true'/>{lamp}"); // prose: keep
     let (scene, told) = read(&format!("<scene><shape type='sphere'>{dome}</shape></scene>"));
-    assert!(told[0].contains("it shines outwards as well"), "{told:?}");
+    assert!(told[0].contains("it emits on both sides"), "{told:?}");
     let Material::Principled(dome) = material(scene.as_ref().unwrap()) else { panic!() };
     assert_eq!((dome.emission_luminance, dome.walls), (2.0, Walls::Thin));
 }
 
 #[test]
-fn pictures_of_lamps_may_be_brighter_than_1() {
+fn pictures_of_emitters_may_exceed_1() {
     let lamp = "<shape type='rectangle'><emitter type='area'><texture name='radiance' type='bitmap'>\
         <string name='filename' value='lamp.pfm'/></texture></emitter></shape>";
     let scene = clean_in(&[("lamp.pfm", &picture([[8.0, 2.0, 0.0], [4.0, 4.0, 4.0]]))], lamp);
@@ -311,13 +311,13 @@ fn pictures_of_lamps_may_be_brighter_than_1() {
     }
 }
 
-/// A number of eight bits with sRGB's curve, without it.
+/// Decodes an 8-bit sRGB value.
 fn srgb(number: f32) -> f32 {
     durer_image::decode_srgb((255.0 * number).round() as u8)
 }
 
 #[test]
-fn colours_of_pictures_have_a_curve_unless_they_are_raw() {
+fn picture_colours_are_srgb_unless_raw() {
     let grey = b"P6\n1 1\n255\n\x80\x80\x80";
     let of = |raw: bool| {
         let inner = format!(
@@ -327,7 +327,7 @@ fn colours_of_pictures_have_a_curve_unless_they_are_raw() {
         let scene = clean_in(&[("grey.ppm", grey)], &inner);
         let Material::Principled(layers) = material(&scene) else { panic!() };
         let picture = &scene.assets.pictures[&layers.base_color_texture.as_ref().unwrap().path];
-        // What a picture leaves open is no hole.
+        // A picture's alpha cuts no holes.
         assert_eq!(picture.mapping.cutoff, Some(0.0));
         match &picture.bytes {
             PictureBytes::File(_) => srgb(128.0 / 255.0),
@@ -338,8 +338,8 @@ fn colours_of_pictures_have_a_curve_unless_they_are_raw() {
 }
 
 #[test]
-fn glass_in_glass_has_its_own_index() {
-    // What is written is a quotient across the surface, whatever that lies in.
+fn nested_glass_has_its_own_index() {
+    // The index is the ratio across the surface, whatever medium surrounds it.
     let body = |radius: f32, inside: &str, outside: &str| {
         let index = |name: &str, value: &str| match value.parse::<f32>() {
             Ok(value) => format!("<float name='{name}' value='{value}'/>"),
@@ -374,9 +374,9 @@ fn glass_in_glass_has_its_own_index() {
 }
 
 #[test]
-fn sides_and_facets_are_those_of_mitsuba() {
+fn sides_and_facets_match_mitsuba() {
     let of = |kind: &str| layers(&format!("<bsdf type='{kind}'/>"));
-    // What is not `twosided` is black from behind, but for glass and sheets.
+    // Materials other than glass and thin sheets are black from behind unless they are `twosided`.
     for kind in ["diffuse", "conductor", "plastic", "principled"] {
         assert_eq!(of(kind).backs, Backs::Black, "{kind}");
         assert_eq!(layers(&format!("<bsdf type='twosided'><bsdf type='{kind}'/></bsdf>")).backs, Backs::Shown);
@@ -397,7 +397,7 @@ fn sides_and_facets_are_those_of_mitsuba() {
 }
 
 #[test]
-fn a_depth_of_one_shows_lamps_alone() {
+fn max_depth_1_shows_only_emitters() {
     let scene = clean(
         "<integrator type='path'><integer name='max_depth' value='1'/></integrator>\
          <shape type='sphere'><emitter type='area'/></shape><shape type='cube'/>",
@@ -410,17 +410,17 @@ fn a_depth_of_one_shows_lamps_alone() {
 }
 
 #[test]
-fn cameras_see_from_the_near_plane_to_the_far_one() {
+fn cameras_clip_at_near_and_far_planes() {
     let clip = "<float name='near_clip' value='2'/><float name='far_clip' value='7'/>";
     let Camera::ThinLens(lens) = camera(&format!("type='perspective'>{LOOK}{clip}")) else { panic!() };
     assert_eq!((lens.near, lens.far), (2.0, Some(7.0)));
-    // The usual planes cut off nothing.
+    // The default planes do not clip.
     let usual = "<float name='near_clip' value='0.01'/><float name='far_clip' value='10000'/>";
     assert!(matches!(camera(&format!("type='perspective'>{LOOK}{usual}")), Camera::Perspective(_)));
 }
 
 #[test]
-fn tints_of_metals_count_at_all_angles() {
+fn conductor_tint_applies_at_all_angles() {
     let metal =
         |more: &str| layers(&format!("<bsdf type='conductor'><string name='material' value='Au'/>{more}</bsdf>"));
     let (plain, tinted) = (metal(""), metal("<rgb name='specular_reflectance' value='.5,.25,.5'/>"));
@@ -434,21 +434,21 @@ fn tints_of_metals_count_at_all_angles() {
     assert!((at_82(&tinted) - tint * at_82(&plain)).abs().max_element() < 1e-6);
 }
 
-/// Two faces that are folded, of which one vertex has a colour.
+/// Two faces with a fold between them; one vertex has a colour.
 const FOLDED: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
     property float u\nproperty float v\nproperty float r\nproperty float g\nproperty float b\n\
     element face 2\nproperty list uchar int vertex_indices\nend_header\n\
     0 0 0 0 0 .5 .2 .8\n1 0 0 1 0 1 1 1\n1 1 0 1 1 1 1 1\n0 1 1 0 1 1 1 1\n3 0 1 2\n3 0 2 3\n";
 
 #[test]
-fn meshes_of_files_are_smooth_and_without_colours() {
+fn mesh_files_are_smooth_and_uncoloured_by_default() {
     let of = |more: &str| {
         let inner = format!("<shape type='ply'><string name='filename' value='folded.ply'/>{more}</shape>");
         mesh(&clean_in(&[("folded.ply", FOLDED.as_bytes())], &inner)).clone()
     };
     let plain = of("");
     assert!(plain.colors.is_empty() && !plain.flat && plain.tangents.is_empty());
-    // At the fold both faces count by their angles there: a right one, and of the other 60 degrees.
+    // At the fold both faces are weighted by their angle: 45 degrees and 60 degrees.
     let a = plain.triangles[0].iter().position(|&i| plain.positions[i as usize] == Vec3::ZERO).unwrap();
     let [face, other] = [Vec3::Z, Vec3::new(1.0, -1.0, 1.0) / 3f32.sqrt()];
     let angles = [45f32.to_radians(), 60f32.to_radians()];
@@ -458,14 +458,14 @@ fn meshes_of_files_are_smooth_and_without_colours() {
     assert!(of("<boolean name='face_normals' value='true'/>").flat);
     let colored = of("<bsdf type='diffuse'><texture name='reflectance' type='mesh_attribute'>\
         <string name='name' value='vertex_color'/></texture></bsdf>");
-    // Numbers of PLY are light without a curve.
+    // Vertex colours of PLY are linear.
     let wanted = [0.5, 0.2, 0.8];
     let found = colored.colors[0];
     assert!((0..3).all(|k| (found[k] - wanted[k]).abs() < 4e-3) && found[3] == 1.0, "{found:?}");
 }
 
 #[test]
-fn pictures_of_normals_lean_them_to_where_u_and_v_grow() {
+fn normal_map_tangents_follow_u() {
     let leaning = "<bsdf type='normalmap'><texture name='normalmap' type='bitmap'><boolean name='raw' value='true'/>\
         <string name='filename' value='n.ppm'/></texture><bsdf type='diffuse'/></bsdf>";
     let files: [(&str, &[u8]); 2] = [("n.ppm", b"P6\n1 1\n255\n\x80\x80\xff"), ("folded.ply", FOLDED.as_bytes())];
@@ -479,7 +479,7 @@ fn pictures_of_normals_lean_them_to_where_u_and_v_grow() {
         assert_eq!(data.tangents.len(), data.positions.len(), "{shape}");
         for (corners, uvs) in data.triangles.iter().zip(&data.triangle_uvs) {
             for k in 0..3 {
-                // Along the tangent u grows.
+                // The tangent points to growing u.
                 let tangent = data.tangents[corners[k] as usize];
                 let [x, y, z, side] = tangent;
                 let along = (0..3).filter(|&l| l != k).map(|l| {
@@ -496,8 +496,8 @@ fn pictures_of_normals_lean_them_to_where_u_and_v_grow() {
 }
 
 #[test]
-fn axes_of_cylinders_are_those_of_mitsuba() {
-    // Where u is 0 on cylinders of radius 1 in Mitsuba 3.9.1, as an offset from the axis.
+fn cylinder_axes_match_mitsuba() {
+    // Start of u on cylinders of radius 1 in Mitsuba 3.9.1, as an offset from the axis.
     for (to, start) in [
         ([0.0, 0.0, 2.0], [1.0, 0.0, 0.0]),
         ([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]),
@@ -524,7 +524,7 @@ fn axes_of_cylinders_are_those_of_mitsuba() {
 }
 
 #[test]
-fn hair_on_curves_of_a_file() {
+fn curve_files_with_hair_become_tubes() {
     let folder = folder(&[
         ("hair.txt", b"0 0 0 0.1\n1 0 0 0.1\n2 0 0 0.1\n3 0 0 0.1\n\n0 1 0 0.2\n1 1 0 0.2\n2 1 0 0.2\n3 1 0 0.2\n"),
         ("short.txt", b"0 0 0 0.1\n1 0 0 0.1\n"),
@@ -538,7 +538,7 @@ fn hair_on_curves_of_a_file() {
              <float name='int_ior' value='1.6'/><float name='ext_ior' value='1'/></bsdf></shape></scene>"
         )
     };
-    // Splines end flat, and lines in halves of balls.
+    // Splines have flat ends; linear curves end in half balls.
     for (kind, from, to, ball) in [("bsplinecurve", 1.0, 2.0, 0.0), ("linearcurve", 0.0, 3.0, 0.2)] {
         let (scene, told) = read_in(folder.path(), "scene.xml", text(kind, "hair.txt"));
         assert_eq!(told, [""; 0]);
@@ -550,19 +550,19 @@ fn hair_on_curves_of_a_file() {
         let data = scene.assets.meshes.values().next().unwrap();
         let ends = data.positions.iter().fold((9.0_f32, -9.0_f32), |(a, b), p| (a.min(p.x), b.max(p.x)));
         assert!((ends.0 - from + ball).abs() < 1e-5 && (ends.1 - to - ball).abs() < 1e-5, "{kind}: {ends:?}");
-        // Two tubes, each as wide as its radius says; u grows along them.
+        // Two tubes, each as wide as its radius; u grows along them.
         let wide = |y: f32| data.positions.iter().map(|p| (p.y - y).abs()).filter(|d| *d < 0.4).fold(0.0, f32::max);
         assert!((wide(0.0) - 0.1).abs() < 0.004 && (wide(1.0) - 0.2).abs() < 0.008, "{} {}", wide(0.0), wide(1.0));
         let u = |p: &Vec3| ((p.x - from) / (to - from)).clamp(0.0, 1.0);
         assert!(data.positions.iter().zip(&data.uvs).all(|(p, uv)| (u(p) - uv.x).abs() < 1e-4));
     }
     for (file, kind, wanted) in [
-        ("short.txt", "bsplinecurve", "short.txt:3:1 error this ends a curve of 2, which needs 4"),
-        ("bad.txt", "linearcurve", "bad.txt:2:1 error a point of a curve is three numbers, and a radius of 0 or more"),
+        ("short.txt", "bsplinecurve", "short.txt:3:1 error a curve that ends here has 2 points: it needs 4"),
+        ("bad.txt", "linearcurve", "bad.txt:2:1 error a point of a curve must be three numbers and a radius of 0 or more"),
         (
             "thin.txt",
             "linearcurve",
-            "thin.txt:2:1 error a point of a curve is three numbers, and a radius of 0 or more",
+            "thin.txt:2:1 error a point of a curve must be three numbers and a radius of 0 or more",
         ),
         ("none.txt", "linearcurve", "error the curves cannot be had"),
     ] {

@@ -1,4 +1,4 @@
-//! Conventions of shapes and of the materials on them, as Mitsuba 3.9.1 has them.
+//! Conventions of shapes and of their materials in Mitsuba 3.9.1.
 
 use super::conventions::{clean_in, mesh};
 use super::{clean, objects};
@@ -7,9 +7,9 @@ use durer_scene::math::{Vec2, Vec3};
 use durer_scene::scene::{Material, Scene};
 
 #[test]
-fn serialized_meshes_are_what_they_are_as_ply() {
-    // The same lists as in the other files; v goes down in both, and flags of colours or of flat
-    // faces change nothing.
+fn serialized_mesh_equals_ply_mesh() {
+    // Equal lists in all files. v goes down in both formats; flags of colours and of flat faces
+    // have no effect.
     let ply = b"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
         property float nx\nproperty float ny\nproperty float nz\nproperty float u\nproperty float v\n\
         element face 2\nproperty list uchar int vertex_indices\nend_header\n\
@@ -35,13 +35,13 @@ fn serialized_meshes_are_what_they_are_as_ply() {
             );
         }
     }
-    // Without normals they are smooth, and the first is without coordinates.
+    // A mesh without normals becomes smooth; the first has no texture coordinates.
     let bytes = file(4, &[stream(4, 0x1000), stream(4, 0x1003)]);
     let first = of("serialized", "a.serialized", &bytes, "");
     assert!(first.uvs.is_empty() && first.triangle_normals.len() == 2);
 }
 
-/// The index of refraction of each object.
+/// Index of refraction of each object.
 fn indices(scene: &Scene) -> Vec<f32> {
     let index = |object: &&durer_scene::scene::Object| match &scene.materials[object.material.unwrap() as usize].value {
         Material::Principled(layers) => layers.specular_ior,
@@ -51,7 +51,7 @@ fn indices(scene: &Scene) -> Vec<f32> {
 }
 
 #[test]
-fn spheres_inside_out_have_their_indices_exchanged() {
+fn inverted_spheres_swap_their_indices() {
     const GLASS: f32 = 1.5046 / 1.000277;
     let glass = |kind: &str| format!("<bsdf type='{kind}' id='glass'/>");
     let sphere = |more: &str| format!("<shape type='sphere'>{more}<ref id='glass'/></shape>");
@@ -62,7 +62,7 @@ fn spheres_inside_out_have_their_indices_exchanged() {
         assert!(found.len() == wanted.len(), "{text}");
         assert!(found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-5), "{text}: {found:?} and not {wanted:?}");
     };
-    // A bubble in water that is everywhere, and the same twice turned over.
+    // A bubble in glass that fills all space; inverted twice, an ordinary sphere.
     for kind in ["dielectric", "roughdielectric"] {
         let ggx = if kind == "dielectric" { "" } else { "<string name='distribution' value='ggx'/>" };
         let glass = format!("<bsdf type='{kind}' id='glass'>{ggx}</bsdf>");
@@ -70,18 +70,18 @@ fn spheres_inside_out_have_their_indices_exchanged() {
         check(glass.clone() + &sphere(mirror), &[1.0 / GLASS]);
         check(glass + &sphere(&(flip.to_string() + mirror)), &[GLASS]);
     }
-    // Both faces of a thin one are alike.
+    // Both sides of a thin dielectric are alike.
     check(glass("thindielectric") + &sphere(flip), &[GLASS]);
-    // A hollow ball of one material: inside of its glass is air.
+    // Hollow ball of one material: air is inside its glass.
     let radius = "<float name='radius' value='.9'/>";
     check(glass("dielectric") + &sphere("") + &sphere(&(flip.to_string() + radius)), &[GLASS, 1.0 / GLASS]);
 }
 
 #[test]
-fn coordinates_of_disks_go_outwards_and_around() {
+fn disk_uv_goes_outwards_and_around() {
     let picture = "<bsdf type='diffuse'><texture name='reflectance' type='checkerboard'/></bsdf>";
     let data = mesh(&clean(&format!("<shape type='disk'>{picture}</shape>"))).clone();
-    // Places and their coordinates in Mitsuba 3.9.1, whose v is turned over here.
+    // Positions and texture coordinates in Mitsuba 3.9.1; v is flipped here.
     for (x, y, wanted) in [(0.5, 0.0, [0.5, 0.0]), (0.0, 0.5, [0.5, 0.25]), (0.3, -0.4, [0.5, 0.852416])] {
         let place = Vec2::new(x, y);
         let found = data.triangles.iter().zip(&data.triangle_uvs).find_map(|(corners, uvs)| {
@@ -97,19 +97,19 @@ fn coordinates_of_disks_go_outwards_and_around() {
         let near = (found.x - wanted[0]).abs() < 1e-3 && (1.0 - found.y - wanted[1]).abs() < 3e-3;
         assert!(near, "{place}: {found} and not {wanted:?}");
     }
-    // Along the tangent u grows: outwards.
+    // The tangent points to growing u: outwards.
     let outwards = |(p, t): (&Vec3, &[f32; 4])| p.length() == 0.0 || p.dot(Vec3::new(t[0], t[1], t[2])) > 0.9;
     assert!(data.positions.iter().zip(&data.tangents).all(outwards));
-    // Of one colour it is a disc.
+    // A disk without a picture stays a disc.
     assert!(clean("<shape type='disk'/>").assets.meshes.is_empty());
 }
 
 #[test]
-fn joints_and_ends_of_linear_curves_are_round() {
+fn linear_curve_joints_and_ends_are_round() {
     let bent = b"0 0 0 .5\n2 0 0 .5\n2 2 0 .25\n";
     let shape = "<shape type='linearcurve'><string name='filename' value='bent.txt'/></shape>";
     let data = mesh(&clean_in(&[("bent.txt", bent)], shape)).clone();
-    // How far a vertex lies from the line of balls that grow evenly from one end to the other.
+    // Signed distance from the swept balls whose radius is linear along each segment.
     let ends = [(Vec3::ZERO, 0.5), (2.0 * Vec3::X, 0.5), (Vec3::new(2.0, 2.0, 0.0), 0.25)];
     let outside = |p: &Vec3| {
         let from = |pair: &[(Vec3, f32)]| {
@@ -121,7 +121,7 @@ fn joints_and_ends_of_linear_curves_are_round() {
     };
     let most = data.positions.iter().map(outside).fold(f32::MIN, f32::max);
     assert!(most < 0.02, "{most}");
-    // The outer corner of the joint, the end at the left and the one at the top.
+    // The outer corner of the joint, the left end and the top end.
     for there in [
         Vec3::new(2.0 + 0.125f32.sqrt(), -(0.125f32.sqrt()), 0.0),
         Vec3::new(-0.5, 0.0, 0.0),
@@ -130,7 +130,7 @@ fn joints_and_ends_of_linear_curves_are_round() {
         let nearest = data.positions.iter().map(|p| p.distance(there)).fold(f32::MAX, f32::min);
         assert!(nearest < 0.12, "{there} {nearest}");
     }
-    // u grows from end to end, and normals point outwards.
+    // u grows along the curve and normals point outwards.
     let middle = data.positions.iter().zip(&data.uvs).filter(|(_, uv)| uv.x == 0.5);
     assert!(middle.clone().count() > 12 && middle.into_iter().all(|(p, _)| p.distance(2.0 * Vec3::X) < 0.53));
     for (corners, normals) in data.triangles.iter().zip(&data.triangle_normals) {

@@ -1,7 +1,7 @@
-//! Disney's material, as pbrt-v3 has it.
+//! Disney material of pbrt-v3.
 //!
-//! Source of meanings: Burley, *Extending the Disney BRDF to a BSDF with Integrated Subsurface
-//! Scattering*, SIGGRAPH courses, 2015, and *Physically Based Rendering*, 3rd edition.
+//! Source: Burley, *Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering*,
+//! SIGGRAPH courses, 2015, and *Physically Based Rendering*, 3rd edition.
 
 use super::super::made::Made;
 use super::super::params::Params;
@@ -14,8 +14,8 @@ use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Walls;
 use durer_scene::math::{Color, LUMINANCE, Vec3};
 
-/// The share of light that sheen of strength 1 gives back, over what our fuzz does, both on the mean
-/// over all directions.
+/// Mean albedo of sheen of strength 1 over that of the fuzz lobe, both averaged over all
+/// directions.
 const SHEEN: f32 = 0.1;
 
 impl Reader<'_> {
@@ -32,7 +32,7 @@ impl Reader<'_> {
         let mut m = PrincipledMaterial {
             base_color: color,
             base_color_texture: picture.clone(),
-            // All that is reflected has the colour once more.
+            // Multiply every specular reflection by the colour once more.
             specular_color: color,
             specular_color_texture: picture,
             specular_ior: self.old_index(params, 1.5),
@@ -50,13 +50,14 @@ impl Reader<'_> {
         let clearcoat = share(self, "clearcoat", 0.0);
         if clearcoat > 0.0 {
             let gloss = share(self, "clearcoatgloss", 1.0);
-            // It is a quarter as strong as a boundary, and takes nothing from what is below.
+            // The clearcoat is a quarter as strong as a dielectric boundary and does not attenuate
+            // the base.
             (m.coat_weight, m.coat_ior, m.coat_darkening) = (0.25 * clearcoat, 1.5, 0.0);
             m.coat_roughness = (0.1 + gloss * (0.001 - 0.1)).sqrt();
         }
         params.known(&["speculartint", "clearcoatgloss"]);
         if share(self, "flatness", 0.0) > 0.0 {
-            let what = "`flatness` has no counterpart: the base is plainly matte";
+            let what = "`flatness` has no counterpart: the base stays diffuse";
             self.said.once(params.place("flatness"), what);
         }
         let distance = params.spectrum("scatterdistance").map_or(Color::ZERO, |spectrum| spectrum.plain());
@@ -79,7 +80,7 @@ impl Reader<'_> {
         if metallic == 0.0 {
             return Made::Layers(Box::new(m), at);
         }
-        // The other part is metal: the colour times Schlick's of that colour.
+        // The other part is metal: the colour times Schlick's reflectance of that colour.
         let mut metal = m.clone();
         let tinted = if metal.base_color_texture.is_some() { Vec3::ONE } else { color };
         metal.base_metalness = 1.0;

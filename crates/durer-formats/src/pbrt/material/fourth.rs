@@ -1,7 +1,7 @@
 //! Materials of pbrt-v4.
 //!
-//! Source of all meanings: *Physically Based Rendering*, 4th edition, chapters 9, 10 and 14. A coat
-//! over a matte base is a coat that darkens it; a metal is its reflectance at 0 and at 82 degrees;
+//! Source: *Physically Based Rendering*, 4th edition, chapters 9, 10 and 14. A coat over a matte
+//! base becomes a coat that darkens it. A metal becomes its reflectance at 0 and at 82 degrees.
 //! GGX's alpha is the square of our roughness.
 
 use super::super::made::{Made, Texture};
@@ -35,7 +35,7 @@ const KNOWN: [&str; 12] = [
     "hair",
 ];
 
-/// Materials of pbrt-v3, and what they are now.
+/// Materials of pbrt-v3 and their nearest materials in pbrt-v4.
 const OLD: [(&str, &str); 8] = [
     ("matte", "diffuse"),
     ("plastic", "coateddiffuse"),
@@ -47,32 +47,32 @@ const OLD: [(&str, &str); 8] = [
     ("translucent", "diffusetransmission"),
 ];
 
-/// What a coat of pbrt leaves of light that crosses it down and up: it loses exp(-thickness / cosine)
-/// each time, and what goes to and fro between the boundary and a matte base loses it each way.
+/// Transmittance of a coat for light that crosses it down and up. Each crossing multiplies by
+/// exp(-thickness / cosine), also for light reflected between the boundary and a matte base.
 ///
 /// Source: `LayeredBxDF` in *Physically Based Rendering*, 4th edition, section 14.3.2.
 fn crossed(thickness: f32, ior: f32, base: f32) -> f32 {
     const STEPS: u16 = 64;
     let at = |i: u16| (f32::from(i) + 0.5) / f32::from(STEPS);
-    // Of even light: the mean by the cosine.
+    // Cosine-weighted mean over diffuse light.
     let even = (0..STEPS).map(|i| 2.0 * at(i) * fp::exp(-thickness / at(i))).sum::<f32>() / f32::from(STEPS);
     let back = base.clamp(0.0, 1.0) * fresnel::diffuse(1.0 / ior);
     fp::exp(-2.0 * thickness) * (1.0 - back) / (1.0 - back * even * even)
 }
 
 impl Reader<'_> {
-    /// GGX's alpha along both directions, by three parameters: of both, and of each.
+    /// GGX's alpha along u and v; the parameters are for both directions, for u and for v.
     fn alphas(&self, params: &Params, [both, u, v]: [&'static str; 3], remapped: bool) -> [f32; 2] {
         let usual = self.value(params, both, 0.0);
-        // Source: pbrt-v4 takes the root of what is written, where that is asked for.
+        // Source: pbrt-v4 takes the square root if `remaproughness` is set.
         [u, v].map(|name| {
             let written = self.value(params, name, usual).max(0.0);
             if remapped { written.sqrt() } else { written }
         })
     }
 
-    /// The roughness of a picture of GGX's alpha, and what alpha it multiplies: that of the
-    /// picture, or of the numbers.
+    /// Picture of roughness made of a picture of GGX's alpha, and the alpha that it multiplies: 1,
+    /// or the parameters' alphas without a picture.
     fn roughness(&mut self, params: &Params, names: [&'static str; 3], remapped: bool) -> (Option<FileName>, [f32; 2]) {
         let each = names[1..].iter().any(|name| params.get(name).is_some());
         let fourth = |x: f32| x.max(0.0).sqrt().sqrt();
@@ -95,7 +95,7 @@ impl Reader<'_> {
             "diffuse" => {
                 let (color, picture) = self.colored(params, "reflectance", 0.5);
                 m = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
-                params.left_out(&["sigma"], "the surface is Lambert's");
+                params.left_out(&["sigma"], "the surface is Lambertian");
             }
             "coateddiffuse" => {
                 let (color, picture) = self.colored(params, "reflectance", 0.5);
@@ -136,12 +136,12 @@ impl Reader<'_> {
                 let [reflected, through] = ["reflectance", "transmittance"].map(|name| {
                     let (color, picture) = self.colored(params, name, 0.25);
                     if picture.is_some() {
-                        let what = "light that is scattered through a surface by a picture has no counterpart: one colour is taken";
+                        let what = "diffuse transmission by a picture has no counterpart: its `scale` is used as the colour";
                         self.said.once(params.place(name), what);
                     }
                     scale * color
                 });
-                // A sheet divides what it scatters by one number for all colours.
+                // A thin sheet has one scattering ratio for all colours.
                 let sum = |color: Color| color.element_sum().max(1e-6);
                 m = PrincipledMaterial {
                     subsurface_weight: 1.0,
@@ -162,7 +162,7 @@ impl Reader<'_> {
                     let path = params.spectrum("mfp").map_or(Vec3::ONE, |spectrum| spectrum.coefficient());
                     below_skin(&mut m, params, color, path);
                 } else {
-                    // The skin refracts, and what is inside scatters.
+                    // The boundary refracts and the medium inside scatters.
                     m.transmission_weight = 1.0;
                     medium_of(params, "name").fill(&mut m);
                 }
@@ -170,7 +170,7 @@ impl Reader<'_> {
             "measured" => {
                 params.known(&["filename"]);
                 m = matte(Vec3::splat(0.5));
-                self.said.once(at, "measured materials have no counterpart: matte grey is taken");
+                self.said.once(at, "measured materials have no counterpart: diffuse grey is used");
             }
             "hair" => return self.hair(params, &["reflectance", "color"], at),
             "mix" => return self.mixed(params, at),
@@ -178,7 +178,7 @@ impl Reader<'_> {
             other => {
                 let old = OLD.iter().find(|row| row.0 == other);
                 let help = match old {
-                    Some((_, now)) => Some(format!("this is of pbrt-v3; `{now}` is nearest")),
+                    Some((_, now)) => Some(format!("this material is of pbrt-v3; the nearest of pbrt-v4 is `{now}`")),
                     None => meant(other, KNOWN),
                 };
                 self.no_material(other, at, help, old.is_some());
@@ -186,13 +186,13 @@ impl Reader<'_> {
             }
         }
         m.energy_compensation = Switch::Off;
-        // `eta` is a ratio across the surface, whatever that lies in.
+        // `eta` is the ratio across the surface, whatever medium surrounds it.
         m.surroundings = Surroundings::Ignored;
         self.surface(&mut m, params, "displacement");
         Made::Layers(Box::new(m), at)
     }
 
-    /// An index of refraction, which may be a spectrum.
+    /// Index of refraction; may be a spectrum.
     fn index(&self, params: &Params, name: &'static str, usual: f32) -> f32 {
         let index = match params.get(name).map(|param| param.kind) {
             Some(Kind::Spectrum | Kind::Rgb) => params.spectrum(name).map_or(usual, |spectrum| spectrum.index()),
@@ -208,12 +208,12 @@ impl Reader<'_> {
     fn coat(&self, m: &mut PrincipledMaterial, [u, v]: [f32; 2], params: &Params) {
         (m.coat_weight, m.coat_roughness) = (1.0, (u.min(1.0) * v.min(1.0)).sqrt().sqrt());
         if u != v {
-            self.said.once(params.at, "a coat is as rough in both directions: their mean is taken");
+            self.said.once(params.at, "an anisotropic coat has no counterpart: its mean roughness is used");
         }
         if params.get("albedo").is_some_and(|param| param.numbers().iter().any(|x| *x != 0.0)) {
-            self.said.once(params.place("albedo"), "what is inside a coat has no counterpart: the coat is clear");
+            self.said.once(params.place("albedo"), "a medium inside a coat has no counterpart: the coat is clear");
         }
-        // What crosses the coat loses by its thickness even where there is nothing in it.
+        // Light that crosses the coat is attenuated by its thickness even without a medium in it.
         let thickness = self.value(params, "thickness", 0.01).max(0.0);
         m.coat_color = m.base_color.map(|base| crossed(thickness, m.coat_ior, base));
         params.known(&["g", "maxdepth", "nsamples", "twosided"]);
@@ -231,20 +231,20 @@ impl Reader<'_> {
         let [f0, f82] = match params.get(reflectance) {
             Some(param) => {
                 if params.get(eta).is_some() || params.get(k).is_some() {
-                    self.said.bad(param.at, format!("a metal has either `{reflectance}` or `{eta}` and `{k}`"));
+                    self.said.bad(param.at, format!("a conductor takes either `{reflectance}`, or `{eta}` and `{k}`"));
                 }
                 let share = match self.pattern(params, reflectance, true, Vec3::splat(0.5)) {
                     Texture::Even(color) => color,
                     Texture::Picture(picture, scale) => {
-                        // What it reflects at right angles is the picture's; grazing light has no
-                        // colour of its own.
+                        // The picture is the reflectance at normal incidence; grazing reflection is
+                        // not tinted.
                         m.base_color_texture = Some(self.asset(picture, param.at));
                         (m.base_metalness, m.base_color) = (1.0, scale);
                         [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
                         return;
                     }
                 };
-                // Such a k, with an index of 1, reflects that share at right angles.
+                // With an index of 1, this k gives the reflectance at normal incidence.
                 let k = share.map(|r| 2.0 * (r.min(0.9999) / (1.0 - r.min(0.9999))).sqrt());
                 conductor_colors(&SpectrumSource::Rgb(Vec3::ONE), &SpectrumSource::Rgb(k), 1.0)
             }
@@ -267,7 +267,7 @@ impl Reader<'_> {
         };
         let Values::Texts(names) = &param.values else { return Made::Nothing };
         let [first, second] = names.as_slice() else {
-            self.said.bad(param.values_at, format!("a mix is of two materials, not of {}", names.len()));
+            self.said.bad(param.values_at, format!("a mix needs two materials, found {}", names.len()));
             return Made::Nothing;
         };
         let (Some(a), Some(b)) =

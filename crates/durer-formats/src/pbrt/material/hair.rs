@@ -1,6 +1,6 @@
-//! Hair, which both languages have.
+//! Hair material of pbrt-v3 and pbrt-v4.
 //!
-//! Source of meanings: *Physically Based Rendering*, 4th edition, section 9.9.
+//! Source: *Physically Based Rendering*, 4th edition, section 9.9.
 
 use crate::pbrt::made::{Made, Texture};
 use crate::pbrt::params::Params;
@@ -10,7 +10,7 @@ use durer_scene::material::HairMaterial;
 use durer_scene::math::Vec3;
 
 impl Reader<'_> {
-    /// Hair by what it absorbs, by its colour, which has some name, or by its melanins.
+    /// Reads hair given by absorption, by colour (a parameter in `names`) or by melanin.
     pub(super) fn hair(&self, params: &Params, names: &[&'static str], at: Span) -> Made {
         let given = names.iter().copied().find(|name| params.get(name).is_some());
         let absorption = params.spectrum("sigma_a").map(|spectrum| spectrum.coefficient().max(Vec3::ZERO));

@@ -1,4 +1,4 @@
-//! Materials, in the words of OpenPBR.
+//! Materials, converted to OpenPBR's parameters.
 
 mod disney;
 mod fourth;
@@ -26,16 +26,16 @@ use durer_scene::scene::{Material, Picture, Spanned};
 use durer_scene::texture::Mapping;
 use std::rc::Rc;
 
-/// Mixes in mixes.
+/// Maximum depth of nested mixes.
 const DEEPEST: u32 = 32;
 
 impl Made {
-    /// What shapes have that nothing is said of.
+    /// Material of shapes without a `Material` directive.
     pub fn usual() -> Made {
         Made::Layers(Box::new(matte(Vec3::splat(0.5))), Span::default())
     }
 
-    /// How deep it is mixed of others.
+    /// Depth of nested mixes.
     fn depth(&self) -> u32 {
         if let Made::Mix { depth, .. } = self { *depth } else { 0 }
     }
@@ -49,12 +49,13 @@ impl Made {
     }
 }
 
-/// Matte, without a boundary.
+/// Diffuse material without a specular boundary.
 fn matte(base_color: Color) -> PrincipledMaterial {
     PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
 }
 
-/// Lets light go so far into a body, which gives back a colour by a picture.
+/// Lets light scatter below the surface with mean free path `path` and albedo `color`, by a picture
+/// if there is one.
 fn below_skin(m: &mut PrincipledMaterial, params: &Params, (color, picture): (Color, Option<FileName>), path: Vec3) {
     m.subsurface_weight = 1.0;
     (m.subsurface_color, m.subsurface_color_texture) = (color.min(Vec3::ONE), picture);
@@ -64,7 +65,7 @@ fn below_skin(m: &mut PrincipledMaterial, params: &Params, (color, picture): (Co
 }
 
 impl Reader<'_> {
-    /// The number of a material.
+    /// Adds a material and returns its index.
     pub fn material(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) -> usize {
         let params = self.params(list, Some(MATERIAL), at);
         let made = match self.language {
@@ -84,7 +85,7 @@ impl Reader<'_> {
         };
         let number = self.material(&kind, at, list);
         if self.named_materials.insert(name.clone(), number).is_some() && self.language == Language::Fourth {
-            self.said.bad(at, format!("there is a material `{name}` already"));
+            self.said.bad(at, format!("the material `{name}` is already defined"));
         }
     }
 
@@ -93,51 +94,51 @@ impl Reader<'_> {
             Some(number) => self.state.material = *number,
             None => {
                 let help = meant(name, self.named_materials.keys().map(String::as_str));
-                self.said.bad_with(at, format!("there is no material `{name}`"), help);
+                self.said.bad_with(at, format!("unknown material `{name}`"), help);
             }
         }
     }
 
-    /// Complains of a material that is not there; where the file's language has another word for it,
-    /// with the word that tells the language.
+    /// Reports an unknown material. If it belongs to the other language, points at the word that
+    /// decided the language.
     fn no_material(&self, name: &str, at: Span, help: Option<String>, other: bool) {
         let language = if self.language == Language::Third { "pbrt-v3" } else { "pbrt-v4" };
-        let error = Diagnostic::error(format!("there is no material `{name}` in {language}")).code("bad-value").at(at);
+        let error = Diagnostic::error(format!("unknown material `{name}` in {language}")).code("bad-value").at(at);
         let error = match self.decided_by.filter(|_| other) {
-            Some(by) => error.related(by, &format!("by this word the file is one of {language}")),
+            Some(by) => error.related(by, &format!("this word makes the file {language}")),
             None => error,
         };
         self.said.push(Diagnostic { help, ..error });
     }
 
-    /// Two materials, by number, in a proportion; nothing where they are mixed too deep.
+    /// Mix of two materials by index; `Made::Nothing` if mixes are nested too deep.
     fn mix(&self, parts: [usize; 2], share: f32, at: Span) -> Made {
         self.mix_by(parts, (share, None), at)
     }
 
-    /// The same in a proportion that a picture multiplies.
+    /// Mix whose share is multiplied by a picture. See [`Reader::mix`].
     fn mix_by(&self, parts: [usize; 2], (share, picture): (f32, Option<FileName>), at: Span) -> Made {
         let [first, second] = parts.map(|number| &self.materials[number]);
         let depth = 1 + first.depth().max(second.depth());
         let pictured = first.is_pictured() || second.is_pictured() || picture.is_some();
         if depth > DEEPEST {
-            self.said.bad(at, format!("materials are mixed more than {DEEPEST} deep"));
+            self.said.bad(at, format!("mixes of materials are nested more than {DEEPEST} deep"));
             return Made::Nothing;
         }
         Made::Mix { parts, share, picture, depth, pictured, at }
     }
 
-    /// The number of a material that a mix names.
+    /// Index of a material named by a mix.
     fn known_material(&self, name: &str, at: Span) -> Option<usize> {
         let found = self.named_materials.get(name).copied();
         if found.is_none() {
             let help = meant(name, self.named_materials.keys().map(String::as_str));
-            self.said.bad_with(at, format!("there is no material `{name}` before this"), help);
+            self.said.bad_with(at, format!("no material `{name}` is defined before this"), help);
         }
         found
     }
 
-    /// What bends the normals of a surface: a map of them, and a picture of heights.
+    /// Reads the normal map and the bump map of a surface.
     fn surface(&mut self, m: &mut PrincipledMaterial, params: &Params, heights: &'static str) {
         if let Some(name) = params.text("normalmap") {
             let place = params.get("normalmap").map_or(params.at, |param| param.values_at);
@@ -150,14 +151,14 @@ impl Reader<'_> {
         }
     }
 
-    /// Whether pictures lie on what is written now.
+    /// Returns true if the current material or light has a picture.
     pub fn is_pictured(&self) -> bool {
         let light = self.state.area.as_ref().is_some_and(|light| light.picture.is_some());
         light || self.materials[self.state.material].is_pictured()
     }
 
-    /// The number in the scene of a material that shines with a radiance and is there in part;
-    /// `None` for what is not there.
+    /// Index in the scene of a material with emission and opacity; `None` for a material that is
+    /// not rendered.
     pub fn number(&mut self, made: usize, light: Option<(&AreaLight, Color)>, opacity: &Opacity) -> Option<u32> {
         let key = (
             made,
@@ -192,10 +193,10 @@ impl Reader<'_> {
             Made::Hair(hair, at) => {
                 let (hair, at) = (hair.clone(), *at);
                 if light.is_some() {
-                    self.said.once(at, "hair does not shine");
+                    self.said.once(at, "emission of hair has no counterpart: it is ignored");
                 }
                 if opacity.share < 1.0 || opacity.picture.is_some() {
-                    self.said.once(at, "hair is there everywhere, its opacity is left out");
+                    self.said.once(at, "opacity of hair has no counterpart: it is ignored");
                 }
                 Some(self.scene_material(Material::Hair(hair), at))
             }
@@ -207,7 +208,7 @@ impl Reader<'_> {
                         Some(self.scene_material(Material::Solid(solid, Vec::new()), at))
                     }
                     (Some(only), None) | (None, Some(only)) => {
-                        self.said.once(at, "a mix with what is not there has no counterpart: the other counts alone");
+                        self.said.once(at, "a mix with an invisible material has no counterpart: only the other is used");
                         Some(only)
                     }
                     (None, None) => None,
@@ -231,7 +232,7 @@ impl Reader<'_> {
         (m.emission_luminance, m.emission_color) = (most, color / most);
         if light.two_sided {
             match m.transmission_weight > 0.0 && m.walls == Walls::Solid {
-                true => self.said.once(light.at, "glass shines outwards only"),
+                true => self.said.once(light.at, "two-sided emission of glass has no counterpart: it emits outwards only"),
                 false => m.walls = Walls::Thin,
             }
         }

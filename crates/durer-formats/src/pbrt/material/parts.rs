@@ -1,6 +1,6 @@
-//! What pbrt-v3's materials are made of: lobes as layers, and their sums.
+//! Parts of pbrt-v3's materials: lobes as layers, and their sums.
 //!
-//! A sum is a mixture here, whose parts are as much brighter as they are less there.
+//! A sum becomes a mixture: each part is scaled by the inverse of its share.
 
 use super::super::made::Made;
 use super::super::state::Reader;
@@ -13,14 +13,14 @@ use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Surroundings;
 use durer_scene::math::{Color, Vec3};
 
-/// One of those that are added.
+/// Summand of a material.
 pub(super) struct Part {
     pub layers: PrincipledMaterial,
-    /// The most that it gives back.
+    /// Maximum reflectance of the part.
     pub most: f32,
 }
 
-/// A rough boundary that reflects, with nothing below it.
+/// Rough specular boundary over a black base.
 pub(super) fn glossy((color, picture): (Color, Option<FileName>), ior: f32, rough: &Rough) -> PrincipledMaterial {
     let mut m = matte(Vec3::ZERO);
     (m.specular_weight, m.specular_ior) = (1.0, ior);
@@ -29,18 +29,18 @@ pub(super) fn glossy((color, picture): (Color, Option<FileName>), ior: f32, roug
     m
 }
 
-/// The colour of an energy-preserving rough surface that gives back as much on the mean as Oren's and
-/// Nayar's does, and its roughness.
+/// Colour and roughness of an energy-preserving rough diffuse lobe with the mean albedo of
+/// Oren–Nayar.
 ///
 /// Source: Oren and Nayar, *Generalization of Lambert's Reflectance Model*, SIGGRAPH 1994.
 pub(super) fn oren_nayar(color: Color, degrees: f32) -> (Color, f32) {
-    // The mean of max(0, cos) sin tan over both directions by their cosines: 2/3 - 64 / (45 pi).
+    // Cosine-weighted mean of max(0, cos) sin tan over both directions: 2/3 - 64 / (45 pi).
     const LEANING: f32 = 0.213_954;
     let sigma = degrees.to_radians();
     let variance = sigma * sigma;
     let (a, b) = (1.0 - 0.5 * variance / (variance + 0.33), 0.45 * variance / (variance + 0.09));
     let roughness = (b / a).clamp(0.0, 1.0);
-    // As in `bsdf::lobe::diffuse`: what is scattered once on the mean, and again.
+    // As in `bsdf::lobe::diffuse`: mean albedo of single and of multiple scattering.
     let mean = (1.0 + 0.072_488 * roughness) / (1.0 + 0.287_793 * roughness);
     let whole = |c: f32| c * mean + c * c * mean * (1.0 - mean) / (1.0 - c * (1.0 - mean));
     let solved = color.map(|wanted| {
@@ -55,7 +55,7 @@ pub(super) fn oren_nayar(color: Color, degrees: f32) -> (Color, f32) {
     (solved, roughness)
 }
 
-/// A metal by what it reflects at right angles and at 82 degrees.
+/// Metal given by its reflectance at normal incidence and at 82 degrees.
 pub(super) fn metallic(f0: Color, f82: Color, rough: &Rough) -> PrincipledMaterial {
     let mut m = PrincipledMaterial {
         base_metalness: 1.0,
@@ -67,7 +67,7 @@ pub(super) fn metallic(f0: Color, f82: Color, rough: &Rough) -> PrincipledMateri
     m
 }
 
-/// A body of glass, rough or smooth.
+/// Solid glass, rough or smooth.
 pub(super) fn glass(
     (reflected, reflected_picture): (Color, Option<FileName>),
     (through, through_picture): (Color, Option<FileName>),
@@ -90,9 +90,9 @@ pub(super) fn glass(
 }
 
 impl Reader<'_> {
-    /// A material that scatters as several do together.
+    /// Material that scatters as the sum of the parts.
     pub(super) fn sum(&mut self, parts: Vec<Part>, at: Span) -> Made {
-        // What gives nothing back may still be there in part only.
+        // Keep the opacity: a black material may still be partly transparent.
         let opacity =
             parts.first().map_or((1.0, None), |part| (part.layers.opacity, part.layers.opacity_texture.clone()));
         let black = PrincipledMaterial { opacity: opacity.0, opacity_texture: opacity.1, ..matte(Vec3::ZERO) };

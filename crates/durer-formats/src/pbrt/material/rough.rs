@@ -1,4 +1,4 @@
-//! How rough pbrt-v3's materials are.
+//! Roughness of pbrt-v3's materials.
 
 use super::super::params::{Kind, Params};
 use super::super::state::Reader;
@@ -8,7 +8,7 @@ use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Switch;
 use durer_scene::math::fp;
 
-/// How rough something is.
+/// Roughness of a surface.
 pub(super) struct Rough {
     picture: Option<FileName>,
     /// GGX's alpha along u and v.
@@ -27,7 +27,7 @@ impl Rough {
     }
 }
 
-/// GGX's alpha of a roughness from 0 to 1.
+/// GGX's alpha of a roughness in [0, 1].
 ///
 /// Source: *Physically Based Rendering*, 3rd edition, section 8.4.2.
 pub(in crate::pbrt) fn alpha_of_roughness(roughness: f32) -> f32 {
@@ -36,7 +36,8 @@ pub(in crate::pbrt) fn alpha_of_roughness(roughness: f32) -> f32 {
 }
 
 impl Reader<'_> {
-    /// Roughness by one parameter for both directions, if there is such, or by one for each.
+    /// Reads roughness from the parameter `both` for both directions, if any, or from one for each
+    /// direction.
     pub(super) fn rough(&mut self, params: &Params, both: Option<&'static str>, each: bool, usual: f32) -> Rough {
         const EACH: [&str; 2] = ["uroughness", "vroughness"];
         let remapped = params.truth("remaproughness").unwrap_or(true);
@@ -60,14 +61,15 @@ impl Reader<'_> {
         Rough::new(alphas)
     }
 
-    /// The same as the mean of both directions: what lies on a matte base has but one here.
+    /// Reads roughness as the geometric mean of both directions: a coat over a matte base is
+    /// isotropic here. See [`Reader::rough`].
     pub(super) fn even_rough(&mut self, params: &Params, both: Option<&'static str>, each: bool, usual: f32) -> Rough {
         let rough = self.rough(params, both, each, usual);
         let [u, v] = rough.alphas;
         if u != v {
             self.said.once(
                 params.at,
-                "what is reflected on a matte base is as rough in both directions: their mean is taken",
+                "an anisotropic coat over a matte base has no counterpart: its mean roughness is used",
             );
         }
         Rough { alphas: [(u * v).sqrt(); 2], ..rough }

@@ -1,7 +1,7 @@
-//! A matte base below a coat that reflects more at grazing angles, as pbrt-v3 has it.
+//! Substrate of pbrt-v3: a matte base below a glossy coat.
 //!
-//! Source: Ashikhmin and Shirley, *An Anisotropic Phong BRDF Model*, Journal of Graphics Tools 5(2),
-//! 2000, with the facets of *Physically Based Rendering*, 3rd edition, section 8.5.
+//! Source: Ashikhmin and Shirley, *An Anisotropic Phong BRDF Model*, Journal of Graphics Tools
+//! 5(2), 2000, with the microfacets of *Physically Based Rendering*, 3rd edition, section 8.5.
 
 use super::super::params::Params;
 use super::super::state::Reader;
@@ -12,12 +12,12 @@ use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::{Vec3, fp};
 use std::f32::consts::TAU;
 
-/// The boundary below which a base looks as that one does: it gives back
-/// (1 - (1 - cos / 2)^5) of what it has at right angles, both ways, to 2 %.
+/// Index and roughness of the boundary over the base. Both ways together, the base reflects (1 - (1
+/// - cos / 2)^5) of its value at normal incidence, to 2 %.
 const INDEX: f32 = 0.8;
 const ROUGHNESS: f32 = 0.894_427;
 
-/// What such a boundary reflects on the mean, and what of the base's colour comes back on the mean.
+/// Mean reflectance of that boundary, and mean factor on the base's colour.
 const REFLECTED: f32 = 0.1514;
 const MEAN: f32 = 23.0 / 28.0;
 
@@ -43,13 +43,13 @@ impl Reader<'_> {
         let (f0, hue) = (most.min(0.98), shine / most);
         let strength = blended(rough.alphas[0], f0);
         let layers = glossy((strength * hue, shine_picture), fresnel::ior_of_reflectance(f0), &rough);
-        // By how much the light that it reflects in all directions is more than at right angles.
+        // Mean reflectance over all directions, instead of that at normal incidence.
         vec![base, Part { most: f0 + (1.0 - f0) / 21.0, layers }]
     }
 }
 
-/// What the coat reflects on the mean over what facets of a dielectric do here, by as much at right
-/// angles.
+/// Mean albedo of the coat over that of microfacets of a dielectric with the reflectance `f0` at
+/// normal incidence.
 pub(super) fn blended(alpha: f32, f0: f32) -> f32 {
     const POINTS: u16 = 4096;
     // Source: Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018.
@@ -59,7 +59,7 @@ pub(super) fn blended(alpha: f32, f0: f32) -> f32 {
         let u = (Vec3::splat(0.5) + f32::from(i) * STEPS).fract();
         let mu = u.x.max(1e-4).sqrt();
         let wo = Vec3::new((1.0 - mu * mu).max(0.0).sqrt(), 0.0, mu);
-        // A facet by its density times its cosine.
+        // Sample a microfacet normal by density times cosine.
         let tangent2 = alpha * alpha * u.y / (1.0 - u.y);
         let up = 1.0 / (1.0 + tangent2).sqrt();
         let (sin, cos) = (fp::sin(TAU * u.z), fp::cos(TAU * u.z));
@@ -74,6 +74,6 @@ pub(super) fn blended(alpha: f32, f0: f32) -> f32 {
     }
     let eta = fresnel::ior_of_reflectance(f0);
     let reflected = albedo::single_means(eta, alpha.clamp(0.0, 1.0).sqrt())[0];
-    // What is left out of facets is left out already.
+    // Both exclude light that facets block.
     if reflected > 0.0 { blend / f32::from(POINTS) / reflected } else { 1.0 }
 }

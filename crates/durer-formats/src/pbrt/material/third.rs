@@ -1,8 +1,8 @@
-//! Materials of pbrt-v3. Most are sums: Lambert's and a rough mirror beside each other, where later
-//! there are layers. Sums are mixes here, whose parts are as much brighter as they are less there.
+//! Materials of pbrt-v3. Most are sums of a Lambertian and a rough specular lobe, where pbrt-v4 has
+//! layers. Sums become mixes: each part is scaled by the inverse of its share.
 //!
-//! Source of all meanings: *Physically Based Rendering*, 3rd edition, chapters 8 and 9, and *Input File
-//! Format*, pbrt.org/fileformat-v3.
+//! Source: *Physically Based Rendering*, 3rd edition, chapters 8 and 9, and *Input File Format*,
+//! pbrt.org/fileformat-v3.
 
 use super::super::language::NEW_MATERIALS;
 use super::super::made::{Made, Texture};
@@ -38,14 +38,14 @@ const KNOWN: [&str; 15] = [
     "uber",
 ];
 
-/// Indices of copper for red, green and blue: what its spectra come to in pbrt-v3.
+/// Index of refraction of copper (eta, k) for red, green and blue: pbrt-v3's spectra as RGB.
 ///
-/// Source of the spectra: as pbrt-v3 has them, from Palik, *Handbook of Optical Constants of Solids*,
-/// 1985.
+/// Source of the spectra: Palik, *Handbook of Optical Constants of Solids*, 1985, as distributed
+/// with pbrt-v3.
 const COPPER: [Vec3; 2] = [Vec3::new(0.200438, 0.924033, 1.102212), Vec3::new(3.912949, 2.452848, 2.142188)];
 
 impl Reader<'_> {
-    /// An index of refraction, `eta` or `index`.
+    /// Index of refraction, `eta` or `index`.
     pub(super) fn old_index(&self, params: &Params, usual: f32) -> f32 {
         let name = if params.get("eta").is_some() { "eta" } else { "index" };
         let index = match params.get(name).map(|param| param.kind) {
@@ -74,7 +74,7 @@ impl Reader<'_> {
             }
             "plastic" => {
                 let rough = self.even_rough(params, Some("roughness"), false, 0.1);
-                // Its index is 1.5 outside and 1 inside: it reflects as from within.
+                // Its index is 1.5 outside and 1 inside: it reflects as seen from within.
                 vec![self.lambert(params, "Kd", 0.25), self.gloss(params, "Ks", (0.25, 1.0 / 1.5), &rough)]
             }
             "uber" => self.uber(params),
@@ -90,7 +90,7 @@ impl Reader<'_> {
             "mirror" => {
                 let (color, picture) = self.colored(params, "Kr", 0.9);
                 let most = color.max_element().clamp(1e-6, 1.0);
-                // It reflects the same share at all angles.
+                // The reflectance is the same at all angles.
                 let m = PrincipledMaterial {
                     base_metalness: 1.0,
                     base_color: color / most,
@@ -117,12 +117,12 @@ impl Reader<'_> {
             "" | "none" => return Made::Nothing,
             "fourier" => {
                 params.known(&["bsdffile"]);
-                self.said.once(at, "measured materials have no counterpart: matte grey is taken");
+                self.said.once(at, "measured materials have no counterpart: diffuse grey is used");
                 vec![Part { layers: matte(Vec3::splat(0.5)), most: 1.0 }]
             }
             other => {
                 let is_new = NEW_MATERIALS.contains(&other);
-                let help = if is_new { Some("this is of pbrt-v4".into()) } else { meant(other, KNOWN) };
+                let help = if is_new { Some("this material is of pbrt-v4".into()) } else { meant(other, KNOWN) };
                 self.no_material(other, at, help, is_new);
                 return Made::Nothing;
             }
@@ -135,14 +135,14 @@ impl Reader<'_> {
         self.sum(bent, at)
     }
 
-    /// What Lambert's law scatters.
+    /// Lambertian lobe of the colour `name`.
     fn lambert(&mut self, params: &Params, name: &'static str, usual: f32) -> Part {
         let (color, picture) = self.colored(params, name, usual);
         let layers = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
         Part { layers, most: color.max_element() }
     }
 
-    /// What facets reflect: by default so much of what a boundary of an index does.
+    /// Microfacet lobe of the colour `name` with an index of refraction.
     fn gloss(&mut self, params: &Params, name: &'static str, (usual, ior): (f32, f32), rough: &Rough) -> Part {
         let color = self.colored(params, name, usual);
         Part { most: color.0.max_element(), layers: glossy(color, ior, rough) }
@@ -171,7 +171,7 @@ impl Reader<'_> {
         parts
     }
 
-    /// What is matte on both sides, with facets that reflect.
+    /// Diffuse reflection and transmission, with glossy microfacets on both sides.
     fn translucent(&mut self, params: &Params) -> Vec<Part> {
         let rough = self.rough(params, Some("roughness"), false, 0.1);
         let even = |reader: &mut Self, name, usual| reader.pattern(params, name, true, Vec3::splat(usual)).even();
@@ -182,7 +182,7 @@ impl Reader<'_> {
             subsurface_weight: 1.0,
             subsurface_color: color * (up + down),
             subsurface_color_texture: picture,
-            // A sheet divides what it scatters by one number for all colours.
+            // A thin sheet has one scattering ratio for all colours.
             subsurface_scatter_anisotropy: ((sum(down) - sum(up)) / (sum(down) + sum(up))).clamp(-0.999, 0.999),
             walls: Walls::Thin,
             ..matte(Vec3::ZERO)
@@ -191,9 +191,9 @@ impl Reader<'_> {
         let (shine, picture) = self.colored(params, "Ks", 0.25);
         let gloss = glossy((up * shine, picture.clone()), 1.5, &rough);
         let mut parts = vec![matte, Part { most: (up * shine).max_element(), layers: gloss }];
-        // Facets let light through too; those of a sheet do not refract.
+        // Microfacets transmit too; those of a thin sheet do not refract.
         if (down * shine).max_element() > 0.0 {
-            let what = "light that facets of `translucent` let through is not refracted here";
+            let what = "glossy transmission of `translucent` is not refracted here";
             self.said.once(params.at, what);
             let mut through = super::matte(Vec3::ZERO);
             (through.specular_weight, through.specular_color) = (1.0, Vec3::ZERO);
@@ -205,13 +205,13 @@ impl Reader<'_> {
         parts
     }
 
-    /// What scatters light below a skin that refracts.
+    /// Subsurface scattering below a refractive boundary.
     fn below(&mut self, kind: &str, params: &Params) -> Part {
         let rough = self.rough(params, None, true, 0.0);
         let mut m = PrincipledMaterial::default();
         rough.put(&mut m);
         m.specular_ior = self.old_index(params, 1.33);
-        params.left_out(&["Kr", "Kt"], "the skin takes no light");
+        params.left_out(&["Kr", "Kt"], "the boundary is not tinted");
         if kind == "kdsubsurface" {
             let color = self.colored(params, "Kd", 0.5);
             let path = params.spectrum("mfp").map_or(Vec3::ONE, |spectrum| spectrum.plain());
@@ -223,16 +223,16 @@ impl Reader<'_> {
         Part { layers: m, most: 1.0 }
     }
 
-    /// One number of a parameter that may be a colour in pbrt-v3.
+    /// Mean of a colour where only a number has a counterpart.
     fn grey(&self, params: &Params, name: &'static str, color: Color) -> f32 {
         if color.max_element() - color.min_element() > 1e-3 {
-            let what = format!("an `{name}` of a colour has no counterpart: the mean of its parts is taken");
+            let what = format!("a coloured `{name}` has no counterpart: its mean is used");
             self.said.once(params.place(name), what);
         }
         color.element_sum() / 3.0
     }
 
-    /// `amount` is the share of the first.
+    /// Mix of two named materials; `amount` is the share of the first.
     fn mix_of_two(&mut self, params: &Params, at: Span) -> Made {
         let share = |amount: f32| amount.clamp(0.0, 1.0);
         let amount = match self.pattern(params, "amount", true, Vec3::splat(0.5)) {

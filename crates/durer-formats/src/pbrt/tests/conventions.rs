@@ -16,7 +16,7 @@ use durer_scene::sampler::SampleId;
 use durer_scene::spectrum::Lanes;
 use durer_scene::spectrum::SpectrumSource;
 
-/// The ray of a scene's camera through a point of the picture, -1 to 1 across its larger side.
+/// Camera ray through a point of the picture; coordinates are -1 to 1 across the larger side.
 fn ray(scene: &Scene, x: f32, y: f32) -> (Vec3, Vec3) {
     let camera = scene.camera.as_ref().unwrap();
     let frame = CameraBasis::of(camera, CameraRules::default());
@@ -40,30 +40,30 @@ fn camera(text: &str, size: [u32; 2]) -> Scene {
 }
 
 #[test]
-fn cameras_look_where_pbrt_s_do() {
-    // Without a transform pbrt looks along +z, with +x to the right: coordinates of the left hand.
+fn cameras_match_pbrt_coordinates() {
+    // Without a transform pbrt looks along +z with +x to the right: left-handed coordinates.
     let scene = camera("Camera \"perspective\" \"float fov\" 90", [200, 100]);
     close(ray(&scene, 0.0, 0.0).1, Vec3::Z);
-    // The field of view is that of the shorter side: half a unit of the larger one is 45 degrees
+    // The field of view is across the shorter side: half of the larger side's unit is 45 degrees
     // up.
     close(ray(&scene, 0.0, 0.5).1, Vec3::new(0.0, 1.0, 1.0).normalize());
     close(ray(&scene, 1.0, 0.0).1, Vec3::new(2.0, 0.0, 1.0).normalize());
     let tall = camera("Camera \"perspective\" \"float fov\" 90", [100, 200]);
     close(ray(&tall, 0.5, 1.0).1, Vec3::new(1.0, 2.0, 1.0).normalize());
-    // A mirror image of that is what somebody sees in coordinates of the right hand.
+    // A mirrored view matches a viewer in right-handed coordinates.
     let flipped = camera("Scale -1 1 1 LookAt 0 0 5 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 90", [100, 100]);
     close(ray(&flipped, 1.0, 0.0).1, Vec3::new(1.0, 0.0, -1.0).normalize());
     let plain = camera("LookAt 0 0 5 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 90", [100, 100]);
     close(ray(&plain, 1.0, 0.0).1, Vec3::new(-1.0, 0.0, -1.0).normalize());
     close(ray(&plain, 0.3, 0.0).0, Vec3::new(0.0, 0.0, 5.0));
-    // Screen windows: a quarter of the picture, whose middle lies aside.
+    // Screen window: a quarter of the picture, with its middle off the axis.
     let part = camera("Camera \"perspective\" \"float fov\" 90 \"float screenwindow\" [ 0 1 0 1 ]", [100, 100]);
     close(ray(&part, -1.0, -1.0).1, Vec3::Z);
     close(ray(&part, 1.0, 0.0).1, Vec3::new(1.0, 0.5, 1.0).normalize());
 }
 
 #[test]
-fn lenses_and_other_cameras() {
+fn orthographic_spherical_and_lens_cameras_match_closed_forms() {
     let text = "LookAt 0 0 5 0 0 0 0 1 0 Camera \"orthographic\" \"float screenwindow\" [ -2 2 -1 1 ]";
     let flat = camera(text, [200, 100]);
     let (origin, dir) = ray(&flat, 1.0, 0.25);
@@ -74,7 +74,7 @@ fn lenses_and_other_cameras() {
     close(ray(&around, 0.0, 0.0).1, Vec3::NEG_X);
     close(ray(&around, -0.5, 0.0).1, Vec3::Z);
     close(ray(&around, 0.5, 0.0).1, Vec3::NEG_Z);
-    // All rays of a point of the picture meet at the distance of focus.
+    // Rays through one point of the picture meet at the focus distance.
     let text = "Camera \"perspective\" \"float fov\" 90 \"float lensradius\" 0.5 \"float focaldistance\" 4";
     let scene = camera(text, [100, 100]);
     let lens = scene.camera.unwrap();
@@ -87,7 +87,7 @@ fn lenses_and_other_cameras() {
     }
 }
 
-/// The light that a point gets from above, by one sample.
+/// Irradiance at a point on a surface facing up, from one sample.
 fn irradiance(world: &World, point: Vec3) -> Vec3 {
     let settings = Settings { bounces: 0, ..Job::default().settings };
     let paths = Paths::new(world, settings, Transport::default());
@@ -103,7 +103,7 @@ fn world(name: &str, text: &str) -> World {
 }
 
 #[test]
-fn a_light_through_pbrt_is_the_same_light_in_our_words_to_the_bit() {
+fn area_light_equals_course_format_bit_for_bit() {
     let ours = |lights: &str, group: &str| {
         testing::read(&format!(
             "PerspectiveCamera {{ center 0 0 0 direction 0 0 1 up 0 1 0 angle 90 }} Background {{ color 0 0 0 }}\n\
@@ -117,14 +117,14 @@ fn a_light_through_pbrt_is_the_same_light_in_our_words_to_the_bit() {
     let twin = ours("", "MaterialIndex 0 Sphere { center 1 3 0.5 radius 0.75 }");
     let (a, b) = (irradiance(&pbrt(sphere), point), irradiance(&twin, point));
     assert!(a == b && a.x > 0.1, "{a} {b}");
-    // Twice as long open, at four times the speed of the film.
+    // Twice the shutter time and four times the ISO.
     let text = "Film \"rgb\" \"float iso\" 400 Camera \"perspective\" \"float shutterclose\" 2 WorldBegin ";
     let longer = irradiance(&world("a.pbrt", &format!("{text}{sphere}")), point);
     assert!((longer - 8.0 * a).length() < 1e-5 * longer.length(), "{longer} {a}");
 }
 
 #[test]
-fn lights_have_pbrt_s_units() {
+fn lights_have_pbrt_units() {
     let light = |text: &str| {
         let scene = clean(&format!("Camera \"perspective\" WorldBegin LightSource {text} Shape \"sphere\""));
         scene.lights.unwrap()[0].value.clone()
@@ -134,7 +134,7 @@ fn lights_have_pbrt_s_units() {
     else {
         panic!()
     };
-    // What a white matte surface shows at distance 1: intensity over pi.
+    // Radiance of a white diffuse surface at distance 1: intensity over pi.
     close(point.color, Vec3::new(1.0, 2.0, 3.0) / pi);
     assert_eq!((point.position, point.attenuation), (Vec3::new(1.0, 2.0, 3.0), Some(Vec3::Z)));
     // A flux of 4 pi is an intensity of 1.
@@ -149,7 +149,7 @@ fn lights_have_pbrt_s_units() {
     close(distant.direction.normalize(), Vec3::NEG_Y);
     let Light::Spot(spot) = light("\"spot\" \"float coneangle\" 40 \"float conedeltaangle\" 15") else { panic!() };
     assert_eq!((spot.angle, spot.inner_angle, spot.direction), (40.0, 25.0, Vec3::Z));
-    // A power is that of each triangle: two of area 1/2, of 3 lumens each.
+    // The power is per triangle: two triangles of area 1/2, each of 3 lumens.
     let (scene, _) = read(
         "Camera \"perspective\" WorldBegin AreaLightSource \"diffuse\" \"float power\" 3 Shape \"trianglemesh\"\n\
          \"integer indices\" [ 0 1 2 0 2 3 ] \"point3 P\" [ 0 0 0 1 0 0 1 1 0 0 1 0 ]",
@@ -161,23 +161,23 @@ fn lights_have_pbrt_s_units() {
 }
 
 #[test]
-fn surfaces_shine_to_pbrt_s_side() {
+fn area_lights_emit_on_pbrt_side() {
     let lit = |text: &str, point: Vec3| {
         let head = "Camera \"perspective\" WorldBegin AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ]";
         irradiance(&world("a.pbrt", &format!("{head} {text}")), point) != Vec3::ZERO
     };
     let below = Vec3::new(0.2, -1.0, 0.3);
-    // The corners go round counter-clockwise seen from below: (1, 0, 0) x (0, 0, 1) = -y.
+    // Counter-clockwise seen from below: (1, 0, 0) x (0, 0, 1) = -y.
     let down = "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 0 1 ]";
     assert!(lit(down, below));
     assert!(!lit(&format!("ReverseOrientation {down}"), below));
     assert!(lit(&format!("Scale 1 -1 1 ReverseOrientation {down}"), below));
     assert!(!lit(&format!("Scale 1 -1 1 {down}"), below));
-    // Normals tell the side, whatever way the corners go round.
+    // Vertex normals decide the side, for either order of the corners.
     let normals = |y: i32| format!("{down} \"normal N\" [ 0 {y} 0 0 {y} 0 0 {y} 0 ]");
     assert!(lit(&normals(-1), below) && !lit(&normals(1), below));
     assert!(lit(&format!("ReverseOrientation {}", normals(1)), below));
-    // A disk shines along its own z; a mirrored one to the other side, as pbrt has it.
+    // A disk emits along its own z; a mirrored disk emits the other way, as in pbrt.
     let disk = |text: &str| lit(&format!("Rotate 90 1 0 0 {text} Shape \"disk\""), below);
     assert!(disk("") && !disk("ReverseOrientation") && !disk("Scale -1 1 1"));
     let patch = "Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0 1 0 0 0 0 1 1 0 1 ]";
@@ -187,12 +187,12 @@ fn surfaces_shine_to_pbrt_s_side() {
 }
 
 #[test]
-fn materials_are_told_in_openpbr_s_words() {
+fn materials_become_openpbr_parameters() {
     let (m, _) = material(
         "Material \"coateddiffuse\" \"rgb reflectance\" [ 0.2 0.4 0.6 ] \"float roughness\" 0.16 \"float eta\" 1.4",
     );
     assert_eq!((m.base_color, m.coat_weight, m.coat_ior), (Vec3::new(0.2, 0.4, 0.6), 1.0, 1.4));
-    // alpha = sqrt(0.16); its root is our roughness.
+    // alpha = sqrt(0.16); its square root is our roughness.
     assert!((m.coat_roughness - 0.4_f32.sqrt()).abs() < 1e-6 && m.coat_darkening == 1.0, "{}", m.coat_roughness);
     let (m, _) = material(
         "Material \"dielectric\" \"float roughness\" 0.04 \"bool remaproughness\" false \"spectrum eta\" \"glass-BK7\"",
@@ -208,13 +208,13 @@ fn materials_are_told_in_openpbr_s_words() {
     );
     assert!(matches!(&scene.materials[2].value, Material::Solid(durer_scene::material::Solid::Mix(mix), _)
         if (mix.material1, mix.material2, mix.share) == (0, 1, 0.75)));
-    // What is not there is not shown.
+    // An `interface` surface is not rendered.
     let scene = read("Camera \"perspective\" WorldBegin Material \"interface\" Shape \"sphere\"").0.unwrap();
     assert!(scene.root.is_none());
 }
 
 #[test]
-fn alphas_become_roughness_and_come_back() {
+fn alphas_round_trip_through_roughness() {
     let mut random = Random(4);
     for _ in 0..200 {
         let [u, v] = [random.between(0.001, 1.0), random.between(0.001, 1.0)];
@@ -227,11 +227,11 @@ fn alphas_become_roughness_and_come_back() {
 }
 
 #[test]
-fn named_spectra_have_their_colours() {
+fn named_spectra_have_tabulated_colours() {
     let warm = SpectrumSource::Blackbody(2856.0).light();
     assert!((warm - named::spectrum("stdillum-A").unwrap().light()).abs().max_element() < 0.02, "{warm}");
     assert!((named::spectrum("stdillum-D65").unwrap().light() - Vec3::ONE).abs().max_element() < 0.002);
-    // Silver and copper under D65 as in tables of their spectra.
+    // Colours of silver, copper and aluminium under D65, from tabulated spectra.
     for (name, wanted) in [("Ag", [0.972, 0.96, 0.915]), ("Cu", [0.955, 0.638, 0.538]), ("Al", [0.913, 0.922, 0.924])] {
         let of = |which: &str| named::spectrum(&format!("metal-{name}-{which}")).unwrap();
         let f0 = conductor_colors(&of("eta"), &of("k"), 1.0)[0];
@@ -241,7 +241,7 @@ fn named_spectra_have_their_colours() {
 }
 
 #[test]
-fn the_square_of_equal_areas_is_the_sphere() {
+fn equal_area_mapping_inverts_and_preserves_area() {
     let mut random = Random(9);
     for _ in 0..2000 {
         let place = Vec2::new(random.between(0.0, 1.0), random.between(0.0, 1.0));
@@ -249,7 +249,7 @@ fn the_square_of_equal_areas_is_the_sphere() {
         assert!((dir.length() - 1.0).abs() < 1e-5);
         assert!((equal_area(dir) - place).length() < 1e-3, "{place} {dir} {}", equal_area(dir));
     }
-    // The middle is +z, the corners -z; equal areas: half of all places look up.
+    // The middle is +z, the corners are -z. Equal areas: a quarter of all positions have z > 1/2.
     close(of_equal_area(Vec2::splat(0.5)), Vec3::Z);
     close(of_equal_area(Vec2::ZERO), Vec3::NEG_Z);
     close(of_equal_area(Vec2::new(1.0, 0.5)), Vec3::X);
@@ -263,8 +263,8 @@ fn the_square_of_equal_areas_is_the_sphere() {
 }
 
 #[test]
-fn a_picture_of_all_directions_shines_from_where_pbrt_has_it() {
-    // A square that is bright where +x points, in the light's own coordinates.
+fn environment_picture_has_pbrt_orientation() {
+    // Square picture that is bright around +x in the light's own coordinates.
     let n = 32;
     let pixels: Vec<Vec3> = (0..n * n)
         .map(|i| {
@@ -298,11 +298,11 @@ fn a_picture_of_all_directions_shines_from_where_pbrt_has_it() {
     let text =
         "Camera \"perspective\" WorldBegin LightSource \"infinite\" \"string filename\" \"sky.pfm\" Shape \"sphere\"";
     let (_, told) = read_in(folder.path(), text);
-    assert!(told[0].contains("3 x 2 pixels are no picture of all directions"), "{told:?}");
+    assert!(told[0].contains("an environment picture must be square, found 3 x 2 pixels"), "{told:?}");
 }
 
 #[test]
-fn textures_lie_as_pbrt_has_them() {
+fn textures_have_pbrt_orientation() {
     let picture: &[u8] = b"P6 2 2 255\n\xff\x00\x00\x00\xff\x00\x00\x00\xff\xff\xff\xff";
     let folder = folder(&[("t.ppm", picture)]);
     let seen = |texture: &str, uv: Vec2| {
@@ -325,7 +325,7 @@ fn textures_lie_as_pbrt_has_them() {
     close(seen(&format!("{map} \"float scale\" 0.5"), Vec2::new(0.8, 0.3)), Vec3::splat(0.5));
     close(seen(&format!("{map} \"float uscale\" 2 \"float vdelta\" 0.5"), Vec2::new(0.3, 0.3)), Vec3::Y);
     let check = "\"checkerboard\" \"rgb tex1\" [ 1 0 0 ] \"rgb tex2\" [ 0 0 1 ] \"float uscale\" 4 \"float vscale\" 2";
-    // Fields are a quarter wide and half high; where both are even is the first.
+    // Fields are a quarter wide and half high; `tex1` is where both indices are even.
     close(seen(check, Vec2::new(0.1, 0.2)), Vec3::X);
     close(seen(check, Vec2::new(0.3, 0.2)), Vec3::Z);
     close(seen(check, Vec2::new(0.3, 0.8)), Vec3::X);
@@ -333,9 +333,9 @@ fn textures_lie_as_pbrt_has_them() {
 }
 
 #[test]
-fn pictures_lie_on_spheres_as_pbrt_has_them() {
-    // Four columns: the quarters of u, which begins at +x and grows towards +y; v grows from -z to
-    // +z.
+fn pictures_on_spheres_have_pbrt_orientation() {
+    // Four columns, one per quarter of u, which begins at +x and grows towards +y; v grows from -z
+    // to +z.
     let picture: &[u8] =
         b"P6 4 2 255\n\x00\x00\x00\x00\x00\x33\x00\x00\x66\x00\x00\x99\xff\x00\x00\xff\x00\x33\xff\x00\x66\xff\x00\x99";
     let folder = folder(&[("t.ppm", picture)]);
@@ -366,7 +366,7 @@ fn roughness_and_heights_come_from_pictures() {
     let at = world.intersect(&ray, &mut ()).unwrap();
     let durer_render::world::Material::Phong(phong) = &world.materials()[at.material as usize] else { panic!() };
     let own = phong.principled.as_ref().unwrap();
-    // pbrt takes the root of what is written for alpha, whose root is our roughness.
+    // pbrt's alpha is the square root of the value; our roughness is the square root of alpha.
     let expected = (0.5 * durer_image::decode_srgb(128)).sqrt().sqrt();
     let found = world.parameters_at(own, &at).specular_roughness;
     assert!((found - expected).abs() < 2.0 / 255.0, "{found} {expected}");
@@ -374,8 +374,8 @@ fn roughness_and_heights_come_from_pictures() {
 }
 
 #[test]
-fn a_body_of_several_meshes_is_one_piece_of_glass() {
-    // A cube about the origin: its lid is a mesh of its own, mirrored.
+fn touching_meshes_become_one_glass_body() {
+    // Cube about the origin; its lid is a separate, mirrored mesh.
     let side = |turn: &str| {
         format!(
             "AttributeBegin {turn} Translate 0 0 1 Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 0 2 3 ]\n\
@@ -399,8 +399,8 @@ fn a_body_of_several_meshes_is_one_piece_of_glass() {
 }
 
 #[test]
-fn grids_of_densities_lie_as_their_transform_says_and_end_in_nothing() {
-    // Two cells along y of a box from (0, 0, 0) to (2, 4, 2), whose y is the world's z.
+fn density_grids_follow_transform_and_end_in_zero() {
+    // Two cells along y of a box from (0, 0, 0) to (2, 4, 2), whose y is z in world space.
     let text = |third: bool| {
         let kind = if third { "heterogeneous" } else { "uniformgrid" };
         format!(
@@ -416,7 +416,7 @@ fn grids_of_densities_lie_as_their_transform_says_and_end_in_nothing() {
         let medium = world.medium(Some(0)).unwrap();
         let at = |x, y, z| medium.scattering(glam::DVec3::new(x, y, z), &durer_scene::spectrum::Lanes::Rgb).truncate();
         let sigma = Vec3::new(0.5, 0.25, 1.0);
-        // In the middles of cells, halfway, at the end, and behind it, where bodies end.
+        // At cell centres, halfway between, at the border, and beyond it.
         for (y, density) in [(1.0, 1.0), (3.0, 3.0), (2.0, 2.0), (4.0, 1.5), (0.0, 0.5), (5.0, 0.0), (7.0, 0.0)] {
             close(at(1.0, -1.0, y), density * sigma);
         }
@@ -439,7 +439,7 @@ fn grids_of_densities_lie_as_their_transform_says_and_end_in_nothing() {
 fn media_fill_shapes_and_surround_the_camera() {
     let smoke = "MakeNamedMedium \"smoke\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.5 0.25 1 ] \
                  \"rgb sigma_s\" [ 0 0 0 ] \"float scale\" 0.5";
-    // Through the middle of a ball of radius 1 without a skin e^(-2 sigma) is left.
+    // exp(-2 sigma) is left through the middle of a ball of radius 1 without a boundary.
     let text = format!(
         "Camera \"perspective\" WorldBegin {smoke} LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n\
          AttributeBegin MediumInterface \"smoke\" \"\" Material \"interface\" Translate 0 0 5 Shape \"sphere\" AttributeEnd\n\
@@ -454,12 +454,12 @@ fn media_fill_shapes_and_surround_the_camera() {
         paths.radiance(&ray, SampleId::new(0, (3, 5), 7), &mut ())
     };
     close(through(&inside), Vec3::new(-0.5, -0.25, -1.0).map(fp::exp));
-    // Around the camera it is fog; of colours that it thins otherwise the strongest counts.
+    // Around the camera it is fog; the strongest of its coefficients counts.
     let text = format!("{smoke} MediumInterface \"\" \"smoke\" Camera \"perspective\" WorldBegin Shape \"sphere\"");
     let fog = world("fog.pbrt", &text).fog().cloned().unwrap();
     close(fog.extinction, Vec3::splat(0.5));
     assert!(fog.place.is_none() && !fog.scatters());
-    // The defaults of a body below a skin, and a sheet that scatters to both sides.
+    // Defaults of `subsurface`, and a sheet that scatters to both sides.
     let text = "Camera \"perspective\" WorldBegin Material \"subsurface\" Shape \"sphere\"\n\
                 Material \"diffusetransmission\" \"rgb reflectance\" [ 0.3 0.3 0.3 ] \"rgb transmittance\" [ 0.1 0.1 0.1 ] \
                 Shape \"sphere\"";

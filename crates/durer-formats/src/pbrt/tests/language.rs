@@ -18,10 +18,10 @@ fn words_strings_brackets_and_comments() {
 }
 
 #[test]
-fn errors_name_their_place_and_what_may_be_meant() {
+fn errors_have_place_and_suggestion() {
     for (text, wanted) in [
         ("WorldBegin\n Shpae \"sphere\"", "scene.pbrt:2:2 error unknown directive `Shpae` (did you mean `Shape`?)"),
-        ("WorldBegin\nShape \"sfere\"", "scene.pbrt:2:8 error there is no shape `sfere` (did you mean `sphere`?)"),
+        ("WorldBegin\nShape \"sfere\"", "scene.pbrt:2:8 error unknown shape `sfere` (did you mean `sphere`?)"),
         (
             "WorldBegin Shape \"sphere\" \"float radius\" \"two\"",
             "scene.pbrt:1:43 error `radius` needs numbers, found 1 string",
@@ -32,7 +32,7 @@ fn errors_name_their_place_and_what_may_be_meant() {
         ),
         (
             "WorldBegin Shape \"sphere\" \"flaot radius\" 1",
-            "error `flaot` is no type of a parameter (did you mean `float`?)",
+            "error `flaot` is not a type of a parameter (did you mean `float`?)",
         ),
         ("WorldBegin Shape \"sphere\" \"float radius\" 1 \"float radius\" 2", "error `radius` is given twice"),
         ("WorldBegin Shape \"sphere\" \"string radius\" \"a\"", "error `radius` must be a float"),
@@ -44,49 +44,49 @@ fn errors_name_their_place_and_what_may_be_meant() {
         ("WorldBegin Shape \"sphere\" \"float radius", "scene.pbrt:1:27 error this string is not closed"),
         ("WorldBegin Shape \"sphere\n\"", "scene.pbrt:1:18 error this string is not closed"),
         ("WorldBegin Shape", "error `Shape` needs a string in quotes after it"),
-        ("WorldBegin ]", "error a bracket stands here"),
+        ("WorldBegin ]", "error unexpected bracket"),
         ("Translate 1 2", "scene.pbrt:1:1 error `Translate` needs 3 numbers, found 2"),
         ("Scale 0 1 1", "error this transform flattens space"),
         ("Rotate 30 0 0 0", "error the axis of a rotation must not be 0 0 0"),
-        ("LookAt 0 0 0 0 0 0 0 1 0", "error a camera cannot look at where it is"),
-        ("Transform [ 1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1 ]", "error this matrix is a projection"),
-        ("WorldBegin AttributeEnd", "error `AttributeEnd` closes nothing"),
+        ("LookAt 0 0 0 0 0 0 0 1 0", "error the eye and the target of `LookAt` must differ"),
+        ("Transform [ 1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1 ]", "error this matrix is not affine"),
+        ("WorldBegin AttributeEnd", "error `AttributeEnd` without a scope to close"),
         ("WorldBegin AttributeBegin", "scene.pbrt:1:12 error this is not closed (a `AttributeEnd` is missing)"),
-        ("WorldBegin AttributeBegin TransformEnd AttributeEnd", "error `TransformEnd` closes what is not open"),
-        ("Shape \"sphere\" WorldBegin", "scene.pbrt:1:1 error this must stand after `WorldBegin`"),
-        ("WorldBegin Camera \"perspective\"", "error `Camera` must stand before `WorldBegin`"),
-        ("WorldBegin NamedMaterial \"gold\"", "error there is no material `gold`"),
+        ("WorldBegin AttributeBegin TransformEnd AttributeEnd", "error `TransformEnd` does not match the scope that is open"),
+        ("Shape \"sphere\" WorldBegin", "scene.pbrt:1:1 error this must come after `WorldBegin`"),
+        ("WorldBegin Camera \"perspective\"", "error `Camera` must come before `WorldBegin`"),
+        ("WorldBegin NamedMaterial \"gold\"", "error unknown material `gold`"),
         (
             "WorldBegin MakeNamedMaterial \"gold\" \"string type\" \"diffuse\" NamedMaterial \"glod\"",
-            "error there is no material `glod` (did you mean `gold`?)",
+            "error unknown material `glod` (did you mean `gold`?)",
         ),
         (
             "WorldBegin Material \"diffuse\" Material \"matte\"",
-            "error there is no material `matte` in pbrt-v4 (this is of pbrt-v3; `diffuse` is nearest",
+            "error unknown material `matte` in pbrt-v4 (this material is of pbrt-v3; the nearest of pbrt-v4 is `diffuse`",
         ),
         (
             "WorldBegin Material \"diffuse\" \"texture reflectance\" \"wood\"",
-            "error there is no texture `wood` of type `spectrum`",
+            "error unknown texture `wood` of type `spectrum`",
         ),
-        ("WorldBegin LightSource \"pont\"", "error there is no light `pont` (did you mean `point`?)"),
-        ("WorldBegin CoordSysTransform \"here\"", "error there is no coordinate system `here`"),
-        ("WorldBegin MediumInterface \"\" \"fog\"", "error there is no medium `fog`"),
-        ("WorldBegin ObjectInstance \"tree\"", "error there is no object `tree`"),
+        ("WorldBegin LightSource \"pont\"", "error unknown light `pont` (did you mean `point`?)"),
+        ("WorldBegin CoordSysTransform \"here\"", "error unknown coordinate system `here`"),
+        ("WorldBegin MediumInterface \"\" \"fog\"", "error unknown medium `fog`"),
+        ("WorldBegin ObjectInstance \"tree\"", "error unknown object `tree`"),
         (
             "WorldBegin ObjectBegin \"a\" ObjectBegin \"b\" ObjectEnd ObjectEnd",
             "error objects cannot be defined inside objects",
         ),
         ("Film \"rgb\" \"integer xresolution\" 0", "error `xresolution` must be from 1"),
-        ("Film \"rgb\" \"integer xresolution\" 1000000 \"integer yresolution\" 1000000", "pixels are too many"),
-        ("Film \"rgb\" \"integer xresolution\" 1.5", "error `xresolution` needs whole numbers of 32 bits"),
-        ("ColorSpace \"adobe\"", "error there is no space of colours `adobe`"),
+        ("Film \"rgb\" \"integer xresolution\" 1000000 \"integer yresolution\" 1000000", "too many pixels"),
+        ("Film \"rgb\" \"integer xresolution\" 1.5", "error `xresolution` needs 32-bit integers"),
+        ("ColorSpace \"adobe\"", "error unknown colour space `adobe`"),
         (
             "WorldBegin Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 ]",
             "error `P` needs a multiple of three numbers",
         ),
         (
             "WorldBegin Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 3 ]",
-            "error `indices` has 3, and there are points 0 to 2",
+            "error `indices` has 3, but points are numbered 0 to 2",
         ),
         (
             "WorldBegin Shape \"plymesh\" \"string filename\" \"none.ply\"",
@@ -98,7 +98,7 @@ fn errors_name_their_place_and_what_may_be_meant() {
         ),
         (
             "WorldBegin LightSource \"point\" \"spectrum I\" [ 400 1 300 2 ]",
-            "error the wavelengths of a spectrum must rise",
+            "error the wavelengths of a spectrum must increase",
         ),
         (
             "WorldBegin Material \"conductor\" \"spectrum eta\" \"metal-Ag-eto\"",
@@ -115,7 +115,7 @@ fn errors_name_their_place_and_what_may_be_meant() {
 }
 
 #[test]
-fn what_has_no_counterpart_is_told_once_and_what_is_taken_instead() {
+fn unsupported_features_are_reported_once_with_substitute() {
     let text = "Integrator \"bdpt\" Camera \"perspective\"\nWorldBegin\n\
                 MakeNamedMedium \"fog\" \"string type\" \"cloud\" MediumInterface \"\" \"fog\"\n\
                 LightSource \"infinite\" \"point3 portal\" [ 0 0 0 ] Shape \"sphere\" \"float radiu\" 2\n\
@@ -125,17 +125,17 @@ fn what_has_no_counterpart_is_told_once_and_what_is_taken_instead() {
     assert_eq!(
         told,
         [
-            "scene.pbrt:1:13 note the integrator `bdpt` has no counterpart: paths from the camera are followed",
-            "scene.pbrt:3:18 warning media of type `cloud` have no counterpart: light goes through them as if they were not there",
-            "scene.pbrt:4:25 warning `portal` has no counterpart: light is looked for all around",
-            "scene.pbrt:4:66 warning the shape `sphere` has no parameter `radiu`: it is left out (did you mean `radius`?)",
-            "scene.pbrt:5:11 warning measured materials have no counterpart: matte grey is taken",
+            "scene.pbrt:1:13 note the integrator `bdpt` has no counterpart: path tracing is used",
+            "scene.pbrt:3:18 warning media of type `cloud` have no counterpart: they are ignored",
+            "scene.pbrt:4:25 warning `portal` has no counterpart: the whole environment is sampled",
+            "scene.pbrt:4:66 warning the shape `sphere` has no parameter `radiu`: it is ignored (did you mean `radius`?)",
+            "scene.pbrt:5:11 warning measured materials have no counterpart: diffuse grey is used",
         ]
     );
 }
 
 #[test]
-fn files_include_files_and_errors_name_the_one_they_are_in() {
+fn included_files_are_read_and_errors_name_their_file() {
     let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
     packed.write_all(b"Shape \"disk\"").unwrap();
     let packed = packed.finish().unwrap();
@@ -159,10 +159,10 @@ fn files_include_files_and_errors_name_the_one_they_are_in() {
     assert_eq!(told, [""; 0]);
     let objects = scene.unwrap().root.unwrap().objects;
     assert_eq!(objects.len(), 4);
-    // What an imported file changed is forgotten.
+    // `Import` restores the state.
     assert!(objects[0].material == objects[3].material && matches!(objects[3].node, Node::Primitive(_)));
     for (name, wanted) in [
-        ("bad.pbrt", "bad.pbrt:2:10 error there is no shape `sfere`"),
+        ("bad.pbrt", "bad.pbrt:2:10 error unknown shape `sfere`"),
         ("circle.pbrt", "round.pbrt:2:10 error `circle.pbrt` includes itself"),
         ("scene.pbrt", "error `scene.pbrt` includes itself"),
         ("open.pbrt", "open.pbrt:1:1 error this is not closed"),
@@ -170,12 +170,12 @@ fn files_include_files_and_errors_name_the_one_they_are_in() {
         ("../a.pbrt", "error there is no file"),
     ] {
         let (scene, told) = read_in(folder.path(), &format!("{head} Include \"{name}\""));
-        assert!(scene.is_none() && told.iter().any(|told| told.contains(wanted)), "{name}: {told:#?}");
+        assert!(scene.is_none() && told.iter().any(|told| told.contains(wanted)), "{name}: {told:#?}"); // prose: keep
     }
 }
 
 #[test]
-fn hostile_texts_are_refused_or_read_and_never_more() {
+fn hostile_files_never_panic() {
     let world = "Camera \"perspective\" WorldBegin ";
     let deep = format!("{world}{}", "AttributeBegin ".repeat(100_000));
     let many = format!(
@@ -191,16 +191,16 @@ fn hostile_texts_are_refused_or_read_and_never_more() {
     });
     for (text, wanted) in [
         (deep, "scopes are nested more than 4096 deep"),
-        (many, "objects, those of instances counted, are too many"),
-        (mixes + " NamedMaterial \"m199\" Shape \"sphere\"", "materials are mixed more than 32 deep"),
+        (many, "too many objects: more than"),
+        (mixes + " NamedMaterial \"m199\" Shape \"sphere\"", "mixes of materials are nested more than 32 deep"),
         (format!("{world} Shape \"sphere\" {}", "\"float a\" ".repeat(100_000)), "expected"),
     ] {
         let (scene, told) = read(&text);
         let end: String = text.chars().take(80).collect();
         assert!(scene.is_none() || wanted == "expected", "{end}");
-        assert!(wanted == "expected" || told.iter().any(|told| told.contains(wanted)), "{end}: {told:#?}");
+        assert!(wanted == "expected" || told.iter().any(|told| told.contains(wanted)), "{end}: {told:#?}"); // prose: keep
     }
-    // Every beginning of a text, and every change of a byte.
+    // Every prefix of a file, and a change of every byte.
     let text = "Film \"rgb\" \"integer xresolution\" [8] Camera \"perspective\" \"float fov\" 40 WorldBegin\n\
                 Texture \"t\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [1 0 0] \"rgb tex2\" [0 0 1]\n\
                 AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [1 2 3] Material \"diffuse\" \"texture reflectance\" \"t\"\n\
@@ -219,7 +219,7 @@ fn hostile_texts_are_refused_or_read_and_never_more() {
 }
 
 #[test]
-fn attributes_come_back_and_given_parameters_hold_for_a_kind() {
+fn attributes_are_restored_and_defaults_apply_by_kind() {
     let scene = clean(
         "Camera \"perspective\" WorldBegin\nAttribute \"shape\" \"float radius\" 3\n\
          CoordinateSystem \"here\"\nAttributeBegin Translate 1 0 0 Rotate 90 0 0 1 Scale 2 2 2\nShape \"sphere\" AttributeEnd\n\
@@ -239,22 +239,22 @@ fn attributes_come_back_and_given_parameters_hold_for_a_kind() {
 }
 
 #[test]
-fn a_file_without_a_camera_is_a_model() {
+fn file_without_camera_is_a_model() {
     let scene = clean("Shape \"sphere\" \"float radius\" 2");
     assert!(scene.camera.is_some() && !scene.lights.unwrap().is_empty());
-    // What has a camera is lit by itself alone.
+    // A file with a camera gets no extra lights.
     assert_eq!(clean("Camera \"perspective\" WorldBegin Shape \"sphere\"").lights, None);
 }
 
 #[test]
-fn wishes_are_those_of_film_sampler_and_integrator() {
+fn settings_come_from_film_sampler_and_integrator() {
     let scene = clean(
         "Film \"rgb\" \"integer xresolution\" 30 \"integer yresolution\" 20 Sampler \"stratified\" \"integer xsamples\" 3\n\
          Integrator \"path\" \"integer maxdepth\" 7 Camera \"perspective\" WorldBegin Shape \"sphere\"",
     );
     let wishes = scene.wishes;
     assert_eq!((wishes.size, wishes.samples, wishes.bounces), (Some((30, 20)), Some(12), Some(6)));
-    // Pixels from, to, from, to; shares are rounded up.
+    // Pixels from, to, from, to; fractions are rounded up.
     let film = |more: &str| {
         format!(
             "Film \"rgb\" \"integer xresolution\" 30 \"integer yresolution\" 20 {more}\n\
@@ -270,11 +270,11 @@ fn wishes_are_those_of_film_sampler_and_integrator() {
 }
 
 #[test]
-fn scenes_of_the_corpus_are_read() {
+fn corpus_scenes_are_read() {
     let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
     let root = std::env::var_os("DURER_CORPUS").map_or_else(default, Into::into).join("samples/pbrt");
     if !root.is_dir() {
-        return println!("skipped: there is no {}", root.display());
+        return println!("skipped: {} does not exist", root.display());
     }
     let mut count = 0;
     for set in std::fs::read_dir(root).unwrap().flatten().filter(|entry| entry.path().is_dir()) {
@@ -282,7 +282,7 @@ fn scenes_of_the_corpus_are_read() {
             for file in std::fs::read_dir(folder.path()).unwrap().flatten().map(|entry| entry.path()) {
                 if file.extension().is_some_and(|extension| extension == "pbrt") {
                     let (scene, told) = read_in(&folder.path(), &std::fs::read_to_string(&file).unwrap());
-                    assert!(scene.is_some(), "{}: {told:#?}", file.display());
+                    assert!(scene.is_some(), "{}: {told:#?}", file.display()); // prose: keep
                     count += 1;
                 }
             }

@@ -1,4 +1,4 @@
-//! Shapes that become triangles, against closed forms.
+//! Tessellated shapes against closed forms.
 
 use super::*;
 use crate::testing::read_with_low_limits;
@@ -6,7 +6,7 @@ use durer_scene::math::{Vec3, fp};
 use durer_scene::shape::MeshData;
 use std::f64::consts::PI;
 
-/// The only mesh of a text of pbrt-v3.
+/// The only mesh of a pbrt-v3 scene.
 fn mesh(text: &str) -> MeshData {
     let scene = clean(&format!("Film \"image\" Camera \"perspective\" WorldBegin {text}"));
     assert_eq!(scene.assets.meshes.len(), 1, "{text}");
@@ -19,7 +19,7 @@ fn area(data: &MeshData) -> f64 {
     0.5 * data.triangles.iter().map(twice).sum::<f64>()
 }
 
-/// Whether all triangles face the side of their normals.
+/// Returns true if every triangle faces the side of its normals.
 fn faced(data: &MeshData) -> bool {
     data.triangles.iter().zip(&data.triangle_normals).all(|(triangle, normals)| {
         let [a, b, c] = triangle.map(|i| data.positions[i as usize].as_dvec3());
@@ -29,10 +29,10 @@ fn faced(data: &MeshData) -> bool {
 }
 
 #[test]
-fn parts_of_round_shapes_have_their_areas() {
+fn partial_quadrics_have_closed_form_areas() {
     let turn = |degrees: f64| degrees.to_radians();
     for (text, wanted) in [
-        // 2 pi r h, of a part of a turn.
+        // 2 pi r h, times the share of the turn.
         ("\"sphere\" \"float radius\" 2 \"float zmin\" -0.5 \"float zmax\" 1.5", 2.0 * PI * 2.0 * 2.0),
         ("\"sphere\" \"float zmin\" 0.6 \"float phimax\" 90", turn(90.0) * 0.4),
         ("\"sphere\" \"float phimax\" 250", turn(250.0) * 2.0),
@@ -42,13 +42,13 @@ fn parts_of_round_shapes_have_their_areas() {
         ),
         ("\"disk\" \"float radius\" 2 \"float innerradius\" 1 \"float phimax\" 300", turn(300.0) / 2.0 * 3.0),
         ("\"cone\" \"float radius\" 3 \"float height\" 4", PI * 3.0 * 5.0),
-        // Of z = r^2: pi / 6 ((1 + 4 z)^(3/2) - 1).
+        // Paraboloid z = r^2: pi / 6 ((1 + 4 z)^(3/2) - 1).
         ("\"paraboloid\" \"float radius\" 2 \"float zmax\" 4", PI / 6.0 * (17.0 * 17_f64.sqrt() - 1.0)),
         (
             "\"paraboloid\" \"float radius\" 2 \"float zmin\" 1 \"float zmax\" 4",
             PI / 6.0 * (17.0 * 17_f64.sqrt() - 5.0 * 5_f64.sqrt()),
         ),
-        // A line that meets the axis at its level makes a ring, one along it a cylinder.
+        // A line that is perpendicular to the axis makes a ring; a line along it makes a cylinder.
         ("\"hyperboloid\" \"point p1\" [ 1 0 0 ] \"point p2\" [ 2 0 0 ]", 3.0 * PI),
         ("\"hyperboloid\" \"point p1\" [ 1 0 0 ] \"point p2\" [ 1 0 3 ]", 6.0 * PI),
     ] {
@@ -59,7 +59,7 @@ fn parts_of_round_shapes_have_their_areas() {
 }
 
 #[test]
-fn round_shapes_face_outwards_and_have_pbrt_s_coordinates() {
+fn quadrics_face_outwards_and_have_pbrt_uv() {
     for (text, outwards) in [
         ("\"sphere\" \"float zmax\" 0.5", 1.0),
         ("\"cylinder\" \"float phimax\" 200", 1.0),
@@ -75,10 +75,10 @@ fn round_shapes_face_outwards_and_have_pbrt_s_coordinates() {
             assert!(faced(&data), "{head} {text}");
         }
     }
-    // u is the share of the turn, v goes up; of a disc it goes inwards.
+    // u is the share of the turn and v goes up; v of a disc goes inwards.
     let sphere = mesh("Shape \"sphere\" \"float zmin\" -0.5 \"float zmax\" 0.5 \"float phimax\" 180");
     for (place, uv) in sphere.positions.iter().zip(&sphere.uvs) {
-        // Half a turn, and from the equator -30 to 30 degrees.
+        // Half a turn, and from -30 to 30 degrees of latitude.
         let (sin, cos) = fp::sin_cos_degrees(180.0 * f64::from(uv.x));
         let (up, across) = fp::sin_cos_degrees(60.0 * f64::from(uv.y) - 30.0);
         let wanted = glam::DVec3::new(across * cos, across * sin, up);
@@ -94,8 +94,8 @@ fn round_shapes_face_outwards_and_have_pbrt_s_coordinates() {
 const CUBE: &str = "\"integer indices\" [ 0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 2 3 7 2 7 6 1 2 6 1 6 5 0 4 7 0 7 3 ]";
 
 #[test]
-fn loop_s_surfaces_lie_where_endless_subdivision_has_them() {
-    // An octahedron: each corner has four neighbours whose mean is the middle, so its limit is nearer
+fn loop_vertices_lie_on_the_limit_surface() {
+    // Octahedron: each vertex has four neighbours whose mean is the centre, so its limit is scaled
     // by 1 - 4 / (4 + 3 / (8 beta)), with beta = 3 / 32.
     let text = "Shape \"loopsubdiv\" \"point P\" [ 1 0 0 -1 0 0 0 1 0 0 -1 0 0 0 1 0 0 -1 ]\n\
                 \"integer indices\" [ 0 2 4 2 1 4 1 3 4 3 0 4 2 0 5 1 2 5 3 1 5 0 3 5 ]";
@@ -105,7 +105,7 @@ fn loop_s_surfaces_lie_where_endless_subdivision_has_them() {
         assert!((data.positions[4] - Vec3::new(0.0, 0.0, 0.5)).length() < 1e-6, "{levels}: {}", data.positions[4]);
         assert!((data.normals[4] - Vec3::Z).length() < 1e-6 && faced(&data), "{levels}");
     }
-    // Three times is what is asked for where nothing is said, and normals are those of the surface.
+    // The default is three levels, with normals of the limit surface.
     let data = mesh(text);
     assert_eq!(data.triangles.len(), 512);
     for triangle in &data.triangles {
@@ -114,20 +114,20 @@ fn loop_s_surfaces_lie_where_endless_subdivision_has_them() {
         let cosine = (b - a).cross(c - a).normalize().dot(normal.normalize());
         assert!(cosine > 0.95, "{cosine} {triangle:?}");
     }
-    // What is flat stays flat.
+    // A flat mesh stays flat.
     let flat = mesh(
         "Shape \"loopsubdiv\" \"integer levels\" 2 \"point P\" [ 0 0 0 1 0 0 2 0 0 0 1 0 1 1 0 2 1 0 0 2 0 1 2 0 2 2 0 ]\n\
          \"integer indices\" [ 0 1 4 0 4 3 1 2 5 1 5 4 3 4 7 3 7 6 4 5 8 4 8 7 ]",
     );
     assert!(flat.positions.iter().all(|p| p.z == 0.0) && flat.normals.iter().all(|n| (*n - Vec3::Z).length() < 1e-6));
-    // The middle of a side stays where it is; the corners of the border are rounded off.
+    // The middle of a side stays in place; the corners of the border are rounded off.
     assert!(
         flat.positions[1] == Vec3::X && area(&flat) < 4.0 && area(&flat) > 3.6,
         "{} {}",
         flat.positions[1],
         area(&flat)
     );
-    // Three triangles at an edge have no ring: they stay.
+    // Three triangles at an edge have no one-ring: they stay in place.
     let fan = "Shape \"loopsubdiv\" \"integer levels\" 1 \"point P\" [ 0 0 0 0 0 1 1 0 0 0 1 0 -1 0 0 ] \"integer indices\" [ 0 1 2 0 1 3 0 1 4 ]";
     assert_eq!(mesh(fan).positions[0], Vec3::ZERO);
     let cube = mesh(&format!(
@@ -137,9 +137,9 @@ fn loop_s_surfaces_lie_where_endless_subdivision_has_them() {
 }
 
 #[test]
-fn curves_are_as_wide_as_they_are_written() {
+fn curves_have_given_width() {
     let line = "\"point P\" [ 0 0 0 1 0 0 2 0 0 3 0 0 ]";
-    // The mean of the circles around and within a tube's polygon.
+    // Mean of the circumscribed and the inscribed circle of a tube's polygon.
     let tube = mesh(&format!("Shape \"curve\" \"string type\" \"cylinder\" \"float width\" 0.5 {line}"));
     assert!((area(&tube) / (PI * 0.5 * 3.0) - 1.0).abs() < 0.01, "{}", area(&tube));
     for (place, normal) in tube.positions.iter().zip(&tube.normals) {
@@ -156,19 +156,19 @@ fn curves_are_as_wide_as_they_are_written() {
         (area(&ribbon) - 1.5).abs() < 1e-5 && ribbon.positions.iter().all(|p| p.z.abs() < 1e-6 && p.y.abs() < 0.2501)
     );
     assert!(ribbon.normals.iter().all(|n| (*n - Vec3::Z).length() < 1e-5));
-    // A quarter turn of the ribbon leads its middle half way.
+    // After a quarter turn of the ribbon, its middle is turned half as far.
     let turned = mesh(&format!(
         "Shape \"curve\" \"string type\" \"ribbon\" \"float width\" 0.5 \"normal N\" [ 0 0 1 0 1 0 ] {line}"
     ));
     let middle = turned.positions.iter().zip(&turned.normals).find(|(p, _)| (p.x - 1.5).abs() < 1e-4).unwrap().1;
     assert!((*middle - Vec3::new(0.0, 1.0, 1.0).normalize()).length() < 1e-3, "{middle}");
-    // A B-spline of equal steps is a straight line from the second point to the last but one.
+    // A B-spline of equal steps is a straight line from the second to the second to last point.
     let spline = mesh(&format!(
         "Shape \"curve\" \"string type\" \"cylinder\" \"string basis\" \"bspline\" \"float width\" 0.1 {line}"
     ));
     let ends = spline.positions.iter().fold((9.0_f32, -9.0_f32), |(a, b), p| (a.min(p.x), b.max(p.x)));
     assert!((ends.0 - 1.0).abs() < 1e-5 && (ends.1 - 2.0).abs() < 1e-5, "{ends:?}");
-    // A parabola by both degrees.
+    // Parabola of degree 2 and of degree 3.
     let text = |points: &str, degree: u32| {
         mesh(&format!(
             "Shape \"curve\" \"string type\" \"cylinder\" \"integer degree\" {degree} \"float width\" 0.1 \"point P\" [ {points} ]"
@@ -182,11 +182,11 @@ fn curves_are_as_wide_as_they_are_written() {
 }
 
 #[test]
-fn nets_are_surfaces() {
+fn height_fields_and_nurbs_become_meshes() {
     let heights = mesh("Shape \"heightfield\" \"integer nu\" 3 \"integer nv\" 2 \"float Pz\" [ 0 1 2 3 4 5 ]");
     assert_eq!((heights.positions[1], heights.positions[5]), (Vec3::new(0.5, 0.0, 1.0), Vec3::new(1.0, 1.0, 5.0)));
     assert_eq!(heights.triangles.len(), 4);
-    // A quarter of a cylinder, exactly: weights 1, 1 / sqrt 2 and 1.
+    // Exact quarter of a cylinder: weights 1, 1 / sqrt 2 and 1.
     let w = std::f32::consts::FRAC_1_SQRT_2;
     let cylinder = mesh(&format!(
         "Shape \"nurbs\" \"integer nu\" 3 \"integer nv\" 2 \"integer uorder\" 3 \"integer vorder\" 2\n\
@@ -202,8 +202,8 @@ fn nets_are_surfaces() {
 }
 
 #[test]
-fn few_numbers_do_not_become_any_number_of_triangles() {
-    // A ball in part has 128 x 64 x 2 triangles at most: of 20 some are left out, with the limit of tests.
+fn tessellation_is_limited() {
+    // A partial ball has at most 128 x 64 x 2 triangles: the limit in tests leaves out some of 20.
     let text = "Shape \"sphere\" \"float phimax\" 359 ".repeat(20);
     let (scene, told) =
         read_with_low_limits("a.pbrt", &format!("Film \"image\" Camera \"perspective\" WorldBegin {text}"));
@@ -214,5 +214,5 @@ fn few_numbers_do_not_become_any_number_of_triangles() {
         "Shape \"loopsubdiv\" \"integer levels\" 16 \"point P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 2 ]";
     let (_, told) =
         read_with_low_limits("a.pbrt", &format!("Film \"image\" Camera \"perspective\" WorldBegin {surface}"));
-    assert!(told.len() == 1 && told[0].contains("triangles are too many: it is subdivided 7 times"), "{told:?}");
+    assert!(told.len() == 1 && told[0].contains("triangles: the surface is subdivided only 7 times"), "{told:?}");
 }

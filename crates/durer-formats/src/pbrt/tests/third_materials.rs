@@ -1,4 +1,4 @@
-//! pbrt-v3's materials and textures.
+//! Materials and textures of pbrt-v3.
 
 use super::super::material::alpha_of_roughness;
 use super::third::{close, parts};
@@ -7,8 +7,8 @@ use durer_scene::material::HairMaterial;
 use durer_scene::math::Vec3;
 
 #[test]
-fn roughness_is_told_by_pbrt_v3_s_polynomial() {
-    // At 1 the logarithm is 0; at 0.001 it is as small as it gets.
+fn roughness_follows_pbrt_v3_polynomial() {
+    // At 1 the logarithm is 0; below 0.001 the roughness is clamped.
     assert_eq!(alpha_of_roughness(1.0), 1.62142);
     let x = durer_scene::math::fp::ln(0.001);
     let least = 1.62142 + 0.819955 * x + 0.1734 * x * x + 0.0171201 * x * x * x + 0.000640711 * x * x * x * x;
@@ -20,7 +20,7 @@ fn roughness_is_told_by_pbrt_v3_s_polynomial() {
 }
 
 #[test]
-fn sums_give_back_what_their_parts_do() {
+fn mixes_reflect_the_sum_of_their_parts() {
     let whole = |parts: &[(f32, PrincipledMaterial)], of: fn(&PrincipledMaterial) -> Vec3| -> Vec3 {
         parts.iter().map(|(share, layers)| *share * of(layers)).sum()
     };
@@ -33,7 +33,7 @@ fn sums_give_back_what_their_parts_do() {
         |layers: &PrincipledMaterial| if layers.specular_weight > 0.0 { layers.specular_color } else { Vec3::ZERO };
     assert!((whole(&plastic, shine) - Vec3::new(0.1, 0.2, 0.3)).abs().max_element() < 2e-3);
     assert!(plastic.iter().any(|(_, layers)| (layers.specular_ior - 1.0 / 1.5).abs() < 1e-6));
-    // Black parts are no parts.
+    // Black parts are dropped.
     assert_eq!(parts("Material \"plastic\" \"rgb Ks\" [ 0 0 0 ]").len(), 1);
     let uber = parts(
         "Material \"uber\" \"rgb Kd\" [ 0.3 0.3 0.3 ] \"rgb Ks\" [ 0 0 0 ] \"rgb Kr\" [ 0.2 0.4 0.6 ] \"rgb Kt\" [ 0.5 0.5 0.5 ]\n\
@@ -43,13 +43,13 @@ fn sums_give_back_what_their_parts_do() {
     close(whole(&uber, |layers| layers.transmission_color * layers.transmission_weight), Vec3::splat(0.5));
     close(whole(&uber, |layers| layers.specular_color * layers.transmission_weight), Vec3::new(0.2, 0.4, 0.6));
     assert!(uber.iter().all(|(_, layers)| layers.opacity == 0.25));
-    // What shines shines as much as is written, whatever it is made of.
+    // Emission is as given for every material.
     let shining = parts("AreaLightSource \"diffuse\" \"rgb L\" [ 2 4 6 ] Material \"plastic\"");
     close(whole(&shining, |layers| layers.emission_luminance * layers.emission_color), Vec3::new(2.0, 4.0, 6.0));
 }
 
 #[test]
-fn the_other_materials_have_their_own_words() {
+fn other_materials_read_their_parameters() {
     let only = |text: &str| {
         let mut parts = parts(text);
         assert_eq!(parts.len(), 1, "{text}");
@@ -62,13 +62,13 @@ fn the_other_materials_have_their_own_words() {
     let mirror = only("Material \"mirror\" \"rgb Kr\" [ 0.4 0.8 0.2 ]");
     close(mirror.specular_weight * mirror.base_color, Vec3::new(0.4, 0.8, 0.2));
     assert_eq!((mirror.base_metalness, mirror.specular_roughness), (1.0, 0.0));
-    // Copper, at right angles: ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2).
+    // Copper at normal incidence: ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2).
     let smooth = "\"float roughness\" 0.0001 \"bool remaproughness\" \"false\"";
     let copper = only(&format!("Material \"metal\" {smooth}")).base_color;
     close(copper, Vec3::new(0.95214, 0.61968, 0.51058));
     let rough = only("Material \"matte\" \"rgb Kd\" [ 0.5 0.5 0.5 ] \"float sigma\" 30");
     assert!(rough.base_diffuse_roughness > 0.3 && rough.base_color.x < 0.5);
-    // The amount is the share of the first.
+    // `amount` is the share of the first.
     let mixed = parts(
         "MakeNamedMaterial \"a\" \"string type\" \"matte\" \"rgb Kd\" [ 1 0 0 ]\n\
          MakeNamedMaterial \"b\" \"string type\" \"matte\" \"rgb Kd\" [ 0 0 1 ]\n\
@@ -77,7 +77,7 @@ fn the_other_materials_have_their_own_words() {
     let all: Vec3 = mixed.iter().map(|(share, layers)| *share * layers.base_color).sum();
     close(all, Vec3::new(0.3, 0.0, 0.7));
     let disney = only("Material \"disney\" \"rgb color\" [ 0.1 0.2 0.3 ] \"float roughness\" 0.4");
-    // What the boundary takes of the matte base is in its colour.
+    // The base's colour is raised by the share that the boundary takes.
     let color = Vec3::new(0.1, 0.2, 0.3);
     let more = disney.base_color / color;
     assert!((more - more.x).abs().max_element() < 1e-5 && (1.0..1.2).contains(&more.x), "{more}");
@@ -88,16 +88,16 @@ fn the_other_materials_have_their_own_words() {
 }
 
 #[test]
-fn a_substrate_gives_back_on_the_mean_what_its_formula_does() {
+fn substrate_mean_albedo_follows_its_formula() {
     use durer_scene::bsdf::albedo::Dielectric;
-    // Of (1 - Ks) Kd, 23/28.
+    // The mean is 23/28 of (1 - Ks) Kd.
     let parts = parts("Material \"substrate\" \"rgb Kd\" [ 0.2 0.4 0.8 ] \"rgb Ks\" [ 0.04 0.04 0.04 ]");
     let (share, base) = parts.iter().find(|(_, layers)| layers.base_color != Vec3::ZERO).unwrap();
     let boundary = Dielectric::new(base.specular_ior);
     let passing = 1.0 - boundary.mean(base.specular_roughness);
     let mean = *share * passing * base.base_color;
     assert!((mean / (Vec3::new(0.2, 0.4, 0.8) * 0.96 * 23.0 / 28.0) - Vec3::ONE).abs().max_element() < 5e-3, "{mean}");
-    // And of each direction 1 - (1 - cos / 2)^5.
+    // By direction, 1 - (1 - cos / 2)^5.
     for cosine in [0.1, 0.3, 0.5, 0.7, 1.0] {
         let (half, wanted): (f32, f32) = (1.0 - 0.5 * cosine, 28.0 / 23.0);
         let formula = wanted * (1.0 - half * half * half * half * half);
@@ -107,14 +107,14 @@ fn a_substrate_gives_back_on_the_mean_what_its_formula_does() {
             "{cosine}: {ours} {formula}"
         );
     }
-    // Smooth facets reflect Ks + (1 - Ks) / 21 on the mean.
+    // The mean of smooth microfacets is Ks + (1 - Ks) / 21.
     let (share, shine) = parts.iter().find(|(_, layers)| layers.base_color == Vec3::ZERO).unwrap();
     let ratio = (shine.specular_ior - 1.0) / (shine.specular_ior + 1.0);
     assert!((ratio * ratio - 0.04).abs() < 1e-5 && *share > 0.0);
 }
 
 #[test]
-fn textures_have_pbrt_v3_s_parameters() {
+fn textures_read_pbrt_v3_parameters() {
     let color = |text: &str| {
         let text = format!("{text} Material \"matte\" \"texture Kd\" \"t\"");
         parts(&text)[0].1.base_color
@@ -130,7 +130,7 @@ fn textures_have_pbrt_v3_s_parameters() {
 }
 
 #[test]
-fn hair_is_hair_in_both_languages() {
+fn hair_is_read_in_both_languages() {
     let hair = |text: &str| {
         let scene = clean(&format!(
             "Camera \"perspective\" WorldBegin {text} Shape \"curve\" \"point3 P\" [ 0 0 0 1 0 0 2 0 0 3 0 0 ] \"string type\" \"cylinder\""
@@ -157,7 +157,7 @@ fn hair_is_hair_in_both_languages() {
         let made = hair(&format!("Material \"hair\" \"rgb {word}\" [ 0.5 0.25 0.125 ]"));
         close(made.color.unwrap(), Vec3::new(0.5, 0.25, 0.125));
     }
-    // What is absorbed counts first, here in pbrt-v3.
+    // Absorption has precedence, here in pbrt-v3.
     let made = hair("Material \"matte\" Material \"hair\" \"rgb sigma_a\" [ 1 2 3 ] \"rgb color\" [ 0.5 0.5 0.5 ]");
     assert_eq!((made.absorption, made.color), (Some(Vec3::new(1.0, 2.0, 3.0)), None));
 }
