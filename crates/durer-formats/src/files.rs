@@ -3,6 +3,7 @@
 use super::model::Input;
 use super::read_mesh;
 use super::said::Said;
+use crate::packed::read_unpacked;
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_scene::shape::MeshData;
 use std::sync::Arc;
@@ -10,7 +11,7 @@ use std::sync::Arc;
 /// Reads the bytes of a named file and registers it, for spans. `what` names the file's purpose in
 /// the error if that fails.
 pub(super) fn named_bytes(input: &Input, said: &Said, what: &str, name: &str, at: Span) -> Option<(Arc<[u8]>, u32)> {
-    match input.source.read_unpacked(name) {
+    match read_unpacked(input.source, name) {
         Ok(bytes) => {
             let file = input.files.borrow_mut().add(name, bytes.clone());
             Some((bytes, file))

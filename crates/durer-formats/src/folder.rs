@@ -4,7 +4,7 @@
 
 use crate::files::unescaped;
 use durer_diag::did_you_mean;
-use durer_scene::source::{AssetSource, Digest, ReadRecord, SourceError, Stamp, is_packed, unpacked_file};
+use durer_scene::source::{AssetSource, Digest, ReadRecord, SourceError, Stamp};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Read;
@@ -244,15 +244,13 @@ impl AssetSource for FolderSource {
         }
     }
 
-    fn read_unpacked(&self, name: &str) -> Result<Arc<[u8]>, SourceError> {
-        let bytes = self.read(name)?;
-        if !is_packed(&bytes) {
-            return Ok(bytes);
-        }
-        let left = self.progress().left;
-        let all = unpacked_file(name, &bytes, left)?;
-        self.progress().left = left - all.len() as u64;
-        Ok(all)
+    fn budget(&self) -> u64 {
+        self.progress().left
+    }
+
+    fn spend(&self, bytes: u64) {
+        let mut progress = self.progress();
+        progress.left = progress.left.saturating_sub(bytes);
     }
 
     fn read_user_file(&self, path: &Path) -> Result<Arc<[u8]>, SourceError> {

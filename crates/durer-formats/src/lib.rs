@@ -5,6 +5,9 @@
 //! count that a file promises. They reject non-finite numbers and indices out of range, and collect
 //! errors with spans.
 
+// Parts that several formats share are not all used if a format is left out.
+#![cfg_attr(not(feature = "all"), allow(dead_code))]
+
 pub mod beside;
 mod bodies;
 pub mod course;
@@ -14,20 +17,25 @@ mod disney;
 mod files;
 #[cfg(feature = "fs")]
 pub mod folder;
+#[cfg(feature = "gltf")]
 mod gltf;
 pub mod json;
 mod lamps;
 mod medium;
+#[cfg(feature = "mitsuba")]
 mod mitsuba;
 mod model;
 mod number;
 pub mod obj;
+pub mod packed;
 mod panorama;
+#[cfg(feature = "pbrt")]
 mod pbrt;
 pub mod photometry;
 mod pictures;
 mod ply;
 mod polygon;
+#[cfg(feature = "radiance")]
 mod radiance;
 mod report;
 mod said;
@@ -36,10 +44,13 @@ mod signature;
 mod smooth;
 mod sticks;
 mod stl;
+#[cfg(feature = "threemf")]
 mod threemf;
 mod unscattered;
 pub mod vol;
+#[cfg(any(feature = "mitsuba", feature = "threemf"))]
 mod xml;
+#[cfg(feature = "threemf")]
 mod zip;
 
 pub use decoder::Decoder;

@@ -5,9 +5,7 @@ use super::model::SceneFormat;
 pub use super::model::{Input, Output, WriteScene};
 use super::pictures::unusable;
 use super::signature::mistaken;
-use super::{
-    MeshFormat, extension, gltf, mitsuba, obj, panorama, pbrt, ply, radiance, read_mesh, sticks, stl, threemf,
-};
+use super::{MeshFormat, extension, obj, panorama, ply, read_mesh, sticks, stl};
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_image::{self as image, Encoded, ImageError};
 use durer_scene::describe::FileName;
@@ -24,11 +22,16 @@ use std::sync::Arc;
 /// The scene formats, in the order in which content is tried. Any other file is in the scene
 /// language.
 pub const SCENE_FORMATS: &[SceneFormat] = &[
-    gltf::FORMAT,
-    pbrt::FORMAT,
-    mitsuba::FORMAT,
-    threemf::FORMAT,
-    radiance::FORMAT,
+    #[cfg(feature = "gltf")]
+    super::gltf::FORMAT,
+    #[cfg(feature = "pbrt")]
+    super::pbrt::FORMAT,
+    #[cfg(feature = "mitsuba")]
+    super::mitsuba::FORMAT,
+    #[cfg(feature = "threemf")]
+    super::threemf::FORMAT,
+    #[cfg(feature = "radiance")]
+    super::radiance::FORMAT,
     alone(&ply::FORMAT),
     obj::scene::FORMAT,
     alone(&stl::FORMAT),
@@ -67,12 +70,7 @@ pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnos
     scene.up = Some(input.staging.up.unwrap_or(format.up));
     if let Some(path) = &input.staging.view_file {
         let (name, bytes) = named(input, path, diagnostics)?;
-        let found = radiance::look(&mut scene, input, (&name, &bytes));
-        let sound = !found.has_errors();
-        diagnostics.extend(found);
-        if !sound {
-            return None;
-        }
+        look(&mut scene, input, &name, &bytes, diagnostics)?;
     }
     if let Some(path) = &input.staging.environment {
         let (name, bytes) = named(input, path, diagnostics)?;
@@ -84,6 +82,22 @@ pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnos
         input.staging.complete(&mut scene, format.up, format.whole);
     }
     Some(scene)
+}
+
+/// Sets a scene's camera to the last view in a Radiance file. Returns `None` after errors.
+#[cfg(feature = "radiance")]
+fn look(scene: &mut Scene, input: &Input, name: &str, bytes: &Arc<[u8]>, diagnostics: &mut Diagnostics) -> Option<()> {
+    let found = super::radiance::look(scene, input, (name, bytes));
+    let is_sound = !found.has_errors();
+    diagnostics.extend(found);
+    is_sound.then_some(())
+}
+
+/// Refuses a view file: this build has no reader of Radiance's files.
+#[cfg(not(feature = "radiance"))]
+fn look(_: &mut Scene, _: &Input, name: &str, _: &Arc<[u8]>, diagnostics: &mut Diagnostics) -> Option<()> {
+    diagnostics.push(Diagnostic::error(format!("`{name}`: this build cannot read views of Radiance")));
+    None
 }
 
 /// Reads a file that an option names, at any path. Returns its name and bytes.

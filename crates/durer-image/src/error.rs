@@ -4,6 +4,7 @@ use durer_diag::{at_least, at_most};
 
 /// Error of reading or writing a picture.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ImageError {
     /// The extension of a file name is unknown.
     #[error("`{path}` does not end like a picture file; known are {known}{}", suggestion(.meant))]

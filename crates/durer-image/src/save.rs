@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 
 /// Error of saving a file. The old file, if any, is unchanged.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SaveError {
     /// A folder has this name.
     #[error("cannot write `{}`: it is a folder", path.display())]

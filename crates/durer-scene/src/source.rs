@@ -78,6 +78,7 @@ impl std::fmt::Debug for Digest {
 
 /// Reason why a file could not be read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SourceError {
     /// The file is in none of the searched places.
     #[error("there is no file `{name}`")]
@@ -205,15 +206,13 @@ pub trait AssetSource: std::fmt::Debug + Sync {
     /// Record of what was read so far.
     fn record(&self) -> &ReadRecord;
 
-    /// Reads a file as [`AssetSource::read`] does, and decompresses gzip data.
-    ///
-    /// # Errors
-    ///
-    /// [`SourceError`], also for compressed bytes that are damaged or would become too large.
-    fn read_unpacked(&self, name: &str) -> Result<Arc<[u8]>, SourceError> {
-        let bytes = self.read(name)?;
-        if is_packed(&bytes) { unpacked_file(name, &bytes, u64::MAX) } else { Ok(bytes) }
+    /// Number of bytes that may still be read; unpacking a file takes from them.
+    fn budget(&self) -> u64 {
+        u64::MAX
     }
+
+    /// Takes bytes from the budget.
+    fn spend(&self, _bytes: u64) {}
 
     /// Reads a file that the user named, not the scene, so it may be anywhere. Adds it to the
     /// record under its path.
@@ -273,62 +272,9 @@ impl AssetSource for MemorySource {
     }
 }
 
-/// Decompresses a gzip file to at most `budget` bytes.
-///
-/// # Errors
-///
-/// [`SourceError::Io`]: the bytes are damaged or would become too large.
-pub fn unpacked_file(name: &str, bytes: &[u8], budget: u64) -> Result<Arc<[u8]>, SourceError> {
-    unpacked(bytes, budget).map_err(|problem| {
-        let error = std::io::Error::new(std::io::ErrorKind::InvalidData, problem);
-        SourceError::Io { name: name.into(), error }
-    })
-}
-
-/// Returns true if bytes are a gzip file.
-pub fn is_packed(bytes: &[u8]) -> bool {
-    bytes.starts_with(b"\x1f\x8b")
-}
-
-/// Decompresses gzip data to at most `budget` bytes. The last four bytes declare the size, which
-/// the output may not exceed.
-///
-/// # Errors
-///
-/// A sentence: the data are damaged or would become too large.
-pub fn unpacked(bytes: &[u8], budget: u64) -> Result<Arc<[u8]>, String> {
-    // Deflate packs at most 1032 bytes into one. The last four tell the size of the last piece.
-    let most = budget.min(1032 * bytes.len() as u64);
-    let declared = bytes.last_chunk().map_or(0, |size| u64::from(u32::from_le_bytes(*size)));
-    if declared > most {
-        return Err(format!("the packed file would have {declared} bytes: that is too large"));
-    }
-    let mut all = Vec::new();
-    let mut decoder = flate2::read::MultiGzDecoder::new(bytes).take(most + 1);
-    match decoder.read_to_end(&mut all) {
-        Ok(_) if all.len() as u64 <= most => Ok(all.into()),
-        Ok(_) => Err(format!("the packed file would have more than {most} bytes: that is too large")),
-        Err(error) => Err(format!("the file cannot be unpacked: {error}")),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn files_of_several_packed_pieces_are_the_pieces_one_after_the_other() {
-        use std::io::Write as _;
-        let packed = |text: &str| {
-            let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
-            encoder.write_all(text.as_bytes()).unwrap();
-            encoder.finish().unwrap()
-        };
-        let both = [packed("a cube, "), packed("a ball")].concat();
-        assert_eq!(&*unpacked(&both, 100).unwrap(), b"a cube, a ball");
-        assert!(unpacked(&both, 13).unwrap_err().contains("too large"));
-        assert!(unpacked(&both[..both.len() - 1], 100).is_err());
-    }
 
     #[test]
     fn files_in_memory_are_found_and_recorded() {

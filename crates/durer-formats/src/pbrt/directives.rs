@@ -5,6 +5,7 @@ use super::lexer::{Lexer, Token};
 use super::params::read as read_params;
 use super::state::{Asked, Open, Reader, Scope};
 use super::transform::{look_at, matrix, numbers, rotation, sound};
+use crate::packed::read_unpacked;
 use crate::said::meant;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::scene::{Node, Object, Scene};
@@ -417,7 +418,7 @@ impl Reader<'_> {
         if self.texts.len() >= DEEPEST_FILES {
             return self.said.bad(at, format!("includes are nested more than {DEEPEST_FILES} deep"));
         }
-        let bytes = match self.input.source.read_unpacked(&name) {
+        let bytes = match read_unpacked(self.input.source, &name) {
             Ok(bytes) => bytes,
             Err(error) => {
                 let near = match &error {

@@ -5,6 +5,7 @@
 
 use super::lexer::{Lexer, Token};
 use crate::model::Input;
+use crate::packed::read_unpacked;
 use crate::said::Said;
 use durer_diag::Span;
 
@@ -127,7 +128,7 @@ fn search(mut text: Lexer, input: &Input, left: &mut usize, depth: usize) -> Opt
                 }
                 if directive == "Include" && names == 1 && *left > 0 && depth < DEEPEST {
                     *left -= 1;
-                    let file = input.source.read_unpacked(&name).ok();
+                    let file = read_unpacked(input.source, &name).ok();
                     let file = file.filter(|bytes| bytes.len() < u32::MAX as usize);
                     let inner = file.and_then(|bytes| search(Lexer::new(bytes, input.file), input, left, depth + 1));
                     if inner.is_some() {

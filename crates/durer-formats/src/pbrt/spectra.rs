@@ -4,6 +4,7 @@ use super::language::Language;
 use super::named;
 use super::params::{Kind, Param, Params, Values};
 use crate::number::parse_f32;
+use crate::packed::read_unpacked;
 use crate::said::meant;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::math::Vec3;
@@ -76,7 +77,7 @@ fn named(name: &str, at: Span, params: &Params) -> Option<SpectrumSource> {
     {
         return Some(known);
     }
-    let bytes = match params.input.source.read_unpacked(name) {
+    let bytes = match read_unpacked(params.input.source, name) {
         Ok(bytes) if bytes.len() < u32::MAX as usize => bytes,
         Ok(_) => {
             params.said.bad(at, format!("`{name}` is too large for a spectrum"));

@@ -91,6 +91,7 @@ pub struct Comparison {
 
 /// Error of a comparison.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CompareError {
     /// The sizes differ.
     #[error(

@@ -9,6 +9,7 @@ pub(super) const MAX_KEPT: u64 = 1 << 27;
 
 /// An error of a render.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RenderError {
     /// The caller set [`super::Control::cancel`].
     #[error("cancelled")]

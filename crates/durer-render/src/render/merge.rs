@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 /// An error of merging; parts are identified by name.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum MergeError {
     /// No parts were given.
     #[error("there are no parts to merge")]

@@ -51,6 +51,7 @@ pub enum RenderOutcome {
 
 /// Event for the callback of a render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RenderEvent {
     /// Every pixel has the samples of a pass.
     PassDone,

@@ -33,6 +33,7 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// An error of reading or combining parts.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PartError {
     /// The bytes are something else.
     #[error("it is no part of a picture")]

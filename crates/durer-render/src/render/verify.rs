@@ -36,6 +36,7 @@ impl fmt::Display for Way {
 
 /// An error of rendering in some way.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum WayError {
     /// The render failed.
     #[error(transparent)]

@@ -12,6 +12,7 @@ mod picture;
 mod tests;
 
 use crate::model::Output;
+use crate::packed::read_unpacked;
 use base64::Engine;
 use durer_diag::{Diagnostic, Diagnostics};
 use durer_scene::camera::{Camera, Projection};
@@ -153,7 +154,7 @@ impl Writer<'_> {
         if let Some(data) = self.scene.assets.meshes.get(name) {
             return Some(data.clone());
         }
-        let bytes = self.output.source.read_unpacked(name).ok()?;
+        let bytes = read_unpacked(self.output.source, name).ok()?;
         let mut own = Diagnostics::default();
         let data = crate::read_mesh(&bytes, 0, name, &mut own);
         if data.is_none() {

@@ -1,0 +1,69 @@
+//! Files packed by gzip.
+
+use durer_scene::source::{AssetSource, SourceError};
+use std::io::Read as _;
+use std::sync::Arc;
+
+/// Reads a file by its name in the scene, and unpacks it within the source's budget if it is packed.
+///
+/// # Errors
+///
+/// Those of [`AssetSource::read`]; [`SourceError::Io`] for packed bytes that are damaged or would become too large.
+pub fn read_unpacked(source: &dyn AssetSource, name: &str) -> Result<Arc<[u8]>, SourceError> {
+    let bytes = source.read(name)?;
+    if !is_packed(&bytes) {
+        return Ok(bytes);
+    }
+    let all = unpacked(&bytes, source.budget()).map_err(|problem| {
+        let error = std::io::Error::new(std::io::ErrorKind::InvalidData, problem);
+        SourceError::Io { name: name.into(), error }
+    })?;
+    source.spend(all.len() as u64);
+    Ok(all)
+}
+
+/// Returns true if bytes are a gzip file.
+pub fn is_packed(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"\x1f\x8b")
+}
+
+/// Decompresses gzip data to at most `budget` bytes. The last four bytes declare the size, which
+/// the output may not exceed.
+///
+/// # Errors
+///
+/// A sentence: the data are damaged or would become too large.
+pub fn unpacked(bytes: &[u8], budget: u64) -> Result<Arc<[u8]>, String> {
+    // Deflate packs at most 1032 bytes into one. The last four tell the size of the last piece.
+    let most = budget.min(1032 * bytes.len() as u64);
+    let declared = bytes.last_chunk().map_or(0, |size| u64::from(u32::from_le_bytes(*size)));
+    if declared > most {
+        return Err(format!("the packed file would have {declared} bytes: that is too large"));
+    }
+    let mut all = Vec::new();
+    let mut decoder = flate2::read::MultiGzDecoder::new(bytes).take(most + 1);
+    match decoder.read_to_end(&mut all) {
+        Ok(_) if all.len() as u64 <= most => Ok(all.into()),
+        Ok(_) => Err(format!("the packed file would have more than {most} bytes: that is too large")),
+        Err(error) => Err(format!("the file cannot be unpacked: {error}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_of_several_packed_pieces_are_the_pieces_one_after_the_other() {
+        use std::io::Write as _;
+        let packed = |text: &str| {
+            let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
+            encoder.write_all(text.as_bytes()).unwrap();
+            encoder.finish().unwrap()
+        };
+        let both = [packed("a cube, "), packed("a ball")].concat();
+        assert_eq!(&*unpacked(&both, 100).unwrap(), b"a cube, a ball");
+        assert!(unpacked(&both, 13).unwrap_err().contains("too large"));
+        assert!(unpacked(&both[..both.len() - 1], 100).is_err());
+    }
+}
