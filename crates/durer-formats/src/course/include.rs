@@ -17,7 +17,7 @@ const MAX_WORDS: usize = 1 << 26;
 pub enum Opened {
     /// Its number for spans, and its bytes.
     Text(u32, Arc<[u8]>),
-    /// It cannot be had.
+    /// It cannot be read.
     Failed(SourceError),
     /// The scene is in no folder.
     Nowhere,

@@ -109,7 +109,7 @@ pub(super) fn target<'a>(at: &At<'a>) -> Option<Target<'a>> {
 }
 
 impl Model<'_> {
-    /// Reads the buffers; those that cannot be had are missed only where something is read of them.
+    /// Reads the buffers; those that cannot be read are missed only where something is read of them.
     pub(super) fn buffers(&self, root: &At) -> Vec<Option<Buffer>> {
         let Some(buffers) = root.get("buffers") else { return Vec::new() };
         buffers.items().enumerate().map(|(i, buffer)| self.buffer(i, &buffer)).collect()

@@ -318,7 +318,7 @@ impl<'a> Loader<'a> {
         self.file(&bytes, file, name, parent)
     }
 
-    /// Complains of a file that cannot be had.
+    /// Complains of a file that cannot be read.
     fn missing(&self, error: &SourceError, at: Span) {
         let help = error.help();
         self.said.push(Diagnostic { help, ..Diagnostic::error(error.to_string()).code("missing-file").at(at) });

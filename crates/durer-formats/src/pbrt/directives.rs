@@ -358,7 +358,7 @@ impl Reader<'_> {
             Some((open, ..)) if *open == scope => {}
             Some((open, _, begun)) if *open != Scope::Import => {
                 let error =
-                    Diagnostic::error(format!("`{end}` closes what is not open: something else was opened last"));
+                    Diagnostic::error(format!("`{end}` closes a block that is not open: something else was opened last"));
                 self.said.push(error.code("unclosed").at(at).related(*begun, "this is still open"));
                 return;
             }

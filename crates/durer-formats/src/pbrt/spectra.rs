@@ -84,7 +84,7 @@ fn named(name: &str, at: Span, params: &Params) -> Option<SpectrumSource> {
         }
         Err(error) => {
             let (help, message) = match params.language {
-                Language::Third => (error.help(), format!("the spectrum cannot be had: {error}")),
+                Language::Third => (error.help(), format!("the spectrum cannot be read: {error}")),
                 Language::Fourth => {
                     (meant(name, named::names()), format!("pbrt has no spectrum of that name, and {error}"))
                 }

@@ -68,7 +68,7 @@ impl Show<'_> {
             return known.clone();
         }
         if self.models.len() >= MAX_PARTS {
-            self.said.bad(at, format!("more than {MAX_PARTS} parts are too many"));
+            self.said.bad(at, format!("more than {MAX_PARTS} parts in an archive"));
             return None;
         }
         let model = parser::read(&mut self.package, part, at, self.said).map(Rc::new);

@@ -159,7 +159,7 @@ fn what_is_wrong_is_told_at_its_place() {
         (usual().replace("<item", "<item transform='0 0 0 0 0 0 0 0 0 0 0 0'"), "expected a transform"),
         (format!("<!DOCTYPE model>{}", usual()), "a.model:1:1 Error declarations"),
         (model("<basematerials id='1'/>", "", [""; 4], ITEM), "there are two resources 1"),
-        (usual().replace("</mesh>", "</mash>"), "Error `</mash>` closes what is not open"),
+        (usual().replace("</mesh>", "</mash>"), "Error `</mash>` closes an element that is not open"),
     ] {
         let (scene, told) = read(&text);
         assert!(scene.is_none() && told.iter().any(|line| line.contains(expected)), "{expected}: {told:?}");

@@ -211,7 +211,7 @@ fn errors_and_warnings_of_pbrt_v3() {
         ("Texture \"t\" \"colour\" \"constant\"", "error textures are `float` or `spectrum`, not `colour`"),
         (
             "Material \"matte\" \"spectrum Kd\" \"no.spd\"",
-            "error the spectrum cannot be had: there is no file `no.spd`",
+            "error the spectrum cannot be read: there is no file `no.spd`",
         ),
         ("Shape \"curve\"", "error a curve needs points"),
         ("Shape \"curve\" \"point P\" [ 0 0 0 1 0 0 ]", "error 2 points make no curve of degree 3"),
