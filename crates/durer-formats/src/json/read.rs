@@ -127,7 +127,7 @@ impl Reader<'_> {
             let transform = members.take("transform").map(|node| self.matrices(node, "transform", senseless));
             self.fields(&mut solid, &mut members);
             if let Some(index) = solid.materials().into_iter().find(|index| *index >= own) {
-                let message = format!("material {own} is mixed of earlier ones, but {index} is not before {own}");
+                let message = format!("material {own} may use only earlier materials, but {index} is not before {own}");
                 self.error(node.head(), "bad-value", message, None);
             }
             Material::Solid(solid, transform.unwrap_or_default())

@@ -133,7 +133,7 @@ fn what_is_wrong_is_said_at_its_place() {
         (objects("{\"type\": \"Union\"}"), "2:1: `Union` has no `objects`"),
         (objects("{\"type\": \"TriangleMesh\", \"obj_file\": \"a b\"}"), "2:38: `obj_file` cannot be `a b`"),
         (objects("{\"type\": \"Transform\", \"matrices\": [{\"Scale\": [1, 0, 1]}], \"object\": {\"type\": \"Group\", \"objects\": []}}"),
-            "2:46: a scale by 0 flattens space, which cannot be undone"),
+            "2:46: a scale by 0 flattens space and has no inverse"),
         (objects("{\"type\": \"Transform\", \"matrices\": [{\"Shear\": 1}], \"object\": {\"type\": \"Group\", \"objects\": []}}"),
             "2:37: `Shear` is no matrix"),
         (objects("{\"type\": \"Transform\", \"matrices\": [{}], \"object\": {\"type\": \"Group\", \"objects\": []}}"),

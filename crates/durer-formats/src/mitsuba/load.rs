@@ -293,9 +293,9 @@ impl<'a> Loader<'a> {
         let refused = if self.open.contains(&name) {
             Some(format!("`{name}` includes itself"))
         } else if self.open.len() > DEEPEST {
-            Some(format!("files include each other more than {DEEPEST} deep"))
+            Some(format!("includes are nested more than {DEEPEST} deep"))
         } else if self.files > MAX_FILES {
-            Some(format!("more than {MAX_FILES} files are too many"))
+            Some(format!("more than {MAX_FILES} files are included"))
         } else {
             None
         };

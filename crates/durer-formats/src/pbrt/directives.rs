@@ -412,7 +412,7 @@ impl Reader<'_> {
         }
         self.included += 1;
         if self.included > MAX_FILES {
-            return self.said.bad(at, format!("more than {MAX_FILES} files are too many"));
+            return self.said.bad(at, format!("more than {MAX_FILES} files are included"));
         }
         if self.texts.len() >= DEEPEST_FILES {
             return self.said.bad(at, format!("files include each other more than {DEEPEST_FILES} deep"));

@@ -168,7 +168,7 @@ impl<'a> Reader<'a> {
         if place.depth >= DEEPEST || self.files > MAX_FILES {
             let message = match place.depth >= DEEPEST {
                 true => format!("files name each other more than {DEEPEST} deep: does one name itself?"),
-                false => format!("more than {MAX_FILES} files are too many"),
+                false => format!("more than {MAX_FILES} files are included"),
             };
             return self.said.bad(name.at, message);
         }
