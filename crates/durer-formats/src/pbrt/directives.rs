@@ -358,7 +358,7 @@ impl Reader<'_> {
             Some((open, ..)) if *open == scope => {}
             Some((open, _, begun)) if *open != Scope::Import => {
                 let error =
-                    Diagnostic::error(format!("`{end}` closes a block that is not open: something else was opened last"));
+                    Diagnostic::error(format!("`{end}` closes what is not open: something else was opened last"));
                 self.said.push(error.code("unclosed").at(at).related(*begun, "this is still open"));
                 return;
             }
@@ -412,7 +412,7 @@ impl Reader<'_> {
         }
         self.included += 1;
         if self.included > MAX_FILES {
-            return self.said.bad(at, format!("more than {MAX_FILES} files are included"));
+            return self.said.bad(at, format!("more than {MAX_FILES} files are too many"));
         }
         if self.texts.len() >= DEEPEST_FILES {
             return self.said.bad(at, format!("files include each other more than {DEEPEST_FILES} deep"));

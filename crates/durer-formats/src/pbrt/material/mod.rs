@@ -84,7 +84,7 @@ impl Reader<'_> {
         };
         let number = self.material(&kind, at, list);
         if self.named_materials.insert(name.clone(), number).is_some() && self.language == Language::Fourth {
-            self.said.bad(at, format!("a material `{name}` already exists"));
+            self.said.bad(at, format!("there is a material `{name}` already"));
         }
     }
 
@@ -132,7 +132,7 @@ impl Reader<'_> {
         let found = self.named_materials.get(name).copied();
         if found.is_none() {
             let help = meant(name, self.named_materials.keys().map(String::as_str));
-            self.said.bad_with(at, format!("no material `{name}` is defined before this"), help);
+            self.said.bad_with(at, format!("there is no material `{name}` before this"), help);
         }
         found
     }

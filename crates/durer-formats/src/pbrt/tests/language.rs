@@ -52,7 +52,7 @@ fn errors_name_their_place_and_what_may_be_meant() {
         ("Transform [ 1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1 ]", "error this matrix is a projection"),
         ("WorldBegin AttributeEnd", "error `AttributeEnd` closes nothing"),
         ("WorldBegin AttributeBegin", "scene.pbrt:1:12 error this is not closed (a `AttributeEnd` is missing)"),
-        ("WorldBegin AttributeBegin TransformEnd AttributeEnd", "error `TransformEnd` closes a block that is not open"),
+        ("WorldBegin AttributeBegin TransformEnd AttributeEnd", "error `TransformEnd` closes what is not open"),
         ("Shape \"sphere\" WorldBegin", "scene.pbrt:1:1 error this must stand after `WorldBegin`"),
         ("WorldBegin Camera \"perspective\"", "error `Camera` must stand before `WorldBegin`"),
         ("WorldBegin NamedMaterial \"gold\"", "error there is no material `gold`"),
