@@ -89,7 +89,7 @@ impl Reader<'_> {
                 let texture = self.thing(NamedTexture::default(), node, "texture");
                 let name = texture.name.path.clone();
                 if scene.assets.pictures.insert(name.clone(), texture.picture()).is_some() {
-                    let message = format!("there is a texture {} already", shown(name.as_bytes()));
+                    let message = format!("a texture {} already exists", shown(name.as_bytes()));
                     self.error(node.head(), "repeated", message, None);
                 }
             }
@@ -137,7 +137,7 @@ impl Reader<'_> {
             if let (Some((node, name)), None) = (name, &preset) {
                 let help = meant(name, presets::PRESETS.iter().map(|row| row.0));
                 let help = help.unwrap_or("`durer words preset` lists them".into());
-                let message = format!("there is no material {}", shown(name.as_bytes()));
+                let message = format!("unknown preset {}", shown(name.as_bytes()));
                 self.error(node.at.clone(), "unknown-word", message, Some(help));
             }
             let mut principled = preset.unwrap_or_default();
@@ -174,7 +174,7 @@ impl Reader<'_> {
         };
         let Some((name, like)) = MatrixOp::KINDS.iter().find(|row| row.0 == name) else {
             let help = meant(name, words).unwrap_or_else(|| format!("one of {}", words.join(", ")));
-            self.error(at.clone(), "unknown-word", format!("{} is no matrix", shown(name.as_bytes())), Some(help));
+            self.error(at.clone(), "unknown-word", format!("{} is not a matrix", shown(name.as_bytes())), Some(help));
             return None;
         };
         let op = match like {
