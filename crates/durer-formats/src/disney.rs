@@ -78,8 +78,8 @@ pub(super) fn passing([reflected, all]: [f32; 2]) -> f32 {
     (1.0 - kept([reflected, all])).max(1e-3)
 }
 
-/// Share of light that Dürer's boundary keeps from its base: single-scattering reflectance from
-/// [`single_means`], divided by the share that one reflection does not lose.
+/// Reflectance of Dürer's boundary from [`single_means`]: the single-scattering reflectance, divided
+/// by the sum of single-scattering reflection and refraction, which is below 1 for rough boundaries.
 pub(super) fn kept([reflected, all]: [f32; 2]) -> f32 {
     // Unphysical indices of refraction can make `all` 0.
     reflected / all.max(1e-6)

@@ -64,7 +64,7 @@ impl Reader<'_, '_> {
             }
             last = index;
             if let Some(first) = given[index] {
-                let message = format!("`{word}` is given twice; the last counts");
+                let message = format!("`{word}` is given twice; the last one is used");
                 let warning = Diagnostic::warning(message).code("repeated").at(span);
                 self.diagnostics.push(warning.related(first, "first given here"));
             }

@@ -83,7 +83,7 @@ impl Reader<'_, '_> {
             match word.as_str() {
                 "Transform" => {
                     if let Some(first) = transform_span.replace(span) {
-                        let warning = Diagnostic::warning("a node has one transform; the last counts").at(span);
+                        let warning = Diagnostic::warning("a node has one transform; the last one is used").at(span);
                         let warning = warning.related(first, "the first is here");
                         self.diagnostics.push(warning.help("nested nodes have one each"));
                     }
@@ -99,7 +99,7 @@ impl Reader<'_, '_> {
                 }
                 "Component<Material>" => {
                     if let Some(first) = material_span.replace(span) {
-                        let warning = Diagnostic::warning("a node has one material; the last counts").at(span);
+                        let warning = Diagnostic::warning("a node has one material; the last one is used").at(span);
                         self.diagnostics.push(warning.related(first, "the first is here"));
                     }
                     inside.material = self.component_index(span).or(inside.material);

@@ -15,7 +15,7 @@ impl Reader<'_, '_> {
         if self.unclosed_at != Some(self.at) {
             self.unclosed_at = Some(self.at);
             let span = self.peek().map_or(self.end_span(), |t| t.span);
-            let message = format!("`{}` cannot stand in `{}`", self.text(span), self.text(block));
+            let message = format!("`{}` is not allowed in `{}`", self.text(span), self.text(block));
             let error = Diagnostic::error(message).code("unclosed-block").at(span);
             let (before, brace) = (Span { end: span.start, ..span }, "}\n");
             let error = error.label("is there a `}` missing before this?").fix(before, brace);

@@ -28,7 +28,7 @@ impl Reader<'_, '_> {
                 self.check_flat(op, span);
                 ops.extend(op);
             } else if word == "MaterialIndex" {
-                let error = Diagnostic::error("`MaterialIndex` cannot stand in a `Transform`").at(span);
+                let error = Diagnostic::error("`MaterialIndex` is not allowed in a `Transform`").at(span);
                 self.error(error.help("write it before the `Transform`"));
                 self.skip_value();
             } else if home_of(&word) != Some("Group") {

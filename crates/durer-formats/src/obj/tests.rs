@@ -190,7 +190,7 @@ fn material_file_names_may_have_blanks() {
     let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
     for names in ["one two.mtl", "three.mtl one\\ two.mtl", "\"one two.mtl\"", "One Two.MTL"] {
         let told = read_in(folder.path(), "m.obj", &format!("mtllib {names}\n{triangle}")).1;
-        assert!(told.is_empty(), "{names}: {told:?}");
+        assert!(told.is_empty(), "{names}: {told:?}"); // prose: keep
     }
 }
 

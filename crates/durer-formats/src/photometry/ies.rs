@@ -268,7 +268,7 @@ mod tests {
             let [warning] = &diagnostics.iter().collect::<Vec<_>>()[..] else { panic!("{text}: {diagnostics:?}") };
             let (line, column) = files.position(warning.span.unwrap()).unwrap();
             assert!(
-                format!("{line}:{column} {}", warning.message).starts_with(told),
+                format!("{line}:{column} {}", warning.message).starts_with(told), // prose: keep
                 "{text}: {line}:{column} {warning:?}"
             );
             if told.contains("360") {
@@ -311,7 +311,7 @@ mod tests {
                 "6:4 the file ends where the candela number 3 of 3 should be",
             ),
             ("TILT=NONE\n1 1 1 1e9 1 1 2", "2:7 the number of vertical angles must be a whole number from 1 to 4000"),
-            ("TILT=lamp.tlt\n1 1", "1:1 tilt data in another file (`LAMP.TLT`) is not supported"),
+            ("TILT=lamp.tlt\n1 1", "1:1 tilt data in another file (`LAMP.TLT`) is not supported"), // prose: keep
             ("TILT=NONE\n1 x", "2:3 expected the lumens per light source, found `x`"),
             // Found by fuzzing: the difference to the next angle is not finite.
             (

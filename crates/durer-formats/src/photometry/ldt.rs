@@ -238,7 +238,7 @@ mod tests {
         let profile = super::super::read(text.as_bytes(), file, &mut diagnostics);
         let told = diagnostics.iter().next().map(|told| {
             let (line, column) = files.position(told.span.unwrap()).unwrap();
-            format!("{line}:{column} {}", told.message)
+            format!("{line}:{column} {}", told.message) // prose: keep
         });
         match (profile, told) {
             (Some(profile), None) => Ok(profile),

@@ -216,7 +216,7 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &Place) -> O
             }
             if list.len() < 6 || list.len() % 2 != 0 {
                 let told = shown(args[2].text.as_bytes());
-                reader.said.bad(args[2].at, format!("{told} needs pairs of numbers for at least 3 corners"));
+                reader.said.bad(args[2].at, format!("{told} needs pairs of numbers for at least 3 corners")); // prose: keep
                 return None;
             }
             (list, &args[3..])

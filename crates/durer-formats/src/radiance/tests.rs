@@ -39,7 +39,7 @@ const MATTE: &str = "void plastic white 0 0 5 .7 .6 .5 0 0\n";
 
 fn sphere(material: &str) -> (PrincipledMaterial, Vec<String>) {
     let (scene, told) = read(&format!("{material} m sphere s 0 0 4 1 2 3 .5"));
-    let scene = scene.unwrap_or_else(|| panic!("{material}: {told:?}"));
+    let scene = scene.unwrap_or_else(|| panic!("{material}: {told:?}")); // prose: keep
     let number = scene.root.as_ref().unwrap().objects[0].material.unwrap();
     (layers(&scene, number).clone(), told)
 }

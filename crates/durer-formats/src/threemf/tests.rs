@@ -162,7 +162,7 @@ fn errors_have_positions() {
         (usual().replace("</mesh>", "</mash>"), "Error `</mash>` closes an element that is not open"),
     ] {
         let (scene, told) = read(&text);
-        assert!(scene.is_none() && told.iter().any(|line| line.contains(expected)), "{expected}: {told:?}");
+        assert!(scene.is_none() && told.iter().any(|line| line.contains(expected)), "{expected}: {told:?}"); // prose: keep
     }
     let (_, told) = read_parts(&[("a.txt", b"x")]);
     assert!(told[0].contains("the archive has no model"), "{told:?}");
@@ -269,7 +269,7 @@ fn consortium_files_are_accepted_or_rejected() {
     let sound = entries(&corpus).into_iter().chain(entries(&corpus.join("mustpass")));
     for path in sound {
         let (scene, told) = read_file(&path);
-        let scene = scene.unwrap_or_else(|| panic!("{}: {told:?}", path.display()));
+        let scene = scene.unwrap_or_else(|| panic!("{}: {told:?}", path.display())); // prose: keep
         assert!(!shown(&scene).is_empty(), "{}", path.display());
     }
     let read = entries(&corpus.join("mustfail")).into_iter().filter(|path| read_file(path).0.is_some());
@@ -287,7 +287,7 @@ fn part_names_ignore_case_and_escapes() {
         [("/3D/A.model", "3D/a.model"), ("/3D/a%20b.model", "3D/a b.model"), ("/3D/a%20b.model", "3D/a%20b.model")]
     {
         let (scene, told) = read_parts(&[("_rels/.rels", relation(target).as_bytes()), (part, text.as_bytes())]);
-        assert!(scene.is_some() && told.is_empty(), "{target} {part}: {told:?}");
+        assert!(scene.is_some() && told.is_empty(), "{target} {part}: {told:?}"); // prose: keep
     }
 }
 

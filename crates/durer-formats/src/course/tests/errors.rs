@@ -230,7 +230,7 @@ fn transforms() {
     let ball = "Sphere { center 0 0 0 radius 1 }";
     in_group(
         &format!("Transform {{ MaterialIndex 0 {ball} }}"),
-        "2:13 error: `MaterialIndex` cannot stand in a `Transform` [MaterialIndex] (write it before the `Transform`)",
+        "2:13 error: `MaterialIndex` is not allowed in a `Transform` [MaterialIndex] (write it before the `Transform`)",
     );
     in_group(
         &format!("Transform {{ {ball} {ball} {ball} }}"),
@@ -285,9 +285,9 @@ fn braces() {
     one("Group { { } }", "1:9 error: `{` without a keyword in `Group` [{]");
     one(
         "Group {\nSphere { center 0 0 0 radius 1\nPlane { normal 0 1 0 offset 0 } }",
-        "3:1 error: `Plane` cannot stand in `Sphere` [Plane]",
+        "3:1 error: `Plane` is not allowed in `Sphere` [Plane]",
     );
-    one("Group { numObjects 0\nLights { numLights 0 }", "2:1 error: `Lights` cannot stand in `Group` [Lights]");
+    one("Group { numObjects 0\nLights { numLights 0 }", "2:1 error: `Lights` is not allowed in `Group` [Lights]");
     one(
         "Group { numObjects 2 Sphere { center 0 0 0 radius 1 }\n}\nPlane { normal 0 1 0 offset 0 } }",
         "2:1 error: this `}` ends `Group` after 1of its elements, but more follow [}]",
@@ -298,7 +298,7 @@ fn braces() {
 
 #[test]
 fn repeated_and_foreign_words_give_one_warning() {
-    one("Background { color 1 1 1 color 0 0 0 }", "1:26 warning: `color` is given twice; the last counts [color]");
+    one("Background { color 1 1 1 color 0 0 0 }", "1:26 warning: `color` is given twice; the last one is used [color]");
     one(
         "Group { numObjects 0 } Group { numObjects 0 }",
         "1:24 warning: this is another `Group`: only the last is used [Group]",
@@ -314,7 +314,7 @@ fn repeated_and_foreign_words_give_one_warning() {
     let twice = "Scene { Node { Transform { scale 2 2 2 } Transform { translate 1 0 0 } Component<Object> { type sphere radius 1 } } }";
     one_of_nodes(
         twice,
-        "1:42 warning: a node has one transform; the last counts [Transform] (nested nodes have one each)",
+        "1:42 warning: a node has one transform; the last one is used [Transform] (nested nodes have one each)",
     );
     let objects = read_as(twice.as_bytes(), Dialect::F23, false).0.unwrap().root.unwrap().objects;
     let Node::Transform(ops, _) = &objects[0].node else { panic!("{objects:?}") };

@@ -75,7 +75,7 @@ fn one_sided_emitter_loses_its_back_side() {
     let lamps: String = (0..2)
         .map(|i| format!("MaterialIndex {i} Rectangle {{ corner {i} 0 0 edge0 0.5 0 0 edge1 0 0.5 0 }} "))
         .collect();
-    let before = scene(&format!("{HEAD} Materials {{ {materials} }} Group {{ numObjects 2 {lamps} }}"));
+    let before = scene(&format!("{HEAD} Materials {{ {materials} }} Group {{ numObjects 2 {lamps} }}")); // prose: keep
     let (after, told) = again(&before, "a.glb");
     assert_eq!(told, ["glTF has no one-sided emitters: the back side is left out"]);
     let sides = after.materials.iter().map(|material| match &material.value {

@@ -95,7 +95,7 @@ fn intensity_follows_the_table() {
         ),
         // Rotated by a right angle about z, and upside down, by a command and by explicit options.
         (
-            "!xform -rz 90 lamp.rad",
+            "!xform -rz 90 lamp.rad", // prose: keep
             Box::new(
                 |theta, phi| if theta < 90.0 { 4.0 * of_two(theta, (phi + 270.0).rem_euclid(360.0)) } else { 0.0 },
             ),
@@ -118,11 +118,11 @@ fn intensity_follows_the_table() {
     ];
     let lamp = "void brightdata d 5 flatcorr b.dat source.cal src_phi2 src_theta 0 0 d glow l 0 0 4 1 1 1 0
         l polygon r 0 0 12 -1 -1 0 -1 1 0 1 1 0 1 -1 0";
-    std::fs::write(files.path().join("lamp.rad"), lamp).unwrap();
+    std::fs::write(files.path().join("lamp.rad"), lamp).unwrap(); // prose: keep
     for (text, expected) in cases {
         let (scene, told) = read_in(files.path(), "scene.rad", text);
         let what = "an emitter with a directional distribution becomes point lights and is not visible";
-        assert!(told.len() == 1 && told[0].ends_with(what), "{text}: {told:?}");
+        assert!(told.len() == 1 && told[0].ends_with(what), "{text}: {told:?}"); // prose: keep
         let scene = scene.unwrap();
         for (theta, phi) in
             [(1.0, 0.0), (5.0, 40.0), (29.0, 211.0), (31.0, 80.0), (62.0, 133.0), (115.0, 301.0), (170.0, 3.0)]
@@ -138,8 +138,8 @@ fn equal_distributions_share_a_profile_and_are_exported() {
     let files = folder(&[("b.dat", by_two().as_bytes())]);
     let lamp = "void brightdata d 5 flatcorr b.dat source.cal src_phi2 src_theta 0 0 d light l 0 0 3 1 1 1
         l polygon r 0 0 12 -1 -1 0 -1 1 0 1 1 0 1 -1 0";
-    std::fs::write(files.path().join("lamp.rad"), lamp).unwrap();
-    let text = format!("{lamp} l polygon q 0 0 12 -1 -1 2 -1 1 2 1 1 2 1 -1 2 !xform -t 5 0 0 lamp.rad");
+    std::fs::write(files.path().join("lamp.rad"), lamp).unwrap(); // prose: keep
+    let text = format!("{lamp} l polygon q 0 0 12 -1 -1 2 -1 1 2 1 1 2 1 -1 2 !xform -t 5 0 0 lamp.rad"); // prose: keep
     let (scene, _) = read_in(files.path(), "scene.rad", &text);
     let scene = scene.unwrap();
     // The last text is a different one.
@@ -215,7 +215,7 @@ fn tables_of_other_functions_are_replaced_by_their_mean() {
     ] {
         let text = format!("void brightdata d {text} 0 0 d light l 0 0 3 3 3 3 l sphere r 0 0 4 1 2 3 1");
         let (scene, told) = read_in(files.path(), "scene.rad", &text);
-        assert!(told.iter().any(|line| line.ends_with(what)), "{text}: {told:?}");
+        assert!(told.iter().any(|line| line.ends_with(what)), "{text}: {told:?}"); // prose: keep
         assert_eq!(layers(&scene.unwrap(), 0).emission_luminance, 4.5);
     }
 }

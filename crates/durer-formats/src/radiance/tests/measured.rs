@@ -140,10 +140,10 @@ fn commands_run_in_the_folder_of_the_file_of_xform() {
         let (scene, told) = read_in(files.path(), "scene.rad", format!("{MATTE}{command}{SUN}"));
         match objects {
             Ok(count) => {
-                let scene = scene.unwrap_or_else(|| panic!("{command}: {told:?}"));
-                assert_eq!((scene.root.unwrap().objects.len(), told.len()), (count, 0), "{command}: {told:?}");
+                let scene = scene.unwrap_or_else(|| panic!("{command}: {told:?}")); // prose: keep
+                assert_eq!((scene.root.unwrap().objects.len(), told.len()), (count, 0), "{command}: {told:?}"); // prose: keep
             }
-            Err(name) => assert!(told[0].contains(&format!("there is no file `{name}`")), "{command}: {told:?}"),
+            Err(name) => assert!(told[0].contains(&format!("there is no file `{name}`")), "{command}: {told:?}"), // prose: keep
         }
     }
 }
@@ -171,7 +171,7 @@ fn standard_views_match_rad() {
         ("view= XYZ", [16.0, 16.0, 18.0], [-8.0, -8.0, -8.0], Vec3::Z),
     ] {
         let (scene, told) = read_in(files.path(), "x.rif", format!("scene = s.rad\n{lines}\n"));
-        let camera = scene.unwrap_or_else(|| panic!("{lines}: {told:?}")).camera.unwrap();
+        let camera = scene.unwrap_or_else(|| panic!("{lines}: {told:?}")).camera.unwrap(); // prose: keep
         let pose = camera.pose();
         let close = |a: Vec3, b: [f32; 3]| (a - Vec3::from_array(b)).length() < 1e-4;
         assert!(close(pose.center, center) && close(pose.direction, direction) && pose.up == up, "{lines}: {camera:?}");
@@ -269,7 +269,7 @@ fn degenerate_surfaces_are_left_out() {
     ] {
         let (scene, found) = read(&format!("{MATTE}white {thing}\nwhite {thing}\nwhite sphere b 0 0 4 0 0 0 1{SUN}"));
         assert_eq!(scene.unwrap().root.unwrap().objects.len(), 1);
-        assert_eq!(found, [format!("scene.rad:2:7 warning {told}")]);
+        assert_eq!(found, [format!("scene.rad:2:7 warning {told}")]); // prose: keep
     }
 }
 
