@@ -25,7 +25,7 @@ impl Reader<'_, '_> {
 
     /// Reopens the block that the last `}` closed, since this brace is superfluous.
     pub(super) fn reopen_block(&mut self, keyword: Span, found: u32) {
-        let message = format!("this `}}` ends `{}` after {found}of its elements, but more follow", self.text(keyword));
+        let message = format!("this `}}` ends `{}` after {found} of its elements, but more follow", self.text(keyword));
         let brace = self.last_span();
         let error = Diagnostic::error(message).code("extra-brace").at(brace).fix(brace, "");
         self.error(error.label("is this `}` superfluous?"));

@@ -290,7 +290,7 @@ fn braces() {
     one("Group { numObjects 0\nLights { numLights 0 }", "2:1 error: `Lights` is not allowed in `Group` [Lights]");
     one(
         "Group { numObjects 2 Sphere { center 0 0 0 radius 1 }\n}\nPlane { normal 0 1 0 offset 0 } }",
-        "2:1 error: this `}` ends `Group` after 1of its elements, but more follow [}]",
+        "2:1 error: this `}` ends `Group` after 1 of its elements, but more follow [}]",
     );
     one_of_nodes("Scene { Node {", "1:15 error: the file ends inside `Node` []");
     one_of_nodes("}", "1:1 error: this `}` has no matching `{` [}] (is there an extra `}` before it?)");
