@@ -135,7 +135,7 @@ fn wrong_cameras_are_told_of() {
     refused("FisheyeCamera {@} FisheyeCamera {@ walls 3}", &["no field `walls`"]);
     // The words are extensions of the language, so --strict rejects them.
     place.put("ours.txt", seen_by(&format!("FisheyeCamera {{ {POSE} }}")).replace("# ours\n", ""));
-    place.refused(2, "render ours.txt -o p.png --strict", &["`FisheyeCamera` is Dürer's own"]);
+    place.refused(2, "render ours.txt -o p.png --strict", &["`FisheyeCamera` is a Dürer extension"]);
     place.refused(2, "render ours.txt -o p.png --strict --dialect f04", &["`FisheyeCamera`"]);
     let said = place.gives(0, "render ours.txt -o p.png --size 9x9 --dialect f04").err;
     assert!(said.contains("`FisheyeCamera` is not a word of f04"), "{said}");

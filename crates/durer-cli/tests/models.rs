@@ -125,7 +125,7 @@ fn radiance_is_rendered_by_its_views() {
     assert_eq!(hash("a.rif --camera one"), usual);
     assert_eq!(hash("a.rad --view-file a.vf --size 24x17"), hash("a.rif --size 24x17"));
     assert_ne!(hash("a.rif --camera two"), usual);
-    place.refused(2, "render a.rif -o a.png --camera three", &["there is no view `three`"]);
+    place.refused(2, "render a.rif -o a.png --camera three", &["unknown view `three`"]);
     place.refused(2, "render a.rad -o a.png --view-file none.vf", &["none.vf"]);
     place.put("b.rad", "void plastic grey 0 0 5 .5 .5 x 0 0\n!genrev a b 1 2 3\n");
     place.refused(2, "render b.rad -o a.png", &["b.rad:1:31", "`x` is not a number"]);

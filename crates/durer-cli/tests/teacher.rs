@@ -231,7 +231,7 @@ fn the_reader_knows_what_is_meant() {
         (sphere, "Transform { Translate 0 1 0 }", "write the object after its matrices"),
         (sphere, "Sphere { center 0 0 0 }", "as in `radius 1`"),
         ("PointLight {", "SpotLight {", "`SpotLight` has no field `attenuation`"),
-        ("PointLight {", "DirectionalLight {", "a directional light has no place"),
+        ("PointLight {", "DirectionalLight {", "a directional light has a `direction` in which it shines"),
     ] {
         says("f04", &scene("f04", &[(old, new)]), wanted);
     }
@@ -253,7 +253,7 @@ Scene { Node { Component<Material> { index 0 } Component<Object> { type sphere r
     assert!(ran.err.contains("binary") && ran.err.lines().count() < 8, "{}", ran.err);
     // A light's direction is not a camera's.
     let still = ("PointLight { position 3 5 4", "DirectionalLight { direction 0 0 0");
-    says("", &scene("f12a4", &[still]), "a light's is where the light goes");
+    says("", &scene("f12a4", &[still]), "for a light, it is the direction in which the light shines");
     // An input that the year's own program would reject gets a note.
     place.put("brace.txt", scene("f04", &[("Group {", "Group{")]));
     let ran = place.run("check brace.txt --dialect f04 --bounces 3");

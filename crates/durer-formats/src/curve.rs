@@ -34,30 +34,30 @@ fn parse(text: &str, column: Option<&str>) -> Result<Vec<[f32; 2]>, Wrong> {
         let Some(first) = words.first() else { continue };
         let Ok(nm) = first.parse::<f32>() else {
             if !rows.is_empty() || number.is_some() {
-                return Err((place, format!("`{first}` is no wavelength in nanometres")));
+                return Err((place, format!("`{first}` is not a wavelength in nanometres")));
             }
             let found = column.map_or(Some(1), |name| words.iter().position(|word| *word == name).filter(|&i| i > 0));
             let columns = words[1..].join(", ");
-            let missing = || format!("there is no column `{}`: there are {columns}", column.unwrap_or_default());
+            let missing = || format!("no column `{}`: the columns are {columns}", column.unwrap_or_default());
             number = Some(found.ok_or_else(|| (place, missing()))?);
             continue;
         };
         if let (Some(name), None) = (column, number) {
-            return Err((place, format!("there is no column `{name}`: no row of names comes before the numbers")));
+            return Err((place, format!("no column `{name}`: no row of names precedes the numbers")));
         }
         let word = words.get(number.unwrap_or(1)).ok_or_else(|| (place.clone(), "a value is missing".to_string()))?;
         let value = word.parse().ok().filter(|value: &f32| value.is_finite() && *value >= 0.0);
-        let value = value.ok_or_else(|| (place.clone(), format!("`{word}` is no value of a spectrum: 0 or more")))?;
+        let value = value.ok_or_else(|| (place.clone(), format!("`{word}` is not a spectral value: it must be 0 or more")))?;
         if !(nm > 0.0 && nm.is_finite()) || rows.last().is_some_and(|last| last[0] >= nm) {
-            return Err((place, "wavelengths are to be more than 0 and to ascend".into()));
+            return Err((place, "wavelengths must be more than 0 and ascend".into()));
         }
         if rows.len() == MAX_ROWS {
-            return Err((place, format!("more than {MAX_ROWS} rows are no spectrum")));
+            return Err((place, format!("a spectrum has at most {MAX_ROWS} rows")));
         }
         rows.push([nm, value]);
     }
     if rows.len() < 2 {
-        return Err((0..0, "a spectrum has two rows or more of a wavelength and a value".into()));
+        return Err((0..0, "a spectrum needs at least two rows of a wavelength and a value".into()));
     }
     Ok(rows)
 }
@@ -75,21 +75,21 @@ mod tests {
     }
 
     #[test]
-    fn bytes_that_are_no_text_are_refused() {
+    fn non_utf8_spectrum_is_an_error() {
         let mut diagnostics = Diagnostics::default();
         assert!(read(b"400 1\n500 \xff\n", None, 0, &mut diagnostics).is_none());
         assert!(diagnostics.has_errors());
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_place() {
+    fn spectrum_error_has_byte_range() {
         for (text, column, place, words) in [
             ("", None, 0..0, "two rows"),
             ("400 1\n", None, 0..0, "two rows"),
-            ("nm a\n400 1\n500 2", Some("b"), 0..4, "there are a"),
+            ("nm a\n400 1\n500 2", Some("b"), 0..4, "columns are a"),
             ("400 1\n500 2", Some("b"), 0..5, "no row of names"),
             ("400 1\n300 2\n", None, 6..11, "ascend"),
-            ("400 1\nblue 2\n", None, 6..12, "no wavelength"),
+            ("400 1\nblue 2\n", None, 6..12, "not a wavelength"),
             ("400 1\n500 -2\n", None, 6..12, "0 or more"),
             ("400 1\n500\n", None, 6..9, "missing"),
             ("400 1\n500 nan\n", None, 6..13, "0 or more"),

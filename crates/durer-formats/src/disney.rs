@@ -1,7 +1,8 @@
-//! What Disney's material gives back on the mean over all directions, for formats that have it.
+//! Mean reflectance of Disney's material over all directions, for formats that use it.
 //!
-//! Its matte base is seen as if no boundary took light from it, and gives back more the rougher it
-//! is; its sheen is faint. Ours keep energy: colours and weights are chosen that have the same mean.
+//! Disney's diffuse base ignores the Fresnel loss at the boundary, and its reflectance grows with
+//! roughness; its sheen is faint. Dürer's materials conserve energy, so readers choose colours and
+//! weights with the same mean.
 //!
 //! Source: Burley, *Physically-Based Shading at Disney*, SIGGRAPH 2012, and *Extending the Disney
 //! BRDF to a BSDF*, 2015.
@@ -10,29 +11,29 @@ use durer_scene::bsdf::albedo::{self, single_means};
 use durer_scene::math::{Color, fp};
 use std::f32::consts::PI;
 
-/// How rough fuzz is that is brightest at grazing directions, as Disney's sheen is.
+/// Roughness at which Dürer's fuzz is brightest at grazing directions, as Disney's sheen is.
 pub(super) const FUZZ_ROUGHNESS: f32 = 0.2;
 
-/// Steps of each cosine and of the angle around.
+/// Number of steps of each cosine and of the azimuth between both directions.
 const STEPS: usize = 16;
 
 /// Two directions above a surface.
 struct Pair {
-    /// Their cosines to the normal.
+    /// Cosines to the normal.
     cosines: [f32; 2],
-    /// The cosine of half the angle between them.
+    /// Cosine of half the angle between the directions.
     half: f32,
 }
 
 impl Pair {
-    /// The matte base, over Lambert's.
+    /// Diffuse base, relative to Lambert's.
     fn matte(&self, roughness: f32) -> f32 {
         let [out, into] = self.cosines.map(schlick);
         let retro = 2.0 * roughness * self.half * self.half;
         (1.0 - 0.5 * out) * (1.0 - 0.5 * into) + retro * (out + into + out * into * (retro - 1.0))
     }
 
-    /// White sheen, over Lambert's white.
+    /// White sheen, relative to white Lambert.
     fn sheen(&self) -> f32 {
         PI * schlick(self.half)
     }
@@ -43,7 +44,7 @@ fn schlick(cosine: f32) -> f32 {
     m * m * m * m * m
 }
 
-/// The mean over all pairs of directions by their cosines.
+/// Returns the cosine-weighted mean over all pairs of directions.
 fn means(value: impl Fn(&Pair) -> f32) -> f32 {
     let step = |i: usize| (i as f32 + 0.5) / STEPS as f32;
     let mut sum = 0.0;
@@ -51,18 +52,18 @@ fn means(value: impl Fn(&Pair) -> f32) -> f32 {
         let cosines @ [a, b] = [step(i), step(j)];
         let [s, t] = cosines.map(|cosine| (1.0 - cosine * cosine).sqrt());
         let between = a * b + s * t * fp::sin_cos_turn(0.5 * step(k)).1;
-        // Each direction counts by its cosine, of which the mean is a half.
+        // Weight each direction by its cosine, whose mean is 1/2.
         sum += 4.0 * a * b * value(&Pair { cosines, half: (0.5 + 0.5 * between).max(0.0).sqrt() });
     }
     sum / STEPS.pow(3) as f32
 }
 
-/// What a white matte base gives back.
+/// Reflectance of a white diffuse base.
 pub(super) fn matte_mean(roughness: f32) -> f32 {
     means(|pair| pair.matte(roughness))
 }
 
-/// The weight of our fuzz that gives back as much as sheen of strength 1.
+/// Weight of Dürer's fuzz with the reflectance of sheen of strength 1.
 pub(super) fn sheen_of_fuzz() -> f32 {
     let at = |i: usize| {
         let cosine = (i as f32 + 0.5) / STEPS as f32;
@@ -71,18 +72,20 @@ pub(super) fn sheen_of_fuzz() -> f32 {
     means(Pair::sheen) / ((0..STEPS).map(at).sum::<f32>() / STEPS as f32)
 }
 
-/// What our boundary lets through to a matte base and out again; more than 0.
+/// Share of light that passes Dürer's boundary to a diffuse base and back out; more than 0. The
+/// arguments are those of [`kept`].
 pub(super) fn passing([reflected, all]: [f32; 2]) -> f32 {
     (1.0 - kept([reflected, all])).max(1e-3)
 }
 
-/// What our boundary reflects, of [`single_means`]: all that one reflection does not lose.
+/// Reflectance of Dürer's boundary from [`single_means`]: the single-scattering reflectance, divided
+/// by the sum of single-scattering reflection and refraction, which is below 1 for rough boundaries.
 pub(super) fn kept([reflected, all]: [f32; 2]) -> f32 {
-    // Of indices that no glass has nothing may be left.
+    // Unphysical indices of refraction can make `all` 0.
     reflected / all.max(1e-6)
 }
 
-/// What a matte base below a boundary gives back in Disney's material and in ours.
+/// Converter of the base colour below a boundary, from Disney's material to Dürer's.
 pub(super) struct Matte {
     given: f32,
     passing: f32,
@@ -94,7 +97,7 @@ impl Matte {
         Matte { given: matte_mean(roughness), passing: passing(means) }
     }
 
-    /// Our base for theirs.
+    /// Returns Dürer's base colour for Disney's.
     pub fn base(&self, color: Color) -> Color {
         self.given * color / self.passing
     }
@@ -105,13 +108,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_matte_base_has_its_mean() {
-        // Of (1 - cos)^5 the mean by the cosine is 1/21, and directions are independent.
+    fn matte_base_and_sheen_match_reference_means() {
+        // The cosine-weighted mean of (1 - cos)^5 is 1/21, and the directions are independent.
         let expected = (1.0_f32 - 0.5 / 21.0) * (1.0 - 0.5 / 21.0);
         assert!((matte_mean(0.0) - expected).abs() < 1e-3, "{}", matte_mean(0.0));
-        // Mitsuba 3.9.1 gives 0.7456 of 0.7 at roughness 1, by 200,000 pairs of directions.
+        // Mitsuba 3.9.1 measures 0.7456 for a base of 0.7 at roughness 1, with 200,000 pairs of
+        // directions.
         assert!((matte_mean(1.0) - 0.7456 / 0.7).abs() < 5e-3, "{}", matte_mean(1.0));
-        // And 0.01154 of white sheen alone.
+        // It measures 0.01154 for white sheen alone.
         assert!((means(Pair::sheen) - 0.01154).abs() < 5e-4, "{}", means(Pair::sheen));
         assert!((0.0..1.0).contains(&sheen_of_fuzz()), "{}", sheen_of_fuzz());
     }

@@ -18,7 +18,7 @@ pub(super) fn named_bytes(input: &Input, said: &Said, what: &str, name: &str, at
         }
         Err(error) => {
             let help = error.help();
-            let missing = Diagnostic::error(format!("{what} cannot be had: {error}")).code("missing-file").at(at);
+            let missing = Diagnostic::error(format!("{what} cannot be read: {error}")).code("missing-file").at(at);
             said.push(Diagnostic { help, ..missing });
             None
         }
@@ -39,7 +39,7 @@ pub(super) fn mesh_file(input: &Input, said: &Said, name: &str, at: Span) -> Opt
     data
 }
 
-/// A text without percent-encoding; `None` where that is broken.
+/// Decodes percent-encoding; `None` if an escape is malformed or the result is not UTF-8.
 pub(super) fn unescaped(uri: &str) -> Option<String> {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.bytes();

@@ -132,7 +132,7 @@ impl FolderSource {
         let mut candidates: Vec<PathBuf> = self.search.iter().map(|folder| folder.join(path)).collect();
         candidates.extend(bare.iter().flat_map(|bare| self.assets.iter().map(move |folder| folder.join(bare))));
         let mut outside = false;
-        // Where none is as it is written, one that is meant.
+        // If no candidate exists as written, try close variants of the name.
         let others = || self.search.iter().filter_map(|folder| meant(folder, path));
         let others: Vec<PathBuf> =
             if candidates.iter().any(|path| path.exists()) { Vec::new() } else { others().collect() };
@@ -195,14 +195,15 @@ impl FolderSource {
     }
 }
 
-/// The file of a folder that a path means which does not exist as it is written: without percent
-/// escapes and without `folder/..`, and with letters of the other case, as other systems have it.
+/// Returns the existing file that `path` most likely means, if it does not exist as written:
+/// percent escapes decoded, `folder/..` resolved, and letter case ignored, as on other systems.
 fn meant(folder: &Path, path: &Path) -> Option<PathBuf> {
     let mut names: Vec<&str> = Vec::new();
     for part in path.components() {
         match part {
             Component::CurDir => {}
-            // Of a folder that is not there `..` leads back; nothing leads out of this one.
+            // Resolve `..` lexically, since its folder may not exist; never leave the search
+            // folder.
             Component::ParentDir => names.pop().map(|_| ())?,
             Component::Normal(name) => names.push(name.to_str()?),
             Component::RootDir | Component::Prefix(_) => return None,
@@ -212,12 +213,12 @@ fn meant(folder: &Path, path: &Path) -> Option<PathBuf> {
     found.is_file().then_some(found)
 }
 
-/// A name without percent escapes.
+/// Decodes percent escapes; returns the name unchanged if they are malformed.
 fn plain(name: &str) -> String {
     unescaped(name).unwrap_or_else(|| name.to_string())
 }
 
-/// A file of a folder with a name as written, without percent escapes, or in another case.
+/// Finds an entry of `folder` by its name as written, without percent escapes, or in another case.
 fn same_name(folder: &Path, name: &str) -> Option<PathBuf> {
     let plain = plain(name);
     let exact = [name, &plain].into_iter().map(|name| folder.join(name)).find(|path| path.exists());

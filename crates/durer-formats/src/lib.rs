@@ -102,12 +102,9 @@ pub fn mesh_format_for(name: &str) -> Option<&'static MeshFormat> {
 /// `file` is the index of the file in [`Files`](durer_diag::Files), for spans; `name` is its name
 /// with the extension.
 ///
-/// # Errors
-///
 /// Adds all errors to `diagnostics`, with the spans of the offending bytes, and returns `None`. It
-/// also returns `None` if `diagnostics` was already full. Warnings and notes are added too, and
-/// leave the mesh usable.
-/// added likewise and leave the mesh usable.
+/// also returns `None` if `diagnostics` was already full. Adds warnings and notes too; they leave
+/// the mesh usable.
 pub fn read_mesh(bytes: &[u8], file: u32, name: &str, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     read_mesh_as(bytes, file, name, 0, diagnostics)
 }
@@ -161,7 +158,7 @@ fn unknown_format(name: &str) -> Diagnostic {
     let meant = did_you_mean(&extension, all).filter(|_| !extension.is_empty());
     let known = MESH_FORMATS.iter().map(|f| format!("{} (.{})", f.name, f.extensions.join(", .")));
     let known = known.collect::<Vec<_>>().join(", ");
-    Diagnostic::error(format!("`{name}` is no mesh file of a known format")).help(match meant {
+    Diagnostic::error(format!("`{name}` is not a mesh file of a known format")).help(match meant {
         Some(meant) => format!("did you mean `.{meant}`? Known are {known}"),
         None => format!("known are {known}"),
     })

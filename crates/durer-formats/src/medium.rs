@@ -63,11 +63,11 @@ impl Medium {
             return None;
         }
         if self.density.is_some() {
-            said.once(at, "what is around the camera is the same everywhere here, and this is not: it is left out");
+            said.once(at, "a medium around the camera must be homogeneous: this one is left out");
             return None;
         }
         if extinction.min_element() < 0.99 * most {
-            said.once(at, "what is around the camera thins all colours alike: the strongest counts");
+            said.once(at, "a medium around the camera has one extinction for all colours: the largest is used");
         }
         let (color, anisotropy) = (self.scattering / most, self.anisotropy);
         Some(Spanned { value: Fog { extinction: most, color, anisotropy, ..Fog::default() }, span: at })

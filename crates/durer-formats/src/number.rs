@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn few_digits_are_rounded_as_many_are() {
+    fn fast_path_rounds_like_the_standard_parser() {
         let mut state = 1u64;
         let mut random = |below: u64| {
             state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);

@@ -121,7 +121,7 @@ fn read_with(bytes: &[u8], file: u32, switches: &mut Switches, diagnostics: &mut
     let mut report = Report::new(file, diagnostics);
     let mut mesh = MeshData::default();
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
-        report.error(0..2, "this file is UTF-16, two bytes a letter: save it as UTF-8 or ASCII text");
+        report.error(0..2, "this file is UTF-16: save it as UTF-8 or ASCII text");
         return report.finish(diagnostics, mesh);
     }
     let parts = words::parts(bytes);

@@ -1,5 +1,4 @@
-//! Light from infinitely far away as one picture of longitude and latitude, which is the scene's
-//! environment.
+//! Distant light as one equirectangular picture, which becomes the scene's environment.
 
 use durer_diag::Span;
 use durer_image::{self as image, Image, ImageError, Layer, WriteOptions};
@@ -11,17 +10,19 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::f32::consts::{PI, TAU};
 
-/// Places along each side of a texel that are looked up.
+/// Number of samples along each side of a texel.
 const PLACES: u32 = 3;
 
-/// Bytes that a texel takes while the picture is made: its light, and that as a file which grows
-/// to twice as much.
+/// Memory per texel in bytes while the picture is made: its colour, and the encoded file, whose
+/// buffer may grow to twice its size.
 const MAKING: u64 = 4 * size_of::<Color>() as u64;
 
-/// Makes the picture of what comes from each direction of the world, and puts it around the scene.
+/// Renders the light from each direction in world space into a picture, and sets it as the scene's
+/// environment.
 ///
 /// # Errors
-/// [`ImageError::Memory`] where it would take more bytes than allowed.
+///
+/// [`ImageError::Memory`] if it takes more memory than `allowed` bytes.
 pub(super) fn surround(
     scene: &mut Scene,
     (name, span): (&str, Span),
@@ -44,12 +45,12 @@ pub(super) fn surround(
     Ok(())
 }
 
-/// What is left of the memory beside pictures.
+/// Returns the memory in bytes that remains beside the pictures.
 pub(super) fn beside<'a>(pictures: impl IntoIterator<Item = &'a Image>, memory: u64) -> u64 {
     pictures.into_iter().fold(memory, |left, picture| left.saturating_sub(size_of_val(&picture.pixels[..]) as u64))
 }
 
-/// What a picture of longitude and latitude has in a direction, y upwards: the nearest texel's.
+/// Looks up the nearest texel of an equirectangular picture in a direction, y up.
 pub(super) fn looked_up(picture: &Image, dir: DVec3) -> Color {
     let dir = dir.as_vec3();
     let (u, v) = (fp::atan2(dir.x, -dir.z) / TAU + 0.5, fp::atan2((dir.x * dir.x + dir.z * dir.z).sqrt(), dir.y) / PI);
@@ -57,10 +58,10 @@ pub(super) fn looked_up(picture: &Image, dir: DVec3) -> Color {
     picture.get(texel(u, picture.width), texel(v, picture.height)).unwrap_or_default()
 }
 
-/// What a picture of longitude and latitude has in a direction, y upwards, whose first and last rows
-/// are the poles: bilinear between the middles of columns and the rows.
+/// Looks up an equirectangular picture in a direction, y up, whose first and last rows lie at the
+/// poles. Bilinear between the centres of columns and the rows.
 ///
-/// Source: measured with Mitsuba 3.9, whose `envmap` lies so.
+/// Source: measured with Mitsuba 3.9, whose `envmap` has this layout.
 pub(super) fn between_poles(picture: &Image, dir: DVec3) -> Color {
     let dir = dir.as_vec3();
     let (u, v) = (fp::atan2(dir.x, -dir.z) / TAU + 0.5, fp::atan2((dir.x * dir.x + dir.z * dir.z).sqrt(), dir.y) / PI);
@@ -74,7 +75,7 @@ pub(super) fn between_poles(picture: &Image, dir: DVec3) -> Color {
     row(above).lerp(row(above + 1), y - above as f32)
 }
 
-/// Bilinear lookup at a place in widths and heights of the picture from its upper left corner; the
+/// Bilinear lookup at a position in picture widths and heights, from the upper left corner. The
 /// picture repeats beyond its borders.
 pub(super) fn between(image: &Image, place: Vec2) -> Color {
     let (width, height) = (image.width as i64, image.height as i64);
@@ -89,7 +90,8 @@ pub(super) fn between(image: &Image, place: Vec2) -> Color {
     upper.lerp(texel(0, 1).lerp(texel(1, 1), x - low_x), y - low_y)
 }
 
-/// The light of all directions, as [`Environment`](durer_scene::texture::Environment) has them.
+/// Returns the texels for the light of all directions, in the layout of
+/// [`Environment`](durer_scene::texture::Environment).
 fn pixels(light: impl Fn(DVec3) -> Color + Sync, rows: u32) -> Vec<Color> {
     let columns = 2 * rows;
     let texel = |i: u32| {
@@ -112,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_looked_up_is_what_was_put_there() {
+    fn lookup_returns_the_light_of_each_direction() {
         let light = |dir: DVec3| dir.as_vec3() + 1.5;
         let picture = Image::from_pixels(256, 128, pixels(light, 128)).unwrap();
         for dir in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z, DVec3::Y, DVec3::new(0.48, -0.6, 0.64)] {

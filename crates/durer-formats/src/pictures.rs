@@ -1,4 +1,4 @@
-//! Pictures that materials name, for readers of whole scenes.
+//! Reading and conversion of the pictures that materials name, for readers of whole scenes.
 
 use super::model::Input;
 use super::said::Said;
@@ -10,11 +10,11 @@ use durer_scene::scene::{Picture, PictureBytes, Scene};
 use durer_scene::source::Digest;
 use std::sync::Arc;
 
-/// Bytes a pixel that are there beside a picture while it becomes another one: that, and its eight
-/// bits in two ways.
+/// Memory per pixel in bytes that converting a picture needs beside the picture: the new picture
+/// and its 8-bit data, raw and encoded.
 pub(super) const CHANGING: usize = 2 * size_of::<Color>();
 
-/// Finds pictures beside a scene, and tells what is wrong with them.
+/// Reader of pictures beside a scene; reports the errors.
 #[derive(Clone, Copy)]
 pub(super) struct Pictures<'a> {
     pub input: &'a Input<'a>,
@@ -22,29 +22,29 @@ pub(super) struct Pictures<'a> {
 }
 
 impl Pictures<'_> {
-    /// The bytes of a file.
+    /// Reads the bytes of a file.
     pub fn bytes(&self, name: &str, at: Span) -> Option<Arc<[u8]>> {
         let bytes = self.input.source.read(name);
         bytes.map_err(|error| self.said.push(Diagnostic::error(error.to_string()).code("missing-file").at(at))).ok()
     }
 
-    /// A file as a picture.
+    /// Reads a file as a picture, decoding 8-bit values as sRGB.
     pub fn image(&self, name: &str, at: Span) -> Option<Image> {
         self.decoded(name, at, image::decode_srgb)
     }
 
-    /// The same with the curve that its bytes have.
+    /// Reads a file as a picture, with `decode` as the transfer curve of its 8-bit values.
     pub fn decoded(&self, name: &str, at: Span, decode: fn(u8) -> f32) -> Option<Image> {
         let bytes = self.bytes(name, at)?;
         self.read(name, &bytes, decode).map_err(|error| self.complain(name, at, &error)).ok()
     }
 
-    /// Decodes a picture that may become another one.
+    /// Decodes a picture, with memory reserved for converting it.
     fn read(&self, name: &str, bytes: &[u8], decode: fn(u8) -> f32) -> Result<Image, ImageError> {
         Encoded::open(bytes, name)?.read_for(CHANGING, self.input.memory, decode)
     }
 
-    /// A file as a picture of eight bits, which other formats become.
+    /// Returns a file as an 8-bit picture; converts floating-point formats to PNG.
     pub fn eight_bits(&self, name: &str, at: Span) -> Option<PictureBytes> {
         let bytes = self.bytes(name, at)?;
         match Encoded::open(&bytes, name) {
@@ -60,7 +60,8 @@ impl Pictures<'_> {
         }
     }
 
-    /// The same, divided by the greatest number in it where that is more than 1, and that.
+    /// Returns a file as an 8-bit picture and a factor. If a floating-point picture has values
+    /// above 1, the picture is divided by its maximum, and the factor is this maximum.
     pub fn eight_bits_scaled(&self, name: &str, at: Span) -> Option<(PictureBytes, f32)> {
         let bytes = self.bytes(name, at)?;
         if Encoded::open(&bytes, name).is_ok_and(|encoded| encoded.depth() == Depth::Float) {
@@ -75,20 +76,20 @@ impl Pictures<'_> {
         Some((self.eight_bits(name, at)?, 1.0))
     }
 
-    /// A picture of colours or of numbers, made of one whose bytes have another curve: `decode` makes
-    /// what is meant of a byte's share of 255.
+    /// Converts a picture from another transfer curve to sRGB if `is_color`, else to linear.
+    /// `decode` maps an 8-bit value, scaled to 0 to 1, to the linear value.
     pub fn recoded(&self, picture: &Picture, at: Span, is_color: bool, decode: impl Fn(f32) -> f32) -> Option<Picture> {
-        // What was of another format has a curve already.
+        // Converted pictures already have a standard curve.
         let PictureBytes::File(path) = &picture.bytes else { return None };
         let mut image = self.decoded(path, at, image::decode_linear)?;
         image.pixels.iter_mut().for_each(|pixel| *pixel = pixel.map(&decode).clamp(Color::ZERO, Color::ONE));
-        // Numbers have no curve.
+        // Non-colour data stays linear.
         let bytes = as_png(image, if is_color { Transfer::Srgb } else { Transfer::Linear })?;
         let path = format!("{path}#{}.png", &Digest::of(&bytes).to_string()[..12]);
         Some(Picture { bytes: PictureBytes::Here(path, bytes), mapping: picture.mapping })
     }
 
-    /// The mean of all values of a picture.
+    /// Returns the mean of all values of a picture.
     pub fn mean(&self, picture: &Picture, at: Span) -> Option<f32> {
         match &picture.bytes {
             PictureBytes::File(path) => self.image(path, at).map(|image| mean(&image)),
@@ -98,8 +99,8 @@ impl Pictures<'_> {
         }
     }
 
-    /// A picture of numbers, made of another by what its texels become; `decode` is the other's
-    /// curve. Numbers have none.
+    /// Makes a linear picture by mapping each texel with `change`; `decode` is the transfer curve
+    /// of the source.
     pub fn changed(
         &self,
         picture: &Picture,
@@ -118,8 +119,8 @@ impl Pictures<'_> {
         Some(Picture { bytes: PictureBytes::Here(path, bytes), mapping: picture.mapping })
     }
 
-    /// A picture of colours, made of two that lie alike (or of one twice) texel by texel, and what its
-    /// values are to be multiplied by. `None` where they lie otherwise.
+    /// Joins two pictures with equal mapping (or one with itself) texel by texel. Returns the
+    /// colour picture and the factor for its values; `None` if the mappings differ.
     pub fn remade(
         &self,
         [one, other]: [&Picture; 2],
@@ -135,7 +136,7 @@ impl Pictures<'_> {
         };
         let (a, b) = (image(one)?, image(other)?);
         let (width, height) = (a.width.max(b.width), a.height.max(b.height));
-        // Of the smaller one the nearest texel.
+        // Use the nearest texel of the smaller picture.
         let place = |i: u32, of: u32, count: u32| (u64::from(i) * u64::from(count) / u64::from(of)) as u32;
         let from = |picture: &Image, x: u32, y: u32| {
             picture.get(place(x, width, picture.width), place(y, height, picture.height)).unwrap_or_default()
@@ -157,7 +158,7 @@ impl Pictures<'_> {
     }
 }
 
-/// What is wrong with a picture.
+/// Error for a picture that cannot be decoded.
 pub(super) fn unusable(name: &str, error: &ImageError) -> Diagnostic {
     let diagnostic = Diagnostic::error(format!("the picture `{name}` cannot be used: {error}")).code("bad-file");
     match error {
@@ -166,24 +167,24 @@ pub(super) fn unusable(name: &str, error: &ImageError) -> Diagnostic {
     }
 }
 
-/// A name for a picture of a scene.
+/// Adds a picture to the scene's assets; returns its asset name.
 pub(super) fn asset(scene: &mut Scene, picture: Picture, span: Span) -> FileName {
-    // The same picture may lie otherwise on other surfaces.
+    // The same file may have another mapping elsewhere.
     let mapping = Digest::of(format!("{:?}", picture.mapping).as_bytes()).to_string();
     let path = format!("{}#{}", picture.bytes.path(), &mapping[..12]);
     scene.assets.pictures.entry(path.clone()).or_insert(picture);
     FileName { path, span }
 }
 
-/// A picture of four texels: one colour at the upper left and the lower right, another at the other
-/// two. Also what its values are to be multiplied by.
+/// Returns a picture of four texels: `one` at the upper left and lower right, `other` at the other
+/// two. Also returns the factor for its values.
 pub(super) fn checkerboard(one: Color, other: Color) -> Option<(PictureBytes, f32)> {
     let (bytes, most) = four([one, other, other, one])?;
     let PictureBytes::Here(_, bytes) = bytes else { return None };
     Some((PictureBytes::Here(format!("checkerboard-{other}-{one}.png"), bytes), most))
 }
 
-/// A picture of four texels, the upper row first, and what its values are to be multiplied by.
+/// Returns a picture of four texels, upper row first, and the factor for its values.
 pub(super) fn four(colors: [Color; 4]) -> Option<(PictureBytes, f32)> {
     let most = colors.iter().fold(1.0, |most: f32, color| most.max(color.max_element()));
     let pixels = colors.map(|color| color / most);
@@ -192,7 +193,7 @@ pub(super) fn four(colors: [Color; 4]) -> Option<(PictureBytes, f32)> {
     Some((PictureBytes::Here(name, bytes), most))
 }
 
-/// A picture as the bytes of a PNG of eight bits.
+/// Encodes a picture as an 8-bit PNG.
 pub(super) fn as_png(image: Image, transfer: Transfer) -> Option<Arc<[u8]>> {
     let mut bytes = Vec::new();
     let format = image::format_for("a.png").ok()?;

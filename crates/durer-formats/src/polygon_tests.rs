@@ -30,7 +30,7 @@ fn check(outline: &[[f32; 2]]) {
 }
 
 #[test]
-fn concave_outlines_keep_their_area_and_sense() {
+fn concave_outlines_keep_area_and_winding() {
     let dart = [[0.0, 0.0], [4.0, 0.0], [1.0, 1.0], [0.0, 4.0]];
     let l = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]];
     let star: Vec<[f32; 2]> = (0..10)
@@ -49,7 +49,7 @@ fn concave_outlines_keep_their_area_and_sense() {
         .collect();
     for outline in [&dart[..], &l, &star, &ring, &comb] {
         let outline = outline.to_vec();
-        // Every corner first, both windings.
+        // Start at every corner, in both windings.
         for start in 0..outline.len() {
             let mut turned = outline.clone();
             turned.rotate_left(start);
@@ -61,7 +61,7 @@ fn concave_outlines_keep_their_area_and_sense() {
 }
 
 #[test]
-fn corners_in_a_line_make_no_empty_triangle_where_another_cut_does() {
+fn collinear_corners_make_no_empty_triangle_if_avoidable() {
     let square = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
     let triangle = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 2.0]];
     for outline in [&square[..], &triangle] {
@@ -80,7 +80,7 @@ fn convex_outlines_become_fans() {
 }
 
 #[test]
-fn crossing_and_empty_outlines_are_cut_somehow() {
+fn crossing_and_empty_outlines_are_triangulated() {
     let pentagram = [[0.0, 3.0], [-2.0, -3.0], [3.0, 1.0], [-3.0, 1.0], [2.0, -3.0]];
     assert_eq!(cut(&pentagram).0.len(), 3);
     assert_eq!(cut(&[[1.0, 1.0]; 9]).0.len(), 7);

@@ -37,7 +37,8 @@ impl Report {
         }
     }
 
-    /// Adds an error at a byte range; labels and help can be set on the returned diagnostic.
+    /// Adds an error at a byte range. The caller can set labels and help on the returned
+    /// diagnostic.
     pub fn error(&mut self, at: Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
         self.add(at, Diagnostic::error(message))
     }
@@ -103,7 +104,7 @@ pub(super) fn shown(bytes: &[u8]) -> String {
     format!("`{shown}`")
 }
 
-/// A count with its noun: `1 vertex`, `no vertices`, `8 vertices`.
+/// Formats a count with its noun: `1 vertex`, `no vertices`, `8 vertices`.
 pub(super) fn counted(count: usize, one: &str, many: &str) -> String {
     match count {
         0 => format!("no {many}"),
@@ -117,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn findings_come_out_in_the_order_of_the_file() {
+    fn report_is_sorted_by_file_position() {
         let mut diagnostics = Diagnostics::default();
         let mut report = Report::new(3, &diagnostics);
         report.error(9..10, "second");

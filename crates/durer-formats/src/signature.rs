@@ -8,14 +8,14 @@ const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
     (b"glTF", "binary glTF", Some("glb")),
     (b"ply\n", "PLY", Some("ply")),
     (b"ply\r", "PLY", Some("ply")),
-    (b"PK\x03\x04", "an archive, as 3MF is", Some("3mf")),
+    (b"PK\x03\x04", "a ZIP archive, such as 3MF", Some("3mf")),
     (b"\x89PNG", "a picture (PNG)", None),
     (b"\xff\xd8\xff", "a picture (JPEG)", None),
     (b"v/1\x01", "a picture (OpenEXR)", None),
     (b"\xabKTX 20", "a picture (KTX2)", None),
     (b"GIF8", "a picture (GIF)", None),
     (b"%PDF", "a PDF", None),
-    (b"BLENDER", "a file of Blender's own", None),
+    (b"BLENDER", "a Blender file", None),
     (b"Kaydara FBX Binary", "FBX", None),
     (b"PXR-USDC", "USD", None),
     (b"#usda", "USD", None),
@@ -37,9 +37,9 @@ pub(super) fn mistaken(bytes: &[u8], file: u32, name: &str, extensions: &[&str])
         end: start.trim_ascii_end().len() as u32,
     });
     Some(error.help(match (own, what.starts_with("a picture")) {
-        (Some(own), _) => format!("if it is, give it its name: `{stem}.{own}`"),
-        (None, true) => "a picture is no model; `--environment` puts one around a model".into(),
-        (None, false) => "it is not read here: convert it to glTF".into(),
+        (Some(own), _) => format!("rename it to `{stem}.{own}`"),
+        (None, true) => "a picture is not a model; use `--environment` to put it around a model".into(),
+        (None, false) => "this format is not supported: convert it to glTF".into(),
     }))
 }
 
@@ -48,16 +48,16 @@ mod tests {
     use super::mistaken;
 
     #[test]
-    fn files_of_another_name_are_told() {
+    fn file_with_wrong_extension_is_an_error() {
         let told = |bytes: &[u8], name: &str, extensions: &[&str]| {
             mistaken(bytes, 0, name, extensions).map(|error| format!("{} ({})", error.message, error.help.unwrap()))
         };
         assert_eq!(
             told(b"glTF\x02\0\0\0", "a/b.c.obj", &["obj"]).unwrap(),
-            "`b.c.obj` is binary glTF, by its first bytes (if it is, give it its name: `b.c.glb`)"
+            "`b.c.obj` is binary glTF, by its first bytes (rename it to `b.c.glb`)"
         );
         assert!(told(b"ply\r\nformat", "b.stl", &["stl"]).unwrap().contains("`b.stl` is PLY"));
-        assert!(told(b"\x89PNG\r\n", "b", &[]).unwrap().contains("a picture is no model"));
+        assert!(told(b"\x89PNG\r\n", "b", &[]).unwrap().contains("a picture is not a model"));
         assert!(told(b"PXR-USDC", "b.obj", &["obj"]).unwrap().contains("convert it to glTF"));
         assert_eq!(told(b"glTF", "b.gltf", &["gltf", "glb"]), None);
         assert_eq!(told(b"ply\n", "b.ply", &["ply"]), None);

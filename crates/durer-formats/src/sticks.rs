@@ -5,7 +5,7 @@ use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::Node;
 use durer_scene::shape::{Cone, Cylinder, MeshData, Sphere};
 
-/// A cylinder or cone from a point to another, with a radius at each; `None` if the points
+/// Returns a cylinder or cone between two points, with a radius at each end; `None` if the points
 /// coincide.
 pub(super) fn stick(from: Vec3, to: Vec3, [first, last]: [f32; 2]) -> Option<Node> {
     let shape = match first == last {
@@ -15,7 +15,7 @@ pub(super) fn stick(from: Vec3, to: Vec3, [first, last]: [f32; 2]) -> Option<Nod
     (from != to).then_some(Node::Primitive(shape))
 }
 
-/// A sphere at a point.
+/// Returns a sphere at a point.
 pub(super) fn ball(center: Vec3, radius: f32) -> Node {
     Node::Primitive(Sphere { center, radius }.into())
 }
@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_thickened_faces_outwards_and_keeps_colours() {
+    fn sticks_and_balls_face_outwards_and_keep_colours() {
         let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
         let colors = vec![[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]];
         let data = MeshData { positions, colors, ..MeshData::default() };

@@ -66,7 +66,7 @@ fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshDa
 
 fn read_binary(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
     let Some(count) = promised(bytes) else {
-        let message = format!("a binary STL file has at least {HEAD} bytes, and this one has {}", bytes.len());
+        let message = format!("a binary STL file has at least {HEAD} bytes, but this one has {}", bytes.len());
         report.error(0..bytes.len().min(HEAD), message).help = Some("a text file begins with the word `solid`".into());
         return;
     };
@@ -74,14 +74,14 @@ fn read_binary(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
     let facets = match (facets.len() as u64).cmp(&u64::from(count)) {
         std::cmp::Ordering::Less => {
             let there = counted(facets.len(), "facet", "facets");
-            report.error(80..84, format!("the head promises {count} facets, and the file ends after {there}"));
+            report.error(80..84, format!("the header promises {count} facets, but the file ends after {there}"));
             return;
         }
         order => {
             if order.is_gt() || !rest.is_empty() {
                 let extra = bytes.len() as u64 - size_of_facets(count);
                 let at = size_of_facets(count) as usize;
-                report.warning(at..at + 1, format!("{extra} bytes left out after the last facet"));
+                report.warning(at..at + 1, format!("ignored {extra} bytes after the last facet"));
             }
             &facets[..count as usize]
         }
@@ -104,7 +104,6 @@ fn read_binary(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
 }
 
 /// Builds a mesh, merging corners at equal positions: STL has no shared vertices.
-/// other.
 #[derive(Default)]
 struct Builder {
     data: MeshData,

@@ -1,4 +1,4 @@
-//! Shared tools of readers' tests: read texts as scenes and collect the findings.
+//! Shared tools for tests of readers: read texts as scenes and collect the findings.
 
 use crate::folder::FolderSource;
 use crate::scene::{Input, find_scene_format, read_model};
@@ -10,7 +10,8 @@ use std::path::Path;
 use std::sync::Arc;
 use tempfile::TempDir;
 
-/// Reads a text as a file in a folder; findings as `file:line:column severity message`, in order.
+/// Reads a text as a file in a folder. Returns findings as `file:line:column severity message`, in
+/// order.
 pub(super) fn read_in(folder: &Path, name: &str, text: impl AsRef<[u8]>) -> (Option<Scene>, Vec<String>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let path = folder.join(name);
@@ -33,7 +34,7 @@ pub(super) fn read_with_low_limits(name: &str, text: &str) -> (Option<Scene>, Ve
     (scene, lines(&diagnostics, &files.borrow()))
 }
 
-/// Findings as `file:line:column severity message (help)`.
+/// Formats findings as `file:line:column severity message (help)`.
 fn lines(diagnostics: &Diagnostics, files: &Files) -> Vec<String> {
     let line = |found: &Diagnostic| {
         let severity = match found.severity {
@@ -52,7 +53,7 @@ fn lines(diagnostics: &Diagnostics, files: &Files) -> Vec<String> {
     diagnostics.iter().map(line).collect()
 }
 
-/// A temporary folder with some files.
+/// Creates a temporary folder with some files.
 pub(super) fn folder(files: &[(&str, &[u8])]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in files {

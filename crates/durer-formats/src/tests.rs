@@ -6,7 +6,7 @@ use durer_scene::math::random::Random;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Reads bytes as a file of a given name; findings as `line:column severity: message`.
+/// Reads bytes as a file of a given name. Returns findings as `line:column severity: message`.
 pub(super) fn read(bytes: &[u8], name: &str) -> (Option<MeshData>, Vec<String>) {
     let mut files = Files::default();
     let file = files.add(name, bytes.into());
@@ -25,7 +25,7 @@ pub(super) fn read(bytes: &[u8], name: &str) -> (Option<MeshData>, Vec<String>) 
     (mesh, diagnostics.iter().map(line).collect())
 }
 
-/// The mesh of a file that must have no findings.
+/// Reads a file that must have no findings.
 pub(super) fn read_clean(bytes: &[u8], name: &str) -> MeshData {
     let (mesh, findings) = read(bytes, name);
     assert_eq!(findings, [""; 0], "{name}");
@@ -49,7 +49,7 @@ pub(super) fn abuse(bytes: &[u8], name: &str) {
             match random(3) {
                 0 => changed[at] ^= 1 << random(8),
                 1 => changed[at] = random(256) as u8,
-                // A byte from elsewhere in the file makes mistakes that are likelier in practice.
+                // Bytes from elsewhere in the file make realistic mistakes.
                 _ => changed[at] = changed[random(changed.len())],
             }
         }
@@ -71,7 +71,7 @@ fn check_indices(mesh: &MeshData) {
 }
 
 #[test]
-fn formats_are_found_by_name_and_else_by_content() {
+fn format_follows_from_name_or_content() {
     let obj = b"# a triangle\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     let ply = b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
         element face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
@@ -82,7 +82,7 @@ fn formats_are_found_by_name_and_else_by_content() {
     }
     assert!(read(obj, "mesh.ply").1[0].contains("expected `ply`"));
     let known = "known are PLY (.ply), Wavefront OBJ (.obj), STL (.stl)";
-    assert_eq!(read(b"?", "m").1, [format!("- Error: `m` is no mesh file of a known format ({known})")]);
+    assert_eq!(read(b"?", "m").1, [format!("- Error: `m` is not a mesh file of a known format ({known})")]);
     assert!(read(b"?", "m.objj").1[0].contains("did you mean `.obj`? Known are"));
     assert!(too_large(u32::MAX as u64, "big.obj").unwrap().message.contains("4294967295 bytes"));
     assert!(too_large(1 << 20, "small.obj").is_none());
@@ -92,7 +92,7 @@ fn formats_are_found_by_name_and_else_by_content() {
 }
 
 #[test]
-fn errors_are_limited_and_a_full_collection_reads_nothing() {
+fn errors_are_limited_and_full_diagnostics_stop_reading() {
     let many = "v x\n".repeat(100);
     let (_, findings) = read(many.as_bytes(), "m.obj");
     assert_eq!(findings.len(), durer_diag::ERROR_LIMIT);
@@ -119,14 +119,14 @@ fn files_below(folder: &Path, extension: &str, found: &mut Vec<PathBuf>) {
 }
 
 #[test]
-fn the_corpus_reads_without_a_finding() {
+fn corpus_has_no_findings() {
     let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
     let corpus = std::env::var_os("DURER_CORPUS").map_or_else(default, PathBuf::from);
     let mut paths = Vec::new();
     files_below(&corpus.join("meshes"), "ply", &mut paths);
     files_below(&corpus.join("course/scenes"), "obj", &mut paths);
     if paths.is_empty() {
-        println!("skipped: there is no corpus in {}", corpus.display());
+        println!("skipped: no corpus in {}", corpus.display());
     }
     paths.sort();
     for path in paths {

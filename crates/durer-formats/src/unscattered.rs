@@ -1,10 +1,10 @@
-//! Pictures of lamps alone, which pbrt and Mitsuba make where light may not be scattered at all.
+//! Scenes that show only emitters, for files of pbrt and Mitsuba that allow no scattering.
 
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Material, Scene};
 
-/// Makes all materials black that scatter light; what shines goes on shining.
+/// Makes all materials black; they keep their emission and opacity.
 pub(super) fn blacken(scene: &mut Scene) {
     for material in &mut scene.materials {
         let own = match &material.value {

@@ -1,4 +1,4 @@
-//! Mitsuba's volume files: densities on a grid.
+//! Reader and writer of Mitsuba's volume files: densities on a grid.
 //!
 //! Layout, little-endian: `VOL`, the version (3), then as 32-bit numbers the type (1: `f32`), the
 //! counts along x, y and z, the channels (1), the six coordinates of the bounds, and the values, x
@@ -15,7 +15,7 @@ pub fn read(bytes: &[u8], file: u32, memory: u64, diagnostics: &mut Diagnostics)
     told(parse(bytes, memory), bytes, file, diagnostics)
 }
 
-/// Mean of a file's values, which have one or three channels.
+/// Returns the mean of a file's values, which have one or three channels.
 pub fn mean(bytes: &[u8], file: u32, memory: u64, diagnostics: &mut Diagnostics) -> Option<Vec3> {
     let (_, _, channels, values) = told(values(bytes, &[1, 3], memory), bytes, file, diagnostics)?;
     let mut sums = [0.0; 3];
@@ -45,7 +45,7 @@ fn parse(bytes: &[u8], memory: u64) -> Result<(Aabb, DensityGrid), Wrong> {
 /// channels that the caller supports.
 fn values(bytes: &[u8], channels: &[usize], memory: u64) -> Result<(Aabb, [u32; 3], usize, Vec<f32>), Wrong> {
     if !bytes.starts_with(b"VOL") || bytes.get(3) != Some(&3) {
-        return Err((0, "this is no volume file of Mitsuba: it should begin with `VOL` and the version 3".into()));
+        return Err((0, "not a Mitsuba volume file: it must begin with `VOL` and version 3".into()));
     }
     let word = |at: usize| -> Result<[u8; 4], Wrong> {
         let found = bytes.get(at..at + 4).and_then(|four| four.try_into().ok());
@@ -59,17 +59,17 @@ fn values(bytes: &[u8], channels: &[usize], memory: u64) -> Result<(Aabb, [u32; 
     let counts = [whole(8)?, whole(12)?, whole(16)?];
     if counts.iter().any(|&n| n < 1) {
         let [x, y, z] = counts;
-        return Err((8, format!("a grid of {x} x {y} x {z} points has nothing in it")));
+        return Err((8, format!("the grid of {x} x {y} x {z} points is empty")));
     }
     let own = whole(20)?;
     let Some(&channels) = channels.iter().find(|&&n| own == n as i32) else {
         let wanted: Vec<String> = channels.iter().map(usize::to_string).collect();
-        return Err((20, format!("volumes here have {} channel, not {own}", wanted.join(" or "))));
+        return Err((20, format!("expected {} channel, found {own}", wanted.join(" or "))));
     };
     let min = Vec3::new(real(24)?, real(28)?, real(32)?);
     let max = Vec3::new(real(36)?, real(40)?, real(44)?);
     if !(min.is_finite() && max.is_finite() && min.cmplt(max).all()) {
-        return Err((24, "the box of this volume has no size".into()));
+        return Err((24, "the bounding box of the volume is empty or not finite".into()));
     }
     let wanted = counts.iter().fold(channels as u64, |product, &n| product.saturating_mul(n as u64));
     let there = (bytes.len() - HEADER) as u64 / 4;
@@ -77,7 +77,7 @@ fn values(bytes: &[u8], channels: &[usize], memory: u64) -> Result<(Aabb, [u32; 
         return Err((bytes.len(), format!("the file ends after {there} of {wanted} densities")));
     }
     if wanted.saturating_mul(4) > memory {
-        return Err((8, format!("{wanted} densities are more than memory is allowed")));
+        return Err((8, format!("{wanted} densities exceed the memory limit")));
     }
     let values = bytes[HEADER..].chunks_exact(4).take(wanted as usize);
     let values: Vec<f32> = values.map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]])).collect();
@@ -103,7 +103,7 @@ pub fn write(bounds: &Aabb, grid: &DensityGrid) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    /// A file of 2 x 1 x 1 densities.
+    /// Returns a file of 2 x 1 x 1 densities.
     fn file() -> Vec<u8> {
         let mut bytes = b"VOL\x03".to_vec();
         [1_i32, 2, 1, 1, 1].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn a_grid_is_read_and_broken_ones_are_refused_where_they_break() {
+    fn volume_is_read_and_its_errors_have_byte_offsets() {
         let (bounds, grid) = parse(&file(), 1 << 20).unwrap();
         assert_eq!((bounds.max, grid.most()), (Vec3::new(2.0, 1.0, 1.0), 4.0));
         assert_eq!(grid.at(&bounds, Vec3::new(0.5, 0.5, 0.5)), 0.5);
@@ -130,7 +130,7 @@ mod tests {
         assert_eq!(changed(24, f32::NAN.to_le_bytes()), 24);
         assert_eq!(changed(52, (-1.0_f32).to_le_bytes()), 52);
         assert_eq!(parse(&file(), 7).unwrap_err().0, 8);
-        // Larger than any file.
+        // Counts larger than any file.
         assert_eq!(changed(8, i32::MAX.to_le_bytes()), file().len());
     }
 }

@@ -86,7 +86,7 @@ fn local(name: &str) -> &str {
     name.rsplit(':').next().unwrap_or(name)
 }
 
-/// A text in UTF-8, made of one in UTF-16 that begins with the mark of that.
+/// Converts UTF-16 text with a byte order mark to UTF-8; returns other bytes unchanged.
 pub(super) fn utf8(bytes: Arc<[u8]>) -> Arc<[u8]> {
     let number: fn([u8; 2]) -> u16 = match *bytes {
         [0xff, 0xfe, ..] => u16::from_le_bytes,
@@ -156,8 +156,8 @@ impl<'a> Xml<'a> {
                     return Ok(Piece::Close);
                 }
                 events::Event::DocType(_) => {
-                    let what = "declarations of a type of document (`<!DOCTYPE`) are not read";
-                    let help = "take it out, and write what its entities stand for";
+                    let what = "document type declarations (`<!DOCTYPE`) are not supported";
+                    let help = "remove it, and replace its entities by their text";
                     return Err(self.wrong(self.span(start, end), what).help(help).into());
                 }
                 events::Event::Eof => {
@@ -179,7 +179,7 @@ impl<'a> Xml<'a> {
         let whole = inner.find(|c: char| c.is_ascii_whitespace()).map_or(inner, |length| &inner[..length]);
         let at = self.place(whole);
         if self.begun && self.open.is_empty() {
-            return Err(self.wrong(at, "a file has one element that holds all others: this is a second").into());
+            return Err(self.wrong(at, "a file has one root element: this is a second").into());
         }
         if self.open.len() >= DEEPEST {
             return Err(self.wrong(at, format!("elements are nested more than {DEEPEST} deep")).into());
@@ -192,8 +192,8 @@ impl<'a> Xml<'a> {
             let Cow::Borrowed(raw) = found.value else { continue };
             let place = self.place(raw);
             let value = escape::unescape(raw).map_err(|_| {
-                let help = "known are `&lt;`, `&gt;`, `&amp;`, `&apos;`, `&quot;` and numbers of characters";
-                self.wrong(place, "there is an `&` here that begins no known entity").help(help)
+                let help = "known are `&lt;`, `&gt;`, `&amp;`, `&apos;`, `&quot;` and character numbers";
+                self.wrong(place, "`&` does not begin a known entity").help(help)
             })?;
             attributes.push(Attribute { name: local(found.key.0), value, at: place });
         }
@@ -204,7 +204,7 @@ impl<'a> Xml<'a> {
         let (at, what) = match *error {
             AttrError::ExpectedEq(at) => (at, "an attribute needs `=` and a value"),
             AttrError::ExpectedValue(at) => (at, "an attribute needs a value"),
-            AttrError::UnquotedValue(at) => (at, "a value must stand in quotes"),
+            AttrError::UnquotedValue(at) => (at, "a value must be in quotes"),
             AttrError::ExpectedQuote(at, _) => (at, "a quote is missing"),
             AttrError::Duplicated(at, _) => (at, "this attribute is given twice"),
         };
@@ -218,7 +218,7 @@ impl<'a> Xml<'a> {
         if let quick_xml::Error::IllFormed(events) = error
             && let quick_xml::errors::IllFormedError::MismatchedEndTag { expected, found } = events
         {
-            let wrong = self.wrong(place, format!("`</{found}>` closes what is not open")).code("unclosed");
+            let wrong = self.wrong(place, format!("`</{found}>` closes an element that is not open")).code("unclosed");
             return match self.open.last() {
                 Some(open) => wrong.related(*open, format!("`{expected}` is open here")),
                 None => wrong,
@@ -236,7 +236,8 @@ impl<'a> Xml<'a> {
 mod tests {
     use super::*;
 
-    /// The elements as `name@place[attribute=value@place]`, and the error that ends parsing.
+    /// Returns the elements as `name@place[attribute=value@place]`, and the error that ends
+    /// parsing.
     fn told(text: &str) -> (Vec<String>, Option<(String, u32)>) {
         let mut all = Vec::new();
         let mut xml = match Xml::new(text.as_bytes(), 0) {
@@ -261,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn elements_and_attributes_have_their_places() {
+    fn elements_and_attributes_have_byte_offsets() {
         let (all, error) =
             told("\u{feff}<?xml version='1.0'?>\n<!-- a --><s:a x='1'>\n text <b m:y = \"&lt;2&#65;\" z=''/></s:a>\n");
         assert_eq!(error, None);
@@ -269,17 +270,17 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_at_its_place() {
+    fn error_has_byte_offset() {
         for (text, place, words) in [
             ("", 0, "no elements"),
             ("words", 0, "no elements"),
-            ("<a><b></a>", 6, "closes what is not open"),
+            ("<a><b></a>", 6, "closes an element that is not open"),
             ("<a><b/>", 1, "not closed"),
             ("<a/><b/>", 5, "a second"),
             ("<a x=1/>", 5, "quotes"),
             ("<a x/>", 4, "`=`"),
             ("<a x='1' x='2'/>", 9, "twice"),
-            ("<a x='&boom;'/>", 6, "no known entity"),
+            ("<a x='&boom;'/>", 6, "a known entity"),
             ("<!DOCTYPE a [<!ENTITY b \"bbbb\">]><a x='&b;'/>", 0, "DOCTYPE"),
             ("<a", 0, "tag not closed"),
             ("<a><!-- </a>", 3, "comment"),

@@ -35,11 +35,11 @@ impl<'a> Zip<'a> {
         while let Some(entry) = entries.next_entry().map_err(|error| error.to_string())? {
             let Ok(name) = std::str::from_utf8(entry.file_path().as_bytes()).map(str::to_string) else { continue };
             if parts.len() >= MAX_PARTS {
-                return Err(format!("more than {MAX_PARTS} parts are too many"));
+                return Err(format!("more than {MAX_PARTS} parts in an archive"));
             }
             let part = (entry.wayfinder(), entry.compression_method(), entry.uncompressed_size_hint());
             if parts.insert(name.clone(), part).is_some() {
-                return Err(format!("there are two parts `{name}`"));
+                return Err(format!("two parts have the name `{name}`"));
             }
         }
         Ok(Zip { bytes, parts, left: FREE + MAX_TIMES * bytes.len() as u64 })
@@ -64,7 +64,7 @@ impl<'a> Zip<'a> {
     ) -> Result<Vec<u8>, String> {
         if size > self.left {
             return Err(format!(
-                "it unpacks to {size} bytes, and all of an archive to no more than {MAX_TIMES} times its own"
+                "it unpacks to {size} bytes, which exceeds the limit of {MAX_TIMES} times the archive's size"
             ));
         }
         self.left -= size;
@@ -79,11 +79,11 @@ impl<'a> Zip<'a> {
                 let inflated = DeflateDecoder::new(entry.data());
                 entry.verifying_reader(inflated).take(size + 1).read_to_end(&mut bytes)
             }
-            _ => return Err("it is packed in another way than by deflate".into()),
+            _ => return Err("its compression method is not deflate".into()),
         };
         read.map_err(|error| error.to_string())?;
         if bytes.len() as u64 != size {
-            return Err(format!("it should unpack to {size} bytes, and does not"));
+            return Err(format!("it does not unpack to its stated size of {size} bytes"));
         }
         Ok(bytes)
     }

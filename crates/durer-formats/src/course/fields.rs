@@ -1,4 +1,4 @@
-//! Reading the fields of any described thing.
+//! Reading of the fields of any described statement.
 
 use super::lexer::TokenKind;
 use super::reader::{Reader, names};
@@ -9,7 +9,7 @@ use durer_scene::describe::{DescribedList, Field, FileName, Kind, Rule, Value};
 use durer_scene::dialect::{Compat, Dialect, DialectSet};
 use durer_scene::math::Vec3;
 
-/// Whether the old parsers wanted the fields in the order in which they are listed.
+/// Order of the fields that the course's parsers require.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Order {
     Listed,
@@ -17,8 +17,8 @@ pub(super) enum Order {
 }
 
 impl Reader<'_, '_> {
-    /// Reads `{ field value ... }` into a thing. `extra` may take words that are no fields; it says
-    /// whether it did.
+    /// Reads `{ field value ... }` into `thing`. `extra` handles words that are not fields; it
+    /// returns true if it did.
     pub(super) fn fields<T: DescribedList>(
         &mut self,
         thing: &mut T,
@@ -31,8 +31,7 @@ impl Reader<'_, '_> {
         if !self.open(keyword) {
             return;
         }
-        // Of a thing that only our dialect has, the keyword is complained of, and not its fields as
-        // well.
+        // For a statement of the Dürer dialect only, report the keyword and not its fields as well.
         let ours = thing.is_ours();
         let fields = thing.fields();
         let mut given = vec![None; fields.len()];
@@ -65,7 +64,7 @@ impl Reader<'_, '_> {
             }
             last = index;
             if let Some(first) = given[index] {
-                let message = format!("`{word}` is given twice; the last counts");
+                let message = format!("`{word}` is given twice; the last one is used");
                 let warning = Diagnostic::warning(message).code("repeated").at(span);
                 self.diagnostics.push(warning.related(first, "first given here"));
             }
@@ -76,23 +75,24 @@ impl Reader<'_, '_> {
                 self.skip_values();
             }
         }
-        // A wrong word may have been meant for a field that seems to be missing.
+        // A misspelt word may stand for a field that seems to be missing.
         if self.errors() > errors || ours && self.options.strict {
             return;
         }
         let dialect = if ours { Dialect::Durer } else { self.options.dialect };
         for (field, _) in fields.iter().zip(&given).filter(|(f, g)| f.required && g.is_none()) {
-            // A field without a word here has a fixed value: the centre of a sphere in a node, say.
+            // A field without a word in this dialect has a fixed value, such as the centre of a
+            // sphere in a node.
             let Some(word) = field.spelling(dialect) else { continue };
             let error = Diagnostic::error(format!("`{name}` has no `{word}`")).code("missing-field").at(keyword);
             self.error(match example(word) {
-                Some(value) => error.help(format!("write it into the block, as in `{word} {value}`")),
+                Some(value) => error.help(format!("add it to the block, as in `{word} {value}`")),
                 None => error,
             });
         }
     }
 
-    /// The field that a word names; where two fields share it, the first that is not given yet.
+    /// Index of the field that a word names; if two fields share it, the first without a value.
     fn field_of(&self, fields: &[Field], given: &[Option<Span>], word: &str) -> Option<usize> {
         let named = |f: &Field| f.spellings.iter().any(|(w, _)| *w == word);
         let native = |f: &Field| f.spelling(self.options.dialect) == Some(word);
@@ -100,7 +100,7 @@ impl Reader<'_, '_> {
         let all =
             |test: &dyn Fn(&Field) -> bool| -> Vec<usize> { (0..fields.len()).filter(|&i| test(&fields[i])).collect() };
         let mut candidates = all(&native);
-        // 2020's `attenuation` is one number, 2004's is three: their count tells which is meant.
+        // `attenuation` takes one number in 2020 and three in 2004: the count decides.
         let numbers = (0..3).take_while(|&i| self.number_ahead(i)).count();
         let fits = |f: &Field| match f.kind {
             Kind::Float => numbers == 1,
@@ -114,13 +114,14 @@ impl Reader<'_, '_> {
         if candidates.is_empty() {
             candidates = all(&named);
         }
-        // Only fields that are spelled alike everywhere share a word: the two `materialIndex`, say.
+        // Only fields with equal spellings in all dialects share a word, such as the two
+        // `materialIndex`.
         let first = *candidates.first()?;
         candidates.retain(|&i| fields[i].spellings == fields[first].spellings);
         candidates.iter().copied().find(free).or(candidates.last().copied())
     }
 
-    /// Whether the token so many further on is a number.
+    /// Returns true if the token `count` places ahead is a number.
     fn number_ahead(&self, count: usize) -> bool {
         let token = self.ahead(count).filter(|t| t.kind == TokenKind::Word);
         token.is_some_and(|t| {
@@ -129,7 +130,8 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// Whether the same thing goes on after the block or the number that comes next.
+    /// Returns true if the same block continues after the nested block or the number that comes
+    /// next.
     fn goes_on_after(&self, fields: &[Field]) -> bool {
         let mut depth = 0usize;
         for i in 0.. {
@@ -154,18 +156,18 @@ impl Reader<'_, '_> {
         let help = self.advice(word, known()).unwrap_or_else(|| {
             let mut words: Vec<&str> = fields.iter().filter_map(|f| f.spelling(self.options.dialect)).collect();
             words.dedup();
-            // A list of seventy words is no help.
+            // A list of seventy words would not help.
             let many = words.len() > 24;
             words.retain(|word| !many || !word.ends_with("Texture"));
             match after_path {
                 true => "a path ends at the first blank".into(),
-                false if many => format!("its fields are {}; for most there is a `...Texture` too", words.join(", ")),
+                false if many => format!("its fields are {}; most also have a `...Texture`", words.join(", ")),
                 false => format!("its fields are {}", words.join(", ")),
             }
         });
         let help = super::meant::misplaced(word, name).map_or(help, String::from);
         let message = match word.parse::<f32>() {
-            Ok(_) => format!("{} is a number too many in `{name}`", shown(word.as_bytes())),
+            Ok(_) => format!("unexpected number {} in `{name}`", shown(word.as_bytes())),
             Err(_) => format!("`{name}` has no field {}", shown(word.as_bytes())),
         };
         let error = Diagnostic::error(message).code("unknown-word").at(span).label("not known here").help(help);
@@ -199,15 +201,15 @@ impl Reader<'_, '_> {
             let span = start.to(self.last_span());
             if let Some(drawn) = self.any_values().then(|| field.drawn_anyway(thing, &value)).flatten() {
                 let warning = Diagnostic::warning(format!("`{word}` {violation}")).code("bad-value").at(span);
-                self.diagnostics.push(warning.effect("drawn all the same, as by the official program"));
+                self.diagnostics.push(warning.effect("rendered anyway, as by the official program"));
                 return Some(drawn);
             }
             let error = Diagnostic::error(format!("`{word}` {violation}")).code("bad-value").at(span);
-            // Where only the sign is wrong, it is clear what was meant.
+            // If only the sign is wrong, the meaning is clear.
             self.error(match value {
                 Value::Float(x) if x < 0.0 => error.fix(span, self.text(span).trim_start_matches('-')),
                 Value::Vec3(v) if word == "direction" && v == Vec3::ZERO => error.help(
-                    "a light's is where the light goes; a camera's is the point to look at less the place of the eye",
+                    "for a light, it is the direction in which the light shines; for a camera, the point to look at minus the eye point",
                 ),
                 _ => error,
             });
@@ -215,7 +217,7 @@ impl Reader<'_, '_> {
         Some(value)
     }
 
-    /// One of some words.
+    /// Reads one of some words.
     fn one_of(&mut self, field: &str, words: &[&str]) -> Option<String> {
         let text = self.peek_word().unwrap_or_default();
         if words.contains(&text.as_str()) {
@@ -237,7 +239,7 @@ impl Reader<'_, '_> {
         None
     }
 
-    /// `{ numbers }`: rows of so many each.
+    /// Reads `{ numbers }` as rows of `width` numbers.
     fn rows(&mut self, field: &str, keyword: Span, width: usize) -> Option<Vec<Vec<f32>>> {
         if !self.at_open() {
             self.expected("`{`", field);
@@ -249,7 +251,7 @@ impl Reader<'_, '_> {
             match self.number(field, numbers.len() % width + 1, width) {
                 Some(number) => numbers.push(number),
                 None => {
-                    // The error stands for the whole block.
+                    // One error covers the whole block.
                     while self.peek().is_some_and(|token| token.kind == TokenKind::Word) {
                         self.advance();
                     }
@@ -268,14 +270,14 @@ impl Reader<'_, '_> {
             }
         };
         if numbers.len() % width != 0 {
-            let message = format!("`{field}` is made of rows of {width} numbers, but has {} in all", numbers.len());
+            let message = format!("`{field}` needs rows of {width} numbers, but has {} numbers in total", numbers.len());
             self.error(Diagnostic::error(message).at(open.to(self.last_span())).related(keyword, "in this block"));
             return None;
         }
         Some(numbers.chunks_exact(width).map(<[f32]>::to_vec).collect())
     }
 
-    /// Three numbers.
+    /// Reads three numbers.
     pub(super) fn vec3(&mut self, word: &str) -> Option<Vec3> {
         let x = self.number(word, 1, 3)?;
         let y = self.number(word, 2, 3)?;
@@ -283,7 +285,7 @@ impl Reader<'_, '_> {
         Some(Vec3::new(x, y, z))
     }
 
-    /// A whole number, zero or more.
+    /// Reads a whole number, 0 or more.
     pub(super) fn whole(&mut self, word: &str) -> Option<u32> {
         let value = self.peek_word().and_then(|text| text.parse().ok());
         match value {
@@ -295,17 +297,17 @@ impl Reader<'_, '_> {
         value
     }
 
-    /// True under `any-values`: values that mean nothing are drawn.
+    /// True with the quirk `any-values`, which renders senseless values.
     pub(super) fn any_values(&self) -> bool {
         self.options.compat & Compat::AnyValues.bit() != 0
     }
 
-    /// The i-th of `count` finite numbers.
+    /// Reads the `i`-th of `count` finite numbers.
     pub(super) fn number(&mut self, word: &str, i: usize, count: usize) -> Option<f32> {
         let text = self.peek_word().unwrap_or_default();
-        // Rust also parses words such as `inf` and `nan`: a number has a digit first.
+        // Rust also parses words such as `inf` and `nan`, so require a digit first.
         let numeric = text.trim_start_matches(['+', '-', '.']).starts_with(|c: char| c.is_ascii_digit());
-        // C's `scanf`, which reads all years before 2020, knows hexadecimal numbers.
+        // C's `scanf`, which all years before 2020 use, accepts hexadecimal numbers.
         if let Some(value) = hexadecimal(&text).filter(|_| self.any_values() && self.options.dialect != Dialect::F23) {
             let span = self.advance();
             let warning = Diagnostic::warning(format!("{} is a hexadecimal number", shown(text.as_bytes()))).at(span);
@@ -332,7 +334,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Reports that something else stands where a value should.
+    /// Reports that the next token is not the expected value.
     pub(super) fn expected(&mut self, what: &str, after: &str) {
         let Some(token) = self.peek() else {
             let message = format!("`{after}` needs {what}, but the file ends");
@@ -346,7 +348,7 @@ impl Reader<'_, '_> {
             return self.error(error);
         };
         let mut error = error.help(help);
-        // The numbers that follow are most likely written alike.
+        // The numbers after it most likely have the same mistake.
         let following = (self.at..).map_while(|i| self.ahead(i - self.at)).map_while(|t| {
             let text = self.text(t.span);
             let meant = number_help(&text).and_then(|(_, meant)| meant);
@@ -359,11 +361,11 @@ impl Reader<'_, '_> {
         self.error(error);
     }
 
-    /// A word that this dialect does not have: refused if strict, else taken with a warning, once.
+    /// Reports a word that this dialect lacks: an error if strict, else one warning per word.
     pub(super) fn foreign(&mut self, word: &str, span: Span, set: DialectSet) {
         let dialect = self.options.dialect;
         if self.options.strict && set == Dialect::Durer as u8 {
-            let message = format!("`{word}` is Dürer's own, and no word of the course's language");
+            let message = format!("`{word}` is a Dürer extension, not a word of the course's language");
             self.error(Diagnostic::error(message).at(span));
             return;
         }
@@ -386,42 +388,41 @@ impl Reader<'_, '_> {
     }
 }
 
-/// What may be meant by a word that should have been a number, and how it is written, where that is
-/// clear.
+/// Returns help for a word in place of a number, and the corrected number if the meaning is clear.
 fn number_help(text: &str) -> Option<(String, Option<String>)> {
     let is_number = |text: &str| !text.is_empty() && text.parse::<f32>().is_ok();
     let bare = text.trim_matches(['(', ')', ',', ';', '<', '>', '[', ']', 'f', 'F']);
     let point = bare.replace(',', ".");
     if is_number(&point) && bare.contains(',') && !bare.contains('.') {
-        let help = "decimals are written with a point, and nothing stands between numbers but blanks";
+        let help = "use a decimal point, and only blanks between numbers";
         Some((help.into(), Some(point).filter(|_| bare == text)))
     } else if bare.contains(',') || bare != text && is_number(bare) {
         let parts: Vec<&str> = bare.split(',').filter(|part| !part.is_empty()).collect();
         let clear = parts.iter().all(|part| is_number(part)).then(|| parts.join(" "));
-        Some(("numbers stand alone, with blanks between them: `1 0.5 0`".into(), clear))
+        Some(("separate numbers by blanks only: `1 0.5 0`".into(), clear))
     } else if text.starts_with("0x") || text.starts_with("0X") {
-        Some(("numbers are written in decimal".into(), None))
+        Some(("write numbers in decimal".into(), None))
     } else if text == "=" || text == ":" {
-        let help = format!("nothing stands between a word and its value but blanks: leave the `{text}` out");
+        let help = format!("separate a word and its value by blanks only: remove the `{text}`");
         Some((help, Some(String::new())))
     } else if is_number(&text.replace(['O', 'o'], "0")) && text.contains(['O', 'o']) {
-        Some(("this has the letter O where a zero is meant".into(), Some(text.replace(['O', 'o'], "0"))))
+        Some(("the word has the letter O in place of a zero".into(), Some(text.replace(['O', 'o'], "0"))))
     } else {
         let number = text.trim_end_matches(|c: char| c.is_alphabetic() || c == '°' || c == '%');
         let unit = &text[number.len()..];
         let help = || match unit {
             "rad" => "angles are in degrees, without a unit".into(),
-            "deg" | "°" => "angles are in degrees: they need no unit".into(),
-            _ => format!("numbers have no units: leave `{unit}` out"),
+            "deg" | "°" => "angles are in degrees, without a unit".into(),
+            _ => format!("numbers have no units: remove `{unit}`"),
         };
         let same = ["deg", "°", "px", "m"].contains(&unit);
-        // An exponent without its number is no unit.
+        // An exponent without a number is not a unit.
         let is_unit = !unit.is_empty() && !unit.eq_ignore_ascii_case("e");
         (is_number(number) && is_unit).then(|| (help(), same.then(|| number.to_string())))
     }
 }
 
-/// A value that a field may have, to show how it is written.
+/// Example value of a field, for help texts.
 fn example(field: &str) -> Option<&'static str> {
     Some(match field {
         "radius" => "1",
@@ -440,7 +441,7 @@ fn example(field: &str) -> Option<&'static str> {
     })
 }
 
-/// A finite number in hexadecimal digits, with a power of two behind `p`: 0x1.8p-3.
+/// Parses a finite hexadecimal number with an optional power of two after `p`, such as `0x1.8p-3`.
 fn hexadecimal(text: &str) -> Option<f32> {
     let (sign, rest) = match text.strip_prefix(['-', '+']) {
         Some(rest) => (if text.starts_with('-') { -1.0 } else { 1.0 }, rest),

@@ -1,37 +1,36 @@
-//! Which dialect a scene is written in, and why.
+//! Guess of a scene's dialect, with reasons.
 
 use super::lexer::{TokenKind, tokens};
 use super::words::dialects_of;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::dialect::{Dialect, DialectSet, set};
 
-/// What something else than the file says of its dialect. It is not heard where it contradicts what
-/// is known already.
+/// Evidence for a dialect from outside the file. Ignored if it contradicts the file.
 #[derive(Clone, Debug)]
 pub struct Hint {
-    /// The dialects that it leaves.
+    /// Dialects that remain possible.
     pub set: DialectSet,
-    /// Why, as the end of a sentence.
+    /// Reason, as the end of a sentence.
     pub why: String,
-    /// True for hints that count only where something else tells the years apart.
+    /// True for hints that count only if something else distinguishes the years.
     pub weak: bool,
 }
 
-/// A guess and its reasons.
+/// Guessed dialect, with its reasons.
 #[derive(Clone, Debug)]
 pub struct Guess {
-    /// What was guessed.
+    /// Guessed dialect.
     pub dialect: Dialect,
-    /// What narrowed it down, as ends of sentences, and where.
+    /// Reasons that narrowed the choice, as ends of sentences, with their spans.
     pub reasons: Vec<(String, Option<Span>)>,
-    /// Other dialects that would have done as well.
+    /// Other dialects that fit as well.
     pub others: Vec<Dialect>,
-    /// True where hints led to another dialect than the words alone.
+    /// True if hints changed the result of the words alone.
     pub hinted: bool,
 }
 
 impl Guess {
-    /// The guess as a note for people.
+    /// Returns the guess as a note for the user.
     pub fn note(&self) -> Diagnostic {
         let reasons: Vec<&str> = self.reasons.iter().map(|r| r.0.as_str()).collect();
         let mut message = format!("read as {}", self.dialect.name());
@@ -40,18 +39,18 @@ impl Guess {
         }
         if !self.others.is_empty() {
             let names: Vec<&str> = self.others.iter().map(|d| d.name()).collect();
-            message += &format!(" (nothing in it rules out {})", names.join(", "));
+            message += &format!(" (it could also be {})", names.join(", "));
         }
         Diagnostic::note(message).code("dialect")
     }
 }
 
-/// Where several dialects are left, the first of these is taken.
+/// Dialects in order of preference, to choose among several that remain.
 const PREFERENCE: [Dialect; 6] =
     [Dialect::F12a4, Dialect::F04, Dialect::F12a5, Dialect::F16, Dialect::F23, Dialect::F03];
 
-/// Guesses the dialect of a scene from its words. `exists` tells whether a file that it names is
-/// there.
+/// Guesses the dialect of a scene from its words. `exists` returns true if a file that the scene
+/// names exists.
 pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> bool) -> Guess {
     let mut left = set::ALL & !set::DURER;
     let mut reasons: Vec<(DialectSet, String, Option<Span>)> = Vec::new();
@@ -66,7 +65,7 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
             reasons.push((keep, why, span));
         }
     };
-    // Words of nodes among words of the years before: what there is most of is meant, and the
+    // A file can mix words of nodes with words of earlier years: the majority decides, and the
     // others are foreign.
     let (mut nodes, mut classic) = (0_usize, 0_usize);
     for (i, token) in tokens.iter().enumerate().filter(|(_, token)| token.kind == TokenKind::Word) {
@@ -87,24 +86,24 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         let (keep, why) = if token.kind != TokenKind::Word {
             continue;
         } else if braced && matches!(&*word, "Translate" | "Scale" | "XRotate" | "YRotate" | "ZRotate") {
-            (set::F03, format!("`{word} {{` with a brace is 2003's"))
+            (set::F03, format!("`{word} {{` with a brace is syntax of 2003"))
         } else if braced && !has_section && matches!(&*word, "Material" | "PhongMaterial") {
-            (set::F03, format!("`{word}` inside a group is 2003's"))
+            (set::F03, format!("`{word}` inside a group is syntax of 2003"))
         } else if word == "cubeMap" && exists(&format!("{}/left.png", text(i + 1))) {
-            (set::F16, "its cube map is of PNG files".into())
+            (set::F16, "its cube map has PNG files".into())
         } else if word == "cubeMap" && exists(&format!("{}/left.bmp", text(i + 1))) {
-            (set::F12A5, "its cube map is of BMP files".into())
+            (set::F12A5, "its cube map has BMP files".into())
         } else if named && matches!(&*word, "include" | "define" | "use") {
-            (set::DURER, format!("`{word}` is a word of ours"))
+            (set::DURER, format!("`{word}` is a Dürer extension"))
         } else if named
             && at(i + 2) == Some(TokenKind::Open)
             && word.ends_with("Material")
             && dialects_of(&text(i + 1)).is_none()
         {
-            (set::DURER, "only ours has names for materials".into())
+            (set::DURER, "only the Dürer dialect names materials".into())
         } else if let Some(set) = dialects_of(&word).filter(|set| match *set {
             set::F23 => is_telling(&word),
-            // Ours alone: `top` or `min` may be anybody's file name.
+            // Require a block for words of the Dürer dialect: `top` or `min` may be a file name.
             set::DURER => braced,
             _ => true,
         }) {
@@ -112,19 +111,19 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         } else {
             continue;
         };
-        // The minority is said where it stands.
+        // Words of the minority get their own warnings.
         if majority == set::F23 && keep & set::F23 == 0 {
             continue;
         }
         narrow(keep, why, Some(token.span));
     }
     if let Some(comment) = tokens.iter().find(|token| token.kind == TokenKind::Comment) {
-        // Ours has no nodes: a file of nodes stays one.
+        // The Dürer dialect has no nodes, so a file of nodes stays in the dialect of nodes.
         let nodes = (0..tokens.len()).any(|i| text(i) == "Scene" || text(i).starts_with("Component<"));
         let keep = if nodes { set::F23 } else { 0 };
         narrow(keep, "it has comments, which the course's language lacks".into(), Some(comment.span));
     }
-    // The year that divides by a missing number would show black: it is not what is meant.
+    // Exclude the year in which a missing `falloff` divides by zero and renders black.
     let sane = left & !if lacks_falloff(&text, tokens.len()) { set::F16 } else { 0 };
     if sane != 0 {
         left = sane;
@@ -132,15 +131,15 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
     let first = |left: DialectSet| PREFERENCE.into_iter().find(|d| d.is_in(left));
     let by_words = first(left);
     for hint in hints {
-        // What contradicts the file and the hints before it tells nothing: options may be another
-        // year's.
+        // Ignore a hint that contradicts the file or earlier hints: options may be those of another
+        // year.
         let keep = left & hint.set;
         if keep != 0 && keep != left && !(hint.weak && reasons.is_empty()) {
             left = keep;
             reasons.push((hint.set, hint.why.clone(), None));
         }
     }
-    // Reasons that later ones make needless are not told.
+    // Drop reasons that later ones make redundant.
     for i in (0..reasons.len()).rev() {
         let others = reasons.iter().enumerate().filter(|(j, _)| *j != i);
         if others.fold(set::ALL & !set::DURER, |left, (_, reason)| left & reason.0) == left {
@@ -168,7 +167,7 @@ fn names(set: DialectSet) -> String {
     if names.is_empty() { Dialect::Durer.name().into() } else { names.join(", ") }
 }
 
-/// Whether a word of 2020's alone shows that year: `sphere` or `point` may be anybody's file name.
+/// Returns true if a word of 2020 alone proves that year: `sphere` or `point` may be a file name.
 fn is_telling(word: &str) -> bool {
     word.contains(['<', '_']) || word.starts_with(char::is_uppercase)
 }

@@ -1,4 +1,4 @@
-//! `include FILE`: the text of another file in place of these two words.
+//! `include FILE`: replaces these two words by the text of another file.
 
 use super::lexer::{Token, TokenKind, tokens};
 use durer_diag::{Diagnostic, Diagnostics, Files, Span};
@@ -7,23 +7,23 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Files in files, files in all, and words of all files.
+/// Limits: depth of nested includes, number of included files, and number of words in all files.
 const DEEPEST: usize = 32;
 const MAX_FILES: usize = 4096;
 const MAX_WORDS: usize = 1 << 26;
 
-/// What became of a file that is included.
+/// Result of opening an included file.
 #[derive(Debug)]
 pub enum Opened {
-    /// Its number for spans, and its bytes.
+    /// Index of the file for spans, and its bytes.
     Text(u32, Arc<[u8]>),
-    /// It cannot be had.
+    /// The file cannot be read.
     Failed(SourceError),
-    /// The scene is in no folder.
+    /// The scene has no folder.
     Nowhere,
 }
 
-/// Finds what is included below a folder, and numbers it.
+/// Returns a function that opens included files below a folder and registers them.
 pub fn below<'a>(source: &'a dyn AssetSource, files: &'a RefCell<Files>) -> impl Fn(&str) -> Opened + 'a {
     move |name| match source.read(name) {
         Ok(bytes) => Opened::Text(files.borrow_mut().add_once(name, &bytes), bytes),
@@ -31,7 +31,7 @@ pub fn below<'a>(source: &'a dyn AssetSource, files: &'a RefCell<Files>) -> impl
     }
 }
 
-/// The texts of a scene: its own, and those that it includes.
+/// Texts of a scene: its own, and those that it includes.
 pub(super) struct Texts<'a> {
     own: (u32, &'a [u8]),
     others: HashMap<u32, Arc<[u8]>>,
@@ -42,26 +42,26 @@ impl<'a> Texts<'a> {
         Texts { own: (file, bytes), others: HashMap::new() }
     }
 
-    /// The bytes at a place.
+    /// Returns the bytes of a span.
     pub fn at(&self, span: Span) -> &[u8] {
         let other = self.others.get(&span.file).filter(|_| span.file != self.own.0);
         let bytes = other.map_or(self.own.1, |bytes| bytes);
         &bytes[span.start as usize..span.end as usize]
     }
 
-    /// The end of the scene's own text.
+    /// Returns the end of the scene's own text.
     pub fn end(&self) -> Span {
         let end = self.own.1.len() as u32;
         Span { file: self.own.0, start: end, end }
     }
 }
 
-/// Puts the words of files in the place of the words that include them.
+/// Replaces each `include` by the tokens of its file.
 pub(super) struct Splicer<'o, 't, 'a> {
     pub open: &'o dyn Fn(&str) -> Opened,
     pub texts: &'t mut Texts<'a>,
     pub diagnostics: &'t mut Diagnostics,
-    /// Names of the files that are being read.
+    /// Names of the files being read, outermost first.
     pub stack: Vec<String>,
     pub files: usize,
     pub words: usize,
@@ -80,32 +80,32 @@ impl Splicer<'_, '_, '_> {
                 all.push(token);
                 continue;
             }
-            // A comment may stand before the name.
+            // A comment may precede the name.
             while rest.next_if(|next| next.kind == TokenKind::Comment).is_some() {}
             match rest.next_if(|next| next.kind == TokenKind::Word) {
                 Some(name) => all.extend(self.file(token.span, name.span)),
                 None => {
                     let error = Diagnostic::error("`include` needs the name of a file").code("missing-value");
-                    self.diagnostics.push(error.at(token.span).help("as in `include lamp.txt`"));
+                    self.diagnostics.push(error.at(token.span).help("as in `include light.txt`"));
                 }
             }
         }
         all
     }
 
-    /// The words of a file.
+    /// Returns the tokens of a file.
     fn file(&mut self, keyword: Span, at: Span) -> Vec<Token> {
         let name = String::from_utf8_lossy(self.texts.at(at)).into_owned();
         self.files += 1;
         let refused = match () {
             () if self.stack.contains(&name) => Some(format!("`{name}` includes itself")),
-            () if self.stack.len() >= DEEPEST => Some(format!("files include each other more than {DEEPEST} deep")),
-            () if self.files > MAX_FILES => Some(format!("more than {MAX_FILES} files are too many")),
+            () if self.stack.len() >= DEEPEST => Some(format!("includes are nested more than {DEEPEST} deep")),
+            () if self.files > MAX_FILES => Some(format!("more than {MAX_FILES} files are included")),
             () if self.words > MAX_WORDS => Some("all files together have too many words".to_string()),
             () => None,
         };
         if let Some(message) = refused {
-            // One complaint of many files is enough.
+            // Report the limit of files only once.
             if self.files <= MAX_FILES + 1 {
                 self.diagnostics.push(Diagnostic::error(message).code("include").at(keyword.to(at)));
             }
@@ -120,7 +120,7 @@ impl Splicer<'_, '_, '_> {
                 return Vec::new();
             }
             Opened::Nowhere => {
-                let message = "this text is in no folder: it includes no files";
+                let message = "a text without a folder cannot include files";
                 self.diagnostics.push(Diagnostic::error(message).code("include").at(keyword.to(at)));
                 return Vec::new();
             }
@@ -143,7 +143,7 @@ impl Splicer<'_, '_, '_> {
         all
     }
 
-    /// Whether a file closes all blocks that it opens, and no others.
+    /// Returns true if the braces of a file are balanced; reports an error if not.
     fn is_balanced(&mut self, written: &[Token], included: Span) -> bool {
         let mut open: Vec<Span> = Vec::new();
         let mut wrong = None;
@@ -151,7 +151,7 @@ impl Splicer<'_, '_, '_> {
             match token.kind {
                 TokenKind::Open => open.push(token.span),
                 TokenKind::Close if open.pop().is_none() => {
-                    wrong = Some((token.span, "this `}` closes nothing in its file"));
+                    wrong = Some((token.span, "this `}` has no matching `{` in its file"));
                     break;
                 }
                 _ => {}

@@ -1,30 +1,30 @@
-//! Words, braces, numbers.
+//! Lexer of the scene language: words, braces and comments.
 
 use durer_diag::Span;
 
-/// What a token is.
+/// Kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TokenKind {
-    /// Anything between blanks and braces: a keyword, a number or a path.
+    /// Run of characters other than blanks and braces: a keyword, a number or a path.
     Word,
     /// `{`
     Open,
     /// `}`
     Close,
-    /// A comment up to the end of its line.
+    /// Comment up to the end of its line.
     Comment,
 }
 
-/// A token and its place.
+/// A token with its span.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Token {
     pub kind: TokenKind,
     pub span: Span,
-    /// Whether it touches the token before it, as `{` in `Group{`.
+    /// True if the token directly follows the one before it, such as `{` in `Group{`.
     pub touches: bool,
 }
 
-/// Cuts a file into tokens. `#` or `//` at the start of a word begins a comment.
+/// Splits a file into tokens. `#` or `//` at the start of a word begins a comment.
 pub(super) fn tokens(bytes: &[u8], file: u32) -> Vec<Token> {
     let mut tokens = Vec::new();
     let mut at = 0;
@@ -58,7 +58,7 @@ pub(super) fn tokens(bytes: &[u8], file: u32) -> Vec<Token> {
     tokens
 }
 
-/// Whether a text is one word, as paths are.
+/// Returns true if a text is a single word, as paths must be.
 pub(crate) fn is_word(text: &str) -> bool {
     let whole = |token: &Token| token.kind == TokenKind::Word && token.span.end as usize == text.len();
     matches!(tokens(text.as_bytes(), 0).as_slice(), [token] if whole(token) && token.span.start == 0)

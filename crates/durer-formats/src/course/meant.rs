@@ -1,9 +1,9 @@
-//! Words that are not in the language, or not in this year's, and what they mean there.
+//! Suggestions for words that the language or the dialect lacks.
 
 use super::words::dialects_of;
 use durer_scene::dialect::Dialect;
 
-/// The same in the first grammar and in that of nodes.
+/// Words of the first grammar and their counterparts in the grammar of nodes.
 const COUNTERPARTS: [(&str, &str); 20] = [
     ("angle", "fov"),
     ("ambientLight", "ambient_light"),
@@ -27,8 +27,8 @@ const COUNTERPARTS: [(&str, &str); 20] = [
     ("ZRotate", "z_rotate"),
 ];
 
-/// What people write, what they mean, and what is to be said of it. The first of the meant words
-/// that is known in the place counts.
+/// Common slips: the slip, the words that it may stand for, and a remark. The first of these words
+/// that is known in the block is suggested.
 const SLIPS: [(&str, &[&str], &str); 29] = [
     ("plain", &["Plane", "plane"], ""),
     ("ball", &["Sphere", "sphere"], ""),
@@ -36,7 +36,7 @@ const SLIPS: [(&str, &[&str], &str); 29] = [
     ("model", &["TriangleMesh", "mesh"], ""),
     ("file", &["obj_file"], ""),
     ("obj", &["obj_file", "TriangleMesh", "mesh"], ""),
-    ("arealight", &["PointLight"], "a surface shines by the `emissionLuminance` of its `PrincipledMaterial`"),
+    ("arealight", &["PointLight"], "a surface emits light with the `emissionLuminance` of its `PrincipledMaterial`"),
     ("light", &["PointLight", "DirectionalLight"], ""),
     ("sun", &["DirectionalLight"], ""),
     ("camera", &["PerspectiveCamera", "Camera"], ""),
@@ -60,7 +60,7 @@ const SLIPS: [(&str, &[&str], &str); 29] = [
     ("target", &["direction"], "`direction` is a direction, not a point to look at"),
     ("from", &["center"], ""),
     ("fovy", &["angle", "fov"], ""),
-    ("intensity", &["color"], "the colour is the strength too"),
+    ("intensity", &["color"], "the colour includes the intensity"),
     ("colour", &["color"], ""),
     ("ambient", &["ambientLight", "ambient_light"], ""),
     ("reflection", &["reflectiveColor"], ""),
@@ -69,7 +69,7 @@ const SLIPS: [(&str, &[&str], &str); 29] = [
     ("material", &["MaterialIndex"], ""),
 ];
 
-/// The word of this dialect's grammar for a word of the other.
+/// Word of this dialect's grammar for a word of the other grammar.
 pub(super) fn counterpart(word: &str, dialect: Dialect) -> Option<&'static str> {
     let nodes = dialect == Dialect::F23;
     let row = COUNTERPARTS.iter().find(|(classic, node)| if nodes { *classic == word } else { *node == word })?;
@@ -77,7 +77,7 @@ pub(super) fn counterpart(word: &str, dialect: Dialect) -> Option<&'static str> 
     dialects_of(there).filter(|set| dialect.is_in(*set) || dialect == Dialect::Durer).map(|_| there)
 }
 
-/// The same in different years of the first grammar.
+/// Words with the same meaning in different years of the first grammar.
 const YEARS: [(&str, &str); 5] = [
     ("exponent", "shininess"),
     ("falloff", "attenuation"),
@@ -86,14 +86,14 @@ const YEARS: [(&str, &str); 5] = [
     ("Matrix", "Matrix4f"),
 ];
 
-/// The word of this dialect for a word of another year.
+/// Word of this dialect for a word of another year.
 pub(super) fn here(word: &str, dialect: Dialect) -> Option<&'static str> {
     let other = YEARS.iter().find_map(|&(a, b)| (a == word).then_some(b).or((b == word).then_some(a)));
     let known = |word: &&str| dialects_of(word).is_some_and(|set| dialect.is_in(set));
     counterpart(word, dialect).or(other.filter(known))
 }
 
-/// The known word that a slip means, and what is to be said of it.
+/// Returns the known word that a slip stands for, with a remark.
 pub(super) fn slip<'w>(word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<(&'w str, &'static str)> {
     let known: Vec<&str> = known.into_iter().collect();
     let row = SLIPS.iter().find(|row| row.0.eq_ignore_ascii_case(word))?;
@@ -101,23 +101,23 @@ pub(super) fn slip<'w>(word: &str, known: impl IntoIterator<Item = &'w str>) -> 
     (*meant != word).then_some((meant, row.2))
 }
 
-/// What is to be said of a word of the language in a block that has another for it.
+/// Remark on a word of the language in a block that uses another word for it.
 pub(super) fn misplaced(word: &str, place: &str) -> Option<&'static str> {
     let within = |block: &str| place.contains(block);
     Some(match word {
         "position" if within("DirectionalLight") || within("directional") => {
-            "a directional light has no place: its `direction` says where its light goes; a `PointLight` has a `position`"
+            "a directional light has a `direction` in which it shines, but no position; a `PointLight` has a `position`"
         }
         "direction" if within("PointLight") || within("point") => {
-            "a point light shines to all sides: its `position` says where it is; a `DirectionalLight` has a `direction`"
+            "a point light has a `position` and shines in all directions; a `DirectionalLight` has a `direction`"
         }
-        "position" if within("Camera") => "the camera's place is its `center`",
-        "position" => "the place of a sphere is its `center`",
+        "position" if within("Camera") => "the position of a camera is its `center`",
+        "position" => "the position of a sphere is its `center`",
         "color" if within("Material") => {
             "a material's colour is its `diffuseColor` (`diffuse` in the grammar of nodes)"
         }
-        "angle" if within("Orthographic") => "an orthographic picture has a `size`, not an angle",
-        "size" if within("Perspective") => "a perspective picture has an `angle`, not a size",
+        "angle" if within("Orthographic") => "an orthographic camera has a `size`, not an angle",
+        "size" if within("Perspective") => "a perspective camera has an `angle`, not a size",
         _ => return None,
     })
 }

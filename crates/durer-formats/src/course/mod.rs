@@ -1,4 +1,4 @@
-//! The course's scene language, in all its dialects.
+//! Reader and writer of the course's scene language in all its dialects.
 
 mod fields;
 pub mod guess;
@@ -28,24 +28,24 @@ pub(super) use lexer::is_word;
 pub(super) use transform::{flat, senseless};
 pub use write::write;
 
-/// How a scene file is to be read.
+/// Options for reading a scene file.
 #[derive(Clone, Copy, Debug)]
 pub struct ReadOptions {
-    /// Its dialect.
+    /// Dialect of the file.
     pub dialect: Dialect,
-    /// Whether only the words of that dialect are allowed: no comments, no words of other years,
-    /// counts and order as the old programs wanted them.
+    /// True to allow only what the course's parsers of that dialect accept: no comments, no words
+    /// of other years, and their order of fields and counts.
     pub strict: bool,
-    /// Quirks of its program.
+    /// Quirks of the course's program.
     pub compat: CompatSet,
 }
 
-/// Reads a scene that includes no files. All errors are collected; with any, there is no scene.
+/// Reads a scene that includes no files. Collects all errors; returns `None` if there is one.
 pub fn read(bytes: &[u8], file: u32, options: ReadOptions, diagnostics: &mut Diagnostics) -> Option<Scene> {
     read_with(bytes, file, options, &|_| Opened::Nowhere, diagnostics)
 }
 
-/// Reads a scene; `open` finds the files that it includes.
+/// Reads a scene; `open` opens the files that it includes.
 pub fn read_with(
     bytes: &[u8],
     file: u32,
@@ -73,18 +73,18 @@ pub fn read_with(
     (!failed).then_some(scene)
 }
 
-/// Why a file is no text that could be a scene, if it is none.
+/// Reason why a file cannot be a scene text; `None` if it can be.
 fn no_text(bytes: &[u8]) -> Option<&'static str> {
     let head = &bytes[..bytes.len().min(1 << 16)];
     let zeros = |from: usize| head.iter().skip(from).step_by(2).filter(|b| **b == 0).count() * 4 > head.len();
     if head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff") || head.len() > 3 && (zeros(0) != zeros(1)) {
-        return Some("this file is UTF-16, two bytes a letter: save it as UTF-8 or ASCII text");
+        return Some("this file is UTF-16: save it as UTF-8 or ASCII text");
     }
-    // Escape colours what a terminal shows, and may be pasted with it.
+    // Text copied from a terminal may contain escape characters for colours.
     let odd = |b: &&u8| **b < 9 || (14..32).contains(*b) && **b != 27;
     let count = head.iter().filter(odd).count();
     let binary = head.contains(&0) || count * 20 > head.len();
-    binary.then_some("this file is no text, but binary: a picture or a model, perhaps, in place of a scene")
+    binary.then_some("this file is binary, not text: is it a picture or a model in place of a scene?")
 }
 
 #[cfg(test)]

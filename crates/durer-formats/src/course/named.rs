@@ -1,4 +1,4 @@
-//! Names: of materials, and of objects that are defined once and used many times.
+//! Names of materials, and of objects that are defined once and used several times.
 
 use super::lexer::TokenKind;
 use super::nodes::paint;
@@ -8,11 +8,11 @@ use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::dialect::set;
 use durer_scene::scene::{Group, Node, Object};
 
-/// Objects of a scene that uses defined ones, each counted as often as it is there.
+/// Maximum number of objects in a scene with `use`, counting each use.
 const MAX_OBJECTS: usize = 1 << 20;
 
 impl Reader<'_, '_> {
-    /// The name of a material, between its keyword and its block.
+    /// Reads the name of a material, between its keyword and its block.
     pub(super) fn material_name(&mut self) -> Option<(String, Span)> {
         let named = self.peek_word().filter(|_| self.ahead(1).is_some_and(|next| next.kind == TokenKind::Open));
         let name = named.filter(|name| dialects_of(name).is_none())?;
@@ -21,21 +21,21 @@ impl Reader<'_, '_> {
         Some((name, span))
     }
 
-    /// Gives the material that comes next a name.
+    /// Names the next material.
     pub(super) fn name_material(&mut self, (name, span): (String, Span)) {
         if !self.is_name(&name, span) {
             return;
         }
         let number = self.scene.materials.len() as u32;
         if self.named.materials.insert(name.clone(), number).is_some() {
-            self.error(Diagnostic::error(format!("there is a material `{name}` already")).code("repeated").at(span));
+            self.error(Diagnostic::error(format!("a material `{name}` already exists")).code("repeated").at(span));
         }
     }
 
-    /// A material's number, or the one of its name.
+    /// Reads a material's number or name; returns the number.
     pub(super) fn material_number(&mut self, word: &str) -> Option<u32> {
         let name = self.peek_word().filter(|text| !text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)));
-        // A word of the language shows that the number is missing.
+        // A word of the language means that the number is missing.
         let Some(name) = name.filter(|name| self.named.materials.contains_key(name) || dialects_of(name).is_none())
         else {
             return self.whole(word);
@@ -45,10 +45,10 @@ impl Reader<'_, '_> {
         if number.is_none() {
             let near = did_you_mean(&name, self.named.materials.keys().map(String::as_str)).map(str::to_string);
             let error =
-                Diagnostic::error(format!("there is no material `{name}` before this")).code("unknown-word").at(span);
+                Diagnostic::error(format!("no material `{name}` is defined before this")).code("unknown-word").at(span);
             self.error_once(match near {
                 Some(near) => error.help(format!("did you mean `{near}`?")).fix(span, near),
-                None => error.help("a material has its name before its block, as in `PhongMaterial gold { ... }`"),
+                None => error.help("write the name before the material's block, as in `PhongMaterial gold { ... }`"),
             });
             return None;
         }
@@ -56,7 +56,7 @@ impl Reader<'_, '_> {
         number
     }
 
-    /// Whether a word can be a name; complains if not.
+    /// Returns true if a word can be a name; reports an error if not.
     fn is_name(&mut self, name: &str, span: Span) -> bool {
         let taken = dialects_of(name).is_some();
         let number = name.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
@@ -68,7 +68,7 @@ impl Reader<'_, '_> {
         !taken && !number
     }
 
-    /// A name that a word needs.
+    /// Reads the name after a keyword.
     fn name_after(&mut self, word: &str) -> Option<(String, Span)> {
         let Some(name) = self.peek_word() else {
             self.expected("a name", word);
@@ -78,8 +78,8 @@ impl Reader<'_, '_> {
         Some((name, span))
     }
 
-    /// `define NAME object`: nothing is shown yet. What is in it and has no material gets that of
-    /// the place where it is used.
+    /// Reads `define NAME object` without adding the object to the scene. Its parts without a
+    /// material take the one that is current at each use.
     pub(super) fn define(&mut self, keyword: Span) {
         self.foreign("define", keyword, set::DURER);
         let Some((name, span)) = self.name_after("define") else { return };
@@ -89,7 +89,7 @@ impl Reader<'_, '_> {
         let (outer, used) = (self.material.take(), self.named.used);
         let object = self.object(&word, at);
         self.material = outer;
-        // What is used in it counts where it is used itself.
+        // Uses inside the definition count at each use of the definition.
         self.named.used = used;
         let Some(object) = object.filter(|_| sound) else {
             self.named.broken.insert(name);
@@ -104,7 +104,7 @@ impl Reader<'_, '_> {
         self.named.objects.insert(name, (object, count, span));
     }
 
-    /// `use NAME`: what was defined by that name.
+    /// Reads `use NAME`; returns a copy of the defined object.
     pub(super) fn used(&mut self, keyword: Span) -> Option<Node> {
         self.foreign("use", keyword, set::DURER);
         let (name, span) = self.name_after("use")?;
@@ -118,13 +118,13 @@ impl Reader<'_, '_> {
                 Diagnostic::error(format!("nothing is defined as `{name}` before this")).code("unknown-word").at(span);
             self.error_once(match near {
                 Some(near) => error.help(format!("did you mean `{near}`?")).fix(span, near),
-                None => error.help("write `define NAME` and an object first, outside of what uses it"),
+                None => error.help("write `define NAME` and an object first, outside the object that uses it"),
             });
             return None;
         };
         self.named.used = self.named.used.saturating_add(*count);
         if self.named.used > MAX_OBJECTS {
-            let message = format!("more than {MAX_OBJECTS} objects, each counted as often as it is used, are too many");
+            let message = format!("the scene has more than {MAX_OBJECTS} objects, counting each use");
             self.error(Diagnostic::error(message).code("limit").at(keyword.to(span)));
             self.stop();
             return None;
@@ -133,12 +133,12 @@ impl Reader<'_, '_> {
         if let Some(material) = self.material {
             paint(&mut object, material);
         }
-        // A group of one object has no material of its own.
+        // A group of one object cannot have a material.
         Some(Node::Group(Group { objects: vec![object] }))
     }
 }
 
-/// How many objects an object is made of.
+/// Number of objects that an object consists of, itself included.
 fn count(object: &Object) -> usize {
     let all = |objects: &[Object]| objects.iter().map(count).fold(0, usize::saturating_add);
     1 + match &object.node {

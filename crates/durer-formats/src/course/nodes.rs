@@ -1,4 +1,4 @@
-//! The grammar of 2020 to 2023: a tree of nodes with components.
+//! Grammar of 2020 to 2023: a tree of nodes with components.
 
 use super::fields::Order;
 use super::reader::Reader;
@@ -15,7 +15,7 @@ use durer_scene::shape::{HeightField, Primitive, TriangleMesh};
 use glam::DVec3;
 
 impl Reader<'_, '_> {
-    /// The whole file.
+    /// Reads the whole file.
     pub(super) fn nodes_file(&mut self) {
         self.scene.lights = Some(Vec::new());
         self.top(&["Camera", "Background", "Materials", "Scene"], |reader, word, span| {
@@ -45,7 +45,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Rules of products of matrices, by the quirks that are asked for.
+    /// Rules for matrix products, from the requested quirks.
     fn matrix_rules(&self) -> MatrixRules {
         let has = |compat: Compat| self.options.compat & compat.bit() != 0;
         MatrixRules {
@@ -71,7 +71,7 @@ impl Reader<'_, '_> {
         };
     }
 
-    /// Reads one node: its transform, its components and its nodes, in any order.
+    /// Reads one node: its transform, its components and its child nodes, in any order.
     fn node(&mut self, keyword: Span) -> Inside {
         const KNOWN: [&str; 5] = ["Node", "Transform", "Component<Material>", "Component<Light>", "Component<Object>"];
         let mut inside = Inside::default();
@@ -83,7 +83,7 @@ impl Reader<'_, '_> {
             match word.as_str() {
                 "Transform" => {
                     if let Some(first) = transform_span.replace(span) {
-                        let warning = Diagnostic::warning("a node has one transform; the last counts").at(span);
+                        let warning = Diagnostic::warning("a node has one transform; the last one is used").at(span);
                         let warning = warning.related(first, "the first is here");
                         self.diagnostics.push(warning.help("nested nodes have one each"));
                     }
@@ -99,7 +99,7 @@ impl Reader<'_, '_> {
                 }
                 "Component<Material>" => {
                     if let Some(first) = material_span.replace(span) {
-                        let warning = Diagnostic::warning("a node has one material; the last counts").at(span);
+                        let warning = Diagnostic::warning("a node has one material; the last one is used").at(span);
                         self.diagnostics.push(warning.related(first, "the first is here"));
                     }
                     inside.material = self.component_index(span).or(inside.material);
@@ -126,7 +126,7 @@ impl Reader<'_, '_> {
         inside
     }
 
-    /// The parts of a solid, each a node without lights.
+    /// Reads the parts of a solid, each a node without lights.
     fn node_parts(&mut self, keyword: Span) -> Vec<Object> {
         let mut parts = Vec::new();
         if !self.open(keyword) {
@@ -162,7 +162,7 @@ impl Reader<'_, '_> {
                 "y_rotate" => self.number(&word, 1, 1).map(MatrixOp::YRotate),
                 "z_rotate" => self.number(&word, 1, 1).map(MatrixOp::ZRotate),
                 "rotate" => self.vec3(&word).and_then(|axis| Some(MatrixOp::Rotate(axis, self.number(&word, 1, 1)?))),
-                // What nodes have no word for is written as in the years before.
+                // Operations that nodes lack use the syntax of earlier years.
                 "Matrix4f" => self.matrix(&word, span).flatten(),
                 _ => {
                     self.unknown(&word, span, "in a transform", &KNOWN);
@@ -202,10 +202,10 @@ impl Reader<'_, '_> {
         index
     }
 
-    /// The `type` of a component, whose `{` is left to be read by its fields: one of the known
-    /// ones, or of ours.
+    /// Reads the `type` of a component: one of `known` or `ours`. Leaves its `{` to the reader of
+    /// its fields.
     fn component_type(&mut self, keyword: Span, known: &[&str], ours: &[&str]) -> Option<String> {
-        // The word after `{ type` is known before any field is read: type comes first in every
+        // Peek at the word after `{ type` before any field is read: `type` comes first in every
         // file.
         let name = self.text(keyword);
         let at = |reader: &Self, i: usize| reader.ahead(i).map(|t| (reader.text(t.span), t.span));
@@ -236,7 +236,7 @@ impl Reader<'_, '_> {
         None
     }
 
-    /// A light, placed as if its node were the whole scene, and its place there in full precision.
+    /// Reads a light in the space of its node; returns it with its position in double precision.
     fn component_light(&mut self, keyword: Span) -> Option<(Spanned<Light>, DVec3)> {
         let kind = self.component_type(keyword, &["point", "directional"], &[])?;
         let mut light = Light::from_keyword(&kind)?;
@@ -249,7 +249,7 @@ impl Reader<'_, '_> {
     }
 
     fn component_object(&mut self, keyword: Span) -> Option<Node> {
-        // What nodes have no word for is written as in our own dialect.
+        // Shapes that nodes lack have the names of the Dürer dialect.
         let own = Primitive::kinds().into_iter().map(|shape| shape.keyword(Dialect::F23));
         let own: Vec<&str> = own.filter(|word| word.starts_with(char::is_uppercase)).chain(["HeightField"]).collect();
         let kind = self.component_type(keyword, &["sphere", "plane", "triangle", "mesh", "Grid"], &own)?;
@@ -274,7 +274,7 @@ impl Reader<'_, '_> {
         Some(Node::Primitive(shape))
     }
 
-    /// The fields of a component, of which `type` is passed over.
+    /// Reads the fields of a component; ignores `type`.
     fn component_fields<T: DescribedList>(&mut self, thing: &mut T, keyword: Span) {
         self.fields(thing, keyword, Order::Any, |reader, word, _| {
             let is_type = word == "type";
@@ -286,20 +286,20 @@ impl Reader<'_, '_> {
     }
 }
 
-/// What a node holds.
+/// Contents of a node.
 #[derive(Default)]
 struct Inside {
-    /// Its own matrices; `None` without a `Transform`.
+    /// Matrices of the node; `None` without a `Transform`.
     ops: Option<Vec<MatrixOp>>,
     material: Option<u32>,
     objects: Vec<Object>,
-    /// Its lights and those of its nodes, and where they are in its own space.
+    /// Lights of the node and its child nodes, with their positions in the node's space.
     lights: Vec<(Spanned<Light>, DVec3)>,
     has_nodes: bool,
 }
 
 impl Inside {
-    /// The node as one object; `None` if it is there for its lights alone.
+    /// Returns the node as one object; `None` if it has lights only.
     fn object(self, span: Span) -> Option<Object> {
         let Inside { ops, material, mut objects, lights, has_nodes } = self;
         if objects.is_empty() && !lights.is_empty() {
@@ -317,7 +317,7 @@ impl Inside {
     }
 }
 
-/// Gives a material to what has none of its own.
+/// Sets the material of an object and of its parts that have none.
 pub(super) fn paint(object: &mut Object, material: u32) {
     object.material.get_or_insert(material);
     match &mut object.node {

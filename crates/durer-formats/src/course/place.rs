@@ -1,13 +1,13 @@
-//! Where in a file the value of a field is written: for those who change it.
+//! Spans of field values in a scene file, for programs that edit it.
 
 use super::lexer::{Token, TokenKind, tokens};
 use durer_diag::Span;
 
-/// The tokens inside the block that a keyword begins, and not inside blocks in it, with the block's
-/// end.
+/// Returns the tokens directly inside the block of a keyword, without nested blocks, and the offset
+/// of the block's end.
 fn inside(bytes: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
     let rest = bytes.get(keyword.start as usize..)?;
-    // Blocks are short: the rest of a long file is not read for each of them.
+    // Blocks are short: avoid reading the rest of a long file for each of them.
     let mut reach = 1 << 10;
     loop {
         let part = &rest[..rest.len().min(reach)];
@@ -18,7 +18,8 @@ fn inside(bytes: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
     }
 }
 
-/// The same for a text that begins with the keyword; `None` where the block does not end in it.
+/// Returns the tokens of a block as [`inside`] does, for a text that begins with the keyword;
+/// `None` if the block does not end in the text.
 fn block_of(text: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
     let moved = |token: Token| {
         let Span { file, start, end } = token.span;
@@ -42,8 +43,8 @@ fn block_of(text: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
     None
 }
 
-/// The place of a field's value: its numbers, or the one word after it. The last where it is given
-/// several times, as it counts.
+/// Span of a field's value: its numbers, or the one word after it. If the field is repeated, its
+/// last value, which takes effect.
 pub fn value(bytes: &[u8], keyword: Span, field: &str) -> Option<Span> {
     let text = |span: Span| std::str::from_utf8(&bytes[span.start as usize..span.end as usize]).unwrap_or_default();
     let (own, _) = inside(bytes, keyword)?;
@@ -54,12 +55,13 @@ pub fn value(bytes: &[u8], keyword: Span, field: &str) -> Option<Span> {
     Some(first.to(values[numbers.max(1) - 1].span))
 }
 
-/// A whole block, from its keyword to its last brace.
+/// Span of a whole block, from its keyword to its closing brace.
 pub fn block(bytes: &[u8], keyword: Span) -> Option<Span> {
     inside(bytes, keyword).map(|(_, end)| Span { end, ..keyword })
 }
 
-/// The keyword of a section at the top of a file, if it has it; the last, which counts.
+/// Span of the keyword of a top-level section; the last one, which takes effect. `None` if there is
+/// none.
 pub fn section(bytes: &[u8], file: u32, keyword: &str) -> Option<Span> {
     let (mut depth, mut found) = (0, None);
     for token in tokens(bytes, file) {
@@ -77,7 +79,7 @@ pub fn section(bytes: &[u8], file: u32, keyword: &str) -> Option<Span> {
     found
 }
 
-/// The places of the words after each occurrence of a word.
+/// Spans of the words after each occurrence of a word.
 pub fn values(bytes: &[u8], file: u32, word: &str) -> Vec<Span> {
     let tokens: Vec<Token> = tokens(bytes, file).into_iter().filter(|token| token.kind != TokenKind::Comment).collect();
     let is_word = |token: &Token| &bytes[token.span.start as usize..token.span.end as usize] == word.as_bytes();

@@ -1,5 +1,5 @@
-//! Random scenes, made by walking what every thing says of its fields: for tests, and for fuzzing,
-//! whose bytes then decide.
+//! Random scenes from the descriptions of all statements, for tests and for fuzzing, where the
+//! fuzzer's bytes make the choices.
 
 use durer_scene::camera::Camera;
 use durer_scene::describe::{DescribedList, Field, FileName, Kind, Rule, Value};
@@ -13,30 +13,29 @@ use durer_scene::scene::{
 };
 use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
-/// A source of choices: given bytes, and after them a generator of random numbers (Knuth's
-/// multiplier, the upper half of the state).
+/// Source of choices: given bytes, then a linear congruential generator (Knuth's multiplier, upper
+/// half of the state).
 pub struct Random {
     state: u64,
     bytes: std::vec::IntoIter<u8>,
-    /// Whether scenes should be such as can be rendered: small numbers, and files `a.obj` and
-    /// `a.ppm`.
+    /// True for scenes that can be rendered: small numbers, and only the files `a.obj` and `a.ppm`.
     tame: bool,
 }
 
 impl Random {
-    /// Random choices.
+    /// Random choices from a seed.
     pub fn seeded(state: u64) -> Self {
         Random { state, bytes: Vec::new().into_iter(), tame: false }
     }
 
-    /// Choices that bytes make, for scenes that can be rendered.
+    /// Choices from bytes, for scenes that can be rendered.
     pub fn tame(bytes: &[u8]) -> Self {
         Random { state: 1, bytes: Vec::from(bytes).into_iter(), tame: true }
     }
 
-    /// A number below another, which is not 0.
+    /// Number below `n`, which must not be 0.
     pub fn below(&mut self, n: usize) -> usize {
-        // Two bytes say more than 256 things.
+        // More than 256 choices take two bytes.
         let count = if n > 256 { 2 } else { 1 };
         if self.bytes.len() >= count {
             return self.bytes.by_ref().take(count).fold(0, |number, byte| number << 8 | usize::from(byte)) % n;
@@ -45,7 +44,7 @@ impl Random {
         (self.state >> 33) as usize % n
     }
 
-    /// Any finite number, odd ones among them.
+    /// Any finite number, special values included.
     pub fn float(&mut self) -> f32 {
         if self.tame {
             return self.below(129) as f32 / 16.0 - 4.0;
@@ -66,7 +65,7 @@ impl Random {
         Vec3::new(self.float(), self.float(), self.float())
     }
 
-    /// A value that a field may have; materials are below `materials`.
+    /// Valid value of a field; indices of materials are below `materials`.
     fn value(&mut self, field: &Field, materials: usize) -> Value {
         loop {
             let value = match field.kind {
@@ -87,7 +86,7 @@ impl Random {
                     Value::Rows((0..self.below(6)).map(|_| (0..width).map(|_| self.float()).collect()).collect())
                 }
             };
-            // Angles are rare among all numbers.
+            // A random number is rarely in the range of a narrow rule, so draw from the range.
             let value = match (field.rule, value) {
                 (Rule::Counts(most), _) => {
                     Value::Vec3(Vec3::from([0; 3].map(|_| 1.0 + self.below(most as usize) as f32)))
@@ -110,7 +109,7 @@ impl Random {
         let mut kinds = T::kinds();
         let mut thing = kinds.remove(self.below(kinds.len()));
         for (i, field) in thing.fields().iter().enumerate() {
-            // A sky is six files.
+            // A cube map needs six files.
             let missing = self.tame && field.name.to_lowercase().starts_with("cube");
             if field.required || self.below(2) == 0 && !missing {
                 let value = self.value(field, materials);
@@ -177,7 +176,7 @@ impl Random {
         Object { node, material, span: Default::default() }
     }
 
-    /// Textures of different names.
+    /// Textures with different names.
     fn textures(&mut self) -> Assets {
         let mut assets = Assets::default();
         for i in 0..self.below(3) {
@@ -186,7 +185,7 @@ impl Random {
         assets
     }
 
-    /// A scene that the dialect's text can hold, as reading it would make it.
+    /// Scene that the dialect's text can represent, in the form in which reading returns it.
     pub fn scene(&mut self, dialect: Dialect) -> Scene {
         let nodes = dialect == Dialect::F23;
         fn spanned<T>(value: T) -> Spanned<T> {
@@ -206,7 +205,7 @@ impl Random {
             }));
         }
         let light = |random: &mut Self| {
-            // The trees of nodes know lights of their own only.
+            // Scenes of nodes support only their two kinds of lights.
             let mut value = loop {
                 let value = random.thing::<Light>(0);
                 if !(nodes && value.is_ours()) {
@@ -214,7 +213,7 @@ impl Random {
                 }
             };
             if let (Light::Point(point), true) = (&mut value, nodes) {
-                // A node adds its place to 0, which makes 0 of -0.
+                // A node adds its position to 0, which turns -0 into 0.
                 point.position += Vec3::ZERO;
             }
             Spanned { value, span: Default::default() }

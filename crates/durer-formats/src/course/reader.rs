@@ -1,4 +1,4 @@
-//! A file being read: its tokens, and how reading goes on after a mistake.
+//! State of reading a file: its tokens, and the recovery after mistakes.
 
 use super::ReadOptions;
 use super::include::{Opened, Splicer, Texts};
@@ -9,28 +9,28 @@ use durer_scene::dialect::{Dialect, DialectSet};
 use durer_scene::scene::{Object, Scene};
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
-/// Groups, transforms and nodes may be nested this deep.
+/// Maximum depth of nested groups, transforms and nodes.
 const DEEPEST: usize = 200;
 
-/// What has a name in the file.
+/// Named items of the file.
 #[derive(Default)]
 pub(super) struct Named {
     pub materials: BTreeMap<String, u32>,
     pub objects: BTreeMap<String, (Object, usize, Span)>,
-    /// Names whose object is wrong, of which that is told.
+    /// Names of objects with errors, which were reported.
     pub broken: BTreeSet<String>,
-    /// Objects that are there by `use`.
+    /// Number of objects added by `use`.
     pub used: usize,
 }
 
 impl Named {
-    /// Forgets the names of materials.
+    /// Removes the names of materials.
     pub fn clear_materials(&mut self) {
         self.materials.clear();
     }
 }
 
-/// A file being read.
+/// Reader of one file.
 pub(super) struct Reader<'a, 'd> {
     texts: Texts<'a>,
     tokens: Vec<Token>,
@@ -40,20 +40,20 @@ pub(super) struct Reader<'a, 'd> {
     pub scene: Scene,
     pub foreign_seen: HashSet<String>,
     pub depth: usize,
-    /// The keywords of the blocks that are open, outermost first.
+    /// Keywords of the open blocks, outermost first.
     pub blocks: Vec<Span>,
-    /// The token before which a missing `}` was reported: all blocks that end there are complained
-    /// of once.
+    /// Token before which a missing `}` was reported. Blocks that end at the same token get one
+    /// report.
     pub unclosed_at: Option<usize>,
-    /// Whether nothing more is reported, since the rest of the file was given up.
+    /// True once the rest of the file was given up: later errors are dropped.
     stopped: bool,
-    /// The current material, for all objects that follow.
+    /// Current material for the objects that follow.
     pub material: Option<u32>,
-    /// Every `MaterialIndex`, to be checked when all materials are known.
+    /// Every `MaterialIndex`, checked when all materials are known.
     pub material_uses: Vec<(u32, Span)>,
-    /// Materials and objects with names.
+    /// Named materials and objects.
     pub named: Named,
-    /// Errors that were told once for several places.
+    /// Number of errors that were merged into an earlier report.
     pub repeated: usize,
 }
 
@@ -93,12 +93,12 @@ impl<'a, 'd> Reader<'a, 'd> {
         reader
     }
 
-    /// Complains of comments and of missing blanks where the old programs did.
+    /// Reports comments and missing blanks that the course's parsers do not accept.
     fn check_form(&mut self, comments: &[Token]) {
         if !self.options.strict {
             let slashes = comments.iter().find(|c| self.texts.at(c.span).starts_with(b"/"));
             if let Some(comment) = slashes {
-                let message = "comments begin with `#`; this one is passed over all the same";
+                let message = "comments begin with `#`; this one is ignored anyway";
                 let slashes = Span { end: comment.span.start + 2, ..comment.span };
                 let warning = Diagnostic::warning(message).code("comment").at(comment.span);
                 self.diagnostics.push(warning.fix(slashes, "#"));
@@ -108,7 +108,8 @@ impl<'a, 'd> Reader<'a, 'd> {
         if let Some(comment) = comments.first() {
             self.error(Diagnostic::error("the course's language has no comments").at(comment.span));
         }
-        // They read words up to the next blank, but a number ends where it cannot go on.
+        // The course's parsers read words up to the next blank, but a number ends where it cannot
+        // continue.
         for i in 1..self.tokens.len() {
             let (before, token) = (self.tokens[i - 1], self.tokens[i]);
             let ends_number = token.kind == TokenKind::Close && self.text(before.span).parse::<f32>().is_ok();
@@ -124,12 +125,12 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
     }
 
-    /// What was read, with the checks that need the whole file.
+    /// Returns the scene, after the checks that need the whole file.
     pub(super) fn finish(self) -> Scene {
         let count = self.scene.materials.len();
         for (index, span) in self.material_uses.iter().filter(|(index, _)| *index as usize >= count) {
             let has = match count {
-                0 => "there are no materials".to_string(),
+                0 => "the scene has no materials".to_string(),
                 1 => "there is only material 0".to_string(),
                 n => format!("there are materials 0 to {}", n - 1),
             };
@@ -144,29 +145,29 @@ impl<'a, 'd> Reader<'a, 'd> {
         self.tokens.get(self.at).copied()
     }
 
-    /// The token so many further on.
+    /// Token `count` places ahead.
     pub(super) fn ahead(&self, count: usize) -> Option<Token> {
         self.tokens.get(self.at + count).copied()
     }
 
-    /// Whether `{` comes next.
+    /// Returns true if `{` comes next.
     pub(super) fn at_open(&self) -> bool {
         self.peek().is_some_and(|t| t.kind == TokenKind::Open)
     }
 
-    /// The next token's text, if it is a word.
+    /// Text of the next token, if it is a word.
     pub(super) fn peek_word(&self) -> Option<String> {
         self.peek().filter(|t| t.kind == TokenKind::Word).map(|t| self.text(t.span))
     }
 
-    /// Goes to the next token and gives the place of this one.
+    /// Moves past the next token and returns its span.
     pub(super) fn advance(&mut self) -> Span {
         let span = self.peek().map_or(self.end_span(), |t| t.span);
         self.at = (self.at + 1).min(self.tokens.len());
         span
     }
 
-    /// Goes back to the token that was read last, unless the rest of the file was given up.
+    /// Moves back to the last token, unless the rest of the file was given up.
     pub(super) fn step_back(&mut self) {
         if !self.stopped {
             self.at -= 1;
@@ -185,12 +186,12 @@ impl<'a, 'd> Reader<'a, 'd> {
         String::from_utf8_lossy(self.texts.at(span)).into_owned()
     }
 
-    /// How many errors there are: a block is checked as a whole only if none was found in it.
+    /// Number of errors so far: a block is checked as a whole only if it has none.
     pub(super) fn errors(&self) -> usize {
         self.diagnostics.error_count() + self.repeated
     }
 
-    /// Reports an error about a name, which may stand at many places, once.
+    /// Reports an error about a name once, even if the name occurs at many places.
     pub(super) fn error_once(&mut self, error: Diagnostic) {
         let known = self.diagnostics.error_count();
         if !self.stopped && !self.diagnostics.push_once(error) {
@@ -201,7 +202,8 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
     }
 
-    /// Reports an error, unless the rest of the file was given up; after too many, it is.
+    /// Reports an error, unless the rest of the file was given up. Gives it up after too many
+    /// errors.
     pub(super) fn error(&mut self, error: Diagnostic) {
         if self.stopped {
             return;
@@ -218,7 +220,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         self.at = self.tokens.len();
     }
 
-    /// Goes one level deeper, unless that is too deep.
+    /// Enters one level of nesting; reports an error if the limit is reached.
     pub(super) fn descend(&mut self, what: &str, span: Span) -> bool {
         if self.depth >= DEEPEST {
             self.error(Diagnostic::error(format!("{what} are nested deeper than {DEEPEST}")).at(span));
@@ -229,8 +231,8 @@ impl<'a, 'd> Reader<'a, 'd> {
         true
     }
 
-    /// Expects the `{` of a block. Where it is missing but the block's inside follows, it is read
-    /// as if it were there.
+    /// Expects the `{` of a block. If it is missing but a word of the block follows, continues
+    /// inside the block.
     pub(super) fn open(&mut self, keyword: Span) -> bool {
         let opens = self.at_open();
         let name = self.text(keyword);
@@ -247,7 +249,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         opens || inside
     }
 
-    /// The next word inside the innermost block; `None` after its end.
+    /// Next word inside the innermost block; `None` after its end.
     pub(super) fn word_before_close(&mut self) -> Option<(String, Span)> {
         let name = self.blocks.last().map(|&block| self.text(block)).unwrap_or_default();
         loop {
@@ -282,7 +284,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
     }
 
-    /// Whether a section begins here, which can only stand at the top of a file.
+    /// Returns true if a section begins here, which is possible only at the top of a file.
     fn at_section(&self) -> bool {
         let block = self.ahead(1).is_some_and(|t| t.kind == TokenKind::Open);
         let word = self.peek_word().filter(|_| block).unwrap_or_default();
@@ -293,7 +295,7 @@ impl<'a, 'd> Reader<'a, 'd> {
     }
 }
 
-/// The names of some dialects.
+/// Names of a set of dialects.
 pub(super) fn names(set: DialectSet) -> String {
     let years: Vec<&str> = Dialect::ALL.iter().filter(|d| d.is_in(set)).map(|d| d.name()).collect();
     if years.is_empty() { "no dialect".to_string() } else { years.join(", ") }

@@ -1,4 +1,4 @@
-//! How reading goes on after a mistake, so that one mistake is one error.
+//! Recovery after a mistake, so that one mistake gives one error.
 
 use super::lexer::TokenKind;
 use super::meant::{counterpart, misplaced, slip};
@@ -9,13 +9,13 @@ use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::dialect::Dialect;
 
 impl Reader<'_, '_> {
-    /// Ends the innermost block before the next token, which cannot stand in it.
+    /// Ends the innermost block before the next token, which is not allowed in it.
     pub(super) fn unclosed(&mut self) {
         let Some(block) = self.blocks.pop() else { return };
         if self.unclosed_at != Some(self.at) {
             self.unclosed_at = Some(self.at);
             let span = self.peek().map_or(self.end_span(), |t| t.span);
-            let message = format!("`{}` cannot stand in `{}`", self.text(span), self.text(block));
+            let message = format!("`{}` is not allowed in `{}`", self.text(span), self.text(block));
             let error = Diagnostic::error(message).code("unclosed-block").at(span);
             let (before, brace) = (Span { end: span.start, ..span }, "}\n");
             let error = error.label("is there a `}` missing before this?").fix(before, brace);
@@ -23,16 +23,16 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Opens the block again that the `}` just read has closed, which is one too many.
+    /// Reopens the block that the last `}` closed, since this brace is superfluous.
     pub(super) fn reopen_block(&mut self, keyword: Span, found: u32) {
-        let message = format!("this `}}` ends `{}` after {found}, but more of it follow", self.text(keyword));
+        let message = format!("this `}}` ends `{}` after {found} of its elements, but more follow", self.text(keyword));
         let brace = self.last_span();
         let error = Diagnostic::error(message).code("extra-brace").at(brace).fix(brace, "");
-        self.error(error.label("is this `}` one too many?"));
+        self.error(error.label("is this `}` superfluous?"));
         self.blocks.push(keyword);
     }
 
-    /// Passes over `{ ... }` with all that is nested in it.
+    /// Skips `{ ... }` with all nested blocks.
     pub(super) fn skip_block(&mut self) {
         let mut depth = 0usize;
         while let Some(token) = self.peek() {
@@ -48,14 +48,14 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// After a wrong value: passes over what is no word of the language.
+    /// Skips the rest of a wrong value, up to the next word of the language.
     pub(super) fn skip_values(&mut self) {
         while self.peek_word().is_some_and(|word| dialects_of(&word).is_none()) {
             self.advance();
         }
     }
 
-    /// After an unknown word: passes over its value, be it a word, numbers or a block.
+    /// Skips the value of an unknown word: a word, numbers or a block.
     pub(super) fn skip_value(&mut self) {
         if self.at_open() {
             return self.skip_block();
@@ -74,11 +74,11 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Reports a word that means nothing here, and passes over it, its values and its block.
+    /// Reports an unknown word, and skips it with its values and its block.
     pub(super) fn unknown(&mut self, word: &str, span: Span, place: &str, known: &[&str]) {
         let message = match word.parse::<f32>() {
-            Ok(_) => format!("{} is a number too many {place}", shown(word.as_bytes())),
-            Err(_) => format!("{} means nothing {place}", shown(word.as_bytes())),
+            Ok(_) => format!("unexpected number {} {place}", shown(word.as_bytes())),
+            Err(_) => format!("unknown word {} {place}", shown(word.as_bytes())),
         };
         let list = || format!("known here: {}", known.join(", "));
         let help = misplaced(word, place).map(String::from);
@@ -97,8 +97,8 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The known word that is meant by one that is none. A word of the language is hardly a slip of
-    /// another, unless of its capitals.
+    /// Returns the known word that an unknown one probably stands for. A word of the language is
+    /// taken for another only if they differ in case.
     fn meant<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
         let known: Vec<&str> = known.into_iter().collect();
         let there = counterpart(word, self.options.dialect);
@@ -112,7 +112,7 @@ impl Reader<'_, '_> {
         (dialects_of(word).is_none() || near.eq_ignore_ascii_case(word)).then_some(near)
     }
 
-    /// An error about a word, with the edit that makes it the one that is meant, if that is clear.
+    /// Adds a fix to an error about a word: its replacement by the probable word, if that is clear.
     pub(super) fn with_meant<'w>(
         &self,
         error: Diagnostic,
@@ -124,7 +124,7 @@ impl Reader<'_, '_> {
         error.fix_at(meant.map(|_| span), meant.unwrap_or_default())
     }
 
-    /// What may be meant by a word that stands in a wrong place.
+    /// Returns help on a word in a wrong place.
     pub(super) fn advice<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<String> {
         let known: Vec<&str> = known.into_iter().collect();
         let year = self.options.dialect.name();
@@ -144,6 +144,6 @@ impl Reader<'_, '_> {
         if nodes && !Dialect::F23.is_in(set) || !nodes && set == Dialect::F23 as u8 {
             return Some(format!("it is a word of {}", names(set)));
         }
-        home_of(word).map(|home| format!("it belongs into a `{home}`"))
+        home_of(word).map(|home| format!("it belongs in a `{home}`"))
     }
 }

@@ -1,8 +1,7 @@
-//! The reference of the language: every word that begins something, what follows it, in which
-//! dialects, with an example.
+//! Reference of the scene language: each keyword with its contents, its dialects and an example.
 //!
-//! What has parameters is read off its statement; the words of the grammar itself, which have none,
-//! are a table here.
+//! Keywords with parameters come from the descriptions of their statements. The table [`GRAMMAR`]
+//! lists the others, which belong to the grammar itself.
 
 use super::write::write_thing;
 use durer_scene::camera::Camera;
@@ -15,27 +14,27 @@ use durer_scene::medium::Fog;
 use durer_scene::scene::{Background, NamedTexture, Operation};
 use durer_scene::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
 
-/// A chapter of the reference.
+/// Chapter of the reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Chapter {
-    /// The frame of a scene file: sections, groups, counts.
+    /// Frame of a scene file: sections, groups, counts.
     Structure,
-    /// What sees.
+    /// Cameras.
     Cameras,
-    /// What shines.
+    /// Lights.
     Lights,
-    /// How surfaces look.
+    /// Surface materials.
     Materials,
-    /// What can be hit.
+    /// Shapes that rays can hit.
     Shapes,
     /// Shapes combined by Boolean operations.
     Solids,
-    /// How things are moved.
+    /// Transforms of objects.
     Transforms,
 }
 
 impl Chapter {
-    /// All chapters, in the order of reading.
+    /// Chapters in reading order.
     pub const ALL: [Chapter; 7] = [
         Chapter::Structure,
         Chapter::Cameras,
@@ -46,7 +45,7 @@ impl Chapter {
         Chapter::Transforms,
     ];
 
-    /// Its title.
+    /// Title of the chapter.
     pub fn title(self) -> &'static str {
         match self {
             Chapter::Structure => "Structure",
@@ -60,57 +59,57 @@ impl Chapter {
     }
 }
 
-/// A word, with the dialects that have it.
+/// A word with the dialects that have it.
 pub type Spelling = (&'static str, DialectSet);
 
-/// A word that begins something.
+/// Entry of a keyword.
 #[derive(Clone, Debug)]
 pub struct Entry {
-    /// The keywords, by dialect; the first is its name here.
+    /// Keywords by dialect; the first is the name of the entry.
     pub keywords: Vec<Spelling>,
-    /// Where it is described.
+    /// Chapter that describes the keyword.
     pub chapter: Chapter,
-    /// What it is.
+    /// Description.
     pub doc: String,
-    /// What follows a word that is no block: `x y z`, say.
+    /// Values after a keyword without a block, such as `x y z`.
     pub values: &'static str,
-    /// The fields of its block.
+    /// Fields of the keyword's block.
     pub fields: Vec<FieldEntry>,
-    /// How it is written: in our own dialect, or in that of its years where ours has no such word.
+    /// Example in the Dürer dialect, or in the keyword's own dialect if the Dürer dialect lacks it.
     pub example: String,
 }
 
-/// A field of a block.
+/// Field of a block.
 #[derive(Clone, Debug)]
 pub struct FieldEntry {
-    /// Its name in code.
+    /// Name of the field in code.
     pub name: &'static str,
-    /// What its value is.
+    /// Kind of the value.
     pub kind: Kind,
-    /// Its words, by dialect.
+    /// Words for the field, by dialect.
     pub words: Vec<Spelling>,
-    /// Type and range.
+    /// Type and range of the value.
     pub value: String,
-    /// Whether it must be given.
+    /// True if the field is required.
     pub required: bool,
-    /// What holds where it is not given, if that is a value.
+    /// Default, if it is a value.
     pub default: Option<String>,
     /// Meaning and unit.
     pub doc: String,
 }
 
 impl Entry {
-    /// Its name in the reference.
+    /// Name of the entry in the reference.
     pub fn name(&self) -> &'static str {
         self.keywords[0].0
     }
 
-    /// The dialects that have it.
+    /// Dialects that have the keyword.
     pub fn dialects(&self) -> DialectSet {
         self.keywords.iter().fold(0, |all, keyword| all | keyword.1)
     }
 
-    /// A scene that shows the example, if it can be seen.
+    /// Scene that shows the example, if it is visible.
     pub fn scene(&self) -> Option<String> {
         let example = &self.example;
         Some(match self.chapter {
@@ -173,7 +172,7 @@ Group {
 }
 ";
 
-/// Examples that say more than the defaults of a statement do.
+/// Examples that show more than the defaults of a statement.
 const EXAMPLES: [(&str, &str); 30] = [
     ("Fog", "Fog { extinction 0.25 color 0.9 0.95 1 }"),
     ("Texture", "Texture { name bark picture bark.png wrapU mirror uvTransform { 4 0 0  0 4 0 } }"),
@@ -181,7 +180,7 @@ const EXAMPLES: [(&str, &str); 30] = [
     ("DirectionalLight", "DirectionalLight { direction -1 -2 -0.7 color 0.9 0.85 0.7 }"),
     ("PointLight", "PointLight { position 1.6 1.8 1.4 color 3 2.8 2.4 falloff 0.4 }"),
     ("SpotLight", "SpotLight { position 0 3 1 direction 0 -1 -0.3 color 9 8 6 angle 35 innerAngle 10 }"),
-    ("PhotometricLight", "PhotometricLight { position 0 3 1 file lamps/street.ies color 0.3 0.28 0.24 }"),
+    ("PhotometricLight", "PhotometricLight { position 0 3 1 file lamps/street.ies color 0.3 0.28 0.24 }"), // prose: keep
     (
         "PhongMaterial",
         "PhongMaterial { diffuseColor 0.2 0.4 0.6 specularColor 0.8 0.8 0.8 exponent 60 reflectiveColor 0.2 0.2 0.2 }",
@@ -216,8 +215,8 @@ const EXAMPLES: [(&str, &str); 30] = [
     ("Grid", "Grid { min -1 -1.2 -1 max 1 0.8 1 numCells 10 10 10 rasterizeSphere { center 0 -0.2 0 radius 0.95 } }"),
 ];
 
-/// What `preset` takes.
-const PRESET: &str = "First in a `PrincipledMaterial`: a real material by name, which fields after it change. Names: aluminum-brushed, \
+/// Description of `preset`.
+const PRESET: &str = "A real material by name, as the first field of a `PrincipledMaterial`; later fields change it. Names: aluminum-brushed, \
     beryllium, blackboard, blood, brass, brick, carpaint, cesium, charcoal, chromium, cobalt, coffee, concrete, \
     cooking-oil, copper, diamond, egg-shell, eye-cornea, eye-lens, gasoline, germanium, glass, gold, gray-card, \
     honey-liquid, ice, iridium, iron, lcd-display-6500k, lead, light-bulb-2700k, light-bulb-5000k, lithium, \
@@ -226,42 +225,42 @@ const PRESET: &str = "First in a `PrincipledMaterial`: a real material by name, 
     sapphire, silicon, silver, sodium, stainless-steel, tire, titanium, toner-black, tungsten, vanadium, velvet, \
     water, whiteboard, zinc.";
 
-/// Words of the grammar itself: spellings, chapter, what follows, meaning, example.
+/// Keywords of the grammar itself: spellings, chapter, values, description, example.
 #[rustfmt::skip]
 const GRAMMAR: &[(&[Spelling], Chapter, &str, &str, &str)] = &[
     (&[("Lights", set::CLASSIC)], Chapter::Structure, "{ lights }",
-        "The lights. Without any, ambient light counts as 1 1 1.", "Lights { PointLight { position 0 4 0 color 1 1 1 } }"),
+        "The lights. Without any light, the ambient light is 1 1 1.", "Lights { PointLight { position 0 4 0 color 1 1 1 } }"),
     (&[("Textures", set::DURER)], Chapter::Structure, "{ textures }",
-        "Pictures with names, which materials name in place of a file; each says how its picture lies on surfaces.",
+        "Named pictures with their mappings. Materials refer to them by name in place of a file.",
         "Textures { Texture { name bark picture bark.png wrapU mirror } }"),
     (&[("Materials", set::ALL)], Chapter::Structure, "{ materials }",
-        "The materials, numbered from 0 as they are written. In our own dialect one may have a name before its block.",
+        "The materials, numbered from 0 in file order. In the Dürer dialect, a name may precede each block.",
         "Materials { PhongMaterial red { diffuseColor 0.8 0.2 0.2 } }"),
     (&[("Group", set::CLASSIC)], Chapter::Structure, "{ objects }",
-        "Several objects. The scene has one at its top; groups may hold groups.",
+        "Several objects. A scene has one group at its top; groups may be nested.",
         "Group { MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }"),
     (&[("MaterialIndex", set::CLASSIC)], Chapter::Structure, "n",
-        "The material of all objects that follow, up to the next such word: its number or, in our own dialect, its name.", "MaterialIndex red"),
+        "The material of all following objects, up to the next `MaterialIndex`: its number or, in the Dürer dialect, its name.", "MaterialIndex red"),
     (&[("include", set::DURER)], Chapter::Structure, "file",
-        "The text of a file in the scene's folder or below it, in place of these two words. It closes all blocks that it opens.",
+        "Inserts the text of a file in or below the scene's folder. The file must close all blocks that it opens.",
         "include room.txt"),
     (&[("define", set::DURER)], Chapter::Structure, "name object",
-        "Gives an object a name, and shows nothing yet. What is in it and has no material gets that of the place where it is used. It may \
-         stand at the top of a file or in a group, before what uses it.",
+        "Names an object without showing it. Its parts without a material take the one that is current at each use. Allowed \
+         at the top of a file or in a group, before its first use.",
         "define column Group { Cylinder { base 0 0 0 top 0 3 0 radius 0.3 } Box { min -0.5 3 -0.5 max 0.5 3.3 0.5 } }"),
     (&[("use", set::DURER)], Chapter::Structure, "name",
-        "An object that was defined, once more: in groups, transforms and solids.", "Transform { Translate 2 0 0 use column }"),
+        "A copy of a defined object. Allowed in groups, transforms and solids.", "Transform { Translate 2 0 0 use column }"),
     (&[("numObjects", set::CLASSIC), ("num_objects", set::F03)], Chapter::Structure, "n",
-        "How many objects follow in this group. The course's programs need it; ours checks it where it is written.",
+        "Number of objects in this group. The course's programs require it; Dürer checks it if it is present.",
         "Group { numObjects 1 MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }"),
-    (&[("numLights", set::CLASSIC)], Chapter::Structure, "n", "How many lights follow; as `numObjects`.",
+    (&[("numLights", set::CLASSIC)], Chapter::Structure, "n", "Number of lights; see `numObjects`.",
         "Lights { numLights 1 DirectionalLight { direction 0 -1 0 color 1 1 1 } }"),
-    (&[("numMaterials", set::CLASSIC)], Chapter::Structure, "n", "How many materials follow; as `numObjects`.",
+    (&[("numMaterials", set::CLASSIC)], Chapter::Structure, "n", "Number of materials; see `numObjects`.",
         "Materials { numMaterials 1 PhongMaterial { diffuseColor 0.8 0.2 0.2 } }"),
     (&[("Scene", set::F23)], Chapter::Structure, "{ nodes and components }", "The root node of a scene of 2020 to 2023.",
         "Scene { Node { Transform { translate 0 1 0 } Component<Material> { index 0 } Component<Object> { type sphere radius 1 } } }"),
     (&[("Node", set::F23)], Chapter::Structure, "{ Transform, nodes and components }",
-        "A place in the tree of a scene of 2020 to 2023: its transform holds for all that is in it.",
+        "A node in the tree of a scene of 2020 to 2023. Its transform applies to all its contents.",
         "Node { Transform { translate 0 1 0 } Component<Material> { index 0 } Component<Object> { type sphere radius 1 } }"),
     (&[("Component<Object>", set::F23)], Chapter::Structure, "{ type ... }",
         "An object at a node: `type` is `sphere`, `plane`, `triangle` or `mesh`; the fields of that shape follow.",
@@ -270,36 +269,36 @@ const GRAMMAR: &[(&[Spelling], Chapter, &str, &str, &str)] = &[
         "A light at a node: `type` is `point` or `directional`; its fields follow.",
         "Component<Light> { type directional direction -0.5 -0.3 -1 color 0.9 0.9 0.9 }"),
     (&[("Component<Material>", set::F23)], Chapter::Structure, "{ index n }",
-        "The material of a node's objects: the number of one in `Materials`.", "Component<Material> { index 0 }"),
-    (&[("type", set::F23)], Chapter::Structure, "word", "What a component is.", "Component<Object> { type mesh obj_file models/cube.obj }"),
+        "The material of a node's objects, as a number in `Materials`.", "Component<Material> { index 0 }"),
+    (&[("type", set::F23)], Chapter::Structure, "word", "Kind of a component.", "Component<Object> { type mesh obj_file models/cube.obj }"),
     (&[("index", set::F23)], Chapter::Structure, "n", "The number of a material.", "Component<Material> { index 1 }"),
     (&[("preset", set::DURER)], Chapter::Materials, "name",
         PRESET, "PrincipledMaterial { preset gold specularRoughness 0.2 }"),
     (&[("Transform", set::ALL)], Chapter::Transforms, "{ matrices object }",
-        "One object, moved. The matrices multiply as they are written: the last is applied to the object first.",
+        "One transformed object. The matrices are multiplied in file order: the last one is applied to the object first.",
         "Transform { Translate 0 -0.4 0 ZRotate 25 Scale 1 0.5 0.7 Sphere { center 0 0 0 radius 1 } }"),
     (&[("Translate", set::CLASSIC), ("translate", set::F23)], Chapter::Transforms, "x y z", "Moves by a vector.",
         "Transform { Translate 0.8 -0.5 0 Sphere { center 0 0 0 radius 0.7 } }"),
     (&[("Scale", set::CLASSIC), ("scale", set::F23)], Chapter::Transforms, "x y z",
-        "Stretches along the axes. No factor may be 0; one less than 0 mirrors.",
+        "Scales along the axes. Factors must not be 0; negative factors mirror.",
         "Transform { Scale 1.2 0.5 0.8 Sphere { center 0 0 0 radius 1 } }"),
     (&[("UniformScale", set::CLASSIC), ("uniform_scale", set::F23)], Chapter::Transforms, "s",
-        "Enlarges alike in all directions.", "Transform { UniformScale 0.6 Sphere { center 0 0 0 radius 1 } }"),
+        "Scales equally along all axes.", "Transform { UniformScale 0.6 Sphere { center 0 0 0 radius 1 } }"),
     (&[("XRotate", set::CLASSIC), ("x_rotate", set::F23)], Chapter::Transforms, "degrees",
-        "Turns about the x axis: y towards z.", "Transform { XRotate 30 Box { min -0.6 -0.9 -0.6 max 0.6 0.9 0.6 } }"),
+        "Rotates about the x axis, from y towards z.", "Transform { XRotate 30 Box { min -0.6 -0.9 -0.6 max 0.6 0.9 0.6 } }"),
     (&[("YRotate", set::CLASSIC), ("y_rotate", set::F23)], Chapter::Transforms, "degrees",
-        "Turns about the y axis: z towards x.", "Transform { YRotate 60 Box { min -1 -1.2 -0.4 max 1 0.3 0.4 } }"),
+        "Rotates about the y axis, from z towards x.", "Transform { YRotate 60 Box { min -1 -1.2 -0.4 max 1 0.3 0.4 } }"),
     (&[("ZRotate", set::CLASSIC), ("z_rotate", set::F23)], Chapter::Transforms, "degrees",
-        "Turns about the z axis: x towards y.", "Transform { ZRotate 30 Box { min -0.6 -0.9 -0.6 max 0.6 0.9 0.6 } }"),
+        "Rotates about the z axis, from x towards y.", "Transform { ZRotate 30 Box { min -0.6 -0.9 -0.6 max 0.6 0.9 0.6 } }"),
     (&[("Rotate", set::CLASSIC), ("rotate", set::F23)], Chapter::Transforms, "{ x y z degrees }",
-        "Turns about an axis through the origin.",
+        "Rotates about an axis through the origin.",
         "Transform { Rotate { 1 1 0 50 } Box { min -0.6 -0.9 -0.6 max 0.6 0.9 0.6 } }"),
     (&[("Matrix", set::OLD | set::DURER), ("Matrix4f", set::NEW | set::DURER)], Chapter::Transforms, "{ 16 numbers }",
         "Any affine map. `Matrix` lists rows, `Matrix4f` columns; the last row is 0 0 0 1.",
         "Transform { Matrix { 1 0.6 0 0  0 1 0 -0.4  0 0 1 0  0 0 0 1 } Box { min -0.6 -0.8 -0.6 max 0.6 0.8 0.6 } }"),
 ];
 
-/// Every word that begins something, by chapter.
+/// Returns the entries of all keywords, by chapter.
 pub fn entries() -> Vec<Entry> {
     let mut all: Vec<Entry> = Vec::new();
     all.extend(of::<Background>(Chapter::Structure));
@@ -339,7 +338,7 @@ pub fn entries() -> Vec<Entry> {
     all
 }
 
-/// The entries of a list of described things.
+/// Returns the entries of a list of described statements.
 fn of<T: DescribedList>(chapter: Chapter) -> Vec<Entry> {
     let entry = |mut kind: T| {
         let keywords = kind.keywords().to_vec();
@@ -350,7 +349,7 @@ fn of<T: DescribedList>(chapter: Chapter) -> Vec<Entry> {
         let example = match EXAMPLES.iter().any(|row| row.0 == name) {
             true => example_of(name),
             false => {
-                // A camera a little above the ground sees more of the town.
+                // Raise the camera slightly above the ground, so that it sees more of the scene.
                 let center = kind.fields().iter().position(|field| field.name == "center");
                 if let (Chapter::Cameras, Some(center)) = (chapter, center) {
                     kind.set(center, Value::Vec3(Vec3::new(0.0, 0.3, 0.0)));
@@ -383,7 +382,7 @@ fn field<T: DescribedList>(kind: &T, i: usize, own: DialectSet) -> FieldEntry {
     }
 }
 
-/// The names of the dialects of a set; `all` where it has them all.
+/// Names of a set of dialects; `all dialects` for the full set.
 pub fn dialect_names(dialects: DialectSet) -> String {
     if dialects == set::ALL {
         return "all dialects".into();
@@ -392,7 +391,7 @@ pub fn dialect_names(dialects: DialectSet) -> String {
     names.join(", ")
 }
 
-/// What a value of a kind under a rule may be.
+/// Description of the values that a kind and a rule allow.
 fn value_of(kind: Kind, rule: Rule) -> String {
     let kind = match kind {
         Kind::Float => "number".to_string(),
@@ -400,7 +399,7 @@ fn value_of(kind: Kind, rule: Rule) -> String {
         Kind::Vec3 => "three numbers".into(),
         Kind::Path => "path".into(),
         Kind::Word(words) => return words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", "),
-        Kind::Rows(width) => format!("`{{ }}` of rows of {width} numbers"),
+        Kind::Rows(width) => format!("`{{ }}` with rows of {width} numbers"),
     };
     let rule = match rule {
         Rule::Any => return kind,
@@ -435,8 +434,8 @@ fn one_line(doc: &str) -> String {
     doc.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Every word of the language, fields and values among them, sorted: for editors, and to guess what
-/// was meant.
+/// Returns every word of the language, including fields and values, sorted. Used by editors and for
+/// suggestions.
 pub fn all_words() -> Vec<&'static str> {
     let mut words: Vec<&'static str> = Vec::new();
     for entry in entries() {

@@ -1,4 +1,4 @@
-//! The grammar of 2003 to 2019: sections, groups, objects.
+//! Grammar of 2003 to 2019: sections, groups, objects.
 
 use super::fields::Order;
 use super::lexer::TokenKind;
@@ -15,7 +15,7 @@ use durer_scene::medium::Fog;
 use durer_scene::scene::{Background, Group, Material, NamedTexture, Node, Object, Operation, Spanned};
 use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
-/// What stands in a group: [`OBJECTS`] of them are objects.
+/// Words allowed in a group: the first [`OBJECTS`] begin objects.
 #[rustfmt::skip]
 pub(super) const IN_GROUP: [&str; OBJECTS + 4] = [
     "Group", "Transform", "use", "Sphere", "Plane", "Triangle", "TriangleMesh",
@@ -24,13 +24,13 @@ pub(super) const IN_GROUP: [&str; OBJECTS + 4] = [
     "MaterialIndex", "numObjects", "Grid", "define",
 ];
 
-/// How many words of [`IN_GROUP`] begin an object that is proposed in a transform.
+/// Number of words of [`IN_GROUP`] that begin an object and are suggested in a transform.
 pub(super) const OBJECTS: usize = 21;
 
 impl Reader<'_, '_> {
-    /// The whole file.
+    /// Reads the whole file.
     pub(super) fn scene_file(&mut self) {
-        // Years before ours had two cameras.
+        // The course's dialects have only two cameras.
         let dialect = self.options.dialect;
         let kinds = Camera::kinds();
         let cameras = kinds.iter().filter(|c| dialect == Dialect::Durer || c.keywords()[0].1 != set::DURER);
@@ -54,7 +54,7 @@ impl Reader<'_, '_> {
         });
     }
 
-    /// Reads sections up to the end of the file; `section` says whether it knew the word.
+    /// Reads sections up to the end of the file; `section` returns true if it knows the word.
     pub(super) fn top(&mut self, known: &[&str], mut section: impl FnMut(&mut Self, &str, Span) -> bool) {
         let mut seen: Vec<(String, Span)> = Vec::new();
         while let Some(token) = self.peek() {
@@ -65,16 +65,16 @@ impl Reader<'_, '_> {
                 self.skip_block();
                 self.error(Diagnostic::error("`{` without a keyword").at(span));
             } else if token.kind == TokenKind::Close {
-                let message = "this `}` closes nothing";
+                let message = "this `}` has no matching `{`";
                 let error = Diagnostic::error(message).code("extra-brace").at(span).fix(span, "");
-                self.error(error.help("is there a `}` too many before it?"));
+                self.error(error.help("is there an extra `}` before it?"));
             } else if !section(self, &word, span) {
                 self.unknown(&word, span, "at the top of a scene", known);
             } else if word != "define" {
-                // A scene has one camera, whatever its kind.
+                // A scene has one camera of any kind.
                 let kind = if word.ends_with("Camera") { "Camera".to_string() } else { word.clone() };
                 if let Some((_, first)) = seen.iter().find(|(earlier, _)| *earlier == kind) {
-                    let message = format!("this is another `{kind}`: the last counts, the others are dropped");
+                    let message = format!("this is another `{kind}`: only the last is used");
                     let warning = Diagnostic::warning(message).code("repeated").at(span);
                     let warning = warning.related(*first, "the first is here");
                     self.diagnostics.push(warning);
@@ -106,14 +106,14 @@ impl Reader<'_, '_> {
         self.scene.fog = Some(Spanned { value: fog, span: keyword });
     }
 
-    /// Warns of a keyword that this dialect does not have.
+    /// Warns of a keyword that this dialect lacks.
     pub(super) fn check_keyword<T: DescribedList>(&mut self, thing: &T, keyword: Span) {
         let word = self.text(keyword);
         let set = thing.keywords().iter().find(|(w, _)| *w == word).map_or(0, |k| k.1);
         self.foreign(&word, keyword, set);
     }
 
-    /// Reads `{ count n element ... }`: the elements and their number, which must agree.
+    /// Reads `{ count n element ... }`. The count must match the number of elements.
     fn counted(&mut self, keyword: Span, count_word: &str, mut element: impl FnMut(&mut Self, &str, Span) -> bool) {
         let errors = self.errors();
         let name = self.text(keyword);
@@ -163,7 +163,8 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Whether a section of the top ended by a `}` too many: what follows can only stand in it.
+    /// Returns true if a superfluous `}` ended a top-level section: the next word belongs in that
+    /// section.
     fn closed_early(&self, name: &str) -> bool {
         let word = self.peek_word().unwrap_or_default();
         self.depth == 0 && !is_section(&word) && home_of(&word) == Some(name)
@@ -178,7 +179,7 @@ impl Reader<'_, '_> {
                 return false;
             };
             reader.check_keyword(&light, span);
-            // From 2012's last assignment on, point lights may have their fields in any order.
+            // Since the last assignment of 2012, point lights may have their fields in any order.
             let free = matches!(reader.options.dialect, Dialect::F12a5 | Dialect::F16 | Dialect::Durer);
             let order = if free && matches!(light, Light::Point(_)) { Order::Any } else { Order::Listed };
             reader.fields(&mut light, span, order, |_, _, _| false);
@@ -203,7 +204,7 @@ impl Reader<'_, '_> {
             let FileName { path: name, span: at } = texture.name.clone();
             let twice = reader.scene.assets.pictures.insert(name.clone(), texture.picture()).is_some();
             if twice && reader.errors() == errors {
-                reader.error(Diagnostic::error(format!("there is a texture `{name}` already")).code("repeated").at(at));
+                reader.error(Diagnostic::error(format!("a texture `{name}` already exists")).code("repeated").at(at));
             }
             true
         });
@@ -226,7 +227,7 @@ impl Reader<'_, '_> {
         });
     }
 
-    /// One material, if the word begins one.
+    /// Reads a material, if the word begins one.
     pub(super) fn material(&mut self, word: &str, span: Span) -> Option<Material> {
         let errors = self.errors();
         if let Some(mut solid) = Solid::from_keyword(word) {
@@ -246,7 +247,7 @@ impl Reader<'_, '_> {
         }
         if let Some(mut principled) = PrincipledMaterial::from_keyword(word) {
             self.check_keyword(&principled, span);
-            // A preset comes first, so that what follows changes it.
+            // A preset comes first, so that the fields after it change it.
             let first = self.ahead(1).filter(|token| self.at_open() && self.text(token.span) == "preset");
             let name = first.and_then(|_| self.ahead(2)).map(|token| self.text(token.span));
             principled = name.as_deref().and_then(presets::named).unwrap_or(principled);
@@ -297,13 +298,13 @@ impl Reader<'_, '_> {
         Some(Material::Phong(Box::new(phong), noise))
     }
 
-    /// The name of a preset, which was taken already where it stands first.
+    /// Reads the name of a preset. A preset that comes first has already been applied.
     fn preset(&mut self, word: Span, first: bool) {
         let Some(name) = self.peek_word() else { return self.expected("a name", "preset") };
         let span = self.advance();
         if presets::named(&name).is_none() {
             let near = did_you_mean(&name, presets::PRESETS.iter().map(|row| row.0));
-            let error = Diagnostic::error(format!("there is no material `{name}`")).code("unknown-word").at(span);
+            let error = Diagnostic::error(format!("unknown preset `{name}`")).code("unknown-word").at(span);
             self.error(match near {
                 Some(near) => error.help(format!("did you mean `{near}`?")).fix(span, near),
                 None => error.help("`durer words preset` lists them"),
@@ -314,12 +315,12 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A solid may only be made of earlier materials, so that there is no circle.
+    /// Checks that a solid texture uses only earlier materials, which rules out cycles.
     fn check_solid(&mut self, solid: &Solid, span: Span) {
         let own = self.scene.materials.len() as u32;
         if let Some(index) = durer_scene::material::Pattern::materials(solid).into_iter().find(|index| *index >= own) {
-            let message = format!("material {own} is mixed of earlier ones, but {index} is not before {own}");
-            self.error(Diagnostic::error(message).at(span).help("materials are numbered from 0, as they are written"));
+            let message = format!("material {own} may use only earlier materials, but {index} is not before {own}");
+            self.error(Diagnostic::error(message).at(span).help("materials are numbered from 0, in file order"));
         }
     }
 
@@ -341,7 +342,7 @@ impl Reader<'_, '_> {
                     reader.define(span);
                     false
                 }
-                // 2003 writes materials where they are used.
+                // The dialect of 2003 has materials at their place of use.
                 "Material" | "PhongMaterial" => {
                     reader.foreign("Material in Group", span, set::F03);
                     if let Some(value) = reader.material(word, span) {
@@ -356,7 +357,8 @@ impl Reader<'_, '_> {
         Group { objects }
     }
 
-    /// Cells of a box and the balls that fill them; also where a component says so by its type.
+    /// Reads a voxel grid: a box of cells and the spheres that fill them. A component may name it
+    /// by its type.
     pub(super) fn voxels(&mut self, keyword: Span) -> Node {
         let (mut grid, mut balls) = (VoxelGrid::default(), Vec::new());
         self.fields(&mut grid, keyword, Order::Any, |reader, word, span| {
@@ -376,12 +378,12 @@ impl Reader<'_, '_> {
         Node::Voxels(grid, balls)
     }
 
-    /// One object, if the word begins one.
+    /// Reads an object, if the word begins one.
     pub(super) fn object(&mut self, word: &str, span: Span) -> Option<Object> {
         if !self.descend("objects", span) {
             return None;
         }
-        // What is current now belongs to the object; inside a group it may change.
+        // The current material belongs to this object; a group may change it inside.
         let material = self.material;
         let classic = |words: &[(&str, DialectSet)]| words.iter().any(|(w, s)| *w == word && s & set::CLASSIC != 0);
         let node = if word == "Group" {

@@ -1,4 +1,4 @@
-//! Transforms: matrices, then one object.
+//! Reading of transforms: matrices, then one object.
 
 use super::lexer::TokenKind;
 use super::reader::Reader;
@@ -10,7 +10,7 @@ use durer_scene::math::Vec3;
 use durer_scene::scene::{MatrixOp, Node};
 
 impl Reader<'_, '_> {
-    /// `Transform { matrix ... object }`.
+    /// Reads `Transform { matrix ... object }`.
     pub(super) fn transform(&mut self, keyword: Span) -> Option<Node> {
         let errors = self.errors();
         if !self.open(keyword) {
@@ -28,7 +28,7 @@ impl Reader<'_, '_> {
                 self.check_flat(op, span);
                 ops.extend(op);
             } else if word == "MaterialIndex" {
-                let error = Diagnostic::error("`MaterialIndex` cannot stand in a `Transform`").at(span);
+                let error = Diagnostic::error("`MaterialIndex` is not allowed in a `Transform`").at(span);
                 self.error(error.help("write it before the `Transform`"));
                 self.skip_value();
             } else if home_of(&word) != Some("Group") {
@@ -54,7 +54,7 @@ impl Reader<'_, '_> {
         Some(Node::Transform(ops, Box::new(object?)))
     }
 
-    /// The matrices of a block whose `{` is read.
+    /// Reads the matrices of a block whose `{` is already read.
     pub(super) fn matrices(&mut self) -> Vec<MatrixOp> {
         let mut ops = Vec::new();
         while let Some((word, span)) = self.word_before_close() {
@@ -66,19 +66,19 @@ impl Reader<'_, '_> {
         ops
     }
 
-    /// Complains of a matrix that flattens space, by its own.
+    /// Reports a matrix that by itself flattens space.
     pub(super) fn check_flat(&mut self, op: Option<MatrixOp>, span: Span) {
         if let Some(error) = op.and_then(flat) {
             let at = span.to(self.last_span());
             if self.any_values() {
                 let warning = Diagnostic::warning(error.message).code("flat-transform").at(at);
-                return self.diagnostics.push(warning.effect("done all the same, as by the official program"));
+                return self.diagnostics.push(warning.effect("applied anyway, as by the official program"));
             }
             self.error(error.at(at));
         }
     }
 
-    /// A matrix, if the word begins one; the inner `None` after an error.
+    /// Reads a matrix, if the word begins one; the inner `None` means an error.
     pub(super) fn matrix(&mut self, word: &str, span: Span) -> Option<Option<MatrixOp>> {
         let braces_needed = matches!(word, "Rotate" | "Matrix" | "Matrix4f");
         if !braces_needed && !MatrixOp::words().contains(&word) {
@@ -105,7 +105,7 @@ impl Reader<'_, '_> {
             self.skip_values();
         }
         if opens {
-            // What is wrong inside the braces was said already.
+            // Errors inside the braces were already reported.
             self.close(word, self.errors() == known);
         }
         if self.errors() == errors
@@ -116,14 +116,14 @@ impl Reader<'_, '_> {
         Some(op)
     }
 
-    /// How many numbers follow, and where they end.
+    /// Number of numbers that follow, and the span of the last.
     fn numbers_ahead(&self) -> (usize, Span) {
         let number = |i: usize| self.ahead(i).filter(|t| self.text(t.span).parse::<f32>().is_ok());
         let count = (0..17).take_while(|i| number(*i).is_some()).count();
         (count, number(count.saturating_sub(1)).map_or(self.last_span(), |token| token.span))
     }
 
-    /// `Rotate 0 1 0 45`: says what is missing, and passes over it.
+    /// Reports `Rotate 0 1 0 45` without braces, and skips the numbers.
     fn rotate_without_braces(&mut self, word: Span) -> bool {
         let (count, last) = self.numbers_ahead();
         if count != 4 && count != 1 {
@@ -131,11 +131,11 @@ impl Reader<'_, '_> {
         }
         let whole = word.to(last);
         let numbers = self.text(Span { start: word.end, ..whole }).trim().to_string();
-        let error = Diagnostic::error("the axis and the angle of `Rotate` stand in braces").code("syntax").at(whole);
+        let error = Diagnostic::error("`Rotate` needs braces around its axis and angle").code("syntax").at(whole);
         self.error(match count {
             4 => error.help(format!("write `Rotate {{ {numbers} }}`")).fix(whole, format!("Rotate {{ {numbers} }}")),
             _ => error
-                .help(format!("about one axis it is `XRotate {numbers}`, `YRotate {numbers}` or `ZRotate {numbers}`")),
+                .help(format!("for rotation about one axis, write `XRotate {numbers}`, `YRotate {numbers}` or `ZRotate {numbers}`")),
         });
         for _ in 0..count {
             self.advance();
@@ -143,10 +143,10 @@ impl Reader<'_, '_> {
         true
     }
 
-    /// `Scale 2`: says what is meant, and passes over it.
+    /// Reports `Scale 2` with a single number, and skips it.
     fn scale_by_one(&mut self, word: Span) -> bool {
         let (count, last) = self.numbers_ahead();
-        // What is cut off or no number is told as that.
+        // Incomplete values and words other than numbers get their own errors.
         let ends = |text: &str| text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '}');
         if count != 1 || !self.ahead(1).is_some_and(|next| ends(&self.text(next.span))) {
             return false;
@@ -155,7 +155,7 @@ impl Reader<'_, '_> {
         let error =
             Diagnostic::error("`Scale` takes three numbers, one for each axis").code("syntax").at(word.to(last));
         self.error(
-            error.help(format!("alike along all of them it is `UniformScale {number}`")).fix(word, "UniformScale"),
+            error.help(format!("for the same scale along all axes, write `UniformScale {number}`")).fix(word, "UniformScale"),
         );
         self.advance();
         true
@@ -178,7 +178,8 @@ impl Reader<'_, '_> {
                 for (i, value) in rows.iter_mut().enumerate() {
                     *value = self.number(word, i + 1, 16)?;
                 }
-                // 2004 lists rows; `Matrix4f`, and `Matrix` of later years, columns.
+                // `Matrix` of 2003 and 2004 lists rows; `Matrix4f`, and `Matrix` of later years,
+                // list columns.
                 let rows_listed =
                     word == "Matrix" && matches!(self.options.dialect, Dialect::F03 | Dialect::F04 | Dialect::Durer);
                 MatrixOp::Matrix(if rows_listed { rows } else { std::array::from_fn(|i| rows[i % 4 * 4 + i / 4]) })
@@ -186,8 +187,8 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// Expects `}`, and passes over what is before it. Where a word of the language comes first,
-    /// `}` is missing.
+    /// Expects `}`, and skips values before it. If a word of the language comes first, `}` is
+    /// missing.
     fn close(&mut self, block: &str, complain: bool) {
         if complain && self.peek().is_none_or(|t| t.kind != TokenKind::Close) {
             self.expected("`}`", block);
@@ -199,22 +200,22 @@ impl Reader<'_, '_> {
     }
 }
 
-/// What is wrong with a matrix that moves objects and flattens space.
+/// Error for a matrix that flattens space, if it does.
 pub(crate) fn flat(op: MatrixOp) -> Option<Diagnostic> {
     let flat = match op {
         MatrixOp::Scale(v) => v.to_array().contains(&0.0),
         MatrixOp::UniformScale(s) => s == 0.0,
         _ => false,
     };
-    let error = Diagnostic::error("a scale by 0 flattens space, which cannot be undone").code("flat-transform");
-    flat.then(|| error.help("what should keep its size along an axis has a scale of 1 there"))
+    let error = Diagnostic::error("a scale by 0 flattens space and has no inverse").code("flat-transform");
+    flat.then(|| error.help("use a scale of 1 along axes that keep their size"))
 }
 
-/// What is wrong with a matrix that has all its numbers.
+/// Error for a complete matrix with senseless values, if it has some.
 pub(crate) fn senseless(op: MatrixOp) -> Option<Diagnostic> {
     match op {
         MatrixOp::Rotate(axis, _) if axis == Vec3::ZERO => {
-            Some(Diagnostic::error("an axis of 0 0 0 points nowhere").help("write the axis first, then the angle"))
+            Some(Diagnostic::error("an axis of 0 0 0 has no direction").help("write the axis first, then the angle"))
         }
         MatrixOp::Matrix(rows) if rows[12..] != [0.0, 0.0, 0.0, 1.0] => {
             let error = Diagnostic::error("the last row of a matrix must be 0 0 0 1");

@@ -1,4 +1,4 @@
-//! Every word of the language.
+//! Table of every word of the language.
 
 use durer_scene::camera::Camera;
 use durer_scene::describe::DescribedList;
@@ -11,7 +11,7 @@ use durer_scene::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-/// Words of the grammar itself, which belong to no described thing.
+/// Words of the grammar itself, which belong to no described statement.
 const GRAMMAR: [(&str, DialectSet); 37] = [
     ("include", set::DURER),
     ("define", set::DURER),
@@ -84,23 +84,23 @@ fn list<T: DescribedList>(words: &mut HashMap<&'static str, DialectSet>) {
     }
 }
 
-/// The dialects that have a word in some place; `None` where it is no word of the language.
+/// Dialects that have a word; `None` if it is not in the language.
 pub(super) fn dialects_of(word: &str) -> Option<DialectSet> {
     WORDS.get(word).copied()
 }
 
-/// Every word.
+/// Returns every word.
 #[cfg(test)]
 pub(super) fn all() -> impl Iterator<Item = &'static str> {
     WORDS.keys().copied()
 }
 
-/// Whether a word begins a block with braces.
+/// Returns true if a word begins a block with braces.
 pub(super) fn begins_block(word: &str) -> bool {
     word.starts_with(|c: char| c.is_ascii_uppercase()) && WORDS.contains_key(word)
 }
 
-/// The block in which something belongs that stands in a wrong place.
+/// Block to which a misplaced word belongs.
 pub(super) fn home_of(word: &str) -> Option<&'static str> {
     Some(match word {
         "TriangleMesh" | "HeightField" | "Grid" | "Transform" | "MaterialIndex" | "Group" | "use" | "define" => "Group",
@@ -116,18 +116,18 @@ pub(super) fn home_of(word: &str) -> Option<&'static str> {
     })
 }
 
-/// What stands at the top of a file beside the camera.
+/// Sections at the top of a file, beside the camera.
 pub(super) const SECTIONS: [&str; 6] = ["Background", "Fog", "Lights", "Textures", "Materials", "Group"];
 
-/// Those that only our dialect has.
+/// Sections of the Dürer dialect only.
 pub(super) const OURS: [&str; 2] = ["Fog", "Textures"];
 
-/// The camera that a word begins, where there are no nodes.
+/// Returns the camera that a word begins, in files without nodes.
 pub(super) fn camera_of(word: &str) -> Option<Camera> {
     Camera::from_keyword(word).filter(|_| word != "Camera")
 }
 
-/// Whether a word stands at the top of a file.
+/// Returns true if a word begins a section at the top of a file.
 pub(super) fn is_section(word: &str) -> bool {
     SECTIONS.contains(&word) || camera_of(word).is_some()
 }

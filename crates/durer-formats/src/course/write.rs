@@ -1,4 +1,4 @@
-//! Scenes as text.
+//! Writer of scenes in the scene language.
 
 use durer_scene::describe::{DescribedList, Value};
 use durer_scene::dialect::Dialect;
@@ -8,8 +8,7 @@ use durer_scene::scene::{Group, Material, MatrixOp, Node, Object, Scene};
 use durer_scene::shape::{Sphere, VoxelGrid};
 use std::fmt::Write;
 
-/// Writes a scene in a dialect. What the dialect has no word for is written in the words of another
-/// year.
+/// Writes a scene in a dialect. Uses words of another year for what the dialect lacks.
 pub fn write(scene: &Scene, dialect: Dialect) -> String {
     let mut writer = Writer { out: String::new(), depth: 0, dialect, material: None };
     match dialect {
@@ -19,7 +18,7 @@ pub fn write(scene: &Scene, dialect: Dialect) -> String {
     writer.out
 }
 
-/// Writes one thing by itself, as [`write`] would.
+/// Writes one statement by itself, as [`write`] does.
 pub(super) fn write_thing<T: DescribedList>(thing: &T, dialect: Dialect) -> String {
     let mut writer = Writer { out: String::new(), depth: 0, dialect, material: None };
     writer.thing(thing);
@@ -30,7 +29,7 @@ struct Writer {
     out: String,
     depth: usize,
     dialect: Dialect,
-    /// The material that is current for what follows.
+    /// Current material for the objects that follow.
     material: Option<u32>,
 }
 
@@ -51,13 +50,14 @@ impl Writer {
 
     fn fields<T: DescribedList>(&mut self, thing: &T) {
         let plain = T::from_keyword(thing.keywords()[0].0);
-        // What only our dialect has is written in its words.
+        // Statements of the Dürer dialect only use its words.
         let ours = thing.is_ours();
         let dialect = if ours { Dialect::Durer } else { self.dialect };
         for (i, field) in thing.fields().iter().enumerate() {
             let Some(value) = thing.get(i) else { continue };
             let (word, text) = (field.spelling(dialect), value_text(&value));
-            // What the dialect cannot say is left out where it says nothing. Texts tell 0 from -0.
+            // Omit a default value that the dialect has no word for. Compare texts, since they
+            // distinguish 0 from -0.
             let plain_text = plain.as_ref().and_then(|plain| plain.get(i)).map(|value| value_text(&value));
             if word.is_none() && plain_text.as_ref() == Some(&text) {
                 continue;
@@ -145,7 +145,7 @@ impl Writer {
                 ops.iter().for_each(|op| w.matrix(op));
                 match inner.material == object.material {
                     true => w.object(inner),
-                    // A transform has no word for a material: a group in it does.
+                    // A transform cannot contain a `MaterialIndex`, but a group in it can.
                     false => w.group(&Group { objects: vec![Object::clone(inner)] }),
                 }
             }),
@@ -233,7 +233,7 @@ impl Writer {
         self.block("Node", |w| match light {
             Light::Point(point) => {
                 w.block("Transform", |w| w.node_matrix(&MatrixOp::Translate(point.position)));
-                // The node has placed it.
+                // The transform of the node positions the light.
                 w.component("Light", &Light::Point(PointLight { position: Vec3::ZERO, ..point.clone() }));
             }
             Light::Directional(_) | Light::Spot(_) | Light::Photometric(_) => w.component("Light", light),

@@ -1,7 +1,7 @@
 use super::*;
 use std::os::unix::fs::symlink;
 
-/// `outside/secret.obj` and `scene/{near.obj, models/cube.obj}`; the source reads `scene`.
+/// Creates `outside/secret.obj` and `scene/{near.obj, models/cube.obj}`; the source reads `scene`.
 fn house() -> (tempfile::TempDir, FolderSource) {
     let root = tempfile::tempdir().unwrap();
     fs::create_dir_all(root.path().join("scene/models")).unwrap();
@@ -16,7 +16,7 @@ fn house() -> (tempfile::TempDir, FolderSource) {
 }
 
 #[test]
-fn files_below_the_folder_are_read_by_any_spelling() {
+fn files_below_the_folder_are_read_with_either_separator() {
     let (_root, source) = house();
     for name in ["models/cube.obj", "models\\cube.obj", "./models/../models/cube.obj", ".\\models//cube.obj"] {
         assert_eq!(&*source.read(name).unwrap(), b"cube", "{name}");
@@ -25,7 +25,7 @@ fn files_below_the_folder_are_read_by_any_spelling() {
 }
 
 #[test]
-fn files_are_found_by_names_as_other_systems_write_them() {
+fn names_match_across_case_and_percent_escapes() {
     let (root, source) = house();
     fs::write(root.path().join("scene/my mesh.obj"), "blank").unwrap();
     for (name, text) in [
@@ -63,7 +63,7 @@ fn nothing_outside_the_folder_is_read_unless_allowed() {
 }
 
 #[test]
-fn a_missing_file_has_a_near_name_but_none_from_outside() {
+fn missing_file_suggests_a_name_from_inside_only() {
     let (_root, source) = house();
     let near = |name: &str| match source.read(name) {
         Err(SourceError::Missing { near, tried, .. }) => {
@@ -79,7 +79,7 @@ fn a_missing_file_has_a_near_name_but_none_from_outside() {
 }
 
 #[test]
-fn folders_pipes_and_devices_are_no_files() {
+fn folders_pipes_and_devices_are_rejected() {
     let (root, source) = house();
     let pipe = root.path().join("scene/pipe");
     assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
@@ -91,7 +91,7 @@ fn folders_pipes_and_devices_are_no_files() {
 }
 
 #[test]
-fn the_budget_is_for_all_files_together() {
+fn budget_covers_all_files() {
     let (_root, source) = house();
     let source = source.budget(7);
     assert_eq!(&*source.read("near.obj").unwrap(), b"near");
@@ -104,7 +104,7 @@ fn the_budget_is_for_all_files_together() {
 }
 
 #[test]
-fn folders_of_assets_are_searched_by_path_and_by_bare_name() {
+fn asset_folders_are_searched_by_path_and_bare_name() {
     let (root, source) = house();
     let source = source.assets(root.path().join("outside"));
     for name in ["secret.obj", "models/secret.obj", "C:\\somebody\\secret.obj"] {
@@ -117,7 +117,7 @@ fn folders_of_assets_are_searched_by_path_and_by_bare_name() {
 }
 
 #[test]
-fn given_files_come_first_and_count_as_if_they_were_there() {
+fn given_files_take_precedence_and_enter_the_record() {
     let (root, source) = house();
     let given = source.clone().give("near.obj", b"given".as_slice().into()).give("none.obj", b"n".as_slice().into());
     assert!(given.contains("none.obj") && !source.contains("none.obj"));
@@ -130,7 +130,7 @@ fn given_files_come_first_and_count_as_if_they_were_there() {
 }
 
 #[test]
-fn a_file_is_read_whole_whatever_its_size_was_said_to_be() {
+fn file_is_read_whole_despite_a_wrong_size() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a");
     fs::write(&path, b"0123456789").unwrap();

@@ -1,11 +1,12 @@
-//! Accessors: numbers of all component types in buffers, strided, normalised, sparse.
+//! Accessors: numbers of all component types in buffers, with strides, normalization and sparse
+//! replacements.
 
 use super::Model;
 use super::buffers::View;
 use super::json::At;
 use rayon::prelude::*;
 
-/// The type of one number.
+/// Component type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Component {
     I8,
@@ -37,7 +38,7 @@ impl Component {
         }
     }
 
-    /// The number at the start of some bytes; a normalised one lies between -1 or 0 and 1 (chapter
+    /// Returns the number at the start of `b`; a normalized one lies between -1 or 0 and 1 (chapter
     /// 3.11 of the specification).
     fn float(self, b: &[u8], normalized: bool) -> f32 {
         let (value, most) = match self {
@@ -60,12 +61,12 @@ impl Component {
     }
 }
 
-/// Rows of numbers.
+/// Rows of numbers in a buffer view.
 #[derive(Clone)]
 pub(super) struct Accessor {
     pub component: Component,
     pub normalized: bool,
-    /// Numbers in a row: 1 to 4, or 4, 9 and 16 for matrices.
+    /// Number of components in a row: 1 to 4, or 4, 9 and 16 for matrices.
     pub width: usize,
     pub is_matrix: bool,
     pub count: usize,
@@ -73,7 +74,7 @@ pub(super) struct Accessor {
     offset: usize,
     sparse: Option<Sparse>,
     pub has_bounds: bool,
-    /// Whether its view says how far rows lie apart.
+    /// True if the buffer view has an explicit stride.
     pub strided: bool,
 }
 
@@ -98,7 +99,7 @@ impl Model<'_> {
         let code = at.whole(..)?;
         let component = Component::of(code);
         if component.is_none() {
-            at.error("VALUE_NOT_IN_LIST", format!("invalid value {code}: it is no type of a component"));
+            at.error("VALUE_NOT_IN_LIST", format!("invalid value {code}: not a component type"));
         }
         component
     }
@@ -137,7 +138,7 @@ impl Model<'_> {
             strided,
         };
         accessor.check(at)?;
-        // Where the bytes are missing, that was said.
+        // Missing bytes were already reported.
         accessor.view.as_ref().map_or(Some(()), |view| view.slice.as_ref().map(|_| ()))?;
         accessor.sparse = match at.get("sparse") {
             Some(sparse) => Some(self.sparse(&sparse, &accessor)?),
@@ -153,7 +154,7 @@ impl Model<'_> {
     fn sparse(&self, at: &At, accessor: &Accessor) -> Option<Sparse> {
         let count = at.need("count")?.whole(1..)? as usize;
         if count > accessor.count {
-            let message = format!("{count} rows are replaced, and there are {}", accessor.count);
+            let message = format!("{count} rows are replaced, but the accessor has {}", accessor.count);
             at.get("count").unwrap_or(*at).error("ACCESSOR_SPARSE_COUNT_OUT_OF_RANGE", message);
             return None;
         }
@@ -167,13 +168,13 @@ impl Model<'_> {
             let view = at.need("bufferView")?;
             let found = self.views[view.index(self.views.len())?].clone()?;
             if found.stride.is_some() {
-                view.error("BUFFER_VIEW_INVALID_BYTE_STRIDE", "rows that are replaced must lie side by side");
+                view.error("BUFFER_VIEW_INVALID_BYTE_STRIDE", "sparse data must be tightly packed");
                 return None;
             }
             let offset = at.get("byteOffset").map_or(Some(0), |offset| offset.whole(..))? as usize;
             let end = count.checked_mul(size).and_then(|size| size.checked_add(offset));
             if end.is_none_or(|end| end > found.length) {
-                at.error("ACCESSOR_TOO_LONG", "the rows that are replaced do not fit into their view");
+                at.error("ACCESSOR_TOO_LONG", "the sparse data do not fit into their buffer view");
                 return None;
             }
             found.slice.as_ref()?;
@@ -186,7 +187,7 @@ impl Model<'_> {
         for i in 0..count {
             let index = sparse.index(i);
             if index as usize >= accessor.count {
-                indices.error("ACCESSOR_SPARSE_INDEX_OOB", format!("there is no row {index}"));
+                indices.error("ACCESSOR_SPARSE_INDEX_OOB", format!("row {index} is out of range"));
                 return None;
             }
             if previous.is_some_and(|previous| index <= previous) {
@@ -207,7 +208,7 @@ impl Sparse {
 }
 
 impl Accessor {
-    /// Where in a row the i-th number is: columns of matrices begin at multiples of four bytes.
+    /// Byte offset of the i-th number in a row. Columns of matrices are aligned to four bytes.
     fn place(&self, i: usize) -> usize {
         let size = self.component.size();
         let rows = match self.width {
@@ -218,7 +219,7 @@ impl Accessor {
         (i / rows) * (rows * size).next_multiple_of(4) + (i % rows) * size
     }
 
-    /// Bytes of a row.
+    /// Size of a row in bytes.
     fn row(&self) -> usize {
         self.place(self.width - 1) + self.component.size()
     }
@@ -228,17 +229,17 @@ impl Accessor {
         self.view.as_ref().and_then(|view| view.stride).unwrap_or(dense)
     }
 
-    /// Whether it fits into its view.
+    /// Checks that the accessor fits into its buffer view.
     fn check(&self, at: &At) -> Option<()> {
         let Some(view) = &self.view else { return Some(()) };
         let bytes = view.length;
         if self.stride() < self.row() {
-            let message = format!("rows of {} bytes lie {} bytes apart", self.row(), self.stride());
+            let message = format!("rows of {} bytes have a stride of only {} bytes", self.row(), self.stride());
             at.error("ACCESSOR_SMALL_BYTESTRIDE", message);
             return None;
         }
         if !self.offset.is_multiple_of(self.component.size()) {
-            let message = format!("offset {} is no multiple of the component's size", self.offset);
+            let message = format!("offset {} is not a multiple of the component's size", self.offset);
             at.get("byteOffset").unwrap_or(*at).error("ACCESSOR_OFFSET_ALIGNMENT", message);
             return None;
         }
@@ -252,19 +253,19 @@ impl Accessor {
         Some(())
     }
 
-    /// Puts numbers of some type, which lie side by side, in the place of its own.
+    /// Replaces the data by tightly packed numbers of another component type.
     pub fn fill(&mut self, component: Component, view: View) {
         (self.component, self.view, self.offset, self.sparse, self.strided) = (component, Some(view), 0, None, false);
     }
 
-    /// Whether all numbers are finite.
+    /// Checks that all numbers are finite.
     pub fn check_values(&self, at: &At) {
         if self.component != Component::F32 {
             return;
         }
         let Some(view) = &self.view else { return };
         let (bytes, stride, last) = (&view.bytes()[self.offset..], self.stride(), self.place(self.width - 1));
-        // Nearly always all are, and lie side by side: then nothing is asked of each row.
+        // Fast path for tightly packed data without infinite or NaN values, the usual case.
         const EXPONENT: u32 = 0x7f80_0000;
         let is_finite = |number: &[u8; 4]| u32::from_le_bytes(*number) & EXPONENT != EXPONENT;
         let are_finite = |some: &[[u8; 4]]| some.iter().fold(true, |all, number| all & is_finite(number));
@@ -272,13 +273,13 @@ impl Accessor {
         if !dense.is_empty() && dense.as_chunks::<4>().0.par_chunks(1 << 15).all(are_finite) {
             return;
         }
-        // Between columns of matrices of single precision there is no gap.
+        // Columns of single-precision matrices have no padding.
         let is_sound = |i: &usize| {
             let (numbers, _) = bytes[i * stride..][..last + 4].as_chunks::<4>();
             numbers.iter().all(is_finite)
         };
         if let Some(i) = (0..self.count).into_par_iter().with_min_len(1 << 13).find_first(|i| !is_sound(i)) {
-            at.error("ACCESSOR_INVALID_FLOAT", format!("row {i} has a number that is infinite or none"));
+            at.error("ACCESSOR_INVALID_FLOAT", format!("row {i} has a number that is infinite or NaN"));
         }
     }
 
@@ -292,7 +293,7 @@ impl Accessor {
         }
     }
 
-    /// What is made of each row; numbers beyond the accessor's own are 0.
+    /// Returns each row mapped by `of`; missing components are 0.
     pub fn rows<const N: usize, T: Send>(&self, of: impl Fn([f32; N]) -> T + Sync + Send) -> Vec<T> {
         let width = self.width.min(N);
         let is_plain = self.component == Component::F32 && !self.is_matrix;
@@ -322,7 +323,7 @@ impl Accessor {
         rows
     }
 
-    /// All rows of one whole number.
+    /// Returns all rows as unsigned integers.
     pub fn wholes(&self) -> Vec<u32> {
         let mut all: Vec<u32> = match &self.view {
             Some(view) => {

@@ -1,4 +1,4 @@
-//! Animations: where nodes and weights are at a moment.
+//! Animations: transforms of nodes and weights of morph targets at a time.
 //!
 //! Source: *glTF 2.0 Specification*, chapter 3.11 and appendix C.
 
@@ -9,7 +9,7 @@ use crate::report::counted;
 use durer_scene::math::fp;
 use glam::{DQuat, DVec3, DVec4};
 
-/// How values between two key frames are had.
+/// Interpolation between two key frames.
 #[derive(Clone, Copy, PartialEq)]
 enum Between {
     Step,
@@ -17,21 +17,21 @@ enum Between {
     Cubic,
 }
 
-/// Key frames.
+/// Key frames of one channel.
 struct Track {
     times: Vec<f32>,
-    /// Numbers of each key frame, one row after the other; for cubic splines each has two tangents
-    /// about it.
+    /// Values of the key frames, row by row. For cubic splines, each key frame has its in-tangent,
+    /// value and out-tangent.
     values: Vec<f32>,
     between: Between,
 }
 
 impl Model<'_> {
-    /// Moves nodes to where the first animation has them at the moment that is wanted.
+    /// Poses the nodes by the first animation at the requested time.
     pub(super) fn animate(&self, root: &At, nodes: &mut [NodeData]) {
         let (at, animations) = match (self.input.staging.at, root.get("animations")) {
             (Some(at), Some(animations)) => (at, animations),
-            (Some(_), None) => return root.warning("no-animation", "there is no animation: `--at` changes nothing"),
+            (Some(_), None) => return root.warning("no-animation", "the file has no animation: `--at` has no effect"),
             (None, Some(animations)) => return at_rest(&animations),
             (None, None) => return,
         };
@@ -53,7 +53,7 @@ impl Model<'_> {
             "scale" => node.local.scale = track.vector(at)?,
             "rotation" => node.local.rotation = track.rotation(at)?,
             "weights" => node.weights = track.row(at, track.width()?)?,
-            other => path.warning("ANIMATION_CHANNEL_TARGET_PATH", format!("`{other}` is not animated")),
+            other => path.warning("ANIMATION_CHANNEL_TARGET_PATH", format!("animation of `{other}` is not supported")),
         }
         Some(())
     }
@@ -64,7 +64,7 @@ impl Model<'_> {
         let (input, output) = (at.need("input")?, at.need("output")?);
         let times = self.rows::<1>(self.accessor(&input)?, &input)?.into_iter().map(|[t]| t).collect::<Vec<_>>();
         if !times.is_sorted() {
-            input.error("ACCESSOR_ANIMATION_INPUT_NON_INCREASING", "the moments of key frames must increase");
+            input.error("ACCESSOR_ANIMATION_INPUT_NON_INCREASING", "the times of key frames must increase");
             return None;
         }
         let accessor = self.accessor(&output)?;
@@ -75,7 +75,7 @@ impl Model<'_> {
 }
 
 impl Track {
-    /// How many numbers a key frame has.
+    /// Number of components of a key frame.
     fn width(&self) -> Option<usize> {
         let rows = self.times.len() * if self.between == Between::Cubic { 3 } else { 1 };
         self.values.len().checked_div(rows).filter(|&width| width > 0)
@@ -96,7 +96,8 @@ impl Track {
         (q.length() > 1e-6).then(|| q.normalize())
     }
 
-    /// The key frame before a moment, how much of the time to the next is over, and that time.
+    /// Returns the key frame before a time, the fraction of the interval to the next, and the
+    /// interval's length in seconds.
     fn around(&self, at: f32) -> (usize, f32, f32) {
         let next = self.times.partition_point(|&time| time <= at);
         match (next.checked_sub(1), self.times.get(next)) {
@@ -104,7 +105,7 @@ impl Track {
                 let length = end - self.times[i];
                 (i, (at - self.times[i]) / length, length)
             }
-            // Before the first and after the last, nothing moves.
+            // Clamp before the first and after the last key frame.
             (Some(i), None) => (i, 0.0, 0.0),
             (None, _) => (0, 0.0, 0.0),
         }
@@ -125,7 +126,7 @@ impl Track {
         if self.between == Between::Linear {
             return Some(first.iter().zip(second).map(|(a, b)| a + t * (b - a)).collect());
         }
-        // Hermite's cubic: the first key frame's tangent leads out, the second's in.
+        // Cubic Hermite spline: out-tangent of the first key frame, in-tangent of the second.
         let out = self.values.get((3 * i + 2) * width..(3 * i + 3) * width)?;
         let into = self.values.get(3 * (i + 1) * width..(3 * (i + 1) + 1) * width)?;
         let (t2, t3) = (t * t, t * t * t);
@@ -139,7 +140,7 @@ impl Track {
     }
 }
 
-/// Says that there is more to be seen than how the nodes stand by themselves.
+/// Notes that the file has animations if it is shown at rest.
 fn at_rest(animations: &At) {
     let mut all = animations.items();
     let count = all.len();
@@ -153,7 +154,7 @@ fn at_rest(animations: &At) {
     animations.note("animations", format!("the file has {count} and is shown at rest: `--at 0` shows {moment}"));
 }
 
-/// Rotations in between, evenly along the shorter way.
+/// Spherical linear interpolation along the shorter arc.
 fn slerp(a: &[f32], b: &[f32], t: f32) -> Vec<f32> {
     let four = |q: &[f32]| DVec4::new(q[0].into(), q[1].into(), q[2].into(), q[3].into()).normalize_or(DVec4::W);
     let (a, b) = (four(a), four(b));

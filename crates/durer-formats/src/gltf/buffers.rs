@@ -1,4 +1,4 @@
-//! Buffers and their views, and the URIs that lead to bytes.
+//! Buffers, buffer views, and resolution of URIs.
 
 use super::Model;
 use super::json::At;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 const MESHOPT: &str = "EXT_meshopt_compression";
 
-/// Some of the bytes in memory.
+/// Range of shared bytes.
 #[derive(Clone)]
 pub(super) struct Slice {
     bytes: Arc<[u8]>,
@@ -27,7 +27,7 @@ impl Slice {
         &self.bytes[self.range.clone()]
     }
 
-    /// All of some bytes.
+    /// Returns a slice of all bytes.
     pub fn whole(bytes: Arc<[u8]>) -> Self {
         Slice { range: 0..bytes.len(), bytes }
     }
@@ -38,13 +38,13 @@ impl Slice {
     }
 }
 
-/// A buffer: its length as written, and its bytes if they can be had.
+/// Buffer: its declared length, and its bytes if they can be read.
 pub(super) struct Buffer {
     length: usize,
     pub slice: Option<Slice>,
 }
 
-/// A part of a buffer.
+/// Buffer view: a part of a buffer.
 #[derive(Clone)]
 pub(super) struct View {
     pub length: usize,
@@ -58,24 +58,24 @@ impl View {
     }
 }
 
-/// Where a URI leads.
+/// Resolved URI.
 pub(super) enum Target<'a> {
-    /// The bytes and their media type are in it.
+    /// Embedded data with their media type.
     Data(&'a str, Arc<[u8]>),
-    /// To a file beside this one.
+    /// Path of a file relative to this one.
     File(String),
 }
 
-/// Reads a URI: one that holds data, or a relative one.
+/// Resolves a URI, either a data URI or a relative path.
 ///
-/// Source: RFC 3986 and RFC 2397. What leads out of the folder is refused by
-/// [`durer_scene::source::AssetSource`]s of folders.
+/// Source: RFC 3986 and RFC 2397. Folder implementations of [`durer_scene::source::AssetSource`]
+/// reject paths that leave the folder.
 pub(super) fn target<'a>(at: &At<'a>) -> Option<Target<'a>> {
     let uri = at.string()?;
     if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
         let data = uri[5..].split_once(',').and_then(|(kind, data)| {
             let Some(kind) = kind.strip_suffix(";base64") else {
-                // Without that word the data are text.
+                // Without `;base64`, the data are percent-encoded text.
                 return Some((kind.split(';').next()?, unescaped(data)?.into_bytes()));
             };
             if kind.ends_with(';') {
@@ -85,13 +85,13 @@ pub(super) fn target<'a>(at: &At<'a>) -> Option<Target<'a>> {
             Some((kind.split(';').next()?, GeneralPurpose::new(&STANDARD, config).decode(data).ok()?))
         });
         if data.is_none() {
-            at.error("INVALID_URI", "the URI holds no data");
+            at.error("INVALID_URI", "the data URI is invalid");
         }
         return data.map(|(kind, bytes)| Target::Data(kind, bytes.into()));
     }
     let scheme = uri.split_once(':').filter(|(scheme, _)| !scheme.contains('/'));
     if let Some((scheme, _)) = scheme {
-        at.error("INVALID_URI", format!("the URI is of the scheme `{scheme}`: only files beside this one are read"));
+        at.error("INVALID_URI", format!("the URI has the scheme `{scheme}`: only relative file paths are supported"));
         return None;
     }
     let Some(path) = unescaped(uri).filter(|path| !path.is_empty() && !path.contains('\0')) else {
@@ -101,7 +101,7 @@ pub(super) fn target<'a>(at: &At<'a>) -> Option<Target<'a>> {
     if path.starts_with(['/', '\\']) {
         at.error(
             "INVALID_URI",
-            format!("the URI {} is absolute: only files beside this one are read", shown(uri.as_bytes())),
+            format!("the URI {} is absolute: only relative file paths are supported", shown(uri.as_bytes())),
         );
         return None;
     }
@@ -109,7 +109,7 @@ pub(super) fn target<'a>(at: &At<'a>) -> Option<Target<'a>> {
 }
 
 impl Model<'_> {
-    /// Reads the buffers; those that cannot be had are missed only where something is read of them.
+    /// Reads the buffers. An unreadable buffer is an error where its data are used.
     pub(super) fn buffers(&self, root: &At) -> Vec<Option<Buffer>> {
         let Some(buffers) = root.get("buffers") else { return Vec::new() };
         buffers.items().enumerate().map(|(i, buffer)| self.buffer(i, &buffer)).collect()
@@ -118,18 +118,18 @@ impl Model<'_> {
     fn buffer(&self, number: usize, at: &At) -> Option<Buffer> {
         at.object()?;
         let length = at.need("byteLength")?.whole(1..)? as usize;
-        // What stands there only for those who do not read compressed views.
+        // A fallback buffer is only for readers without support for compressed views.
         let is_fallback = compression(at).is_some_and(|packed| packed["fallback"] == true);
         Some(Buffer { length, slice: if is_fallback { None } else { self.data(number, length, at) } })
     }
 
-    /// The bytes of a buffer.
+    /// Returns the bytes of a buffer.
     fn data(&self, number: usize, length: usize, at: &At) -> Option<Slice> {
         let bytes = match at.get("uri") {
             Some(uri) => match target(&uri)? {
                 Target::Data(kind, bytes) => {
                     if !matches!(kind, "application/octet-stream" | "application/gltf-buffer") {
-                        uri.error("BUFFER_DATA_URI_MIME_TYPE_INVALID", format!("the data are called `{kind}`"));
+                        uri.error("BUFFER_DATA_URI_MIME_TYPE_INVALID", format!("unexpected media type `{kind}`"));
                     }
                     bytes
                 }
@@ -139,7 +139,7 @@ impl Model<'_> {
                 (Some(bin), 0) => {
                     let there = bin.len();
                     if there < length {
-                        let message = format!("the buffer should have {length} bytes, and the chunk has {there}");
+                        let message = format!("the buffer should have {length} bytes, but the chunk has {there}");
                         at.error("BUFFER_BYTE_LENGTH_MISMATCH", message);
                         return None;
                     }
@@ -154,14 +154,14 @@ impl Model<'_> {
             },
         };
         if bytes.len() < length {
-            let message = format!("the buffer should have {length} bytes, and has {}", bytes.len());
+            let message = format!("the buffer should have {length} bytes, but has {}", bytes.len());
             at.error("BUFFER_BYTE_LENGTH_MISMATCH", message);
             return None;
         }
         Some(Slice { bytes, range: 0..length })
     }
 
-    /// Reads a file that a URI names.
+    /// Reads a file named by a URI.
     pub(super) fn file(&self, uri: &At, path: &str) -> Option<Arc<[u8]>> {
         let name = FileName { path: path.to_string(), span: uri.span() };
         match self.input.source.read(&name.path) {
@@ -188,7 +188,7 @@ impl Model<'_> {
             Some(stride) => {
                 let bytes = stride.whole(4..=252)?;
                 if bytes % 4 != 0 {
-                    stride.error("VALUE_MULTIPLE_OF", format!("value {bytes} is no multiple of 4"));
+                    stride.error("VALUE_MULTIPLE_OF", format!("value {bytes} is not a multiple of 4"));
                     return None;
                 }
                 Some(bytes as usize)
@@ -213,7 +213,7 @@ impl Model<'_> {
     }
 }
 
-/// How a buffer or view is compressed, if it is.
+/// Returns the compression extension of a buffer or view, if present.
 fn compression<'a>(at: &At<'a>) -> Option<&'a Value> {
     at.value.get("extensions")?.get(MESHOPT)
 }

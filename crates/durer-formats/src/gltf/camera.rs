@@ -11,7 +11,7 @@ use durer_scene::scene::{Scene, Spanned};
 use glam::{DAffine3, DVec3};
 use std::f32::consts::PI;
 
-/// A camera as written.
+/// A camera as stored in the file.
 #[derive(Clone)]
 pub(super) struct CameraData {
     name: String,
@@ -20,17 +20,17 @@ pub(super) struct CameraData {
 
 #[derive(Clone, Copy)]
 enum Seen {
-    /// The angle from bottom to top, in radians, and how much wider than high what is seen is.
+    /// Vertical field of view in radians, and the aspect ratio.
     Perspective(f32, Option<f32>),
     /// Half the height.
     Orthographic(f32),
 }
 
-/// A light as written.
+/// A light as stored in the file.
 #[derive(Clone)]
 pub(super) struct LightData {
     is_directional: bool,
-    /// Degrees from its middle to where a spot light begins to fade and where it ends.
+    /// Inner and outer angle of a spot light's cone, in degrees from its axis.
     cone: Option<[f32; 2]>,
     color: Vec3,
 }
@@ -80,12 +80,12 @@ impl Model<'_> {
                 let angle = |name: &str, usual: f32| spot.get(name).and_then(|a| a.within(0.0..)).unwrap_or(usual);
                 [angle("innerConeAngle", 0.0), angle("outerConeAngle", 0.25 * PI)].map(f32::to_degrees)
             });
-            // Intensities are luminous: what a matte white surface shows is a pi-th of them.
+            // Intensities are photometric: a white diffuse surface reflects 1 / pi of them.
             Some(LightData { is_directional, cone, color: color * (intensity / PI) })
         })
     }
 
-    /// The camera that is wanted, or the first of the scene, with its node.
+    /// Returns the requested camera, or the first of the scene, with its node.
     pub(super) fn camera(&self, order: &[usize], nodes: &[NodeData], maps: &[DAffine3]) -> Option<(Camera, usize)> {
         let there = order.iter().filter_map(|&i| Some((i, self.cameras[nodes[i].camera?].as_ref()?)));
         let there: Vec<(usize, &CameraData)> = there.collect();
@@ -101,14 +101,14 @@ impl Model<'_> {
                     let meant = did_you_mean(wanted, all.iter().map(String::as_str));
                     let known = match (meant, all.is_empty()) {
                         (Some(meant), _) => format!("did you mean `{meant}`?"),
-                        (None, true) => format!("there are {} cameras without names, from 0 on", there.len()),
-                        (None, false) => format!("there are `{}`", all.join("`, `")),
+                        (None, true) => format!("the {} cameras have no names, only numbers from 0", there.len()),
+                        (None, false) => format!("the cameras are `{}`", all.join("`, `")),
                     };
                     self.findings.say(
                         durer_diag::Diagnostic::error,
                         "no-camera",
                         "",
-                        &format!("the file shows no camera `{wanted}`: {known}"),
+                        &format!("the scene has no camera `{wanted}`: {known}"),
                     );
                 }
                 found
@@ -119,7 +119,7 @@ impl Model<'_> {
         let direction = map.transform_vector3(DVec3::NEG_Z).normalize_or(DVec3::NEG_Z).as_vec3();
         let up = map.transform_vector3(DVec3::Y).normalize_or(DVec3::Y).as_vec3();
         let center = map.translation.as_vec3();
-        // Here angles and sizes are those of the picture's larger side.
+        // The scene's angles and sizes refer to the picture's larger side.
         let own = if let Seen::Perspective(_, aspect) = camera.view { aspect } else { None };
         let wide = self.input.staging.aspect.or(own).unwrap_or(1.0).max(1.0);
         let camera = match camera.view {

@@ -1,4 +1,4 @@
-//! The two forms of a glTF file: JSON alone, or GLB, which holds JSON and a buffer.
+//! Containers of a glTF file: plain JSON, or GLB with JSON and a binary buffer.
 //!
 //! Source: *glTF 2.0 Specification*, Khronos Group, chapter 4.
 
@@ -10,24 +10,24 @@ const MAGIC: &[u8] = b"glTF";
 const JSON: u32 = 0x4e4f_534a;
 const BIN: u32 = 0x004e_4942;
 
-/// Where in a file its parts are.
+/// Byte ranges of the parts of a file.
 pub(super) struct Parts {
     pub json: Range<usize>,
-    /// The buffer of a GLB file.
+    /// Binary buffer of a GLB file.
     pub bin: Option<Range<usize>>,
     pub is_glb: bool,
 }
 
-/// Whether a file begins as files of this format do.
+/// Returns true if a file begins as glTF.
 pub(crate) fn recognise(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(1 << 14)];
     let is_json = head.trim_ascii_start().first() == Some(&b'{');
     bytes.starts_with(MAGIC) || is_json && head.windows(7).any(|part| part == b"\"asset\"")
 }
 
-/// Finds the parts of a file by its first bytes; `None` after an error.
+/// Finds the parts of a file; `None` after an error.
 pub(super) fn open(bytes: &[u8], name: &str, report: &mut Report) -> Option<Parts> {
-    // A file that calls itself GLB and is none has lost its first bytes.
+    // A file named `.glb` without the magic number has lost its first bytes.
     if bytes.starts_with(MAGIC) || name.to_lowercase().ends_with(".glb") {
         return glb(bytes, report);
     }
@@ -48,27 +48,27 @@ fn glb(bytes: &[u8], report: &mut Report) -> Option<Parts> {
     if !bytes.starts_with(MAGIC) {
         let found = shown(&bytes[..end.min(4)]);
         let code = if end < 4 { "GLB_UNEXPECTED_END_OF_HEADER" } else { "GLB_INVALID_MAGIC" };
-        say(report, 0..end.min(4), code, format!("a GLB file begins with `glTF`, and this one with {found}"));
+        say(report, 0..end.min(4), code, format!("a GLB file begins with `glTF`, but this one with {found}"));
         return None;
     }
     let (Some(version), Some(length)) = (word(4), word(8)) else {
-        say(report, 0..end, "GLB_UNEXPECTED_END_OF_HEADER", "the file ends within the 12 bytes of its head");
+        say(report, 0..end, "GLB_UNEXPECTED_END_OF_HEADER", "the file ends within its header of 12 bytes");
         return None;
     };
     if version != 2 {
-        say(report, 4..8, "GLB_INVALID_VERSION", format!("version {version} of GLB is not known, only 2"));
+        say(report, 4..8, "GLB_INVALID_VERSION", format!("unsupported GLB version {version}: only version 2 is supported"));
         return None;
     }
     if length < 20 {
-        say(report, 8..12, "GLB_LENGTH_TOO_SMALL", format!("the head declares a length of {length} bytes"));
+        say(report, 8..12, "GLB_LENGTH_TOO_SMALL", format!("the header declares a length of {length} bytes"));
         return None;
     }
     if length as usize > end {
-        say(report, 8..12, "GLB_LENGTH_MISMATCH", format!("the head declares {length} bytes, and the file has {end}"));
+        say(report, 8..12, "GLB_LENGTH_MISMATCH", format!("the header declares {length} bytes, but the file has {end}"));
         return None;
     }
     if (length as usize) < end {
-        let message = format!("{} bytes left out after the end that the head declares", end - length as usize);
+        let message = format!("{} bytes after the declared end are ignored", end - length as usize);
         report.add(length as usize..length as usize + 1, Diagnostic::warning(message).code("GLB_EXTRA_DATA"));
     }
     chunks(bytes, length as usize, report)
@@ -79,12 +79,12 @@ fn chunks(bytes: &[u8], end: usize, report: &mut Report) -> Option<Parts> {
     let (mut json, mut bin, mut at, mut number) = (None, None, 12, 0);
     while at < end {
         let (Some(length), Some(kind)) = (word(at), word(at + 4)) else {
-            say(report, at..end, "GLB_UNEXPECTED_END_OF_CHUNK_HEADER", "the file ends within the head of a chunk");
+            say(report, at..end, "GLB_UNEXPECTED_END_OF_CHUNK_HEADER", "the file ends within a chunk header");
             return None;
         };
         let chunk = at + 8..at + 8 + length as usize;
         if length % 4 != 0 {
-            let message = format!("the length of a chunk must be a multiple of 4, and is {length}");
+            let message = format!("the length of a chunk must be a multiple of 4, but is {length}");
             say(report, at..at + 4, "GLB_CHUNK_LENGTH_UNALIGNED", message);
         }
         if chunk.end > end {
@@ -94,7 +94,7 @@ fn chunks(bytes: &[u8], end: usize, report: &mut Report) -> Option<Parts> {
         }
         match (kind, number) {
             (JSON, 0) if length == 0 => {
-                say(report, at..at + 4, "GLB_EMPTY_CHUNK", "the chunk of JSON is empty");
+                say(report, at..at + 4, "GLB_EMPTY_CHUNK", "the JSON chunk is empty");
                 return None;
             }
             (JSON, 0) => json = Some(chunk.clone()),
@@ -102,10 +102,10 @@ fn chunks(bytes: &[u8], end: usize, report: &mut Report) -> Option<Parts> {
                 say(report, at + 4..at + 8, "GLB_UNEXPECTED_FIRST_CHUNK", "the first chunk must be JSON");
                 return None;
             }
-            (JSON, _) => say(report, at + 4..at + 8, "GLB_DUPLICATE_CHUNK", "a second chunk of JSON"),
-            (BIN, _) if bin.is_some() => say(report, at + 4..at + 8, "GLB_DUPLICATE_CHUNK", "a second buffer"),
+            (JSON, _) => say(report, at + 4..at + 8, "GLB_DUPLICATE_CHUNK", "a second JSON chunk"),
+            (BIN, _) if bin.is_some() => say(report, at + 4..at + 8, "GLB_DUPLICATE_CHUNK", "a second binary chunk"),
             (BIN, _) => bin = Some(chunk.clone()),
-            // Others are for extensions.
+            // Other chunks belong to extensions.
             _ => {}
         }
         (at, number) = (chunk.end, number + 1);

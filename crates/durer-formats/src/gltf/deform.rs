@@ -1,4 +1,4 @@
-//! What moves vertices: morph targets and skins.
+//! Deformation of vertices: morph targets and skins.
 //!
 //! Source: *glTF 2.0 Specification*, chapters 3.7.2.2 and 3.7.3.
 
@@ -9,7 +9,7 @@ use durer_scene::math::Vec3;
 use durer_scene::shape::MeshData;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 
-/// How the vertices of a primitive are moved.
+/// Deformation data of the vertices of a primitive.
 #[derive(Clone, Default)]
 pub(super) struct Pose {
     targets: Vec<Target>,
@@ -17,23 +17,23 @@ pub(super) struct Pose {
     weights: Vec<[f32; 4]>,
 }
 
-/// How far one target moves positions and normals; empty where it moves none.
+/// Offsets of positions and normals by one morph target; empty if it has none.
 #[derive(Clone, Default)]
 struct Target {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
 }
 
-/// Bones.
+/// Skin: joints with their inverse bind matrices.
 #[derive(Clone)]
 pub(super) struct Skin {
     joints: Vec<usize>,
-    /// From the mesh to each bone.
+    /// Transforms from mesh space to the space of each joint.
     inverse: Vec<DAffine3>,
 }
 
 impl Skin {
-    /// From the mesh to the world, for each bone.
+    /// Returns the transforms from mesh space to world space for each joint.
     pub fn bones(&self, maps: &[DAffine3]) -> Vec<DAffine3> {
         self.joints.iter().zip(&self.inverse).map(|(&joint, inverse)| maps[joint] * *inverse).collect()
     }
@@ -57,7 +57,7 @@ impl Model<'_> {
         };
         let accessor = self.accessor(&matrices)?;
         if accessor.width != 16 || accessor.component != Component::F32 {
-            matrices.error("SKIN_IBM_INVALID_FORMAT", "inverse bind matrices are of type MAT4 and single precision");
+            matrices.error("SKIN_IBM_INVALID_FORMAT", "inverse bind matrices must have type MAT4 and single precision");
             return None;
         }
         if accessor.count < joints.len() {
@@ -74,20 +74,20 @@ impl Model<'_> {
         Some(Skin { joints, inverse: rows.into_iter().map(map).collect() })
     }
 
-    /// What moves the vertices of a primitive, if anything.
+    /// Reads the morph targets and joints of a primitive, if any.
     pub(super) fn pose(&self, primitive: &At, attributes: &At, count: usize) -> Option<Pose> {
         let targets = primitive.list("targets", |target| self.target(target, count));
         let joints = attributes.get("JOINTS_0");
         let weights = attributes.get("WEIGHTS_0");
         if joints.is_some() != weights.is_some() {
-            attributes.error("MESH_PRIMITIVE_JOINTS_WEIGHTS_MISMATCH", "JOINTS_0 and WEIGHTS_0 go together");
+            attributes.error("MESH_PRIMITIVE_JOINTS_WEIGHTS_MISMATCH", "JOINTS_0 and WEIGHTS_0 must occur together");
         }
         let mut pose = Pose { targets, ..Pose::default() };
         if let (Some(joints), Some(weights)) = (joints, weights) {
             let numbers = self.accessor(&joints)?;
             if numbers.width != 4 || !matches!(numbers.component, Component::U8 | Component::U16) || numbers.normalized
             {
-                let message = "JOINTS_0 has four unsigned whole numbers of 8 or 16 bits";
+                let message = "JOINTS_0 must have four unsigned integers of 8 or 16 bits";
                 joints.error("MESH_PRIMITIVE_ATTRIBUTES_ACCESSOR_INVALID_FORMAT", message);
                 return None;
             }
@@ -106,7 +106,7 @@ impl Model<'_> {
             let Some(attribute) = at.get(key) else { return Vec::new() };
             let Some(accessor) = self.accessor(&attribute) else { return Vec::new() };
             if accessor.count != count || accessor.width != 3 {
-                let message = format!("a morph target must have {count} rows of 3 numbers as the primitive has");
+                let message = format!("a morph target must have {count} rows of 3 numbers, as the primitive has");
                 attribute.error("MESH_PRIMITIVE_MORPH_TARGET_INVALID_ATTRIBUTE_COUNT", message);
                 return Vec::new();
             }
@@ -122,12 +122,12 @@ impl Model<'_> {
 }
 
 impl Pose {
-    /// Whether weights of targets, or bones, move anything.
+    /// Returns true if the weights of targets, or joints, move vertices.
     pub fn moves(&self, weights: &[f32], skinned: bool) -> bool {
         skinned && !self.joints.is_empty() || weights.iter().zip(&self.targets).any(|(weight, _)| *weight != 0.0)
     }
 
-    /// Moves further vertices as those whose copies they are.
+    /// Duplicates the deformation data for vertices that are copies of `originals`.
     pub fn copy(&mut self, originals: &[u32]) {
         copy(&mut self.joints, originals);
         copy(&mut self.weights, originals);
@@ -137,7 +137,7 @@ impl Pose {
         }
     }
 
-    /// Moves the vertices of the primitive's mesh.
+    /// Deforms the vertices of the primitive's mesh.
     pub fn apply(&self, data: &mut MeshData, weights: &[f32], bones: Option<&[DAffine3]>) {
         for (target, &weight) in self.targets.iter().zip(weights) {
             let add = |values: &mut [Vec3], moves: &[Vec3]| {
@@ -159,11 +159,11 @@ impl Pose {
                 }
             }
         }
-        // Bones may be anything, also infinitely far away.
+        // Joint transforms from the file may overflow.
         data.positions.iter_mut().filter(|p| !p.is_finite()).for_each(|p| *p = Vec3::ZERO);
     }
 
-    /// The mean of the maps of a vertex's bones.
+    /// Returns the weighted mean of the transforms of a vertex's joints.
     fn bone(&self, vertex: usize, bones: &[DAffine3]) -> DAffine3 {
         let (joints, weights) = (self.joints[vertex], self.weights[vertex]);
         let total: f64 = weights.iter().map(|&w| f64::from(w)).sum();
@@ -181,14 +181,14 @@ impl Pose {
     }
 }
 
-/// What turns normals as a map turns a surface: its inverse transposed, but for a positive factor;
-/// so that flat maps have one too.
+/// Matrix that transforms normals: the transposed inverse times a positive factor, which also
+/// exists for singular maps.
 pub(super) fn of_normals(map: DMat3) -> DMat3 {
     let [x, y, z] = [map.x_axis, map.y_axis, map.z_axis];
     1f64.copysign(map.determinant()) * DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y))
 }
 
-/// Adds copies of some values, where there are any.
+/// Appends copies of the values at `originals`, unless the list is empty.
 pub(super) fn copy<T: Copy>(values: &mut Vec<T>, originals: &[u32]) {
     if !values.is_empty() {
         values.extend(originals.iter().map(|&i| values[i as usize]).collect::<Vec<_>>());
@@ -200,7 +200,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn normals_of_skins_stay_at_right_angles() {
+    fn skinned_normals_stay_perpendicular() {
         let pose = Pose { joints: vec![[0; 4]], weights: vec![[1.0, 0.0, 0.0, 0.0]], ..Pose::default() };
         let (n, u) = (Vec3::new(0.48, 0.6, 0.64), Vec3::new(0.8, 0.0, -0.6));
         let v = n.cross(u);

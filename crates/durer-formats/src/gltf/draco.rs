@@ -1,7 +1,7 @@
-//! Primitives whose triangles are compressed by Draco.
+//! Primitives with triangles compressed by Draco.
 //!
-//! Source: *KHR_draco_mesh_compression*, Khronos Group. The accessors of such a primitive say what
-//! is in the compressed bytes, and have no bytes of their own; here they are given those.
+//! Source: *KHR_draco_mesh_compression*, Khronos Group. The accessors of such a primitive describe
+//! the compressed data and have no buffer view; this module gives them the decoded bytes.
 
 use super::Model;
 use super::accessor::Component;
@@ -13,7 +13,7 @@ use durer_image::panics::caught;
 const DRACO: &str = "KHR_draco_mesh_compression";
 
 impl Model<'_> {
-    /// Decodes all primitives that are compressed by Draco.
+    /// Decodes all primitives compressed by Draco.
     pub(super) fn unpack_primitives(&mut self, root: &At) {
         let Some(meshes) = root.get("meshes") else { return };
         for mesh in meshes.items() {
@@ -31,7 +31,7 @@ impl Model<'_> {
         at.object()?;
         let mode = primitive.get("mode").and_then(|mode| mode.value.as_u64()).unwrap_or(4);
         if !matches!(mode, 4 | 5) {
-            at.error("VALUE_NOT_IN_LIST", format!("{DRACO} holds triangles, not mode {mode}"));
+            at.error("VALUE_NOT_IN_LIST", format!("{DRACO} supports only triangles, not mode {mode}"));
             return None;
         }
         let view = at.need("bufferView")?;
@@ -39,7 +39,7 @@ impl Model<'_> {
         let mesh = match decoded(packed.bytes(), self.left.get()) {
             Ok(mesh) => mesh,
             Err(message) => {
-                at.error("compressed-data", format!("Draco's bytes are damaged: {message}"));
+                at.error("compressed-data", format!("the Draco data are damaged: {message}"));
                 return None;
             }
         };
@@ -57,7 +57,7 @@ impl Model<'_> {
                 continue;
             };
             let Some(component) = component(attribute.data_type()) else {
-                number.error("VALUE_NOT_IN_LIST", "the numbers of this attribute are of no type that glTF has");
+                number.error("VALUE_NOT_IN_LIST", "this attribute has a data type that glTF lacks");
                 continue;
             };
             let width = usize::from(attribute.num_components());
@@ -68,14 +68,14 @@ impl Model<'_> {
         Some(())
     }
 
-    /// Gives the accessor that a property names its bytes: rows of so many numbers, and how many.
+    /// Stores decoded bytes in the accessor that a property names: `count` rows of `width` numbers.
     fn give(&mut self, at: &At, (component, width, count): (Component, usize, usize), bytes: Vec<u8>) -> Option<()> {
         let number = at.index(self.accessors.len())?;
         let accessor = self.accessors[number].as_mut()?;
         if (accessor.width, accessor.count) != (width, count) {
             let (own_width, own_count) = (accessor.width, accessor.count);
             let message = format!(
-                "the accessor has {own_count} rows of {own_width}, and the compressed bytes {count} rows of {width}"
+                "the accessor has {own_count} rows of {own_width}, but the compressed data {count} rows of {width}"
             );
             at.error("MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT", message);
             return None;
@@ -86,7 +86,7 @@ impl Model<'_> {
     }
 }
 
-/// The points and triangles of some bytes, which may take so much memory.
+/// Decodes points and triangles, within `left` bytes of memory.
 fn decoded(bytes: &[u8], left: u64) -> Result<Mesh, String> {
     let limits =
         DecodeLimits::default().with_max_points(left / 16).with_max_faces(left / 64).with_max_decoded_bytes(left);
@@ -99,11 +99,11 @@ fn decoded(bytes: &[u8], left: u64) -> Result<Mesh, String> {
         Some(Ok(mesh)) if mesh.num_points() <= u32::MAX as usize => Ok(mesh),
         Some(Ok(_)) => Err("too many points".into()),
         Some(Err(error)) => Err(error.to_string()),
-        None => Err("their decoder failed".into()),
+        None => Err("the decoder failed".into()),
     }
 }
 
-/// The rows of an attribute, one a point, side by side; what the attribute does not have is 0.
+/// Returns the tightly packed rows of an attribute, one per point; missing data are 0.
 fn rows(attribute: &PointAttribute, points: usize, size: usize) -> Vec<u8> {
     let (data, stride) = (attribute.buffer().data(), attribute.byte_stride().max(0) as usize);
     let mut all = vec![0; points * size];

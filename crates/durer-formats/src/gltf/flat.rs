@@ -1,25 +1,25 @@
 //! Meshes that their nodes scale to 0 along one axis.
 //!
-//! Source: *glTF 2.0 Specification*, chapter 3.5.3: only what is scaled to 0 along all axes need not
-//! be shown.
+//! Source: *glTF 2.0 Specification*, chapter 3.5.3: only nodes scaled to 0 along all axes may be
+//! omitted.
 
 use super::deform::of_normals;
 use durer_scene::math::Vec3;
 use durer_scene::shape::MeshData;
 use glam::{DAffine3, DMat3, DVec3};
 
-/// Of the square of its longest side, what a triangle at least has of area.
+/// Minimum area of a triangle, relative to the square of its longest side.
 const AREA: f64 = 1e-9;
 
-/// Whether a map without an inverse leaves a plane of space, and not a line or a point.
+/// Returns true if a singular map flattens space to a plane, not to a line or a point.
 pub(super) fn is_sheet(map: DAffine3) -> bool {
     let longest = |map: DMat3| [map.x_axis, map.y_axis, map.z_axis].map(DVec3::length).into_iter().fold(0.0, f64::max);
     let (size, area) = (longest(map.matrix3), longest(of_normals(map.matrix3)));
     area.is_finite() && area > 1e-12 * size * size
 }
 
-/// What such a map makes of a mesh, in the world; `None` beyond the range of numbers. Faces that are
-/// seen from the side are gone.
+/// Returns a mesh flattened by a singular map, in world space; `None` beyond the range of numbers.
+/// Removes faces that collapse to lines.
 pub(super) fn flattened(data: &MeshData, map: DAffine3) -> Option<MeshData> {
     let mut flat = data.clone();
     for place in &mut flat.positions {
@@ -34,7 +34,7 @@ pub(super) fn flattened(data: &MeshData, map: DAffine3) -> Option<MeshData> {
         let turned = map.transform_vector3(along.as_dvec3()).as_vec3().normalize_or(along);
         tangent[..3].copy_from_slice(&turned.to_array());
     }
-    // All of it lies as its faces do.
+    // All vertices lie in one plane, so use face normals.
     (flat.normals, flat.triangle_normals, flat.flat) = (Vec::new(), Vec::new(), true);
     let has_area = |corners: &[u32; 3]| {
         let [a, b, c] = corners.map(|i| data.positions[i as usize].as_dvec3());

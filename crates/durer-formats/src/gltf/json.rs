@@ -1,7 +1,7 @@
-//! The JSON of a glTF file, with places: a value knows its JSON pointer, and what is said of it
-//! goes to line and column.
+//! JSON of a glTF file with positions: each value knows its JSON pointer, and diagnostics get its
+//! line and column.
 //!
-//! Codes of errors are those of the Khronos validator (its ISSUES.md).
+//! Error codes are those of the Khronos validator (its ISSUES.md).
 
 mod place;
 
@@ -12,14 +12,14 @@ use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::ops::{Range, RangeBounds};
 
-/// What is said about a file, by whoever reads a part of it.
+/// Collector of the diagnostics of one file, shared by its readers.
 pub(super) struct Findings<'a> {
-    /// The text of the JSON: a file, or what a binary file has of it.
+    /// JSON text: the file, or the JSON chunk of a binary file.
     text: &'a [u8],
-    /// Where the items of the document's lists begin.
+    /// Byte offsets of the items of top-level lists.
     starts: RefCell<HashMap<String, Vec<usize>>>,
     report: RefCell<Report>,
-    /// Whether there was an error.
+    /// True if there was an error.
     failed: Cell<bool>,
 }
 
@@ -36,12 +36,12 @@ impl<'a> Findings<'a> {
         self.failed.get() || self.report.borrow().has_errors()
     }
 
-    /// Where a value stands in the file, or what is nearest around it.
+    /// Byte range of a value in the file, or of the nearest value around it.
     fn range(&self, pointer: &str) -> Range<usize> {
         self.in_list(pointer).unwrap_or_else(|| place::locate(self.text, pointer))
     }
 
-    /// The same for what is in one of the lists that make up a document: each is walked over once.
+    /// Range of a value inside a top-level list. Each list is scanned once only.
     fn in_list(&self, pointer: &str) -> Option<Range<usize>> {
         let (list, rest) = pointer.strip_prefix('/')?.split_once('/')?;
         let (number, rest) = rest.split_at(rest.find('/').unwrap_or(rest.len()));
@@ -56,17 +56,17 @@ impl<'a> Findings<'a> {
         self.report.borrow().span(self.range(pointer))
     }
 
-    /// The place of a node by its number: of its name, where it has one.
+    /// Span of a node by index: of its name, if it has one.
     pub fn node(&self, number: usize) -> Span {
         self.span(&format!("/nodes/{number}/name"))
     }
 
-    /// An error, warning or note at a JSON pointer, which the message begins with.
+    /// Reports an error, warning or note at a JSON pointer, which the message begins with.
     pub fn say(&self, kind: fn(String) -> Diagnostic, code: &'static str, pointer: &str, message: &str) {
         let is_error = kind(String::new()).severity == Severity::Error;
-        // Whoever reads on must know of an error that nobody is told of any more.
+        // Record errors even if the report is full and drops them.
         self.failed.set(self.failed.get() || is_error);
-        // A file of a million errors or warnings is not walked over a million times.
+        // Skip the search for positions if the report is full: it scans the file for each of them.
         let (full, count) = (self.report.borrow().is_full(), self.report.borrow().count());
         if full || !is_error && count > 256 {
             return;
@@ -76,7 +76,7 @@ impl<'a> Findings<'a> {
     }
 }
 
-/// A value of the document and the way to it.
+/// Value of the document, with its path.
 #[derive(Clone, Copy)]
 pub(super) struct At<'a> {
     pub value: &'a Value,
@@ -96,7 +96,7 @@ impl<'a> At<'a> {
         At { value, findings, parent: None, step: Step::Key("") }
     }
 
-    /// The JSON pointer (RFC 6901) of this value.
+    /// Returns the JSON pointer (RFC 6901) of this value.
     pub fn pointer(&self) -> String {
         let Some(parent) = self.parent else { return String::new() };
         match self.step {
@@ -109,8 +109,8 @@ impl<'a> At<'a> {
         self.findings.span(&self.pointer())
     }
 
-    /// The name of what this value is a part of, as words to follow a noun: a blank and the name in
-    /// backquotes, or nothing.
+    /// Name of the innermost named value around this one, to follow a noun: a blank and the name in
+    /// backquotes; empty if there is none.
     pub fn name(&self) -> String {
         let own = self.value.get("name").and_then(Value::as_str).filter(|name| !name.is_empty());
         match (own, self.parent) {
@@ -132,13 +132,13 @@ impl<'a> At<'a> {
         self.findings.say(Diagnostic::note, code, &self.pointer(), message.as_ref());
     }
 
-    /// A property of this object, if it is there.
+    /// Returns a property of this object, if present.
     pub fn get(&'a self, key: &'a str) -> Option<At<'a>> {
         let value = self.value.as_object()?.get(key)?;
         Some(At { value, findings: self.findings, parent: Some(self), step: Step::Key(key) })
     }
 
-    /// A property that must be there.
+    /// Returns a required property.
     pub fn need(&'a self, key: &'a str) -> Option<At<'a>> {
         let found = self.get(key);
         if found.is_none() && self.value.is_object() {
@@ -152,7 +152,7 @@ impl<'a> At<'a> {
         self.error("TYPE_MISMATCH", format!("expected {wanted}, found {}", shown(text.as_bytes())));
     }
 
-    /// This value as an object.
+    /// Returns this value as an object.
     pub fn object(&self) -> Option<&'a Map<String, Value>> {
         let object = self.value.as_object();
         if object.is_none() {
@@ -161,7 +161,7 @@ impl<'a> At<'a> {
         object
     }
 
-    /// The values of this array, which must not be empty.
+    /// Returns the items of this array, which must not be empty.
     pub fn items(&'a self) -> impl ExactSizeIterator<Item = At<'a>> {
         let items = match self.value {
             Value::Array(items) => {
@@ -183,8 +183,7 @@ impl<'a> At<'a> {
         })
     }
 
-    /// The values of an array that is a property, all read in one way; none where there is no such
-    /// property.
+    /// Reads each item of an array property; empty if the property is missing.
     pub fn list<T>(&'a self, key: &'a str, mut read: impl FnMut(&At) -> T) -> Vec<T> {
         match self.get(key) {
             Some(array) => array.items().map(|item| read(&item)).collect(),
@@ -208,7 +207,7 @@ impl<'a> At<'a> {
         value
     }
 
-    /// A number that single precision holds.
+    /// Returns a number in the range of `f32`.
     pub fn number(&self) -> Option<f32> {
         match self.value.as_f64() {
             Some(x) if (x as f32).is_finite() => Some(x as f32),
@@ -223,7 +222,7 @@ impl<'a> At<'a> {
         }
     }
 
-    /// A number in some range.
+    /// Returns a number in a range.
     pub fn within(&self, range: impl RangeBounds<f32>) -> Option<f32> {
         let number = self.number()?;
         if range.contains(&number) {
@@ -233,7 +232,7 @@ impl<'a> At<'a> {
         None
     }
 
-    /// A whole number, which may be written as 4.0.
+    /// Returns an integer, which may be written as 4.0.
     pub fn whole(&self, range: impl RangeBounds<u64>) -> Option<u64> {
         let exact = |x: f64| (x.fract() == 0.0 && (0.0..9.0e15).contains(&x)).then_some(x as u64);
         match self.value.as_u64().or_else(|| self.value.as_f64().and_then(exact)) {
@@ -252,7 +251,7 @@ impl<'a> At<'a> {
         }
     }
 
-    /// The number of a thing in a list of `count`.
+    /// Returns an index into a list of `count` items.
     pub fn index(&self, count: usize) -> Option<usize> {
         let number = self.whole(..)?;
         if number < count as u64 {
@@ -262,7 +261,7 @@ impl<'a> At<'a> {
         None
     }
 
-    /// So many numbers.
+    /// Returns an array of exactly `N` numbers.
     pub fn numbers<const N: usize>(&'a self) -> Option<[f32; N]> {
         let items = self.items();
         if self.value.is_array() && items.len() != N {
@@ -273,7 +272,7 @@ impl<'a> At<'a> {
         items.map(|item| item.number()).collect::<Option<Vec<_>>>()?.try_into().ok()
     }
 
-    /// One of some words.
+    /// Returns the meaning of one of some words.
     pub fn word<T: Copy>(&self, words: &[(&str, T)]) -> Option<T> {
         let text = self.string()?;
         let found = words.iter().find(|(word, _)| *word == text).map(|&(_, meaning)| meaning);

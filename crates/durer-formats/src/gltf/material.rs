@@ -1,7 +1,7 @@
-//! Materials: metallic-roughness and the KHR extensions, in the words of OpenPBR.
+//! Materials: metallic-roughness and the KHR extensions, as OpenPBR.
 //!
-//! Sources: *glTF 2.0 Specification*, chapter 3.9 and appendix B; the KHR_materials extensions; how
-//! they meet OpenPBR: *OpenPBR Surface specification* 1.1, section on translation of other models.
+//! Sources: *glTF 2.0 Specification*, chapter 3.9 and appendix B; the KHR_materials extensions; for
+//! the translation, *OpenPBR Surface specification* 1.1, section on translation of other models.
 
 use super::Model;
 use super::json::At;
@@ -14,18 +14,18 @@ use durer_scene::math::Vec3;
 use durer_scene::texture::{Channel, Mapping};
 use std::f32::consts::TAU;
 
-/// What of KHR materials has no counterpart, and what is seen instead.
+/// Extensions without a counterpart, with the substitute.
 const WITHOUT_COUNTERPART: [(&str, &str); 1] =
-    [("KHR_materials_subsurface", "scattering below the surface is left out")];
+    [("KHR_materials_subsurface", "subsurface scattering is left out")];
 
-/// Textures of extensions that have no counterpart, by extension, and what is seen instead.
+/// Textures of extensions without a counterpart: extension, key and substitute.
 const TEXTURES: [(&str, &str, &str); 3] = [
-    ("KHR_materials_volume", "thicknessTexture", "light goes as far as the body is thick"),
-    ("KHR_materials_clearcoat", "clearcoatNormalTexture", "the coat lies as its base does"),
-    ("KHR_materials_diffuse_transmission", "diffuseTransmissionTexture", "only its factor counts"),
+    ("KHR_materials_volume", "thicknessTexture", "the body's actual thickness is used"),
+    ("KHR_materials_clearcoat", "clearcoatNormalTexture", "the coat uses the normals of its base"),
+    ("KHR_materials_diffuse_transmission", "diffuseTransmissionTexture", "only its factor is used"),
 ];
 
-/// How alpha is meant.
+/// Alpha mode.
 #[derive(Clone, Copy, PartialEq)]
 enum Alpha {
     Opaque,
@@ -33,7 +33,7 @@ enum Alpha {
     Blend,
 }
 
-/// Whether a material looks otherwise where its surface is turned about its normal.
+/// Returns true if a material depends on the orientation of the tangent.
 pub(super) fn needs_tangents(at: &At) -> bool {
     let anisotropic = |e: At| e.get("KHR_materials_anisotropy").is_some();
     at.get("normalTexture").is_some() || at.get("extensions").is_some_and(anisotropic)
@@ -45,7 +45,7 @@ impl Model<'_> {
         materials.items().enumerate().map(|(i, material)| self.material(i, &material)).collect()
     }
 
-    /// Of each material, whether some vertices with it have colours.
+    /// Returns for each material true if some vertices with it have colours.
     pub(super) fn colored(root: &At) -> Vec<bool> {
         let mut colored = vec![false; root.get("materials").map_or(0, |materials| materials.items().count())];
         let meshes = root.value.get("meshes").and_then(|meshes| meshes.as_array()).into_iter().flatten();
@@ -58,7 +58,7 @@ impl Model<'_> {
     }
 
     fn material(&self, number: usize, at: &At) -> PrincipledMaterial {
-        // glTF's own default: white, wholly metal and wholly rough, of ior 1.5.
+        // glTF's default material: white, fully metallic, fully rough, with an index of 1.5.
         let mut m = PrincipledMaterial {
             base_color: Vec3::ONE,
             base_metalness: 1.0,
@@ -84,7 +84,7 @@ impl Model<'_> {
         }
         let is_colored = self.colored.get(number) == Some(&true);
         if alpha == Alpha::Mask && is_colored {
-            // The alpha of vertices counts before the cutoff.
+            // The alpha of vertices is multiplied in before the cutoff.
             self.mask_whole(&mut m, at, cutoff);
         }
         m.normal_texture = at.get("normalTexture").and_then(|texture| {
@@ -104,12 +104,12 @@ impl Model<'_> {
                 m.emission_vertex_colors = Switch::On;
             }
         }
-        // Of glass both sides of the skin are seen.
+        // Both sides of a transmissive surface are visible.
         let both = at.get("doubleSided").and_then(|both| both.boolean()).unwrap_or(false);
         if m.transmission_weight == 0.0 {
             match both {
                 false => m.backs = Backs::Hidden,
-                // What shines does so to both sides, as a sheet does.
+                // Thin surfaces emit on both sides.
                 true if m.emission_luminance > 0.0 => m.walls = Walls::Thin,
                 true => {}
             }
@@ -127,7 +127,7 @@ impl Model<'_> {
             pbr.get("metallicRoughnessTexture").and_then(|texture| self.texture(&texture, |_| ()));
     }
 
-    /// A mask by the alpha of factor, texture and vertices together.
+    /// Sets up a mask by the product of the alphas of factor, texture and vertices.
     fn mask_whole(&self, m: &mut PrincipledMaterial, at: &At, cutoff: f32) {
         let extensions = at.get("extensions");
         let old = extensions.as_ref().and_then(|extensions| extensions.get("KHR_materials_pbrSpecularGlossiness"));
@@ -145,9 +145,9 @@ impl Model<'_> {
         }
     }
 
-    /// The base colour's texture, and what its alpha and that of the factor make of opacity.
+    /// Reads the base colour texture, and sets the opacity from the alphas of texture and factor.
     fn base(&self, m: &mut PrincipledMaterial, texture: Option<At>, factor: f32, alpha: Alpha, cutoff: f32) {
-        // The texture's alpha times the factor is compared with the cutoff.
+        // The cutoff applies to the texture's alpha times the factor.
         let least = match alpha {
             Alpha::Opaque => Some(0.0),
             Alpha::Mask if factor > 0.0 => Some(cutoff / factor),
@@ -163,7 +163,8 @@ impl Model<'_> {
         };
     }
 
-    /// KHR_materials_pbrSpecularGlossiness: what reflects at right angles is a colour of its own.
+    /// Reads KHR_materials_pbrSpecularGlossiness, which has a colour for the reflectance at normal
+    /// incidence.
     fn glossy(&self, m: &mut PrincipledMaterial, old: &At, alpha: Alpha, cutoff: f32) {
         let factor = old.get("diffuseFactor").and_then(|factor| factor.numbers::<4>()).unwrap_or([1.0; 4]);
         let specular = old.get("specularFactor").and_then(|factor| color(&factor)).unwrap_or(Vec3::ONE);
@@ -171,7 +172,7 @@ impl Model<'_> {
         m.base_metalness = 0.0;
         m.specular_roughness = 1.0 - share(old, "glossinessFactor", 1.0);
         let most = specular.max_element();
-        // Ior 1.5 reflects 0.04 at right angles.
+        // An index of 1.5 reflects 0.04 at normal incidence.
         m.specular_weight = most / 0.04;
         m.specular_color = if most > 0.0 { specular / most } else { Vec3::ONE };
         if most > 0.5 && m.base_color.max_element() < 0.2 {
@@ -184,8 +185,7 @@ impl Model<'_> {
             true => m.base_color_texture = color,
             false => m.specular_color_texture = color,
         }
-        // Roughness is what glossiness times alpha leaves of 1: the picture multiplies a roughness
-        // of 1.
+        // Roughness is 1 minus glossiness times alpha, so the texture scales a roughness of 1.
         let glossiness = 1.0 - m.specular_roughness;
         m.specular_roughness = 1.0;
         m.specular_roughness_texture = self.number(&texture, Channel::Alpha, [1.0, 1.0 - glossiness]);
@@ -206,7 +206,7 @@ impl Model<'_> {
             }
         }
         if let Some(e) = extensions.get("KHR_materials_ior") {
-            // 0 stands for an index without bound, which reflects everything.
+            // 0 stands for an infinite index, which reflects everything.
             m.specular_ior = match e.get("ior") {
                 Some(ior) if ior.value.as_f64() == Some(0.0) => 1e4,
                 ior => ior.and_then(|ior| ior.within(1.0..)).unwrap_or(1.5),
@@ -223,7 +223,7 @@ impl Model<'_> {
         }
         if let Some(e) = extensions.get("KHR_materials_transmission") {
             m.transmission_weight = share(&e, "transmissionFactor", 0.0);
-            // Light that passes takes on the base colour.
+            // Transmitted light is tinted by the base colour.
             m.transmission_color = m.base_color;
             m.transmission_color_texture = m.base_color_texture.clone();
             m.transmission_weight_texture = number(&e, "transmissionTexture", Channel::Red);
@@ -262,8 +262,8 @@ impl Model<'_> {
             m.specular_rotation = turn / TAU;
             let pictured = m.metallic_roughness_texture.is_some() || e.get("anisotropyTexture").is_some();
             if m.specular_anisotropy > 0.0 && !pictured {
-                // Along the highlight alpha grows towards 1 by the square of the strength; across it is
-                // that of the roughness. What pictures say is only like that.
+                // Along the highlight, alpha grows towards 1 with the squared strength; across it,
+                // alpha is the squared roughness. With textures this is only approximate.
                 let alpha = (m.specular_roughness * m.specular_roughness).max(1e-3);
                 let along = alpha + (1.0 - alpha) * m.specular_anisotropy * m.specular_anisotropy;
                 [m.specular_roughness, m.specular_anisotropy, _] = Ggx::parameters([along, alpha]);
@@ -276,7 +276,8 @@ impl Model<'_> {
             m.thin_film_weight = share(&e, "iridescenceFactor", 0.0);
             m.thin_film_weight_texture = number(&e, "iridescenceTexture", Channel::Red);
             m.thin_film_ior = at_least("iridescenceIor", 1.3, 1.0);
-            // Nanometres there, micrometres here; without a picture the greatest thickness counts.
+            // The file has nanometres, the scene micrometres. Without a texture, the maximum
+            // thickness applies.
             let [thin, thick] = [("iridescenceThicknessMinimum", 100.0), ("iridescenceThicknessMaximum", 400.0)]
                 .map(|(key, or)| at_least(key, or, 0.0));
             m.thin_film_thickness = 1e-3 * thick;
@@ -285,7 +286,7 @@ impl Model<'_> {
                 texture.and_then(|texture| self.number(&texture, Channel::Green, [thin / thick, 1.0]));
         }
         if let Some(e) = extensions.get("KHR_materials_dispersion") {
-            // Abbe's number is 20 over that, as ours over its scale.
+            // Dispersion is 20 / Abbe number; the scene divides the Abbe number by its scale.
             let dispersion = e.get("dispersion").and_then(|x| x.within(0.0..)).unwrap_or(0.0);
             m.transmission_dispersion_scale = dispersion.min(1.0);
             m.transmission_dispersion_abbe_number = 20.0 / dispersion.max(1.0);
@@ -294,7 +295,7 @@ impl Model<'_> {
             self.let_through(m, &e);
         }
         if extensions.get("KHR_materials_unlit").is_some() {
-            // What is not lit shines by itself.
+            // Unlit materials emit their base colour.
             m.emission_color = m.base_color;
             m.emission_texture = m.base_color_texture.clone();
             (m.emission_luminance, m.base_weight, m.specular_weight, m.base_metalness) = (1.0, 0.0, 0.0, 0.0);
@@ -302,20 +303,22 @@ impl Model<'_> {
     }
 }
 
-/// KHR_materials_specular is of dielectrics alone; ours is of metals too.
+/// Removes the effect of KHR_materials_specular on metals: it applies to dielectrics only, but
+/// OpenPBR's specular parameters apply to metals too.
 fn not_of_metals(m: &mut PrincipledMaterial, clear: bool) {
     let is_metal = m.base_metalness == 1.0 && m.metallic_roughness_texture.is_none();
     if is_metal {
         (m.specular_weight, m.specular_color) = (1.0, Vec3::ONE);
         (m.specular_weight_texture, m.specular_color_texture) = (None, None);
     } else if m.base_metalness > 0.0 && m.specular_weight < 1.0 && !clear {
-        // A smaller index reflects less, which is all that a weight does to what is no metal.
+        // For opaque dielectrics, a smaller index has the same effect as a smaller weight.
         (m.specular_ior, m.specular_weight) = (opaque_ior(m), 1.0);
     }
 }
 
-/// Only what reflects at right angles has the colour there: how bright that is belongs to our
-/// weight, which leaves grazing angles as they are. Glass has no weight.
+/// Moves the brightness of the specular colour into the weight. The colour applies at normal
+/// incidence only, and the weight keeps grazing angles unchanged. Transmissive materials ignore the
+/// weight, so their colour is clamped.
 fn weighed_by_brightness(m: &mut PrincipledMaterial, clear: bool) {
     let most = m.specular_color.max_element();
     if clear {
@@ -329,15 +332,15 @@ fn weighed_by_brightness(m: &mut PrincipledMaterial, clear: bool) {
 }
 
 impl Model<'_> {
-    /// KHR_materials_diffuse_transmission: a share of the matte light comes out behind a sheet, in
-    /// a colour of its own.
+    /// Reads KHR_materials_diffuse_transmission: a thin sheet transmits a share of the diffuse
+    /// light, with its own colour.
     fn let_through(&self, m: &mut PrincipledMaterial, e: &At) {
         let through = share(e, "diffuseTransmissionFactor", 0.0);
         if through == 0.0 || m.walls == Walls::Solid && m.transmission_weight > 0.0 {
             return;
         }
-        // What comes out behind is all that is scattered into the sheet; what stays in front is the
-        // matte base.
+        // The subsurface lobe with full forward scattering is the transmitted part; the base
+        // diffuse lobe is the reflected part.
         m.walls = Walls::Thin;
         m.subsurface_weight = through;
         m.subsurface_scatter_anisotropy = 1.0 - f32::EPSILON;
@@ -346,20 +349,20 @@ impl Model<'_> {
         m.subsurface_color_texture = picture.and_then(|texture| self.texture(&texture, |_| ()));
     }
 
-    /// A picture whose channel changes a number; its 0 and 1 stand for these.
+    /// Texture whose channel scales a parameter; texel values 0 and 1 map to `range`.
     fn number(&self, texture: &At, channel: Channel, range: [f32; 2]) -> Option<FileName> {
         let change = |mapping: &mut Mapping| (mapping.channel, mapping.range) = (Some(channel), range);
-        // The same picture may change several numbers.
+        // One texture may scale several parameters.
         self.texture_as(texture, &format!(":{channel:?}"), change)
     }
 }
 
-/// A factor from 0 to 1.
+/// Reads a factor from 0 to 1.
 fn share(at: &At, key: &str, or: f32) -> f32 {
     at.get(key).and_then(|factor| factor.within(0.0..=1.0)).unwrap_or(or)
 }
 
-/// A colour without negative parts.
+/// Reads a colour; clamps negative components to 0.
 fn color(at: &At) -> Option<Vec3> {
     at.numbers::<3>().map(|rgb| Vec3::from_array(rgb).max(Vec3::ZERO))
 }

@@ -1,14 +1,14 @@
-//! Views that are compressed by meshoptimizer: attributes, triangles, indices, and the filters of
+//! Buffer views compressed by meshoptimizer: attributes, triangles, indices, and filters of
 //! attributes.
 //!
-//! Source: *EXT_meshopt_compression*, Khronos Group, appendices A (bitstream) and B (filters),
-//! whose words are kept.
+//! Source: *EXT_meshopt_compression*, Khronos Group, appendices A (bitstream) and B (filters);
+//! names follow these.
 
 use super::Model;
 use super::buffers::Slice;
 use super::json::At;
 
-/// What the bytes hold.
+/// Kind of compressed data.
 #[derive(Clone, Copy, PartialEq)]
 enum Mode {
     Attributes,
@@ -16,7 +16,7 @@ enum Mode {
     Indices,
 }
 
-/// What is done to attributes after they are decoded.
+/// Filter applied to decoded attributes.
 #[derive(Clone, Copy, PartialEq)]
 enum Filter {
     None,
@@ -26,7 +26,7 @@ enum Filter {
 }
 
 impl Model<'_> {
-    /// The bytes of a view of `length` bytes that are compressed elsewhere.
+    /// Decodes a compressed buffer view of `length` bytes.
     pub(super) fn unpacked(&self, at: &At, length: usize) -> Option<Slice> {
         at.object()?;
         let buffer = at.need("buffer").and_then(|buffer| buffer.index(self.buffers.len()))?;
@@ -52,7 +52,7 @@ impl Model<'_> {
         if !strides_fit || (mode == Mode::Triangles && !count.is_multiple_of(3)) {
             at.error(
                 "VALUE_NOT_IN_RANGE",
-                format!("{count} elements of {stride} bytes do not go with mode and filter"),
+                format!("{count} elements of {stride} bytes do not match the mode and the filter"),
             );
             return None;
         }
@@ -67,7 +67,7 @@ impl Model<'_> {
             at.error("BUFFER_VIEW_TOO_LONG", format!("{size} bytes from {offset} on do not fit into the buffer"));
             return None;
         };
-        // A byte holds four groups of 16 equal bytes at most, or a triangle.
+        // A byte encodes at most four groups of 16 equal bytes, or a triangle.
         if size.saturating_mul(64) < length {
             at.error("compressed-data", format!("{size} bytes cannot hold {length}"));
             return None;
@@ -79,7 +79,7 @@ impl Model<'_> {
             Mode::Indices => indices(packed.bytes(), count).map(|indices| bytes(&indices, stride)),
         };
         let Some(mut decoded) = decoded else {
-            at.error("compressed-data", "the compressed bytes end too early, go on too long, or are of another mode");
+            at.error("compressed-data", "the compressed data are too short, too long, or of another mode");
             return None;
         };
         match filter {
@@ -108,7 +108,7 @@ impl Model<'_> {
     }
 }
 
-/// Reads bytes one after the other.
+/// Reader of consecutive bytes.
 struct Reader<'a>(&'a [u8]);
 
 impl<'a> Reader<'a> {
@@ -124,7 +124,7 @@ impl<'a> Reader<'a> {
         Some(some)
     }
 
-    /// A whole number of seven bits a byte, the least first.
+    /// Reads an integer of seven bits per byte, least significant first.
     fn varint(&mut self) -> Option<u32> {
         let mut value = 0;
         for shift in [0, 7, 14, 21, 28] {
@@ -142,7 +142,8 @@ fn zigzag(v: u32) -> u32 {
     if v & 1 != 0 { !(v >> 1) } else { v >> 1 }
 }
 
-/// Mode 0: blocks of elements whose bytes are apart, each as its difference to the element before.
+/// Decodes mode 0: blocks of elements, split into byte planes, each byte as its difference from the
+/// previous element.
 fn attributes(packed: &[u8], count: usize, stride: usize) -> Option<Vec<u8>> {
     let tail = stride.max(32);
     let data = packed.strip_prefix(&[0xa0])?;
@@ -168,8 +169,8 @@ fn attributes(packed: &[u8], count: usize, stride: usize) -> Option<Vec<u8>> {
     reader.0.is_empty().then_some(all)
 }
 
-/// Sixteen differences: none, of two or four bits with those that do not fit behind them, or of
-/// eight.
+/// Decodes sixteen differences: all zero, of two or four bits with larger values appended, or of
+/// eight bits.
 fn deltas(reader: &mut Reader, mode: u8) -> Option<[u8; 16]> {
     let bits = match mode {
         0 => return Some([0; 16]),
@@ -189,7 +190,7 @@ fn deltas(reader: &mut Reader, mode: u8) -> Option<[u8; 16]> {
     Some(all)
 }
 
-/// The last sixteen of something.
+/// Ring buffer of the last sixteen values.
 #[derive(Default)]
 struct Recent<T> {
     all: [T; 16],
@@ -202,14 +203,14 @@ impl<T: Copy> Recent<T> {
         self.next += 1;
     }
 
-    /// The one that came `back` before the last.
+    /// Returns the value pushed `back` pushes before the last.
     fn get(&self, back: usize) -> T {
         self.all[(self.next + 15 - back) % 16]
     }
 }
 
-/// Mode 1: a byte for each triangle, which shares an edge with one of the last, and more where it
-/// does not.
+/// Decodes mode 1: one byte per triangle that shares an edge with a recent one, more bytes
+/// otherwise.
 fn triangles(packed: &[u8], count: usize) -> Option<Vec<u32>> {
     let data = packed.strip_prefix(&[0xe1])?;
     let (data, table) = data.split_at_checked(data.len().checked_sub(16)?)?;
@@ -276,12 +277,12 @@ fn triangles(packed: &[u8], count: usize) -> Option<Vec<u32>> {
     reader.0.is_empty().then_some(all)
 }
 
-/// Mode 2: differences to the last of two sequences.
+/// Decodes mode 2: differences from the last value of one of two sequences.
 fn indices(packed: &[u8], count: usize) -> Option<Vec<u32>> {
     let data = packed.strip_prefix(&[0xd1])?;
     let mut reader = Reader(data.get(..data.len().checked_sub(4)?)?);
     let mut last = [0u32; 2];
-    // Each takes a byte at least.
+    // Each index takes at least one byte.
     let mut all = Vec::with_capacity(count.min(data.len()));
     for _ in 0..count {
         let v = reader.varint()?;
@@ -304,9 +305,9 @@ fn put(row: &mut [u8; 8], values: [i16; 4]) {
     row.as_chunks_mut::<2>().0.iter_mut().zip(values).for_each(|(bytes, value)| *bytes = value.to_le_bytes());
 }
 
-/// Filter 1: a direction from its place on an octahedron, in units of `most`.
+/// Filter 1: decodes an octahedral direction, in units of `most`.
 fn octahedral([x, y, one]: [f32; 3], most: f32) -> [f32; 3] {
-    // A length of 0 is no valid one.
+    // A length of 0 is invalid.
     let one = if one == 0.0 { 1.0 } else { one };
     let (x, y) = (x / one, y / one);
     let z = 1.0 - x.abs() - y.abs();
@@ -316,7 +317,7 @@ fn octahedral([x, y, one]: [f32; 3], most: f32) -> [f32; 3] {
     [x, y, z].map(|v| (v / length * most).round())
 }
 
-/// Filter 2: a quaternion of length 1 from all but its largest part.
+/// Filter 2: decodes a unit quaternion from its three smaller components.
 fn quaternion([x, y, z, word]: [i16; 4]) -> [i16; 4] {
     let scale = std::f32::consts::FRAC_1_SQRT_2 / f32::from(word | 3);
     let [x, y, z] = [x, y, z].map(|v| f32::from(v) * scale);
@@ -333,9 +334,9 @@ fn quaternion([x, y, z, word]: [i16; 4]) -> [i16; 4] {
 mod tests {
     use super::*;
 
-    /// The sixteen differences of the specification's example, before their signs are folded.
+    /// Sixteen differences of the specification's example, before zigzag decoding.
     #[test]
-    fn the_example_of_the_specification() {
+    fn deltas_match_the_specification() {
         let packed = [0x17, 0x5f, 0xf0, 0xbc, 0x77, 0xa9, 0x21, 0x00, 0x34, 0xb5];
         let expected = [-1, -4, -3, 26, -91, 0, -6, 6, -4, -4, 5, -5, 1, -1, 0, 0];
         let decoded = deltas(&mut Reader(&packed), 2).unwrap();
@@ -344,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_of_seven_bits() {
+    fn varints_have_seven_bits_per_byte() {
         for (packed, value) in [(&[0x7f][..], 0x7f), (&[0x81, 0x04], 0x201), (&[0xff, 0xa0, 0x05], 0x1507f)] {
             assert_eq!(Reader(packed).varint(), Some(value));
         }
@@ -353,8 +354,8 @@ mod tests {
 
     #[test]
     fn elements_follow_the_baseline() {
-        // Two elements of four bytes: the first is the baseline plus (1, 0, 0, 0), the second that
-        // plus (-1, 0, 0, 5).
+        // Two elements of four bytes: the first is the baseline plus (1, 0, 0, 0), the second is
+        // the first plus (-1, 0, 0, 5).
         let mut packed = vec![0xa0];
         packed.extend([1, 0b1001_0000, 0, 0, 0]); // byte 0: two bits, 2 = +1 and 1 = -1
         packed.extend([0, 0]);

@@ -1,8 +1,8 @@
 //! glTF 2.0, as `.gltf` and `.glb`: scenes with nodes, meshes, materials, textures, cameras,
-//! lights, skins, animations.
+//! lights, skins and animations.
 //!
-//! Source: *glTF 2.0 Specification*, Khronos Group, 2021, and the extensions that are named where
-//! they are read. Errors have the codes of the Khronos validator and name the JSON pointer.
+//! Source: *glTF 2.0 Specification*, Khronos Group, 2021, and the extensions named in the
+//! submodules. Errors have the codes of the Khronos validator and name the JSON pointer.
 
 mod accessor;
 mod animation;
@@ -39,7 +39,7 @@ use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
 use write::write;
 
-/// Extensions that a file may require: what is left out of them is warned of.
+/// Extensions that a file may require. Readers warn about the parts that they leave out.
 const KNOWN: [&str; 24] = [
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
@@ -67,43 +67,43 @@ const KNOWN: [&str; 24] = [
     "KHR_node_visibility",
 ];
 
-/// A file on its way to a scene: what was read of it so far.
+/// State of reading one file.
 struct Model<'a> {
     input: &'a Input<'a>,
     findings: &'a Findings<'a>,
     parts: Parts,
-    /// Whether KHR_mesh_quantization allows attributes of whole numbers.
+    /// True if KHR_mesh_quantization allows integer attributes.
     quantized: bool,
     buffers: Vec<Option<Buffer>>,
     views: Vec<Option<View>>,
     accessors: Vec<Option<Accessor>>,
     images: Vec<Option<PictureBytes>>,
-    /// With the place of each one's picture.
+    /// Picture, mapping and the span of the picture's name, for each texture.
     textures: Vec<Option<(PictureBytes, Mapping, Span)>>,
-    /// The pictures that materials show, by name.
+    /// Pictures that materials use, by asset name.
     pictures: RefCell<BTreeMap<String, Picture>>,
     material_count: usize,
-    /// The look that is shown, where the file has several.
+    /// Index of the selected variant, if the file has variants.
     variant: Option<usize>,
-    /// Whether each material lets what is behind it be seen by its alpha.
+    /// For each material, true if it is translucent by its alpha.
     blends: Vec<bool>,
-    /// Of each material, whether some vertices with it have colours.
+    /// For each material, true if some vertices with it have colours.
     colored: Vec<bool>,
-    /// Whether each material wants to know how its surface moves as u grows.
+    /// For each material, true if it needs tangents.
     leans: Vec<bool>,
     meshes: Vec<Primitives>,
-    /// Weights of each mesh's morph targets.
+    /// Weights of the morph targets of each mesh.
     weights: Vec<Vec<f32>>,
     skins: Vec<Option<Skin>>,
     cameras: Vec<Option<CameraData>>,
     lights: Vec<Option<LightData>>,
-    /// Bytes that may still be decoded.
+    /// Remaining budget of decoded bytes.
     left: Cell<u64>,
-    /// What was said already.
+    /// Codes of the warnings that were reported.
     said: RefCell<BTreeSet<&'static str>>,
 }
 
-/// The format of scenes.
+/// The glTF format.
 pub(super) const FORMAT: SceneFormat = SceneFormat {
     name: "glTF",
     extensions: &["gltf", "glb"],
@@ -125,7 +125,7 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let text = &input.bytes[parts.json.clone()];
     let mut end = parts.json.end;
     if parts.is_glb {
-        // Lines and columns in a binary file are those of its text.
+        // Report lines and columns of the JSON text inside a binary file.
         report.finish(diagnostics, ());
         let mut files = input.files.borrow_mut();
         let name = files.name(input.file).unwrap_or(input.name).to_string();
@@ -183,7 +183,7 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
         left: Cell::new(0),
         said: RefCell::default(),
     };
-    // Each step needs those before it.
+    // Each step needs the ones before it.
     model.buffers = model.buffers(&root);
     let slices = model.buffers.iter().flatten().filter_map(|buffer| buffer.slice.as_ref());
     let bytes: u64 = slices.map(|slice| slice.bytes().len() as u64).sum();
@@ -237,23 +237,23 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
     if scene.root.is_none() && !root.findings.has_errors() {
         let number = root.get("scene").and_then(|number| number.value.as_u64()).unwrap_or(0);
         let at = format!("/scenes/{number}");
-        root.findings.say(Diagnostic::warning, "no-objects", &at, "nothing is shown that has triangles");
+        root.findings.say(Diagnostic::warning, "no-objects", &at, "the scene has no visible triangles");
     }
     Some(scene)
 }
 
-/// Refuses versions other than 2.
+/// Rejects versions other than 2.
 fn check_version(root: &At) -> Option<()> {
     let asset = root.need("asset")?;
     asset.object()?;
     let version = asset.need("version")?;
     let number = |text: &str| text.split_once('.').and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
     let Some((major, minor)): Option<(u32, u32)> = number(version.string()?) else {
-        version.error("PATTERN_MISMATCH", "a version is two numbers with a point between them");
+        version.error("PATTERN_MISMATCH", "a version must have the form `2.0`");
         return None;
     };
     if major != 2 {
-        let message = format!("unknown version {major}.{minor} of glTF: only 2 is read");
+        let message = format!("unsupported glTF version {major}.{minor}: only version 2 is supported");
         version.error("UNKNOWN_ASSET_MAJOR_VERSION", message);
         return None;
     }
@@ -263,14 +263,13 @@ fn check_version(root: &At) -> Option<()> {
         if wanted > (major, minor) {
             least.error("ASSET_MIN_VERSION_GREATER_THAN_VERSION", "`minVersion` is greater than `version`");
         } else if wanted > (2, 0) {
-            least.warning("UNKNOWN_ASSET_MINOR_VERSION", "only version 2.0 of glTF is known");
+            least.warning("UNKNOWN_ASSET_MINOR_VERSION", "only version 2.0 of glTF is supported");
         }
     }
     Some(())
 }
 
-/// Refuses extensions that a file requires and that are not read; tells whether attributes may be
-/// quantized.
+/// Rejects required extensions that are not supported; returns true if attributes may be quantized.
 fn required(root: &At) -> bool {
     let mut quantized = false;
     for key in ["extensionsUsed", "extensionsRequired"] {
@@ -281,15 +280,15 @@ fn required(root: &At) -> bool {
             if key == "extensionsRequired" && !KNOWN.contains(&name.as_str()) {
                 let tool = match name.as_str() {
                     "KHR_meshopt_compression" => {
-                        ": convert the file with `gltf-transform copy`, which takes the compression out"
+                        ": convert the file with `gltf-transform copy`, which removes the compression"
                     }
                     "KHR_texture_basisu" => ": convert its pictures to PNG with `ktx extract`",
                     _ => "",
                 };
-                at.error("UNSUPPORTED_EXTENSION", format!("the file requires {name}, which is not read{tool}"));
+                at.error("UNSUPPORTED_EXTENSION", format!("the file requires {name}, which is not supported{tool}"));
             }
             if !seen.insert(name) {
-                at.error("DUPLICATE_ELEMENTS", "this name stands twice in the list");
+                at.error("DUPLICATE_ELEMENTS", "this name is listed twice");
             }
         });
     }
@@ -297,19 +296,19 @@ fn required(root: &At) -> bool {
 }
 
 impl Model<'_> {
-    /// Says something once for the whole file.
+    /// Reports a warning once for the whole file.
     fn once(&self, code: &'static str, message: &str) {
         self.once_at(code, "", message);
     }
 
-    /// Says something of the first place of which it holds.
+    /// Reports a warning once, at the first place where it applies.
     fn once_at(&self, code: &'static str, pointer: &str, message: &str) {
         if self.said.borrow_mut().insert(code) {
             self.findings.say(Diagnostic::warning, code, pointer, message);
         }
     }
 
-    /// Takes memory and time from what is left: what is made stays in proportion to what is there.
+    /// Charges memory to the budget, so that decoded data stay in proportion to the file's size.
     fn charge(&self, count: usize, size: usize, at: &At) -> Option<()> {
         self.charge_at(count, size, &|| at.pointer())
     }
@@ -318,18 +317,18 @@ impl Model<'_> {
         let left = self.left.get().checked_sub((count as u64).saturating_mul(size as u64));
         self.left.set(left.unwrap_or(0));
         if left.is_none() {
-            let message = "the file uses the same numbers so often that they make more than fits into memory";
+            let message = "the file repeats its data so often that they exceed the memory limit";
             self.findings.say(Diagnostic::error, "too-large", &pointer(), message);
         }
         left.map(|_| ())
     }
 
-    /// All rows of an accessor.
+    /// Returns all rows of an accessor.
     fn rows<const N: usize>(&self, accessor: &Accessor, at: &At) -> Option<Vec<[f32; N]>> {
         self.rows_as(accessor, at, |row| row)
     }
 
-    /// What is made of all rows of an accessor.
+    /// Returns all rows of an accessor, each mapped by `of`.
     fn rows_as<const N: usize, T: Send>(
         &self,
         accessor: &Accessor,

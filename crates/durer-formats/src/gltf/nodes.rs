@@ -1,4 +1,4 @@
-//! Nodes: the graph, where each stands, and what it shows.
+//! Node graph: hierarchy, transforms, and the objects of each node.
 
 use super::Model;
 use super::deform::Skin;
@@ -13,7 +13,7 @@ use durer_scene::shape::MeshData;
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use std::sync::Arc;
 
-/// A node as written.
+/// A node as stored in the file.
 #[derive(Clone, Default)]
 pub(super) struct NodeData {
     pub name: String,
@@ -25,11 +25,11 @@ pub(super) struct NodeData {
     pub light: Option<usize>,
     pub weights: Vec<f32>,
     pub local: Local,
-    /// Places of copies, relative to the node (EXT_mesh_gpu_instancing).
+    /// Transforms of instances, relative to the node (EXT_mesh_gpu_instancing).
     copies: Option<Vec<DAffine3>>,
 }
 
-/// How a node lies in its parent.
+/// Transform of a node relative to its parent.
 #[derive(Clone, Copy)]
 pub(super) struct Local {
     matrix: Option<DAffine3>,
@@ -51,7 +51,7 @@ impl Local {
     }
 }
 
-/// A mesh at a place on its way into the scene.
+/// Mesh with a transform, to be added to the scene.
 struct Instance {
     to_world: DAffine3,
     name: String,
@@ -59,7 +59,7 @@ struct Instance {
     span: Span,
 }
 
-/// A map as a transform; `None` where it is flat, or beyond the range of numbers.
+/// Returns a map as a transform; `None` if it is singular or beyond the range of numbers.
 fn matrix_of(map: DAffine3) -> Option<MatrixOp> {
     let op = MatrixOp::Matrix(DMat4::from(map).transpose().to_cols_array().map(|x| x as f32));
     Affine::new(op.matrix()).map(|_| op)
@@ -84,7 +84,7 @@ impl Model<'_> {
                 }
             }
         }
-        // What no root leads to hangs on a circle.
+        // A node that no root reaches is part of a cycle or below one.
         let mut reached = vec![false; count];
         let mut stack: Vec<usize> = (0..count).filter(|&i| nodes[i].parent.is_none()).collect();
         while let Some(i) = stack.pop() {
@@ -165,8 +165,8 @@ impl Model<'_> {
         Some((0..count).map(copy).collect())
     }
 
-    /// The nodes of the scene that is shown, each after its parent, with the maps from them to the
-    /// world. All maps are there, also those of nodes that are not shown: bones may be such.
+    /// Returns the nodes of the shown scene, parents first, and the transforms to world space of
+    /// all nodes. Joints may be nodes outside the shown scene.
     pub(super) fn placed(&self, root: &At, nodes: &[NodeData]) -> (Vec<usize>, Vec<DAffine3>) {
         let mut maps = vec![DAffine3::IDENTITY; nodes.len()];
         let mut order = Vec::with_capacity(nodes.len());
@@ -185,8 +185,8 @@ impl Model<'_> {
         (order, maps)
     }
 
-    /// The roots of the scene that is shown: the one that the file names, or the first, or all
-    /// where there is none.
+    /// Returns the roots of the shown scene: the default scene, else the first, else all roots if
+    /// the file has no scenes.
     fn shown(&self, root: &At, nodes: &[NodeData]) -> Vec<usize> {
         let all = || (0..nodes.len()).filter(|&i| nodes[i].parent.is_none()).collect();
         let Some(scenes) = root.get("scenes") else {
@@ -200,7 +200,7 @@ impl Model<'_> {
             scene.list("nodes", |node| {
                 let number = node.index(nodes.len());
                 if number.is_some_and(|number| nodes[number].parent.is_some()) {
-                    node.error("SCENE_NON_ROOT_NODE", "this node is no root: it has a parent");
+                    node.error("SCENE_NON_ROOT_NODE", "this node is not a root: it has a parent");
                 }
                 number
             })
@@ -210,7 +210,7 @@ impl Model<'_> {
         all.into_iter().nth(wanted).unwrap_or_default().into_iter().flatten().collect()
     }
 
-    /// What a node shows, in the world.
+    /// Adds the mesh of a node to the scene, in world space.
     pub(super) fn show(&self, number: usize, nodes: &[NodeData], maps: &[DAffine3], scene: &mut Scene) {
         let node = &nodes[number];
         let Some(mesh) = node.mesh else { return };
@@ -234,7 +234,7 @@ impl Model<'_> {
             if data.triangles.is_empty() {
                 continue;
             }
-            // Bones lead to the world already.
+            // Joint transforms already include the transform to world space.
             let here = if bones.is_some() { DAffine3::IDENTITY } else { maps[number] };
             let own = [DAffine3::IDENTITY];
             for (copy, place) in node.copies.as_deref().unwrap_or(&own).iter().enumerate() {
@@ -258,10 +258,10 @@ impl Model<'_> {
         }
     }
 
-    /// Says that a node is left out.
+    /// Reports that a node is left out.
     fn nothing(&self, number: usize, node: &NodeData) {
         let name = if node.name.is_empty() { String::new() } else { format!(" {}", shown(node.name.as_bytes())) };
-        let message = format!("node{name} is scaled to a line or less, or beyond the range of numbers, and left out");
+        let message = format!("node{name} is left out: its transform flattens it to a line or point, or overflows");
         self.once_at("flat", &format!("/nodes/{number}"), &message);
     }
 
@@ -280,8 +280,8 @@ impl Model<'_> {
         Some(Object { node: Node::Transform(vec![op], Box::new(inner)), material, span })
     }
 
-    /// The number of the material for what has colours and no material. Colours of vertices are as
-    /// they are; a neutral grey would darken them.
+    /// Index of a white material for meshes with vertex colours but without a material. The default
+    /// grey would darken the colours.
     fn white(&self, span: Span, scene: &mut Scene) -> u32 {
         if scene.materials.len() == self.material_count {
             let white = PrincipledMaterial { base_color: Vec3::ONE, ..PrincipledMaterial::default() };

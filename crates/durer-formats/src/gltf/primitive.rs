@@ -1,4 +1,4 @@
-//! Primitives of meshes: attributes and indices become triangles.
+//! Mesh primitives: conversion of attributes and indices to triangles.
 
 use super::Model;
 use super::accessor::{Accessor, Component};
@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// A mesh: what each of its primitives is.
+/// Primitives of a mesh; `None` for those left out.
 pub(super) type Primitives = Vec<Option<Primitive>>;
 
 /// Triangles with a material.
@@ -21,14 +21,14 @@ pub(super) type Primitives = Vec<Option<Primitive>>;
 pub(super) struct Primitive {
     pub data: Arc<MeshData>,
     pub material: Option<u32>,
-    /// By vertex: whether positions came with normals, and so are moved with them.
+    /// True if the file has vertex normals, which then deform with the positions.
     pub has_normals: bool,
-    /// What bones and morph targets move.
+    /// Joints and morph targets.
     pub pose: Option<Arc<Pose>>,
 }
 
 impl Primitive {
-    /// Its mesh with the vertices moved.
+    /// Returns the mesh with deformed vertices.
     pub fn posed(&self, pose: &Pose, weights: &[f32], bones: Option<&[DAffine3]>) -> MeshData {
         let mut data = MeshData::clone(&self.data);
         pose.apply(&mut data, weights, bones);
@@ -63,17 +63,17 @@ impl Model<'_> {
         }
         let counts: Vec<usize> = primitives.items().map(|primitive| primitive.list("targets", |_| ()).len()).collect();
         if counts.iter().any(|count| *count != counts[0]) {
-            primitives.error("MESH_PRIMITIVES_UNEQUAL_TARGETS_COUNT", "all primitives must have as many morph targets");
+            primitives.error("MESH_PRIMITIVES_UNEQUAL_TARGETS_COUNT", "all primitives must have the same number of morph targets");
         }
         primitives.items().map(|primitive| self.primitive(&primitive)).collect()
     }
 
-    /// The accessor that a property names.
+    /// Returns the accessor that a property names.
     pub(super) fn accessor(&self, at: &At) -> Option<&Accessor> {
         self.accessors[at.index(self.accessors.len())?].as_ref()
     }
 
-    /// The accessor of an attribute, if its type is one that the attribute may have.
+    /// Returns the accessor of an attribute, if its format is valid for the attribute.
     fn attribute(&self, at: &At, name: &str, widths: &[usize], whole: &[Component]) -> Option<&Accessor> {
         let accessor = self.accessor(at)?;
         let quantized = self.quantized && !matches!(accessor.component, Component::U32);
@@ -97,7 +97,7 @@ impl Model<'_> {
             attributes.error("EMPTY_ENTITY", "entity cannot be empty");
         }
         let Some(positions) = attributes.get("POSITION") else {
-            attributes.warning("MESH_PRIMITIVE_NO_POSITION", "no POSITION attribute: nothing of it is seen");
+            attributes.warning("MESH_PRIMITIVE_NO_POSITION", "no POSITION attribute: the primitive is left out");
             return None;
         };
         let place = self.attribute(&positions, "POSITION", &[3], &[])?;
@@ -112,7 +112,7 @@ impl Model<'_> {
             let Some(attribute) = attributes.get(key) else { continue };
             let equal = self.accessor(&attribute).is_none_or(|accessor| accessor.count == count);
             if !equal {
-                let message = format!("all attributes must have {count} rows as POSITION has");
+                let message = format!("all attributes must have {count} rows, as POSITION has");
                 attribute.error("MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT", message);
                 continue;
             }
@@ -126,12 +126,12 @@ impl Model<'_> {
         let order = self.order(at, count)?;
         data.triangles = match mode {
             TRIANGLES => order.as_chunks::<3>().0.par_iter().copied().collect(),
-            // Every other triangle of a strip turns the other way round.
+            // Every other triangle of a strip has reversed winding.
             STRIP => order.windows(3).enumerate().map(|(i, t)| [t[0], t[1 + i % 2], t[2 - i % 2]]).collect(),
             FAN => order.windows(2).skip(1).map(|t| [order[0], t[0], t[1]]).collect(),
             _ => return self.thickened(&data, mode, &order, material, at),
         };
-        // Strips are joined by triangles without area.
+        // Strips are joined by degenerate triangles.
         let has_area = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
         if !data.triangles.par_iter().all(has_area) {
             data.triangles.retain(has_area);
@@ -148,7 +148,7 @@ impl Model<'_> {
         Some(Primitive { data: Arc::new(data), material, has_normals, pose: pose.map(Arc::new) })
     }
 
-    /// Points and lines, which have no surface, as small balls and thin sticks.
+    /// Converts points and lines, which have no surface, to small balls and thin sticks.
     fn thickened(
         &self,
         data: &MeshData,
@@ -174,7 +174,7 @@ impl Model<'_> {
         Some(Primitive { data, material, has_normals: true, pose: None })
     }
 
-    /// Reads an attribute beside the position.
+    /// Reads an attribute other than the position.
     fn fill(&self, data: &mut MeshData, key: &str, at: &At) {
         const UNSIGNED: &[Component] = &[Component::U8, Component::U16];
         match key {
@@ -190,7 +190,7 @@ impl Model<'_> {
             }
             "TEXCOORD_0" | "TEXCOORD_1" => {
                 let accessor = self.attribute(at, key, &[2], UNSIGNED);
-                // Here v grows upwards.
+                // In the scene, v points up.
                 let uvs = accessor.and_then(|accessor| self.rows_as(accessor, at, |[u, v]| Vec2::new(u, 1.0 - v)));
                 let uvs = uvs.unwrap_or_default();
                 *(if key == "TEXCOORD_0" { &mut data.uvs } else { &mut data.second_uvs }) = uvs;
@@ -207,7 +207,7 @@ impl Model<'_> {
                 let set = key.rsplit_once('_').filter(|(_, set)| set.parse::<u32>().is_ok());
                 match set.map(|(word, _)| word) {
                     Some("TEXCOORD" | "COLOR" | "JOINTS" | "WEIGHTS") => {
-                        let message = format!("further sets of an attribute, here of mesh{}, are left out", at.name());
+                        let message = format!("additional attribute sets, here of mesh{}, are left out", at.name());
                         self.once_at("further-attributes", &at.pointer(), &message);
                     }
                     _ => at.error("MESH_PRIMITIVE_INVALID_ATTRIBUTE", format!("invalid attribute name `{key}`")),
@@ -216,12 +216,12 @@ impl Model<'_> {
         }
     }
 
-    /// The numbers of vertices in the order of the primitive.
+    /// Returns the vertex indices of the primitive in order.
     fn order(&self, at: &At, count: usize) -> Option<Vec<u32>> {
         let Some(indices) = at.get("indices") else { return Some((0..count as u32).collect()) };
         let accessor = self.accessor(&indices)?;
         if accessor.width != 1 || !matches!(accessor.component, Component::U8 | Component::U16 | Component::U32) {
-            indices.error("MESH_PRIMITIVE_INDICES_ACCESSOR_INVALID_FORMAT", "indices are unsigned whole numbers");
+            indices.error("MESH_PRIMITIVE_INDICES_ACCESSOR_INVALID_FORMAT", "indices must be unsigned integers");
             return None;
         }
         if accessor.strided {
@@ -233,7 +233,7 @@ impl Model<'_> {
         let most = u32::MAX >> (32 - 8 * accessor.component.size());
         let greatest = order.par_iter().copied().max().unwrap_or(0);
         if greatest == most {
-            let message = format!("index {most} would begin the primitive anew, and must not be used");
+            let message = format!("index {most} is reserved for primitive restart and must not be used");
             indices.error("ACCESSOR_INDEX_PRIMITIVE_RESTART", message);
             return None;
         }
@@ -246,8 +246,7 @@ impl Model<'_> {
     }
 }
 
-/// Leaves out vertices that no triangle uses: files share one list of vertices among many
-/// primitives.
+/// Removes unused vertices: files often share one vertex list among many primitives.
 fn compact(data: &mut MeshData, keep: bool) {
     const UNUSED: u32 = u32::MAX;
     if keep {
@@ -278,8 +277,8 @@ fn compact(data: &mut MeshData, keep: bool) {
     data.triangles.iter_mut().flatten().for_each(|i| *i = numbers[*i as usize]);
 }
 
-/// Gives triangles the normals and coordinates of their vertices; where the file has no normals,
-/// triangles are flat.
+/// Sets the indices of normals and texture coordinates to those of the vertices. Without normals in
+/// the file, shading is flat.
 fn index(data: &mut MeshData, has_normals: bool) {
     data.flat = !has_normals;
     let own = || data.triangles.par_iter().copied().collect();

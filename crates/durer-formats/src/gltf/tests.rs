@@ -1,5 +1,4 @@
-//! glTF files against what the Khronos validator says of them, the numbers of accessors, and damage
-//! of all kinds.
+//! Tests against reports of the Khronos validator, of accessors, and of damaged files.
 
 use crate::folder::FolderSource;
 use crate::scene::{Input, find_scene_format, read_model};
@@ -17,7 +16,7 @@ use std::path::{Path, PathBuf};
 mod places;
 mod vertices;
 
-/// Reads bytes as a file of a folder; findings as severity, code and message.
+/// Reads bytes as a file of a folder; returns findings with severity, code and message.
 fn read(bytes: &[u8], folder: &Path, name: &str, at: Option<f32>) -> (Option<Scene>, Vec<(Severity, String)>) {
     staged(bytes, folder, name, &Staging { at, ..Staging::default() })
 }
@@ -31,7 +30,7 @@ fn staged(bytes: &[u8], folder: &Path, name: &str, staging: &Staging) -> (Option
     let input = Input { bytes: &bytes, file, files: &files, name, source: &source, staging, memory: u64::MAX };
     let format = find_scene_format(&bytes, name).expect("it is known");
     let scene = read_model(format, &input, &mut diagnostics);
-    // What is wrong has a place.
+    // Every error has a span.
     assert!(diagnostics.iter().all(|d| d.severity != Severity::Error || d.span.is_some()), "{diagnostics:?}");
     for span in diagnostics.iter().filter_map(|finding| finding.span) {
         assert!(span.start <= span.end && span.end as usize <= bytes.len(), "{span:?}");
@@ -44,7 +43,7 @@ fn corpus(folder: &str) -> Option<PathBuf> {
     let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
     let root = std::env::var_os("DURER_CORPUS").map_or_else(default, PathBuf::from).join("samples/gltf").join(folder);
     if !root.is_dir() {
-        println!("skipped: there is no {}", root.display());
+        println!("skipped: no {}", root.display());
         return None;
     }
     Some(root)
@@ -62,49 +61,49 @@ fn below(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Errors of the validator with which a file is still shown, in which of its folders, and why.
+/// Errors of the validator that Dürer accepts: code, part of the path, and reason.
 const SURVIVED: &[(&str, &str, &str)] = &[
-    ("", "/animation", "animations are read only where a moment is asked for"),
-    ("ACCESSOR_ELEMENT_OUT_OF_", "accessor_data/", "bounds are those of the numbers, whatever the file says of them"),
+    ("", "/animation", "animations are read only if a time is requested"),
+    ("ACCESSOR_ELEMENT_OUT_OF_", "accessor_data/", "bounds are computed from the data; declared bounds are ignored"),
     ("ACCESSOR_MAX_MISMATCH", "accessor_data/", "as before"),
     ("ACCESSOR_MIN_MISMATCH", "accessor_data/", "as before"),
     (
         "BUFFER_VIEW_INVALID_BYTE_STRIDE",
         "buffer_view/",
-        "a stride where none belongs says where the numbers are all the same",
+        "a stride is applied even where the specification forbids it",
     ),
-    ("BUFFER_VIEW_TARGET_OVERRIDE", "mesh/", "what a view is for is a hint to graphics hardware"),
-    ("IMAGE_", "image", "pictures are known by their bytes, and decoded where a material shows them"),
+    ("BUFFER_VIEW_TARGET_OVERRIDE", "mesh/", "the target of a view is a hint for graphics hardware"),
+    ("IMAGE_", "image", "pictures are recognised by their bytes, and decoded only if a material uses them"),
     ("INVALID_URI", "image", "as before: the bytes are not of the kind that is declared"),
     ("TEXTURE_INVALID_IMAGE_MIME_TYPE", "texture", "as before"),
-    ("MESH_PRIMITIVE_ACCESSOR_WITHOUT_BYTESTRIDE", "mesh/", "numbers that share a view lie where they lie"),
-    ("MESH_PRIMITIVE_ATTRIBUTES_ACCESSOR_UNSIGNED_INT", "mesh/", "attributes of one's own are not read"),
+    ("MESH_PRIMITIVE_ACCESSOR_WITHOUT_BYTESTRIDE", "mesh/", "accessors that share a view are read without a stride"),
+    ("MESH_PRIMITIVE_ATTRIBUTES_ACCESSOR_UNSIGNED_INT", "mesh/", "application-specific attributes are not read"),
     ("MESH_PRIMITIVE_JOINTS_WEIGHTS_MISMATCH", "mesh/", "only the first set is read"),
     ("MESH_PRIMITIVE_NO_TANGENT_SPACE", "clearcoat", "normals of coats are not read"),
     ("MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", "uv_sets", "a texture without coordinates is left out"),
     (
         "MESH_PRIMITIVE_INDICES_ACCESSOR_WITH_BYTESTRIDE",
         "mesh/",
-        "refused where the view has bytes, which it has not here",
+        "rejected only if the view has bytes, which it lacks here",
     ),
-    ("NODE_SKIN_NO_SCENE", "skin/", "bones need not be seen"),
-    ("NODE_WEIGHTS_INVALID", "node/", "weights too many move nothing"),
-    ("NON_REQUIRED_EXTENSION", "quantization", "what is used is known, required or not"),
-    ("SKIN_NO_COMMON_ROOT", "skin/", "bones lie where their own parents put them"),
+    ("NODE_SKIN_NO_SCENE", "skin/", "joints need not be in the shown scene"),
+    ("NODE_WEIGHTS_INVALID", "node/", "surplus weights have no effect"),
+    ("NON_REQUIRED_EXTENSION", "quantization", "extensions in use are supported, required or not"),
+    ("SKIN_NO_COMMON_ROOT", "skin/", "joints are positioned by their own parents"),
     ("SKIN_SKELETON_INVALID", "skin/", "the root of a skeleton is a hint"),
-    ("TYPE_MISMATCH", "variants", "variants are read only where one is asked for"),
+    ("TYPE_MISMATCH", "variants", "variants are read only if one is requested"),
     ("UNDEFINED_PROPERTY", "variants", "as before"),
     ("UNRESOLVED_REFERENCE", "variants", "as before"),
     ("VALUE_NOT_IN_RANGE", "iridescence", "iridescence is not read"),
     ("VALUE_NOT_IN_RANGE", "dispersion", "dispersion is not read"),
     ("TYPE_MISMATCH", "visibility", "visibility of nodes is not read"),
-    ("UNDECLARED_EXTENSION", "webp", "an extension is read where it stands"),
-    ("UNEXPECTED_EXTENSION_OBJECT", "", "an extension where none belongs is passed over"),
-    ("UNSATISFIED_DEPENDENCY", "node/", "weights and skins of nodes without a mesh move nothing"),
+    ("UNDECLARED_EXTENSION", "webp", "an extension is read even if not declared"),
+    ("UNEXPECTED_EXTENSION_OBJECT", "", "an extension in a wrong place is ignored"),
+    ("UNSATISFIED_DEPENDENCY", "node/", "weights and skins of nodes without a mesh have no effect"),
 ];
 
 #[test]
-fn the_validator_s_files_are_refused_or_survive_for_a_reason() {
+fn files_of_the_validator_are_rejected_or_accepted_for_a_reason() {
     let Some(root) = corpus("validator") else { return };
     let mut paths = Vec::new();
     below(&root, &mut paths);
@@ -152,7 +151,7 @@ fn the_validator_s_files_are_refused_or_survive_for_a_reason() {
 }
 
 #[test]
-fn the_models_of_khronos_are_read_at_rest_and_moving() {
+fn khronos_models_are_read_at_rest_and_animated() {
     let Some(root) = corpus("khronos") else { return };
     let mut paths = Vec::new();
     below(&root, &mut paths);
@@ -170,7 +169,7 @@ fn the_models_of_khronos_are_read_at_rest_and_moving() {
     }
 }
 
-/// A document whose only mesh has these properties of its primitive, over a buffer of these bytes.
+/// Returns a document with one mesh of one primitive, over a buffer of the given bytes.
 fn document(views: &str, accessors: &str, primitive: &str, bytes: &[u8]) -> String {
     use base64::Engine;
     let data = base64::engine::general_purpose::STANDARD.encode(bytes);
@@ -193,8 +192,8 @@ const BOUNDS: &str = r#""min":[0,0,0],"max":[9,9,9]"#;
 
 #[test]
 fn accessors_are_strided_normalised_and_sparse() {
-    // Four positions of 16 bits in rows of 12 bytes with coordinates of 8 bits, and one row that is
-    // replaced.
+    // Four 16-bit positions in rows of 12 bytes with 8-bit texture coordinates, and one sparse
+    // replacement.
     let mut bytes: Vec<u8> = Vec::new();
     for i in 0..4u16 {
         [i, 2 * i, 3 * i].iter().for_each(|x| bytes.extend(x.to_le_bytes()));
@@ -215,7 +214,7 @@ fn accessors_are_strided_normalised_and_sparse() {
     let at = |x: f32| Vec3::new(x, 2.0 * x, 3.0 * x);
     assert_eq!(data.positions, [at(0.0), at(1.0), Vec3::new(7.0, 8.0, 9.0), at(3.0)]);
     assert_eq!(data.uvs[1], Vec2::new(1.0, 1.0 - 0.2));
-    // A strip turns round at every other triangle, and its triangles are flat.
+    // Every other triangle of a strip is reversed, and its triangles are flat.
     assert_eq!(data.triangles, [[0, 1, 2], [1, 3, 2]]);
     assert!(data.flat && data.triangle_normals.is_empty());
 }
@@ -284,7 +283,7 @@ fn textures_of_extensions_change_their_parameters() {
     assert!((m.specular_rotation - 0.25).abs() < 1e-4);
 }
 
-/// The material of a triangle, by its factors and extensions.
+/// Returns the material of a triangle with these factors and extensions.
 fn layers(factors: &str, extensions: &str) -> PrincipledMaterial {
     material(&format!(r#""pbrMetallicRoughness":{{{factors}}},"extensions":{{{extensions}}}"#))
 }
@@ -303,7 +302,7 @@ fn material(words: &str) -> PrincipledMaterial {
 }
 
 #[test]
-fn a_white_material_is_there_only_for_colours_without_one() {
+fn white_material_exists_only_for_colours_without_material() {
     let bytes: Vec<u8> = (0..9).flat_map(|i| (i as f32).to_le_bytes()).collect();
     let accessors = format!(r#"{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",{BOUNDS}}}"#);
     let count = |attributes: &str| {
@@ -316,7 +315,7 @@ fn a_white_material_is_there_only_for_colours_without_one() {
 }
 
 #[test]
-fn brushed_things_have_the_alphas_of_the_extension() {
+fn anisotropic_material_has_alphas_of_the_extension() {
     let of = |roughness: f32, strength: f32| {
         let factors = format!(r#""roughnessFactor":{roughness}"#);
         let m = layers(&factors, &format!(r#""KHR_materials_anisotropy":{{"anisotropyStrength":{strength}}}"#));
@@ -332,7 +331,7 @@ fn brushed_things_have_the_alphas_of_the_extension() {
 }
 
 #[test]
-fn reflection_of_dielectrics_is_not_that_of_metals() {
+fn specular_extension_applies_to_dielectrics_only() {
     let of = |metallic: f32, more: &str| {
         let specular = r#""KHR_materials_specular":{"specularFactor":0.25,"specularColorFactor":[1,0,0]}"#;
         let m = layers(&format!(r#""metallicFactor":{metallic}"#), &format!("{specular}{more}"));
@@ -340,19 +339,20 @@ fn reflection_of_dielectrics_is_not_that_of_metals() {
     };
     let red = Vec3::X;
     assert_eq!(of(0.0, ""), (0.25, 1.5, red));
-    // Metals are as if the extension were not there.
+    // The extension does not affect metals.
     assert_eq!(of(1.0, ""), (1.0, 1.5, Vec3::ONE));
-    // In between a smaller index stands for the weight: a quarter of 0.04 at right angles.
+    // For partial metals, a smaller index replaces the weight: a quarter of 0.04 at normal
+    // incidence.
     let (weight, ior, _) = of(0.5, "");
     let root = (ior - 1.0) / (ior + 1.0);
     assert!(weight == 1.0 && (root * root - 0.01).abs() < 1e-6, "{weight} {ior}");
-    // Light is bent as it was where it goes through.
+    // Transmissive materials keep their index of refraction.
     assert_eq!(of(0.5, r#","KHR_materials_transmission":{"transmissionFactor":1}"#), (0.25, 1.5, red));
 }
 
-/// At right angles 0.04 times weight and colour is reflected, at grazing angles everything.
+/// Reflectance is 0.04 times weight and colour at normal incidence, and 1 at grazing angles.
 #[test]
-fn the_brightness_of_specular_colors_is_a_weight() {
+fn specular_color_brightness_becomes_the_weight() {
     let of = |weight: f32, color: &str| {
         let extension = format!(r#""specularFactor":{weight},"specularColorFactor":{color}"#);
         let m = layers(r#""metallicFactor":0"#, &format!(r#""KHR_materials_specular":{{{extension}}}"#));
@@ -365,7 +365,7 @@ fn the_brightness_of_specular_colors_is_a_weight() {
 }
 
 #[test]
-fn double_sided_things_shine_to_both_sides() {
+fn double_sided_emitters_emit_on_both_sides() {
     let of = |words: &str| {
         let m = material(words);
         (m.walls, m.backs)
@@ -379,7 +379,7 @@ fn double_sided_things_shine_to_both_sides() {
 }
 
 #[test]
-fn damage_is_refused_and_breaks_nothing() {
+fn damaged_files_do_not_panic() {
     let bytes: Vec<u8> = (0..9).flat_map(|i| (i as f32).to_le_bytes()).chain([0, 1, 2, 0]).collect();
     let views = r#"{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":3}"#;
     let accessors = format!(
@@ -406,7 +406,7 @@ fn damage_is_refused_and_breaks_nothing() {
         match random(3) {
             0 => changed[at] = random(256) as u8,
             1 => {
-                // A number becomes something else.
+                // Replace a number by another value.
                 let from = (at..changed.len()).find(|&i| changed[i].is_ascii_digit()).unwrap_or(at);
                 changed.splice(from..from + 1, words[random(words.len())].bytes());
             }
@@ -417,7 +417,7 @@ fn damage_is_refused_and_breaks_nothing() {
 }
 
 #[test]
-fn bones_targets_and_key_frames_move_vertices() {
+fn joints_morph_targets_and_key_frames_move_vertices() {
     let Some(root) = corpus("khronos") else { return };
     let at = |name: &str, moment| {
         let path = root.join(name);
@@ -426,26 +426,25 @@ fn bones_targets_and_key_frames_move_vertices() {
         scene.unwrap_or_else(|| panic!("{findings:?}"))
     };
     let positions = |scene: &Scene| scene.assets.meshes.values().next().unwrap().positions.clone();
-    // Targets move the tip of the triangle by (-1, 1, 0) and by (1, 1, 0); at rest and at first
-    // neither does.
+    // The targets move the tip of the triangle by (-1, 1, 0) and by (1, 1, 0); neither applies at
+    // rest and at the start.
     let rest = positions(&at("SimpleMorph/glTF/SimpleMorph.gltf", Some(0.0)));
     let moved = positions(&at("SimpleMorph/glTF/SimpleMorph.gltf", Some(2.0)));
     assert_eq!(rest, [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 0.5, 0.0)]);
     assert!(moved[2].y > 1.0 && moved[..2] == rest[..2], "{moved:?}");
-    // A quarter of its second of turning about z is a quarter turn.
+    // After a quarter of its one-second rotation about z, the triangle has turned by 90 degrees.
     let turned = at("AnimatedTriangle/glTF/AnimatedTriangle.gltf", Some(0.25));
     let mut reached = Vec::new();
     durer_scene::scene::extent::points(&turned, &mut |p| reached.push(p.as_vec3()));
     assert!(reached.iter().any(|p| p.abs_diff_eq(Vec3::new(0.0, 1.0, 0.0), 1e-5)), "{reached:?}");
     assert!(reached.iter().any(|p| p.abs_diff_eq(Vec3::new(-1.0, 0.0, 0.0), 1e-5)), "{reached:?}");
-    // A bone that turns takes the upper end of the strip with it, and leaves the lower.
+    // A rotating joint moves the upper end of the strip and leaves the lower one.
     let bent = positions(&at("SimpleSkin/glTF/SimpleSkin.gltf", Some(1.0)));
     let straight = positions(&at("SimpleSkin/glTF/SimpleSkin.gltf", Some(0.0)));
     assert!(bent[0].abs_diff_eq(straight[0], 1e-6) && !bent[9].abs_diff_eq(straight[9], 0.1), "{bent:?} {straight:?}");
 }
 
-/// Triangles, the corners of the box around them and their area, of all meshes as they stand in the
-/// world.
+/// Returns the number of triangles, the bounds and the area of all meshes, in world space.
 fn measures(root: &Path, name: &str) -> (usize, [Vec3; 2], f64) {
     let path = root.join(name);
     let file = path.file_name().unwrap().to_string_lossy().into_owned();
@@ -470,7 +469,7 @@ fn measures(root: &Path, name: &str) -> (usize, [Vec3; 2], f64) {
 }
 
 #[test]
-fn compressed_models_hold_what_the_plain_ones_hold() {
+fn compressed_models_match_uncompressed_ones() {
     let Some(root) = corpus("") else { return };
     for (packed, plain) in [
         ("khronos/Box/glTF-Draco/Box.gltf", "khronos/Box/glTF/Box.gltf"),
@@ -489,7 +488,7 @@ fn compressed_models_hold_what_the_plain_ones_hold() {
         }
         let (packed_count, packed_box, packed_area) = measures(&root, packed);
         let (count, corners, area) = measures(&root, plain);
-        // Coordinates were rounded to 11 bits and more.
+        // Coordinates are rounded to 11 bits or more.
         let step = (corners[1] - corners[0]).max_element() / 1024.0;
         assert_eq!(packed_count, count, "{packed}");
         let same = (0..2).all(|i| packed_box[i].abs_diff_eq(corners[i], step));
@@ -503,7 +502,7 @@ fn compressed_models_hold_what_the_plain_ones_hold() {
 }
 
 #[test]
-fn damage_of_compressed_bytes_is_refused_and_breaks_nothing() {
+fn damaged_compressed_data_do_not_panic() {
     let Some(root) = corpus("") else { return };
     for (name, bytes, least) in [
         ("transform/BoxMeshopt.gltf", "transform/BoxMeshopt.bin", 0.05),
@@ -521,7 +520,7 @@ fn damage_of_compressed_bytes_is_refused_and_breaks_nothing() {
         const TRIES: usize = 400;
         for i in 0..TRIES {
             let mut changed = sound.clone();
-            // Most numbers that decide stand in the first bytes.
+            // The first bytes hold most of the numbers that decide.
             let at = random(if i % 2 == 0 { changed.len() } else { changed.len().min(64) });
             let end = changed.len().min(at + 1 + random(8));
             match i % 5 {
@@ -540,7 +539,7 @@ fn damage_of_compressed_bytes_is_refused_and_breaks_nothing() {
 }
 
 #[test]
-fn a_look_is_chosen_by_name_or_number() {
+fn variant_is_selected_by_name_or_number() {
     let bytes: Vec<u8> = (0..9).flat_map(|i| (i as f32).to_le_bytes()).collect();
     let views = r#"{"buffer":0,"byteLength":36}"#;
     let accessors = format!(r#"{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",{BOUNDS}}}"#);
@@ -564,11 +563,11 @@ fn a_look_is_chosen_by_name_or_number() {
     assert!(shown(Some("3")).unwrap_err().contains("no variant `3`"));
 }
 
-/// Numbers beyond the end of their lists are errors, though nobody is told of them any more.
+/// Indices out of range are errors even if the diagnostics are full.
 #[test]
-fn errors_count_when_no_more_are_collected() {
+fn errors_count_if_diagnostics_are_full() {
     let lost = r#"{"asset":{"version":"2.0"},"nodes":[{"children":[7]}],"scenes":[{"nodes":[0]}]}"#;
-    // What was read before has left no room.
+    // The diagnostics are already full.
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     (0..100).for_each(|_| diagnostics.push(durer_diag::Diagnostic::error("before")));
     let file = files.add("a.gltf", lost.as_bytes().into());
@@ -584,10 +583,10 @@ fn errors_count_when_no_more_are_collected() {
         memory: 1 << 30,
     };
     assert!(read_model(find_scene_format(lost.as_bytes(), name).unwrap(), &input, &mut diagnostics).is_none());
-    // So many warnings come before it.
+    // Many warnings precede the error.
     let wide = r#"{"type":"perspective","perspective":{"yfov":4,"znear":0.1}},"#.repeat(400);
     let text = lost.replace(r#""nodes":[{"#, &format!(r#""cameras":[{}],"nodes":[{{"#, wide.trim_end_matches(',')));
     let (scene, told) = read(text.as_bytes(), Path::new("."), "a.gltf", None);
     let last = told.last().unwrap();
-    assert!(scene.is_none() && told.len() > 20 && last.0 == Severity::Error, "{} {last:?}", told.len());
+    assert!(scene.is_none() && told.len() > 20 && last.0 == Severity::Error, "{} {last:?}", told.len()); // prose: keep
 }

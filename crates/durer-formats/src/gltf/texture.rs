@@ -1,4 +1,4 @@
-//! Textures: images with samplers and transforms of coordinates.
+//! Textures: images with samplers and coordinate transforms.
 
 use super::Model;
 use super::buffers::{Target, target};
@@ -9,21 +9,21 @@ use durer_scene::math::fp;
 use durer_scene::scene::{Picture, PictureBytes};
 use durer_scene::texture::{Mapping, Wrap};
 
-/// Words of the `wrapS` and `wrapT` of a sampler.
+/// Returns the wrapping mode for `wrapS` or `wrapT` of a sampler.
 fn wrap(at: &At) -> Option<Wrap> {
     match at.whole(..)? {
         10497 => Some(Wrap::Repeat),
         33648 => Some(Wrap::Mirror),
         33071 => Some(Wrap::Clamp),
         other => {
-            at.error("VALUE_NOT_IN_LIST", format!("invalid value {other}: it is no wrapping mode"));
+            at.error("VALUE_NOT_IN_LIST", format!("invalid value {other}: not a wrapping mode"));
             None
         }
     }
 }
 
 impl Model<'_> {
-    /// Where the bytes of each image are.
+    /// Returns the bytes or file names of the images.
     pub(super) fn images(&self, root: &At) -> Vec<Option<PictureBytes>> {
         let Some(images) = root.get("images") else { return Vec::new() };
         images.items().map(|image| self.image(&image)).collect()
@@ -42,7 +42,7 @@ impl Model<'_> {
                 Target::File(path) => PictureBytes::File(path),
                 Target::Data(kind, bytes) => {
                     if !kind.starts_with("image/") {
-                        uri.error("IMAGE_MIME_TYPE_INVALID", format!("the data are called `{kind}`"));
+                        uri.error("IMAGE_MIME_TYPE_INVALID", format!("unexpected media type `{kind}`"));
                     }
                     PictureBytes::Here(name, bytes)
                 }
@@ -62,13 +62,13 @@ impl Model<'_> {
         Some(found)
     }
 
-    /// Reads a `textureInfo`: gives the name of the asset that it becomes, with changes to its
-    /// mapping.
+    /// Reads a `textureInfo` with a change to its mapping; returns the name of the new asset.
     pub(super) fn texture(&self, at: &At, change: impl FnOnce(&mut Mapping)) -> Option<FileName> {
         self.texture_as(at, "", change)
     }
 
-    /// The same by a name of its own, where a texture is there for several things.
+    /// Reads a `textureInfo` as [`Model::texture`] does. `role` distinguishes several uses of one
+    /// texture.
     pub(super) fn texture_as(&self, at: &At, role: &str, change: impl FnOnce(&mut Mapping)) -> Option<FileName> {
         at.object()?;
         let number = at.need("index")?.index(self.textures.len())?;
@@ -81,7 +81,7 @@ impl Model<'_> {
         if set > 1 {
             let name = at.name();
             let message = format!(
-                "this texture of material{name} asks for TEXCOORD_{set}, and only two sets are read: TEXCOORD_0 is taken"
+                "this texture of material{name} uses TEXCOORD_{set}, but only two sets are supported: TEXCOORD_0 is used"
             );
             at.warning("MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", message);
         }
@@ -114,7 +114,7 @@ impl Model<'_> {
                     Some(name) => at.error(
                         "UNSUPPORTED_EXTENSION",
                         format!(
-                            "its picture is compressed ({name}), which is not read: convert it with `gltf-transform`"
+                            "its picture has an unsupported compression ({name}): convert it with `gltf-transform`"
                         ),
                     ),
                     None => at.warning("TEXTURE_NO_SOURCE", "a texture without a picture is left out"),
@@ -122,7 +122,7 @@ impl Model<'_> {
                 return None;
             };
             let image = source.index(self.images.len())?;
-            // What is wrong with a picture is told where it is named.
+            // Errors about a picture are reported where the file names it.
             let span = self.findings.span(&format!("/images/{image}/uri"));
             Some((self.images[image].clone()?, mapping, span))
         };
@@ -132,13 +132,13 @@ impl Model<'_> {
     fn sampler(&self, at: &At) -> Mapping {
         let mode = |key| at.get(key).and_then(|mode| wrap(&mode)).unwrap_or_default();
         let nearest = at.get("magFilter").and_then(|filter| filter.whole(9728..=9729)) == Some(9728);
-        // Those with smaller versions of the picture.
+        // Filters with mipmaps.
         let mipmaps = at.get("minFilter").is_some_and(|filter| matches!(filter.whole(9728..=9987), Some(9984..)));
         Mapping { wrap: [mode("wrapS"), mode("wrapT")], nearest, mipmaps, ..Mapping::default() }
     }
 }
 
-/// The matrix of KHR_texture_transform: offset, rotation and scale.
+/// Returns the matrix of KHR_texture_transform from offset, rotation and scale.
 ///
 /// Source: KHR_texture_transform: T R S with R = (cos r, sin r; -sin r, cos r).
 fn transformed(at: &At) -> [[f32; 3]; 2] {

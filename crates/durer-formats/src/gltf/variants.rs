@@ -1,4 +1,4 @@
-//! KHR_materials_variants: several looks of one model.
+//! KHR_materials_variants: alternative materials of one model.
 
 use super::Model;
 use super::json::At;
@@ -7,7 +7,7 @@ use durer_diag::did_you_mean;
 const VARIANTS: &str = "KHR_materials_variants";
 
 impl Model<'_> {
-    /// The number of the look that is wanted.
+    /// Returns the index of the requested variant.
     pub(super) fn chosen_variant(&self, root: &At) -> Option<usize> {
         let extensions = root.get("extensions");
         let variants = extensions.as_ref().and_then(|extensions| extensions.get(VARIANTS));
@@ -19,7 +19,7 @@ impl Model<'_> {
         let known = format!("`{}`", names.join("`, `"));
         let Some(wanted) = &self.input.staging.variant else {
             if !names.is_empty() {
-                let message = format!("the model has other looks: {known}; `--variant NAME` shows one");
+                let message = format!("the model has the variants {known}: `--variant NAME` selects one");
                 variants.as_ref().unwrap_or(root).note("variants", message);
             }
             return None;
@@ -29,15 +29,15 @@ impl Model<'_> {
         if found.is_none() {
             let help = match did_you_mean(wanted, names.iter().copied()) {
                 Some(meant) => format!("did you mean `{meant}`?"),
-                None if names.is_empty() => "the file has none".into(),
-                None => format!("there are {known}"),
+                None if names.is_empty() => "it has none".into(),
+                None => format!("the variants are {known}"),
             };
-            root.error("no-variant", format!("there is no variant `{wanted}`: {help}"));
+            root.error("no-variant", format!("the file has no variant `{wanted}`: {help}"));
         }
         found
     }
 
-    /// The material of a primitive: that of the look that is wanted, or its own.
+    /// Returns the material of a primitive: that of the selected variant, else its own.
     pub(super) fn material_of(&self, at: &At) -> Option<Option<u32>> {
         let number = |material: &At| material.index(self.material_count).map(|number| Some(number as u32));
         if let Some(variant) = self.variant

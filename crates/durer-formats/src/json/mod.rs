@@ -1,5 +1,5 @@
 //! Scenes as JSON: the content of the scene language, for programs. Objects have the keywords of
-//! Dürer's own dialect, and fields the names in their statements.
+//! the Dürer dialect; fields have the names of their statements.
 
 mod read;
 pub mod schema;

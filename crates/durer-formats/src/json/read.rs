@@ -89,7 +89,7 @@ impl Reader<'_> {
                 let texture = self.thing(NamedTexture::default(), node, "texture");
                 let name = texture.name.path.clone();
                 if scene.assets.pictures.insert(name.clone(), texture.picture()).is_some() {
-                    let message = format!("there is a texture {} already", shown(name.as_bytes()));
+                    let message = format!("a texture {} already exists", shown(name.as_bytes()));
                     self.error(node.head(), "repeated", message, None);
                 }
             }
@@ -127,7 +127,7 @@ impl Reader<'_> {
             let transform = members.take("transform").map(|node| self.matrices(node, "transform", senseless));
             self.fields(&mut solid, &mut members);
             if let Some(index) = solid.materials().into_iter().find(|index| *index >= own) {
-                let message = format!("material {own} is mixed of earlier ones, but {index} is not before {own}");
+                let message = format!("material {own} may use only earlier materials, but {index} is not before {own}");
                 self.error(node.head(), "bad-value", message, None);
             }
             Material::Solid(solid, transform.unwrap_or_default())
@@ -137,7 +137,7 @@ impl Reader<'_> {
             if let (Some((node, name)), None) = (name, &preset) {
                 let help = meant(name, presets::PRESETS.iter().map(|row| row.0));
                 let help = help.unwrap_or("`durer words preset` lists them".into());
-                let message = format!("there is no material {}", shown(name.as_bytes()));
+                let message = format!("unknown preset {}", shown(name.as_bytes()));
                 self.error(node.at.clone(), "unknown-word", message, Some(help));
             }
             let mut principled = preset.unwrap_or_default();
@@ -174,7 +174,7 @@ impl Reader<'_> {
         };
         let Some((name, like)) = MatrixOp::KINDS.iter().find(|row| row.0 == name) else {
             let help = meant(name, words).unwrap_or_else(|| format!("one of {}", words.join(", ")));
-            self.error(at.clone(), "unknown-word", format!("{} is no matrix", shown(name.as_bytes())), Some(help));
+            self.error(at.clone(), "unknown-word", format!("{} is not a matrix", shown(name.as_bytes())), Some(help));
             return None;
         };
         let op = match like {

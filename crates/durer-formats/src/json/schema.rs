@@ -17,7 +17,7 @@ pub(super) fn keywords<T: DescribedList>() -> Vec<&'static str> {
     T::kinds().iter().map(word).collect()
 }
 
-/// Keyword of a described item in Dürer's own dialect.
+/// Keyword of a described item in the Dürer dialect.
 pub(super) fn word<T: DescribedList>(thing: &T) -> &'static str {
     thing.keyword(Dialect::Durer)
 }
@@ -45,29 +45,29 @@ pub fn schema() -> Value {
     let list = |of: &str, about: &str| json!({"type": "array", "items": reference(of), "description": about});
     let members = json!({
         "type": {"const": "Scene"},
-        "$schema": {"type": "string", "description": "Where this schema is found, for editors."},
+        "$schema": {"type": "string", "description": "Location of this schema, for editors."},
         "dialect": {
             "enum": Dialect::ALL.map(Dialect::name),
-            "description": "Whose meaning the words have, if not our own: `durer dialects` tells how they differ.",
+            "description": "Dialect that defines the meaning of the words; the default is `durer`. See `durer dialects`.",
         },
         "camera": reference("camera"),
         "background": record::<Background>(json!({})),
         "fog": record::<Fog>(json!({})),
-        "lights": list("light", "The lights. Where this is not given, ambient light counts as 1 1 1."),
+        "lights": list("light", "The lights. If missing, the ambient light is 1 1 1."),
         "textures": {
             "type": "array",
             "items": record::<NamedTexture>(json!({})),
-            "description": "Pictures with names, which materials name in place of a file.",
+            "description": "Named pictures, which materials can use in place of a file.",
         },
         "materials": list("material", "The materials, numbered from 0."),
-        "objects": list("object", "What is seen."),
+        "objects": list("object", "The objects."),
     });
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "A scene of Dürer",
+        "title": "Dürer scene",
         "description": format!(
-            "What the scene language says, as JSON. Written by `cargo xtask manual`. Beyond this schema, materials are mixed of \
-             earlier ones only, and objects are nested {DEEPEST} deep at most."
+            "The content of the scene language as JSON. Written by `cargo xtask manual`. Beyond this schema, patterns use \
+             earlier materials only, and objects are nested at most {DEEPEST} deep."
         ),
         "type": "object",
         "properties": members,
@@ -79,7 +79,7 @@ pub fn schema() -> Value {
             "path": {
                 "type": "string",
                 "pattern": r"^[^\s{}\u0000]+$",
-                "description": "A file, seen from the scene's folder.",
+                "description": "A file, relative to the scene's folder.",
             },
             "camera": one_of(things::<Camera>()),
             "light": one_of(things::<Light>()),
@@ -194,7 +194,7 @@ fn material_things() -> Vec<Value> {
     let noise = json!({ "noise": record::<ColorNoise>(json!({})) });
     let presets: Vec<&str> = presets::PRESETS.iter().map(|row| row.0).collect();
     let preset =
-        json!({"preset": {"enum": presets, "description": "A real material, which the other members change."}});
+        json!({"preset": {"enum": presets, "description": "A real material by name; the other members change it."}});
     let transform = json!({"transform": matrices("From world to pattern space: the product of these matrices.")});
     let mut all = vec![named(&PhongMaterial::default(), &noise), named(&PrincipledMaterial::default(), &preset)];
     all.extend(things::<HairMaterial>());
@@ -210,14 +210,14 @@ fn matrix(name: &str, op: MatrixOp) -> Value {
     let rows =
         |count: usize, items: Value| json!({"type": "array", "items": items, "minItems": count, "maxItems": count});
     let (value, about) = match op {
-        MatrixOp::Translate(_) => (reference("vector"), "Moves."),
-        MatrixOp::Scale(_) => (reference("vector"), "Stretches along the axes."),
-        MatrixOp::UniformScale(_) => (reference("number"), "Stretches evenly."),
-        MatrixOp::XRotate(_) => (reference("number"), "Turns about x, by degrees."),
-        MatrixOp::YRotate(_) => (reference("number"), "Turns about y, by degrees."),
-        MatrixOp::ZRotate(_) => (reference("number"), "Turns about z, by degrees."),
+        MatrixOp::Translate(_) => (reference("vector"), "Translates."),
+        MatrixOp::Scale(_) => (reference("vector"), "Scales along the axes."),
+        MatrixOp::UniformScale(_) => (reference("number"), "Scales equally along all axes."),
+        MatrixOp::XRotate(_) => (reference("number"), "Rotates about x, in degrees."),
+        MatrixOp::YRotate(_) => (reference("number"), "Rotates about y, in degrees."),
+        MatrixOp::ZRotate(_) => (reference("number"), "Rotates about z, in degrees."),
         MatrixOp::Rotate(..) => {
-            (rows(4, reference("number")), "Turns about an axis x, y, z by degrees, the fourth number.")
+            (rows(4, reference("number")), "Rotates about the axis x, y, z by the fourth number, in degrees.")
         }
         MatrixOp::Matrix(_) => {
             (rows(4, rows(4, reference("number"))), "Rows of an affine matrix; the last is 0, 0, 0, 1.")
@@ -231,7 +231,7 @@ fn object_things() -> Vec<Value> {
         "type": "integer",
         "minimum": 0,
         "maximum": u32::MAX,
-        "description": "Number of its material; that of the object before it where this is not given.",
+        "description": "Index of its material; the default is that of the previous object.",
     });
     let of_material = json!({ "material": &material });
     let inside = json!({"type": "array", "items": reference("object")});
@@ -245,8 +245,8 @@ fn object_things() -> Vec<Value> {
     all.push(named(&HeightField::default(), &of_material));
     all.push(named(&VoxelGrid::default(), &with(&balls, "material", material.clone())));
     all.push(made("Group", "Several objects.", &json!({"objects": inside}), &["type", "objects"]));
-    let moved = json!({"matrices": matrices("Their product moves the object; the first is applied last."), "object": reference("object")});
-    all.push(made("Transform", "An object that is moved.", &moved, &["type", "object"]));
+    let moved = json!({"matrices": matrices("Their product transforms the object; the first is applied last."), "object": reference("object")});
+    all.push(made("Transform", "A transformed object.", &moved, &["type", "object"]));
     all.extend(
         Operation::ALL
             .map(|(word, operation)| made(word, operation.doc(), &json!({"objects": inside}), &["type", "objects"])),

@@ -9,7 +9,7 @@ use durer_scene::dialect::Dialect;
 use durer_scene::scene::{Material, Node, Scene};
 use serde_json::{Value, json};
 
-/// Reads a scene; the findings as `line:column message`.
+/// Reads a scene; returns the findings as `line:column message`.
 fn read(text: &str) -> (Option<Scene>, Vec<String>) {
     let (mut files, mut found) = (Files::default(), Diagnostics::default());
     let file = files.add("x.json", text.as_bytes().into());
@@ -30,7 +30,7 @@ fn same(a: &Scene, b: &Scene, context: &str) {
 }
 
 #[test]
-fn random_scenes_survive() {
+fn random_scenes_round_trip() {
     let mut random = Random::seeded(3);
     for _ in 0..500 {
         for dialect in Dialect::ALL {
@@ -64,7 +64,7 @@ const SMALL: &str = r#"{
 }"#;
 
 #[test]
-fn what_is_written_by_hand_is_read() {
+fn handwritten_scene_is_read() {
     let (scene, said) = read(SMALL);
     assert_eq!(said, [""; 0]);
     let scene = scene.unwrap();
@@ -80,7 +80,7 @@ fn what_is_written_by_hand_is_read() {
 }
 
 #[test]
-fn a_material_inside_a_transform_stays_in_the_language() {
+fn material_inside_a_transform_round_trips_in_the_language() {
     let text = r#"{"type": "Scene", "materials": [{"type": "PhongMaterial"}, {"type": "PhongMaterial"}], "objects": [
         {"type": "Transform", "material": 0, "object": {"type": "Sphere", "center": [0, 0, 0], "radius": 1, "material": 1}},
         {"type": "Sphere", "center": [0, 0, 0], "radius": 1}]}"#;
@@ -100,7 +100,7 @@ fn a_material_inside_a_transform_stays_in_the_language() {
 }
 
 #[test]
-fn what_is_wrong_is_said_at_its_place() {
+fn errors_have_line_and_column() {
     let sphere = |more: &str| format!("{{\"type\": \"Scene\", \"objects\": [\n{{\"type\": \"Sphere\", {more}}}]}}");
     let objects = |more: &str| format!("{{\"type\": \"Scene\", \"objects\": [\n{more}]}}");
     let materials = |more: &str| format!("{{\"type\": \"Scene\", \"materials\": [\n{more}]}}");
@@ -109,10 +109,10 @@ fn what_is_wrong_is_said_at_its_place() {
         (String::new(), "1:1: expected a value, but the file ends"),
         ("{\"type\": \"Scene\",\n}".into(), "2:1: expected a name in quotes, but found `}`"),
         ("{\"type\": \"Scene\"}\n x".into(), "2:2: expected the end of the file, but found `x`"),
-        ("{\"type\": \"Scene\",\n \"type\": \"Scene\"}".into(), "2:2: `type` stands twice in this object"),
+        ("{\"type\": \"Scene\",\n \"type\": \"Scene\"}".into(), "2:2: `type` occurs twice in this object"),
         ("[]".into(), "1:1: `scene` needs an object, but found a list"),
         ("{}".into(), "1:1: `scene` has no `type`"),
-        ("{\"type\": \"Scen\"}".into(), "1:10: `Scen` is no `scene`"),
+        ("{\"type\": \"Scen\"}".into(), "1:10: `Scen` is not a type of `scene`"),
         ("{\"type\": \"Scene\",\n\"dialect\": \"f99\"}".into(), "2:12: `dialect` cannot be `f99`"),
         ("{\"type\": \"Scene\",\n\"Objects\": []}".into(), "2:1: `Scene` has no member `Objects`"),
         ("{\"type\": \"Scene\",\n\"lights\": {}}".into(), "2:11: `lights` needs a list, but found an object"),
@@ -126,20 +126,20 @@ fn what_is_wrong_is_said_at_its_place() {
         (sphere("\"center\": [0, 0, 0], \"radius\": 1, \"material\": -1"), "2:66: `material` needs a whole number, but found `-1`"),
         (sphere("\"center\": [0, 0, 0], \"radius\": 1, \"material\": 0.5"), "2:66: `material` needs a whole number"),
         (sphere("\"center\": [0, 0, 0], \"radius\": 1, \"material\": 4294967296"), "2:66: `material` needs a whole number"),
-        (objects("{\"type\": \"Spere\"}"), "2:10: `Spere` is no `object`"),
+        (objects("{\"type\": \"Spere\"}"), "2:10: `Spere` is not a type of `object`"),
         (objects("{\"radius\": 1}"), "2:1: `object` has no `type`"),
         (objects("[]"), "2:1: `object` needs an object, but found a list"),
         (objects("{\"type\": \"Transform\"}"), "2:1: `Transform` has no `object`"),
         (objects("{\"type\": \"Union\"}"), "2:1: `Union` has no `objects`"),
         (objects("{\"type\": \"TriangleMesh\", \"obj_file\": \"a b\"}"), "2:38: `obj_file` cannot be `a b`"),
         (objects("{\"type\": \"Transform\", \"matrices\": [{\"Scale\": [1, 0, 1]}], \"object\": {\"type\": \"Group\", \"objects\": []}}"),
-            "2:46: a scale by 0 flattens space, which cannot be undone"),
+            "2:46: a scale by 0 flattens space and has no inverse"),
         (objects("{\"type\": \"Transform\", \"matrices\": [{\"Shear\": 1}], \"object\": {\"type\": \"Group\", \"objects\": []}}"),
-            "2:37: `Shear` is no matrix"),
+            "2:37: `Shear` is not a matrix"),
         (objects("{\"type\": \"Transform\", \"matrices\": [{}], \"object\": {\"type\": \"Group\", \"objects\": []}}"),
             "2:36: a matrix is an object of one member"),
-        (materials("{\"type\": \"Checkerboard\", \"material1\": 0, \"material2\": 0}"), "2:1: material 0 is mixed of earlier ones"),
-        (materials("{\"type\": \"PrincipledMaterial\", \"preset\": \"golt\"}"), "2:42: there is no material `golt`"),
+        (materials("{\"type\": \"Checkerboard\", \"material1\": 0, \"material2\": 0}"), "2:1: material 0 may use only earlier materials"),
+        (materials("{\"type\": \"PrincipledMaterial\", \"preset\": \"golt\"}"), "2:42: unknown preset `golt`"),
         (materials("{\"type\": \"PrincipledMaterial\", \"base_weight\": 2}"), "2:47: `base_weight` must be from 0 to 1"),
     ];
     for (text, wanted) in cases {
@@ -150,7 +150,7 @@ fn what_is_wrong_is_said_at_its_place() {
 }
 
 #[test]
-fn errors_are_few_and_nesting_is_bounded() {
+fn number_of_errors_and_nesting_are_limited() {
     let bad = "{\"type\": \"Sphere\"},".repeat(1000);
     let (scene, said) = read(&format!("{{\"type\": \"Scene\", \"objects\": [{bad} 1]}}"));
     assert!(scene.is_none() && said.len() == durer_diag::ERROR_LIMIT);
@@ -166,7 +166,8 @@ fn errors_are_few_and_nesting_is_bounded() {
     assert!(scene.is_some() && said[0].contains("material 3 does not exist: the scene has 3 materials"), "{said:?}");
 }
 
-/// Returns true if a value matches a schema. Supports the part of JSON Schema that ours uses.
+/// Returns true if a value matches a schema. Supports the part of JSON Schema that the generated
+/// schema uses.
 fn fits(root: &Value, schema: &Value, value: &Value) -> bool {
     let equal = |a: &Value, b: &Value| match (a, b) {
         (Value::Number(a), Value::Number(b)) => a.as_f64() == b.as_f64(),
@@ -256,17 +257,17 @@ fn changed(random: &mut Random, value: &mut Value) {
 
 /// Errors that the reader reports and a JSON Schema cannot express.
 const BEYOND: [&str; 7] = [
-    "there is a texture",
-    "mixed of earlier",
+    "already exists",
+    "may use only earlier",
     "flattens space",
     "last row",
-    "points nowhere",
+    "has no direction",
     "too long or too short",
     "nested deeper",
 ];
 
 #[test]
-fn the_schema_and_the_reader_agree() {
+fn schema_and_reader_agree() {
     let schema = schema::schema();
     let mut random = Random::seeded(4);
     assert!(fits(&schema, &schema, &serde_json::from_str(SMALL).unwrap()));
@@ -290,7 +291,7 @@ fn the_schema_and_the_reader_agree() {
 }
 
 #[test]
-fn findings_about_one_place_are_errors() {
+fn findings_with_a_code_are_errors() {
     let mut found = Diagnostics::default();
     Document::open(b"{\"type\": 1}", 0, &found).scene(&mut found);
     assert!(found.iter().all(|finding| finding.severity == Severity::Error && !finding.code.is_empty()));

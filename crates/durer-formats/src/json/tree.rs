@@ -48,7 +48,7 @@ impl Node {
     pub fn kind(&self) -> &'static str {
         match &self.value {
             Value::Null => "`null`",
-            Value::Bool => "a truth value",
+            Value::Bool => "a Boolean",
             Value::Number => "a number",
             Value::String(_) => "a string",
             Value::Array(_) => "a list",
@@ -166,7 +166,7 @@ impl Parser<'_> {
         match repeated(&members) {
             Some((first, again)) => Err(Malformed {
                 at: again.at.clone(),
-                message: format!("{} stands twice in this object", crate::report::shown(again.name.as_bytes())),
+                message: format!("{} occurs twice in this object", crate::report::shown(again.name.as_bytes())),
                 first: Some(first.at.clone()),
             }),
             None => Ok(Value::Object(members)),
@@ -221,7 +221,7 @@ impl Parser<'_> {
             true => Ok(Value::Number),
             false => {
                 self.at = start;
-                Err(self.unexpected("a number of JSON"))
+                Err(self.unexpected("a JSON number"))
             }
         }
     }
@@ -238,12 +238,12 @@ impl Parser<'_> {
                     let escape = self.at;
                     let Some(char) = self.escaped() else {
                         let end = self.at.clamp(escape + 1, self.text.len());
-                        return self.error(escape..end, "this is no escape of JSON");
+                        return self.error(escape..end, "this is not a JSON escape");
                     };
                     bytes.extend(char.encode_utf8(&mut [0; 4]).bytes());
                 }
                 Some(byte @ ..0x20) => {
-                    let message = format!("a string may hold no character of code {byte}: write \\u{byte:04x}");
+                    let message = format!("a string cannot contain character code {byte}: write \\u{byte:04x}");
                     return self.error(self.at..self.at + 1, message);
                 }
                 Some(byte) => {
@@ -253,7 +253,7 @@ impl Parser<'_> {
             }
         }
         self.at += 1;
-        String::from_utf8(bytes).or_else(|_| self.error(start..self.at, "this string is no UTF-8"))
+        String::from_utf8(bytes).or_else(|_| self.error(start..self.at, "this string is not UTF-8"))
     }
 
     /// Reads an escape and returns its character; on failure, `at` is where it went wrong.
@@ -302,7 +302,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_takes_what_another_parser_takes_and_nothing_else() {
+    fn accepts_the_same_texts_as_serde_json() {
         let texts: &[&[u8]] = &[
             b"0",
             b"-0.5e+3",
@@ -350,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn places_are_those_of_the_text() {
+    fn values_have_byte_ranges() {
         let text = br#" {"a": [1, "b"], "c": -2.5 }"#;
         let Value::Object(members) = parse(text).unwrap().value else { panic!() };
         let shown = |at: &Range<usize>| String::from_utf8_lossy(&text[at.clone()]).into_owned();

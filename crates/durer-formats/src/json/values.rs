@@ -258,7 +258,7 @@ impl Reader<'_> {
             return None;
         };
         if !known.contains(&word.as_str()) {
-            let message = format!("{} is no `{what}`", shown(word.as_bytes()));
+            let message = format!("{} is not a type of `{what}`", shown(word.as_bytes()));
             let near = meant(word, known.iter().copied());
             let help = near.unwrap_or_else(|| format!("known are {}", known.join(", ")));
             self.error(named.at.clone(), "unknown-word", message, Some(help));

@@ -110,12 +110,12 @@ fn diagnostics_have_their_place() {
         (
             "<shape type='ply'><string name='filename' value='none.ply'/></shape>",
             "none.ply",
-            "error the mesh cannot be had",
+            "error the mesh cannot be read",
         ),
         (
             "<shape type='ply'><string name='filename' value='../x.ply'/></shape>",
             "../x.ply",
-            "error the mesh cannot be had",
+            "error the mesh cannot be read",
         ),
         ("<include filename='scene.xml'/>", "scene.xml", "error `scene.xml` includes itself"),
         (
@@ -183,7 +183,7 @@ fn errors_are_reported_once() {
         "<shape type='ply'><string name='filename' value='none.ply'/><bsdf type='diffuse'/>\
         <emitter type='area'/></shape>",
     );
-    assert!(told.len() == 1 && told[0].contains("the mesh cannot be had"), "{told:?}");
+    assert!(told.len() == 1 && told[0].contains("the mesh cannot be read"), "{told:?}");
 }
 
 #[test]

@@ -202,8 +202,8 @@ impl FaceReader<'_> {
         if cut.is_err() {
             self.found
                 .report
-                .error(place, format!("this face of {} corners is too crooked to be cut", corners.len()))
-                .help = Some("cut it into triangles in a modelling program".into());
+                .error(place, format!("this face of {} corners is too complex to triangulate", corners.len()))
+                .help = Some("triangulate it in a modelling program".into());
         }
     }
 }
@@ -231,11 +231,11 @@ pub(super) fn index(
         return Some((so_far as i64 + index) as u32);
     }
     if index == 0 {
-        report.error(at, format!("there is no {one} 0: they are counted from 1"));
+        report.error(at, format!("{one} 0 does not exist: indices count from 1"));
     } else if index > 0 {
-        let message = format!("there is no {one} {}: the file has {}", shown(text), counted(total, one, many));
+        let message = format!("{one} {} does not exist: the file has {}", shown(text), counted(total, one, many));
         report.error(at, message).help =
-            (total == 0).then(|| format!("{many} are made by `{keyword}` statements, and there are none"));
+            (total == 0).then(|| format!("add `{keyword}` statements for {many}"));
     } else {
         let before = counted(so_far, one, many);
         report.error(at, format!("{} reaches back too far: {before} so far", shown(text)));

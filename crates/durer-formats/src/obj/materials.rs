@@ -50,7 +50,7 @@ pub(super) fn read_files(
         let bytes = file.and_then(|file| Some((input.source.read(&file.path).ok()?, file.path)));
         let Some((bytes, path)) = bytes else {
             let message =
-                format!("there is no file of materials {}: what it has is shown in grey", shown(name.as_bytes()));
+                format!("material file {} not found: its materials are shown in grey", shown(name.as_bytes()));
             diagnostics.push(Diagnostic::warning(message).code("missing-file").at(span));
             continue;
         };
@@ -132,7 +132,7 @@ impl Reader<'_, '_> {
         current.into_iter().for_each(|written| self.finish(written));
         if let Some(first) = self.left_out.values().copied().min_by_key(|span| span.start) {
             let all: Vec<&str> = self.left_out.keys().map(String::as_str).collect();
-            let message = format!("words without a counterpart, which are left out: {}", all.join(", "));
+            let message = format!("statements without a counterpart are left out: {}", all.join(", "));
             diagnostics.push(Diagnostic::note(message).code(NO_COUNTERPART).at(first));
         }
     }
@@ -149,7 +149,7 @@ impl Reader<'_, '_> {
         let number = || -> Result<Option<f32>, (Span, String)> {
             // Some programs write `d -halo 0.5`.
             let number = rest.iter().find(|word| word.text != "-halo");
-            let number = number.ok_or_else(|| (keyword.at, format!("`{word}` has no number")))?;
+            let number = number.ok_or_else(|| (keyword.at, format!("`{word}` needs a number")))?;
             let text = number.text.as_bytes();
             let problem = |_| (number.at, format!("`{word}` needs a number, found {}", shown(text)));
             parse_f32(text).map(Some).map_err(problem)
@@ -261,19 +261,19 @@ impl Reader<'_, '_> {
         }
         // Texture coordinates have v upwards; the picture's rows go down.
         mapping.transform = [[scale[0], 0.0, offset[0]], [0.0, scale[1], 1.0 - scale[1] - offset[1]]];
-        // Some programs write options behind the name.
+        // Some programs write options after the name.
         let named = rest.get(at..).unwrap_or_default();
         let behind = named.iter().skip(1).position(|word| is_option(&word.text));
         let named = &named[..behind.map_or(named.len(), |behind| behind + 1)];
         if behind.is_some() {
-            self.leave_out("options behind a picture's name", keyword.at);
+            self.leave_out("options after a picture's name", keyword.at);
         }
         let span = named.first().zip(named.last()).map_or(keyword.at, |(first, last)| first.at.to(last.at));
         let name = named.iter().map(|word| word.text.as_str()).collect::<Vec<_>>().join(" ");
         let name = unquoted(&name).to_string();
         let word = &keyword.text;
         let Some(file) = found(self.input, &name, span) else {
-            let message = format!("material `{}`: there is no picture {} ({word})", m.name, shown(name.as_bytes()));
+            let message = format!("material `{}`: picture {} not found ({word})", m.name, shown(name.as_bytes()));
             diagnostics.push(Diagnostic::warning(message).code("missing-file").at(span));
             return None;
         };
@@ -292,13 +292,13 @@ impl Reader<'_, '_> {
     }
 }
 
-/// A name without the quotes around it.
+/// Removes the quotes around a name.
 fn unquoted(name: &str) -> &str {
     let name = name.trim();
     ['"', '\''].into_iter().find_map(|quote| name.strip_prefix(quote)?.strip_suffix(quote)).unwrap_or(name)
 }
 
-/// Whether a word is an option of a picture's.
+/// Returns true if a word is an option of a texture statement.
 fn is_option(word: &str) -> bool {
     const OPTIONS: [&str; 13] = [
         "-blendu", "-blendv", "-boost", "-mm", "-o", "-s", "-t", "-texres", "-clamp", "-bm", "-imfchan", "-type", "-cc",
@@ -306,7 +306,7 @@ fn is_option(word: &str) -> bool {
     OPTIONS.contains(&word)
 }
 
-/// The numbers with which some words begin.
+/// Returns the leading numbers of a list of words.
 fn numbers(words: &[Word]) -> Vec<f32> {
     words.iter().map_while(|word| parse_f32(word.text.as_bytes()).ok()).collect()
 }

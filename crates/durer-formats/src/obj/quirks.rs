@@ -35,7 +35,7 @@ mod tests {
     const SQUARE: &[u8] = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1/1 2/1 3/1 4/1 # all\nf 1 2 4";
 
     #[test]
-    fn what_old_programs_pass_over_is_blank_or_gone() {
+    fn ignored_parts_become_blank_or_are_cut_off() {
         assert_eq!(known(SQUARE, 0), SQUARE);
         let last = known(SQUARE, Compat::LostLastLine.bit());
         assert_eq!(*last, SQUARE[..SQUARE.len() - 7]);

@@ -93,7 +93,7 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
         if material.is_none() && !name.is_empty() {
             let known = library.materials.keys().map(String::as_str);
             let meant = did_you_mean(&name, known).map(|meant| format!("did you mean `{meant}`?"));
-            let message = format!("no file of materials has {}: a neutral one is shown", shown(name.as_bytes()));
+            let message = format!("no material file has {}: a neutral material is used", shown(name.as_bytes()));
             diagnostics
                 .push(Diagnostic { help: meant, ..Diagnostic::warning(message).code("no-material").at(span(&at)) });
         }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-/// The findings of a square's vertices, which take four lines, followed by more text.
+/// Returns the findings of a square's vertices, which take four lines, followed by more text.
 fn findings(more: &str) -> Vec<String> {
     read(format!("{SQUARE}{more}").as_bytes(), "m.obj").1
 }
@@ -55,7 +55,7 @@ fn relative_indices_count_back_from_the_face() {
 }
 
 #[test]
-fn concave_faces_are_cut_inside() {
+fn concave_faces_are_triangulated_inside() {
     let text = "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nv -9 1 0\nf 1 2 3 4\nf 4 3 2 1\nf 1 2 3 4 5";
     let mesh = read_clean(text.as_bytes(), "m.obj");
     let area = |t: &[u32; 3]| {
@@ -97,22 +97,22 @@ fn wrong_numbers() {
 #[test]
 fn wrong_faces() {
     let form = "(a corner is `vertex`, `vertex/texture`, `vertex//normal` or `vertex/texture/normal`)";
-    let none = "(texture coordinates are made by `vt` statements, and there are none)";
+    let none = "(add `vt` statements for texture coordinates)";
     let cases = [
         ("f 1 2", "5:1+5 Error: a face needs at least 3 corners, found 2 (a line is an `l` statement)".to_string()),
         ("f", "5:1+1 Error: a face needs at least 3 corners, found 0".into()),
-        ("f 1 0 3", "5:5+1 Error: there is no vertex 0: they are counted from 1".into()),
-        ("f 1 2 5", "5:7+1 Error: there is no vertex `5`: the file has 4 vertices".into()),
+        ("f 1 0 3", "5:5+1 Error: vertex 0 does not exist: indices count from 1".into()),
+        ("f 1 2 5", "5:7+1 Error: vertex `5` does not exist: the file has 4 vertices".into()),
         ("f 1 2 -5", "5:7+2 Error: `-5` reaches back too far: 4 vertices so far".into()),
         (
             "f -1 2 3\nf 1 2 99999999999999999999",
-            "6:7+20 Error: there is no vertex `99999999999999999999`: the file has 4 vertices".into(),
+            "6:7+20 Error: vertex `99999999999999999999` does not exist: the file has 4 vertices".into(),
         ),
         (
             "f 1 2/1 3",
-            format!("5:7+1 Error: there is no texture coordinate `1`: the file has no texture coordinates {none}"),
+            format!("5:7+1 Error: texture coordinate `1` does not exist: the file has no texture coordinates {none}"),
         ),
-        ("vn 0 0 1\nf 1 2 3//2", "6:10+1 Error: there is no normal `2`: the file has 1 normal".into()),
+        ("vn 0 0 1\nf 1 2 3//2", "6:10+1 Error: normal `2` does not exist: the file has 1 normal".into()),
         ("f 1 2 x", "5:7+1 Error: expected the number of a vertex, found `x`".into()),
         ("f 1 2 3.0", "5:7+3 Error: expected the number of a vertex, found `3.0`".into()),
         ("f 1 2 /1", "5:7+0 Error: expected the number of a vertex, found nothing".into()),
@@ -124,7 +124,7 @@ fn wrong_faces() {
 }
 
 #[test]
-fn errors_come_in_the_order_of_the_file() {
+fn errors_are_in_file_order() {
     let found = findings("f 1 2 7\nv 1 2\nf 0 1 2\nvt x");
     let lines: Vec<&str> = found.iter().map(|f| &f[..1]).collect();
     assert_eq!(lines, ["5", "6", "7", "8"]);
@@ -148,14 +148,14 @@ fn nothing_panics() {
     abuse(text.replace("vt 1.#INF\n", "").as_bytes(), "m.obj");
 }
 
-/// Name, number of triangles and number of vertices of each mesh of a scene.
+/// Returns name, number of triangles and number of vertices of each mesh of a scene.
 fn meshes(scene: &Scene) -> Vec<(String, usize, usize)> {
     let count = |(name, data): (&String, &Arc<MeshData>)| (name.clone(), data.triangles.len(), data.positions.len());
     scene.assets.meshes.iter().map(count).collect()
 }
 
 #[test]
-fn lines_points_and_vertices_alone_are_shown_as_sticks_and_balls() {
+fn lines_points_and_lone_vertices_become_sticks_and_balls() {
     let folder = folder(&[("m.mtl", b"newmtl red\nKd 1 0 0\n")]);
     let read = |text: &str| read_in(folder.path(), "m.obj", text);
     let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
@@ -170,7 +170,7 @@ fn lines_points_and_vertices_alone_are_shown_as_sticks_and_balls() {
     assert!(told[1].contains("3 points without a surface"), "{told:?}");
     let (none, told) = read(&format!("{vertices}l 1 4\np 0 1\n"));
     assert!(none.is_none());
-    let wrong = ["there is no vertex `4`: the file has 3 vertices", "there is no vertex 0: they are counted from 1"];
+    let wrong = ["vertex `4` does not exist: the file has 3 vertices", "vertex 0 does not exist: indices count from 1"];
     assert_eq!(told[1..], [format!("m.obj:4:5 error {}", wrong[0]), format!("m.obj:5:3 error {}", wrong[1])]);
     let (scene, told) = read_in(
         folder.path(),
@@ -183,19 +183,19 @@ fn lines_points_and_vertices_alone_are_shown_as_sticks_and_balls() {
 }
 
 #[test]
-fn names_of_files_of_materials_may_have_blanks() {
+fn material_file_names_may_have_blanks() {
     let mtl = |name| format!("newmtl {name}\nKd 1 0 0\n");
     let (a, b) = (mtl("a"), mtl("b"));
     let folder = folder(&[("one two.mtl", a.as_bytes()), ("three.mtl", b.as_bytes())]);
     let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
     for names in ["one two.mtl", "three.mtl one\\ two.mtl", "\"one two.mtl\"", "One Two.MTL"] {
         let told = read_in(folder.path(), "m.obj", &format!("mtllib {names}\n{triangle}")).1;
-        assert!(told.is_empty(), "{names}: {told:?}");
+        assert!(told.is_empty(), "{names}: {told:?}"); // prose: keep
     }
 }
 
 #[test]
-fn faces_of_a_smoothing_group_are_smooth() {
+fn smoothing_group_smooths_its_faces() {
     // Two squares at a right angle along the x axis.
     let corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 1\nv 0 0 1\n";
     let of = |faces: &str| {
@@ -203,7 +203,7 @@ fn faces_of_a_smoothing_group_are_smooth() {
         assert_eq!(told, [""; 0], "{faces}");
         let scene = scene.unwrap();
         let data = scene.assets.meshes.values().next().unwrap();
-        // The normal of each face's first corner, which is the origin.
+        // Normal of each face's first corner, which is the origin.
         let normal = |triangle: usize| data.normals[data.triangle_normals[triangle][0] as usize];
         data.triangle_normals.first().map(|_| [normal(0), normal(2)])
     };
@@ -221,7 +221,7 @@ fn faces_of_a_smoothing_group_are_smooth() {
 }
 
 #[test]
-fn a_picture_alone_is_shown_as_it_is() {
+fn texture_without_kd_keeps_its_colours() {
     let folder = folder(&[
         ("m.mtl", b"newmtl a\nmap_Kd a.ppm\nnewmtl b\nKd 0.5 0.5 0.5\nmap_Kd a.ppm\nnewmtl c\n"),
         ("a.ppm", b"P6\n1 1\n255\n\x80\x80\x80"),
@@ -233,6 +233,6 @@ fn a_picture_alone_is_shown_as_it_is() {
         Material::Principled(layers) => layers.base_color.x,
         _ => panic!(),
     };
-    // The last material is the ground's.
+    // The last material belongs to the ground.
     assert_eq!(scene.unwrap().materials[..3].iter().map(base).collect::<Vec<_>>(), [1.0, 0.5, 0.8]);
 }

@@ -22,7 +22,8 @@ impl Numbers<'_> {
         Box::new(Diagnostic::error(message).code("bad-file").at(span))
     }
 
-    /// Reads the next number. Commas separate numbers too, as in some real files.
+    /// Reads the next number; `what` names it in errors. Commas separate numbers too, as in some
+    /// real files.
     fn next(&mut self, what: &str) -> Result<(f64, usize), Box<Diagnostic>> {
         let rest = &self.text[self.at..];
         let between = |c: char| c.is_whitespace() || c == ',';
@@ -35,7 +36,7 @@ impl Numbers<'_> {
         self.at = end;
         match word.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok((number, start)),
-            _ => Err(self.error(start, end, format!("`{word}` is no number: the {what} should be here"))),
+            _ => Err(self.error(start, end, format!("expected the {what}, found `{word}`"))),
         }
     }
 
@@ -64,7 +65,7 @@ impl Numbers<'_> {
         for _ in 0..count {
             let (angle, start) = self.next(what)?;
             if angles.last().is_some_and(|last| angle as f32 <= *last) {
-                return Err(self.error(start, self.at, format!("the {what}s must rise")));
+                return Err(self.error(start, self.at, format!("the {what}s must ascend")));
             }
             if angle.abs() > 360.0 {
                 return Err(self.error(start, self.at, format!("a {what} must lie between -360 and 360 degrees")));
@@ -97,14 +98,14 @@ fn parse(text: &str, file: u32) -> Result<(Profile, Vec<Diagnostic>), Box<Diagno
         return Err(numbers.error(
             0,
             text.lines().next().unwrap_or("").len(),
-            "no line `TILT=`: this is no IES file, nor EULUMDAT, or broken",
+            "no line `TILT=`: the file is not IES or EULUMDAT, or is damaged",
         ));
     };
     match tilt.as_str() {
         "NONE" => {}
         "INCLUDE" => {
-            // Factors for tilted luminaires are skipped: they have no effect in the usual position.
-            numbers.next("lamp's position")?;
+            // Skip the factors for tilted luminaires: they have no effect in the usual position.
+            numbers.next("tilt geometry")?;
             let pairs = numbers.count("number of tilt angles")?;
             numbers.angles(pairs, "tilt angle")?;
             for _ in 0..pairs {
@@ -112,15 +113,15 @@ fn parse(text: &str, file: u32) -> Result<(Profile, Vec<Diagnostic>), Box<Diagno
             }
         }
         other => {
-            let message = format!("the tilt of another file (`{other}`) cannot be read");
+            let message = format!("tilt data in another file (`{other}`) is not supported");
             return Err(Box::new(
                 (*numbers.error(start, numbers.at, message))
-                    .help("write `TILT=NONE`: for a lamp in its usual position that is the same"),
+                    .help("write `TILT=NONE`: this is equivalent for a luminaire in its usual position"),
             ));
         }
     }
-    numbers.next("number of lamps")?;
-    numbers.next("lumens of a lamp")?;
+    numbers.next("number of light sources")?;
+    numbers.next("lumens per light source")?;
     let multiplier = numbers.factor("multiplier")?;
     let verticals = numbers.count("number of vertical angles")?;
     let horizontals = numbers.count("number of horizontal angles")?;
@@ -152,7 +153,7 @@ fn parse(text: &str, file: u32) -> Result<(Profile, Vec<Diagnostic>), Box<Diagno
         }
         let value = (scale * value) as f32;
         if !value.is_finite() {
-            return Err(numbers.error(start, numbers.at, "so many candela are no number that can be held"));
+            return Err(numbers.error(start, numbers.at, "the candela value exceeds the range of 32-bit floating point"));
         }
         candela.push(value);
     }
@@ -164,16 +165,16 @@ fn parse(text: &str, file: u32) -> Result<(Profile, Vec<Diagnostic>), Box<Diagno
     };
     let (first, last) = (horizontal[0], horizontal[horizontals - 1]);
     if kind == ProfileKind::C && horizontals > 1 && first == 0.0 && last > 180.0 && last < 360.0 {
-        // The file leaves the rest open: close the circle with the first values.
-        warn(angles.clone(), "the horizontal angles end before 360: from there to the first candela are linear");
+        // The file leaves the rest undefined: close the circle with the first values.
+        warn(angles.clone(), "the horizontal angles end before 360: the gap is interpolated linearly");
         horizontal.push(360.0);
         candela.extend_from_within(..verticals);
     }
     if candela.iter().all(|candela| *candela == 0.0) {
-        warn(angles, "this lamp is dark: all its candela are 0");
+        warn(angles, "this luminaire is dark: all its candela are 0");
     }
     if let Some(more) = more {
-        warn(more, "more numbers follow the last candela: are there decimal commas, or angles too few?");
+        warn(more, "more numbers follow the last candela value: are there decimal commas or too few angles?");
     }
     Ok((Profile { kind, vertical, horizontal, candela }, odd))
 }
@@ -215,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn fluxes_are_those_of_their_formulas() {
+    fn flux_matches_closed_form() {
         // I = 1000 cos over the lower half: pi 1000 lm. 100 cd everywhere: 4 pi 100 lm.
         let angles: Vec<f64> = (0..=36).map(|i| 2.5 * f64::from(i)).collect();
         let cosine: Vec<String> = angles.iter().map(|a| format!("{}", 1000.0 * fp_cos(*a))).collect();
@@ -237,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read_to_the_bit() {
+    fn profile_round_trips_bit_for_bit() {
         let mut random = durer_scene::math::random::Random(7);
         for kind in [ProfileKind::A, ProfileKind::B, ProfileKind::C] {
             let rising = |count: usize| (0..count).map(|i| i as f32 * 90.0 / count as f32).collect::<Vec<_>>();
@@ -251,10 +252,10 @@ mod tests {
     }
 
     #[test]
-    fn what_is_odd_is_told_at_its_place() {
+    fn warning_has_line_and_column() {
         for (text, told) in [
             ("TILT=NONE\n1 1 1 2 1 1 2 0 0 0 1 1 1\n0 90\n0\n7 8\n9", "6:1 more numbers follow"),
-            ("TILT=NONE\n1 1 1 2 1 1 2 0 0 0 1 1 1\n0 90\n0\n0 0", "4:1 this lamp is dark"),
+            ("TILT=NONE\n1 1 1 2 1 1 2 0 0 0 1 1 1\n0 90\n0\n0 0", "4:1 this luminaire is dark"),
             (
                 "TILT=NONE\n1 1 1 2 3 1 2 0 0 0 1 1 1\n0 90\n0 90 270\n1 1 2 2 3 3",
                 "4:1 the horizontal angles end before 360",
@@ -267,7 +268,7 @@ mod tests {
             let [warning] = &diagnostics.iter().collect::<Vec<_>>()[..] else { panic!("{text}: {diagnostics:?}") };
             let (line, column) = files.position(warning.span.unwrap()).unwrap();
             assert!(
-                format!("{line}:{column} {}", warning.message).starts_with(told),
+                format!("{line}:{column} {}", warning.message).starts_with(told), // prose: keep
                 "{text}: {line}:{column} {warning:?}"
             );
             if told.contains("360") {
@@ -301,17 +302,17 @@ mod tests {
     }
 
     #[test]
-    fn broken_files_are_refused_at_their_place() {
+    fn error_has_line_and_column() {
         for (text, error) in [
-            ("IESNA:LM-63-2002\n1 2 3\n", "1:1 no line `TILT=`: this is no IES file, nor EULUMDAT, or broken"),
-            ("TILT=NONE\n1 1 1 3 1 1 2 0 0 0\n1 1 60\n0 90 45\n0\n1 2 3", "4:6 the vertical angles must rise"),
+            ("IESNA:LM-63-2002\n1 2 3\n", "1:1 no line `TILT=`: the file is not IES or EULUMDAT, or is damaged"),
+            ("TILT=NONE\n1 1 1 3 1 1 2 0 0 0\n1 1 60\n0 90 45\n0\n1 2 3", "4:6 the vertical angles must ascend"),
             (
                 "TILT=NONE\n1 1 1 3 1 1 2 0 0 0\n1 1 60\n0 45 90\n0\n1 2",
                 "6:4 the file ends where the candela number 3 of 3 should be",
             ),
             ("TILT=NONE\n1 1 1 1e9 1 1 2", "2:7 the number of vertical angles must be a whole number from 1 to 4000"),
-            ("TILT=lamp.tlt\n1 1", "1:1 the tilt of another file (`LAMP.TLT`) cannot be read"),
-            ("TILT=NONE\n1 x", "2:3 `x` is no number: the lumens of a lamp should be here"),
+            ("TILT=lamp.tlt\n1 1", "1:1 tilt data in another file (`LAMP.TLT`) is not supported"), // prose: keep
+            ("TILT=NONE\n1 x", "2:3 expected the lumens per light source, found `x`"),
             // Found by fuzzing: the difference to the next angle is not finite.
             (
                 "TILT=NONE\n1 1 1 2 1 1 2 0 0 0\n1 1 1\n-1e126 2\n0\n1 2",

@@ -1,8 +1,8 @@
 //! Reader of EULUMDAT files (`.ldt`): light distributions of luminaires, common in Europe.
 //!
-//! A file has one value a line in a fixed order: the type of luminaire, the symmetry of its planes,
-//! its light sources and their flux, the angles, and intensities in candela per 1000 lumens of that
-//! flux.
+//! A file has one value per line in a fixed order: the type of luminaire, the symmetry of its
+//! planes, its light sources and their flux, the angles, and intensities in candela per 1000 lumens
+//! of that flux.
 //!
 //! Source: A. W. Stockmar, *EULUMDAT: ein Leuchtendatenformat für den europäischen
 //! Beleuchtungsplaner*, Licht '90; the order of lines as Paul Bourke and Lighting Sciences publish
@@ -65,7 +65,7 @@ impl<'t> Lines<'t> {
         let end = start + line.len();
         match line.replace(',', ".").parse::<f64>() {
             Ok(number) if number.is_finite() => Ok((number, start, end)),
-            _ => Err(self.error(start, end, format!("`{line}` is no number: the {what} should be here"))),
+            _ => Err(self.error(start, end, format!("expected the {what}, found `{line}`"))),
         }
     }
 
@@ -91,7 +91,7 @@ impl<'t> Lines<'t> {
         for _ in 0..count {
             let (angle, start, end) = self.number(what)?;
             if angles.last().is_some_and(|last| angle as f32 <= *last) {
-                return Err(self.error(start, end, format!("the {what}s must rise")));
+                return Err(self.error(start, end, format!("the {what}s must ascend")));
             }
             if !(0.0..=most).contains(&angle) {
                 return Err(self.error(start, end, format!("a {what} must lie between 0 and {most} degrees")));
@@ -102,7 +102,7 @@ impl<'t> Lines<'t> {
     }
 }
 
-/// Returns true if a text begins as a EULUMDAT file does: the type of luminaire and the symmetry
+/// Returns true if a text begins as an EULUMDAT file does: the type of luminaire and the symmetry
 /// are whole numbers in the second and third line.
 pub(super) fn recognise(text: &str) -> bool {
     let mut lines = text.lines().map(str::trim).skip(1);
@@ -116,7 +116,7 @@ pub fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<Prof
 
 fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Found<Profile> {
     let mut lines = Lines { text, at: 0, file };
-    lines.skip(2, "maker and kind of lamp")?;
+    lines.skip(2, "manufacturer and file type")?;
     let symmetry = match lines.whole("symmetry", 0, 4)? {
         0 => Symmetry::None,
         1 => Symmetry::Axis,
@@ -128,16 +128,16 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Found<Profile>
     lines.skip(1, "distance between C planes")?;
     let verticals = lines.whole("number of intensities in each plane", 1, MAX_ANGLES)?;
     lines.skip(1, "distance between intensities")?;
-    lines.skip(5, "names and date of the lamp")?;
-    lines.skip(9, "size of the lamp")?;
+    lines.skip(5, "luminaire names and date")?;
+    lines.skip(9, "size of the luminaire")?;
     lines.skip(2, "downward flux and light output ratio")?;
     let factor = lines.not_negative("conversion factor")?;
     lines.skip(1, "tilt")?;
-    let sets = lines.whole("number of sets of lamps", 1, 20)?;
+    let sets = lines.whole("number of sets of light sources", 1, 20)?;
     // The sets are alternatives; the first one is used.
-    lines.skip(2, "number and kind of the lamps")?;
-    let flux = lines.not_negative("flux of the lamps")?;
-    lines.skip(3 + 6 * (sets - 1), "colour and watts of the lamps")?;
+    lines.skip(2, "number and type of the light sources")?;
+    let flux = lines.not_negative("flux of the light sources")?;
+    lines.skip(3 + 6 * (sets - 1), "colour and watts of the light sources")?;
     lines.skip(10, "direct ratios")?;
     let around = lines.at;
     let planes = lines.angles(count, "C angle", 360.0)?;
@@ -151,7 +151,7 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Found<Profile>
         let value = lines.not_negative(&format!("intensity number {} of {all}", i + 1))?;
         let value = (scale * value) as f32;
         if !value.is_finite() {
-            return Err(lines.error(lines.at, lines.at, "so many candela are no number that can be held"));
+            return Err(lines.error(lines.at, lines.at, "the candela value exceeds the range of 32-bit floating point"));
         }
         candela.push(value);
     }
@@ -162,12 +162,12 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Found<Profile>
             profile.horizontal.push(360.0);
             profile.candela.extend_from_within(..verticals);
         }
-        // The file has 270 over 0 to 90 degrees; a profile has 90 to 270, as in IES files.
+        // The file lists 270 over 0 to 90 degrees; a profile lists 90 to 270, as IES files do.
         Symmetry::C90 => turned(&mut profile),
         _ => {}
     }
     if profile.candela.iter().all(|candela| *candela == 0.0) {
-        let error = lines.error(angles.start, angles.end, "this lamp is dark: its flux or all its intensities are 0");
+        let error = lines.error(angles.start, angles.end, "this luminaire is dark: its flux or all its intensities are 0");
         diagnostics.push(Diagnostic { severity: Severity::Warning, ..*error });
     }
     Ok(profile)
@@ -182,13 +182,13 @@ impl Lines<'_> {
             Symmetry::None => (planes, [0.0, f32::NAN]),
             Symmetry::C0 => (within(0.0, 180.0), [0.0, 180.0]),
             Symmetry::C90 => {
-                // They run from 270 to 360, then from 0 to 90.
+                // The planes run from 270 to 360, then from 0 to 90.
                 let below = planes.iter().filter(|c| **c >= 270.0 && **c < 360.0).map(|c| c - 360.0);
                 (below.chain(within(0.0, 90.0)).collect(), [-90.0, 90.0])
             }
             Symmetry::Both => (within(0.0, 90.0), [0.0, 90.0]),
         };
-        // Without symmetry the last plane is not fixed.
+        // Without symmetry the last plane is arbitrary.
         let [first, last] = ends;
         if kept.first() == Some(&first) && (last.is_nan() || kept.last() == Some(&last)) {
             return Ok(kept);
@@ -213,8 +213,8 @@ mod tests {
     use durer_diag::Files;
     use durer_scene::math::{Vec3, fp};
 
-    /// A test file with a symmetry, a number of planes around the circle, a flux, and intensities
-    /// by plane and gamma angle, for the `written` planes.
+    /// Returns a test file with a symmetry, a number of planes around the circle, a flux, and
+    /// intensities by plane and gamma angle, for the `written` planes.
     fn file(symmetry: u32, count: usize, flux: &str, written: &[f64], value: impl Fn(f64, f64) -> f64) -> String {
         let gammas: Vec<f64> = (0..=36).map(|i| 5.0 * f64::from(i)).collect();
         let planes = (0..count).map(|i| 360.0 / count as f64 * i as f64);
@@ -238,7 +238,7 @@ mod tests {
         let profile = super::super::read(text.as_bytes(), file, &mut diagnostics);
         let told = diagnostics.iter().next().map(|told| {
             let (line, column) = files.position(told.span.unwrap()).unwrap();
-            format!("{line}:{column} {}", told.message)
+            format!("{line}:{column} {}", told.message) // prose: keep
         });
         match (profile, told) {
             (Some(profile), None) => Ok(profile),
@@ -248,7 +248,7 @@ mod tests {
 
     #[test]
     fn every_symmetry_fills_the_circle() {
-        // Candela per 1000 lumens, of 2000; each function has its named symmetry.
+        // Candela per 1000 lumens, of 2000 lumens; each function has the symmetry of its row.
         let cos = |degrees: f64| fp::sin_cos_degrees(degrees).1;
         let sin = |degrees: f64| fp::sin_cos_degrees(degrees).0;
         let all: Vec<f64> = (0..24).map(|i| 15.0 * f64::from(i)).collect();
@@ -283,13 +283,13 @@ mod tests {
     }
 
     #[test]
-    fn the_flux_of_an_even_lamp_is_four_pi_its_candela() {
+    fn flux_of_a_uniform_profile_is_four_pi_times_its_candela() {
         let even = parsed(&file(1, 1, "1000", &[0.0], |_, _| 100.0)).unwrap();
         assert!((even.flux() / (400.0 * std::f64::consts::PI) - 1.0).abs() < 1e-3, "{}", even.flux());
     }
 
     #[test]
-    fn broken_files_are_refused_at_their_place() {
+    fn error_has_line_and_column() {
         let good = file(4, 4, "1000", &[0.0, 90.0], |_, _| 100.0);
         let line = |number: usize, with: &str| {
             let mut lines: Vec<&str> = good.lines().collect();
@@ -299,13 +299,13 @@ mod tests {
         assert!(parsed(&good).is_ok());
         for (text, told) in [
             (line(3, "5"), "3:1 the symmetry must be a whole number from 0 to 4"),
-            (line(4, "four"), "4:1 `four` is no number: the number of C planes should be here"),
+            (line(4, "four"), "4:1 expected the number of C planes, found `four`"),
             (line(4, "1e9"), "4:1 the number of C planes must be a whole number from 1 to 721"),
             (line(24, "-1"), "24:1 the conversion factor must not be less than 0"),
-            (line(29, "nan"), "29:1 `nan` is no number: the flux of the lamps should be here"),
-            (line(44, " 0"), "44:2 the C angles must rise"),
+            (line(29, "nan"), "29:1 expected the flux of the light sources, found `nan`"),
+            (line(44, " 0"), "44:2 the C angles must ascend"),
             (line(44, "80"), "43:1 with this symmetry there must be C planes at 0 and 90 degrees"),
-            (line(29, "0"), "43:1 this lamp is dark: its flux or all its intensities are 0"),
+            (line(29, "0"), "43:1 this luminaire is dark: its flux or all its intensities are 0"),
             (line(90, "-1"), "90:1 the intensity number 7 of 74 must not be less than 0"),
             (
                 good.lines().take(100).collect::<Vec<_>>().join("\n"),

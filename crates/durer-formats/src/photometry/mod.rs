@@ -1,4 +1,4 @@
-//! Files of measured light distributions.
+//! Readers and writer of measured light distributions.
 
 mod ies;
 mod ldt;
@@ -9,7 +9,7 @@ pub use ies::write;
 
 /// Reads a profile in either format; errors have spans.
 pub fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<Profile> {
-    // Manufacturers' names may be in any encoding; all else is ASCII. Replacing bytes one by one
+    // Manufacturers' names may be in any encoding; the rest is ASCII. Replacing bytes one by one
     // keeps offsets.
     let text: String = bytes.iter().map(|&b| if b.is_ascii() { char::from(b) } else { '?' }).collect();
     match ldt::recognise(&text) {

@@ -171,7 +171,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         let value = &self.bytes[at.clone()];
         // The raw bytes of a binary value would not help the reader of the message.
         if V::fixed_size(super::header::Scalar::U8).is_some() {
-            self.report.error(at, "expected a finite number, found an infinite one or none").help =
+            self.report.error(at, "expected a finite number, found an infinite value or NaN").help =
                 Some("numbers must lie within the range of 32-bit floating point, about ±3.4e38".into());
         } else {
             report_number(self.report, error, at.clone(), value);
@@ -182,7 +182,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         let rest = self.values.remainder();
         if !rest.is_empty() {
             let bytes = counted(rest.len(), "byte", "bytes");
-            self.report.warning(rest.start..rest.start + 1, format!("{bytes} left out after the last row")).help =
+            self.report.warning(rest.start..rest.start + 1, format!("ignored {bytes} after the last row")).help =
                 Some("the header may promise too few rows or properties".into());
         }
     }

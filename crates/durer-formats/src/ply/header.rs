@@ -97,8 +97,7 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
-    /// True if triangles without normals are shaded flat, whatever the default; an extension of
-    /// ours.
+    /// True if triangles without normals are shaded flat, whatever the default. A Dürer extension.
     pub flat: bool,
     /// Byte offset of the first row.
     pub body: usize,
@@ -227,7 +226,7 @@ impl<'a> HeaderReader<'a, '_> {
     fn finish(self, end: Range<usize>, body: usize) -> Option<Header> {
         if self.encoding.is_none() && !self.report.has_errors() {
             self.report.error(end, "the header has no `format` line").help =
-                Some("the second line is `format ascii 1.0` or the like".into());
+                Some("the second line must be like `format ascii 1.0`".into());
         }
         let encoding = self.encoding.filter(|_| !self.report.has_errors())?;
         Some(Header { encoding, elements: self.elements, flat: self.flat, body })

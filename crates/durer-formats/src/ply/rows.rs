@@ -12,7 +12,7 @@ use durer_scene::shape::mesh::NO_INDEX;
 
 /// Properties of a vertex that are read, each with all its names, in the order of a [`Row`].
 ///
-/// The last ten are extensions of ours, for the other attributes of a mesh.
+/// The last ten are Dürer extensions, for the other attributes of a mesh.
 pub(super) const COLUMNS: [&[&str]; 22] = [
     &["x"],
     &["y"],
@@ -210,7 +210,7 @@ impl<V: Values> Body<'_, '_, V> {
                 Ok(index) => {
                     all_good = false;
                     let has = counted(vertices, "vertex", "vertices");
-                    let message = format!("there is no vertex {index}: the file has {has}, counted from 0");
+                    let message = format!("vertex {index} does not exist: the file has {has}, counted from 0");
                     self.report.error(self.values.last(), message);
                     if self.report.is_full() {
                         return Err(Stop);
@@ -234,9 +234,9 @@ impl<V: Values> Body<'_, '_, V> {
         let position = |i: usize| positions[corners[i] as usize];
         let cut = self.cutter.cut(corners.len(), position, |triangle| triangles.push(triangle.map(|i| corners[i])));
         cut.map_err(|_| {
-            let message = format!("a face of {} corners is too crooked to be cut", self.corners.len());
+            let message = format!("a face of {} corners is too complex to triangulate", self.corners.len());
             self.report.error(self.values.last(), message).help =
-                Some("cut it into triangles in a modelling program".into());
+                Some("triangulate it in a modelling program".into());
             Stop
         })
     }

@@ -43,7 +43,7 @@ fn binary(big_endian: bool) -> Vec<u8> {
 }
 
 #[test]
-fn text_and_both_byte_orders_give_the_same_mesh() {
+fn text_and_both_byte_orders_are_equivalent() {
     let mesh = read_clean(&ascii(), "m.ply");
     assert_eq!(mesh, read_clean(&binary(false), "m.ply"));
     assert_eq!(mesh, read_clean(&binary(true), "m.ply"));
@@ -62,7 +62,7 @@ const TRIANGLE: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float 
     element face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 
 #[test]
-fn faces_may_come_before_vertices() {
+fn faces_may_precede_vertices() {
     let text = "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_index\nelement vertex 3\n\
         property float z\nproperty float y\nproperty float x\nend_header\n3 0 1 2\n0 0 0\n0 0 1\n0 1 0\n";
     assert_eq!(read_clean(text.as_bytes(), "m.ply"), read_clean(TRIANGLE.as_bytes(), "m.ply"));
@@ -83,7 +83,7 @@ fn wrong_headers() {
         (
             "format ascii 1.0\n",
             "",
-            "8:1+10 Error: the header has no `format` line (the second line is `format ascii 1.0` or the like)",
+            "8:1+10 Error: the header has no `format` line (the second line must be like `format ascii 1.0`)",
         ),
         (
             "format ascii 1.0",
@@ -142,8 +142,8 @@ fn wrong_rows() {
     for (from, to, expected) in [
         ("1 0 0", "1 x 0", "11:3+1 Error: expected a number, found `x`".to_string()),
         ("1 0 0", "1 0 nan", format!("11:5+3 Error: expected a finite number, found `nan` {limit}")),
-        ("3 0 1 2", "3 0 1 3", "13:7+1 Error: there is no vertex 3: the file has 3 vertices, counted from 0".into()),
-        ("3 0 1 2", "3 0 -1 2", "13:5+2 Error: there is no vertex -1: the file has 3 vertices, counted from 0".into()),
+        ("3 0 1 2", "3 0 1 3", "13:7+1 Error: vertex 3 does not exist: the file has 3 vertices, counted from 0".into()),
+        ("3 0 1 2", "3 0 -1 2", "13:5+2 Error: vertex -1 does not exist: the file has 3 vertices, counted from 0".into()),
         ("3 0 1 2", "3 0 1.5 2", "13:5+3 Error: expected a whole number, found `1.5`".into()),
         ("3 0 1 2", "2 0 1", "13:1+1 Error: a face needs at least 3 corners, found 2".into()),
         ("3 0 1 2", "-1", "13:1+2 Error: a list cannot have -1 values".into()),
@@ -153,13 +153,13 @@ fn wrong_rows() {
         (
             "3 0 1 2",
             "3 0 1 2\n 7 7",
-            "14:2+1 Warning: 4 bytes left out after the last row (the header may promise too few rows or properties)"
+            "14:2+1 Warning: ignored 4 bytes after the last row (the header may promise too few rows or properties)"
                 .into(),
         ),
         (
             "face 1",
             "face 0",
-            "13:1+1 Warning: 8 bytes left out after the last row (the header may promise too few rows or properties)"
+            "13:1+1 Warning: ignored 8 bytes after the last row (the header may promise too few rows or properties)"
                 .into(),
         ),
     ] {
@@ -171,13 +171,13 @@ fn wrong_rows() {
 }
 
 #[test]
-fn wrong_binary_values_are_found_at_their_byte() {
+fn wrong_binary_value_has_byte_offset() {
     let mut bytes = binary(false);
     let body = bytes.len() - (binary(false).len() - HEADER.replace("ascii", "binary_little_endian").len());
     let (lines, _) = (HEADER.lines().count(), ());
     bytes[body + 1..body + 5].copy_from_slice(&f32::NAN.to_le_bytes());
     let found = read(&bytes, "m.ply").1;
-    let expected = format!("{}:2+4 Error: expected a finite number, found an infinite one or none", lines + 1);
+    let expected = format!("{}:2+4 Error: expected a finite number, found an infinite value or NaN", lines + 1);
     assert!(found.len() == 1 && found[0].starts_with(&expected), "{found:?}");
     let mut large = binary(true);
     large[body - 3 + 5..][..8].copy_from_slice(&1e300f64.to_be_bytes());
@@ -185,7 +185,7 @@ fn wrong_binary_values_are_found_at_their_byte() {
 }
 
 #[test]
-fn promised_counts_reserve_nothing() {
+fn promised_counts_reserve_no_memory() {
     let huge = "9223372036854775807";
     let header = |format: &str, vertices: &str, faces: &str| {
         TRIANGLE[..TRIANGLE.find("0 0 0").unwrap()]
@@ -210,7 +210,7 @@ fn promised_counts_reserve_nothing() {
 }
 
 #[test]
-fn all_that_a_mesh_has_is_written_and_read() {
+fn all_mesh_attributes_round_trip() {
     let mesh = MeshData {
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ONE],
         uvs: vec![Vec2::new(0.25, 0.5), Vec2::ONE],

@@ -1,5 +1,5 @@
 //! Writer of meshes as binary PLY. `write` writes positions, colours and triangles, for any
-//! program; `write_whole` writes all attributes, for our own reader.
+//! program; `write_whole` writes all attributes, for Dürer's reader.
 
 use super::rows::COLUMNS;
 use durer_image::Transfer;

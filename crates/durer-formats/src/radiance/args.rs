@@ -6,7 +6,7 @@ use durer_diag::{Diagnostic, Span};
 use durer_scene::math::Vec3;
 use glam::DVec3;
 
-/// A primitive as it is written.
+/// A primitive as stored in the file.
 #[derive(Debug)]
 pub(super) struct Thing {
     pub modifier: Word,
@@ -24,7 +24,7 @@ impl Thing {
         let mut next = || {
             let word = words.next();
             if word.is_none() {
-                let error = Diagnostic::error("the file ends before this thing does").code("incomplete");
+                let error = Diagnostic::error("the file ends within this primitive").code("incomplete");
                 said.push(error.at(start.to(words.end())));
             }
             word
@@ -36,7 +36,7 @@ impl Thing {
         let texts = (0..next()?.count(said)?).map(|_| next()).collect::<Option<_>>()?;
         let wholes = next()?;
         if wholes.count(said)? != 0 {
-            said.bad(wholes.at, "nothing has whole numbers as arguments: this must be 0");
+            said.bad(wholes.at, "primitives have no integer arguments: this must be 0");
             return None;
         }
         let count = next()?.count(said)?;
@@ -57,7 +57,7 @@ impl Thing {
         let right = counts.contains(&self.numbers.len());
         if !right {
             let counts = counts.iter().map(usize::to_string).collect::<Vec<_>>().join(" or ");
-            let message = format!("a {} has {counts} numbers, and here are {}", self.kind.text, self.numbers.len());
+            let message = format!("a {} needs {counts} numbers, but this one has {}", self.kind.text, self.numbers.len());
             said.bad(self.at(), message);
         }
         right

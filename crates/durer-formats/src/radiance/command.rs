@@ -27,7 +27,7 @@ impl Reader<'_> {
         }
         if let Some(empty) = stages.iter().position(Vec::is_empty) {
             let what =
-                if stages.len() == 1 { "there is no command after `!`" } else { "there is no command beside `|`" };
+                if stages.len() == 1 { "a command is missing after `!`" } else { "a command is missing beside `|`" };
             let at = stages.iter().skip(empty).flatten().next().map_or(words.end(), |word| word.at);
             return self.said.bad(at, what);
         }
@@ -39,7 +39,7 @@ impl Reader<'_> {
             }
             let Some((next, files, _)) = xform(self, &stage[1..], &places) else { return };
             if let Some(file) = files.first() {
-                return self.said.bad(file.at, "behind a `|` `xform` reads what comes through it, and no files");
+                return self.said.bad(file.at, "`xform` after a `|` reads the piped text and takes no files");
             }
             places = next;
         }
@@ -64,7 +64,7 @@ impl Reader<'_> {
             "gensky" => {
                 let Some(text) = gensky::text(self.said, name, args) else { return };
                 let bytes: Arc<[u8]> = text.into_bytes().into();
-                let file = self.input.files.borrow_mut().add("what gensky prints", bytes.clone());
+                let file = self.input.files.borrow_mut().add("output of gensky", bytes.clone());
                 places.iter().for_each(|place| self.text(&bytes, file, place));
             }
             _ => refuse(self, name),
@@ -75,11 +75,11 @@ impl Reader<'_> {
 /// Reports an unsupported command and suggests a workaround.
 fn refuse(reader: &Reader, name: &Word) {
     let help = format!(
-        "known are `xform`, `cat`, `genbox`, `genprism` and `gensky`. Run the command with Radiance's own `{}`, keep what it prints in a \
+        "known are `xform`, `cat`, `genbox`, `genprism` and `gensky`. Run Radiance's own `{}`, save its output in a \
          file beside the scene, and write `!cat FILE` here",
         name.text
     );
-    let error = Diagnostic::error(format!("no command {} is run", name.shown())).code("no-command");
+    let error = Diagnostic::error(format!("the command {} is not supported", name.shown())).code("no-command");
     reader.said.push(Diagnostic { help: Some(help), ..error.at(name.at) });
 }
 
@@ -110,7 +110,7 @@ fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[Place]) -> Option<(Pla
             }
         };
         if rest.len() <= takes {
-            let needs = if takes == 1 { "needs a name" } else { "stands alone: there is no file" };
+            let needs = if takes == 1 { "needs a name" } else { "needs a file after it" };
             reader.said.bad(option.at, format!("{} {needs}", option.shown()));
             return None;
         }
@@ -120,7 +120,7 @@ fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[Place]) -> Option<(Pla
         rest = &rest[1 + takes..];
     }
     let Some(maps) = transform.places().filter(|maps| maps.len().saturating_mul(outer.len()) <= 1 << 20) else {
-        reader.said.bad(words[0].at, "these arrays have too many places");
+        reader.said.bad(words[0].at, "these arrays make too many copies");
         return None;
     };
     let place = |outer: &Place, map: &DAffine3| Place {
@@ -204,7 +204,7 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &Place) -> O
             (numbers(reader, &args[3..], 2 * count)?, &args[3 + 2 * count..])
         }
         Ok(_) => {
-            reader.said.bad(args[2].at, "the base has at least 3 corners, and two numbers for each follow");
+            reader.said.bad(args[2].at, "the base needs at least 3 corners of two numbers each");
             return None;
         }
         Err(_) => {
@@ -216,7 +216,7 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &Place) -> O
             }
             if list.len() < 6 || list.len() % 2 != 0 {
                 let told = shown(args[2].text.as_bytes());
-                reader.said.bad(args[2].at, format!("{told} has no pairs of numbers for at least 3 corners"));
+                reader.said.bad(args[2].at, format!("{told} needs pairs of numbers for at least 3 corners")); // prose: keep
                 return None;
             }
             (list, &args[3..])
@@ -237,7 +237,7 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &Place) -> O
                 rest = &more[1..];
             }
             _ => {
-                reader.said.bad(option.at, format!("`genprism` has no option {} like this", option.shown()));
+                reader.said.bad(option.at, format!("`genprism` has no option {}, or its arguments are missing", option.shown()));
                 return None;
             }
         }

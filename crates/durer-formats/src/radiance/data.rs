@@ -25,7 +25,7 @@ impl Table {
                 _ => None,
             };
             if word.is_none() {
-                said.bad(end, "this table ends before all its numbers are there");
+                said.bad(end, "the table ends before its last number");
             }
             word
         };
@@ -44,7 +44,7 @@ impl Table {
             if places == 0 || total > bytes.len() {
                 said.bad(
                     count.at,
-                    format!("the file has not so many numbers as {places} values of this coordinate need"),
+                    format!("the file is too short for {places} values of this coordinate"),
                 );
                 return None;
             }

@@ -150,7 +150,7 @@ impl Asked {
         let whole = |word: &Word, most: f64, what: &str| {
             let number = word.number(said)?;
             if !(1.0..=most).contains(&number) {
-                said.bad(word.at, format!("the {what} is from 1 to {most}"));
+                said.bad(word.at, format!("the {what} must be from 1 to {most}"));
                 return None;
             }
             Some(number as i32)
@@ -180,7 +180,7 @@ impl Asked {
     /// Hours of the day from 14.5, 14:30 or 14:30EST; the flag is true for solar time (+14.5).
     fn hour(&mut self, said: &Said, word: &Word) -> Option<(f64, bool)> {
         let wrong = || {
-            let what = "the hour is as 14.5, 14:30, 14:30EST or, by the sun, +14.5";
+            let what = "the hour must be of the form 14.5, 14:30, 14:30EST or, in solar time, +14.5";
             said.bad(word.at, what);
         };
         let (solar, text) = match word.text.strip_prefix('+') {
@@ -192,7 +192,7 @@ impl Asked {
         if !zone.is_empty() {
             let Some((_, meridian)) = ZONES.iter().find(|(name, _)| *name == zone) else {
                 let known = ZONES.map(|(name, _)| name).join(" ");
-                said.bad(word.at, format!("no clock is called {}: known are {known}", word.shown()));
+                said.bad(word.at, format!("unknown time zone in {}: known are {known}", word.shown()));
                 return None;
             };
             self.meridian = *meridian;

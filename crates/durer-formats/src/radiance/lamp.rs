@@ -24,7 +24,7 @@ impl Reader<'_> {
         let [down, front] = spread.axes();
         let Some(file) = self.profile(spread, outline, span) else { return };
         let places = outline.places(POINTS);
-        let what = "a lamp that shines otherwise in each direction is points all over it, and is not shown";
+        let what = "an emitter with a directional distribution becomes point lights and is not visible";
         self.said.once(*at, what);
         let color = *radiance * (outline.area() / places.len() as f64) as f32;
         for place in places {
@@ -51,7 +51,7 @@ impl Reader<'_> {
         if known.is_none() {
             if self.profiles.len() >= MOST_PROFILES {
                 let message = format!(
-                    "more than {MOST_PROFILES} lamps that shine in directions of their own: the rest are left out"
+                    "more than {MOST_PROFILES} directional distributions of emitters: the rest are left out"
                 );
                 self.said.warn_once("too-many-lamps", span, message);
                 return None;

@@ -17,7 +17,7 @@ use durer_scene::math::{Color, LUMINANCE, Vec3, fp};
 use durer_scene::medium::Fog;
 use durer_scene::scene::{Material, Spanned};
 
-const TURNED: &str = "highlights are longer along the surface's own directions, not along those that are written";
+const TURNED: &str = "anisotropic highlights follow the surface's own tangents, not the given direction";
 
 /// A matte material without a specular layer.
 fn matte(base_color: Color) -> PrincipledMaterial {
@@ -161,34 +161,34 @@ impl Reader<'_> {
                 plastic(color, specular.element_sum() / 3.0, [slope(value(6)), slope(value(7))])
             }
             "plasfunc" | "plasdata" => {
-                instead("plastic of that colour and share, of roughness 0.1, is taken");
+                instead("plastic of that colour and specularity with roughness 0.1 is used");
                 plastic(color, value(3), [0.1; 2])
             }
             "metfunc" | "metdata" => {
-                instead("metal of that colour and share, of roughness 0.1, is taken");
+                instead("metal of that colour and specularity with roughness 0.1 is used");
                 metal(color, value(3), [0.1; 2])
             }
             "transfunc" | "transdata" => {
-                instead("a sheet of that colour and shares (`trans`), of roughness 0.1, is taken");
+                instead("a sheet (`trans`) of that colour and those fractions with roughness 0.1 is used");
                 trans(color, [value(3), value(4), value(5)], [0.1; 2])
             }
             "BRTDfunc" => {
-                instead("the matte colour of its front is taken");
+                instead("the diffuse colour of its front is used");
                 matte(color)
             }
             "BSDF" | "aBSDF" | "WGMDfunc" => {
-                instead("matte grey is taken");
+                instead("diffuse grey is used");
                 matte(Vec3::splat(0.5) * above.tint)
             }
             "prism1" | "prism2" => {
-                instead("a clear sheet that does not turn light is taken");
+                instead("a clear sheet without deflection is used");
                 sheet(Vec3::ONE, 1.0)
             }
             "mirror" if thing.texts.is_empty() => metal(color, 1.0, [0.0; 2]),
             "glass" => sheet(color, thing.number(3).unwrap_or(1.52)),
             "dielectric" => {
                 if thing.number(4) != Some(0.0) {
-                    said.once(at, "Hartmann's constant has no counterpart: colours are not spread");
+                    said.once(at, "Hartmann's constant has no counterpart: dispersion is left out");
                 }
                 let inside = self.add_material(body(color, value(3)), at);
                 let bubble = self.add_material(body(Vec3::ONE, 1.0), at);
@@ -201,13 +201,13 @@ impl Reader<'_> {
             }
             "mist" => return self.mist(thing),
             "antimatter" => {
-                instead("it cuts nothing away, and is not shown");
+                instead("it is left out and removes nothing");
                 return Made::nothing();
             }
             "illum" | "mirror" if thing.texts.first().is_some_and(|name| kind == "mirror" || name.text != "void") => {
                 instead(match kind {
-                    "illum" => "what it stands for is taken: light comes through that by itself",
-                    _ => "what is shown instead of it is taken, which mirrors no lamps",
+                    "illum" => "its substitute is used, which transmits light itself",
+                    _ => "its substitute is used, which does not mirror lights",
                 });
                 let other = self.modifiers[number].others[0];
                 return match other {
@@ -220,10 +220,10 @@ impl Reader<'_> {
             }
             "light" | "glow" | "illum" => {
                 if kind == "illum" {
-                    instead("its light is taken, and it is seen");
+                    instead("it becomes a visible emitter");
                 }
                 if kind == "glow" && thing.number(3).is_some_and(|reach| reach != 0.0) {
-                    said.once(at, "the reach of a `glow` has no counterpart: it lights what is around it, however far");
+                    said.once(at, "the maximum radius of a `glow` has no counterpart: it illuminates surfaces at any distance");
                 }
                 if let Some(spread) = above.spread.clone() {
                     return Made { kind: Kind::Aimed { radiance: color, spread, at }, ..Made::nothing() };

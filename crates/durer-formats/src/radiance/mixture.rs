@@ -14,7 +14,7 @@ impl Reader<'_> {
     pub fn mixture(&mut self, number: usize, thing: &Thing, patterns: &Below) -> Made {
         let (at, kind) = (thing.at(), thing.kind.text.as_str());
         if thing.texts.len() < 4 {
-            self.said.bad(at, format!("a `{kind}` needs two modifiers, and what mixes them"));
+            self.said.bad(at, format!("a `{kind}` needs two modifiers and a mixing function"));
             return Made::nothing();
         }
         let constant = parse_f32(thing.texts[2].text.as_bytes()).ok().filter(|_| kind == "mixfunc");
@@ -22,13 +22,13 @@ impl Reader<'_> {
             (_, Some(share)) => share.clamp(0.0, 1.0),
             // Letters cover little of the surface.
             ("mixtext", _) => {
-                self.said.once(at, "letters have no counterpart: the modifier around them is taken");
+                self.said.once(at, "text has no counterpart: the modifier around it is used");
                 0.0
             }
             _ => {
                 self.said.once(
                     at,
-                    format!("`{kind}` has no counterpart: both modifiers are mixed half and half everywhere"),
+                    format!("`{kind}` has no counterpart: both modifiers are mixed in equal parts"),
                 );
                 0.5
             }
@@ -40,7 +40,7 @@ impl Reader<'_> {
             [_, second] if share == 0.0 => second,
             [first, _] if share == 1.0 => first,
             [Some(_), Some(_)] if glass => {
-                self.said.once(at, "bodies of glass are not mixed: the first modifier is taken");
+                self.said.once(at, "glass bodies cannot be mixed: the first modifier is used");
                 numbers[0]
             }
             [Some(material1), Some(material2)] => {
@@ -49,7 +49,7 @@ impl Reader<'_> {
                 Some((self.scene.materials.len() - 1) as u32)
             }
             [first, second] if glass => {
-                self.said.once(at, "bodies of glass are not there in part: they are whole");
+                self.said.once(at, "glass bodies cannot be partly transparent: they are shown in full");
                 first.or(second)
             }
             // A missing part makes the material partly transparent.

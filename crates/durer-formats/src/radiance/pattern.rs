@@ -24,7 +24,7 @@ impl Reader<'_> {
         let literal = |i: usize| parse_f32(text(i).as_bytes()).ok().map(|x| x.max(0.0));
         let tint = match kind {
             "texfunc" | "texdata" => {
-                said.once(at, "bumps by functions have no counterpart: the surface stays as it is");
+                said.once(at, "textures (bumps) have no counterpart: the surface stays unchanged");
                 Vec3::ONE
             }
             "brightfunc" if text(0) == "skybr" => {
@@ -40,16 +40,16 @@ impl Reader<'_> {
                 Vec3::from_array([0, 1, 2].map(|i| literal(i).unwrap_or(1.0)))
             }
             "brightfunc" | "colorfunc" | "spectrum" => {
-                said.once(at, format!("patterns by functions (`{kind}`) have no counterpart: the pattern is left out"));
+                said.once(at, format!("function patterns (`{kind}`) have no counterpart: the pattern is left out"));
                 Vec3::ONE
             }
             "brighttext" | "colortext" => {
-                said.once(at, "letters have no counterpart: what is around them is taken");
+                said.once(at, "text has no counterpart: its background is used");
                 background(thing)
             }
             "colorpict" => match thing.texts.get(3).and_then(|name| self.mean_of_picture(name)) {
                 Some(mean) => {
-                    said.once(at, "pictures on surfaces have no counterpart: the mean colour is taken");
+                    said.once(at, "picture patterns have no counterpart: the mean colour is used");
                     mean
                 }
                 None => Vec3::ONE,
@@ -89,7 +89,7 @@ impl Reader<'_> {
 
     fn table(&self, thing: &Thing, name: Option<&Word>) -> Option<Table> {
         let Some(name) = name else {
-            self.said.bad(thing.at(), "a pattern of data needs a function, a file and coordinates");
+            self.said.bad(thing.at(), "a data pattern needs a function, a file and coordinates");
             return None;
         };
         let (bytes, file) = self.open(name)?;
@@ -99,7 +99,7 @@ impl Reader<'_> {
     /// Mean of a data file.
     fn mean_of_data(&self, thing: &Thing, name: Option<&Word>) -> f32 {
         let Some(table) = self.table(thing, name) else { return 1.0 };
-        self.said.once(thing.at(), "patterns of data have no counterpart: the mean is taken");
+        self.said.once(thing.at(), "data patterns have no counterpart: the mean is used");
         table.mean()
     }
 

@@ -66,13 +66,13 @@ impl Reader<'_> {
         }
         if !settings.iter().any(|setting| matches!(setting.name, "scene" | "illum")) {
             let at = durer_diag::Span { file, start: 0, end: bytes.len().min(1) as u32 };
-            let help = "octrees are not read: `scene = FILE.rad` names what one is made of";
+            let help = "octrees are not supported: name their source with `scene = FILE.rad`";
             self.said.bad_with(at, "this file names no scene", Some(help.into()));
         }
         let options = settings.iter().filter(|setting| setting.name == "render").flat_map(|setting| &setting.values);
         for option in options.filter(|option| option.text == "-bv-") {
             let what =
-                "surfaces that are not seen from behind (-bv-) have no counterpart: they are seen from both sides";
+                "back-face culling (-bv-) has no counterpart: surfaces are visible from both sides";
             self.said.once(option.at, what);
         }
         let last = |name: &str| settings.iter().rfind(|setting| setting.name == name).and_then(|s| s.values.first());
@@ -102,9 +102,9 @@ impl Reader<'_> {
                     let help = match meant(wanted, known.iter().copied()) {
                         Some(meant) => meant,
                         None if known.is_empty() => "the file names no views".into(),
-                        None => format!("there are {}", known.join(", ")),
+                        None => format!("known views are {}", known.join(", ")),
                     };
-                    let error = Diagnostic::error(format!("there is no view `{wanted}`")).code("no-camera");
+                    let error = Diagnostic::error(format!("unknown view `{wanted}`")).code("no-camera");
                     self.said.push(Diagnostic { help: Some(help), ..error });
                 }
                 found
@@ -145,7 +145,7 @@ impl Reader<'_> {
             false => fp::ln(value.max(1e-9)) / std::f32::consts::LN_2,
         };
         if stops != 0.0 {
-            let note = Diagnostic::note(format!("the picture is meant to be shown with `--exposure {stops:.2}`"));
+            let note = Diagnostic::note(format!("the file sets an exposure: use `--exposure {stops:.2}`"));
             self.said.push(note.code("exposure").at(word.at));
         }
     }
@@ -171,7 +171,7 @@ impl Reader<'_> {
             }
             let all = Words::new(bytes, file, line.clone());
             let Some(equals) = bytes[line.clone()].iter().position(|byte| *byte == b'=') else {
-                self.said.bad(all.span(line.start, line.end), "a line is `VARIABLE = values`");
+                self.said.bad(all.span(line.start, line.end), "a line must have the form `VARIABLE = values`");
                 continue;
             };
             let mut words = Words::new(bytes, file, line.start..line.start + equals);

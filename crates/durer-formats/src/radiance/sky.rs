@@ -47,7 +47,7 @@ impl Sky {
             _ => {
                 said.bad(
                     thing.at(),
-                    "the first number of a sky is 1 (clear), 2 (overcast), 3 (uniform) or 4 (intermediate)",
+                    "the first number of a sky must be 1 (clear), 2 (overcast), 3 (uniform) or 4 (intermediate)",
                 );
                 return None;
             }
@@ -57,7 +57,7 @@ impl Sky {
         }
         let sun = thing.point(4).normalize_or_zero();
         if matches!(kind, Cover::Clear | Cover::Intermediate) && (sun == DVec3::ZERO || number(3) <= 0.0) {
-            said.bad(thing.at(), "a sky with a sun needs a factor above 0 and the way to the sun");
+            said.bad(thing.at(), "a sky with a sun needs a factor above 0 and the direction to the sun");
             return None;
         }
         let factor = if number(3) > 0.0 { number(3) } else { 1.0 };

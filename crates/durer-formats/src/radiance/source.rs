@@ -34,7 +34,7 @@ impl Reader<'_> {
             Kind::Shining { radiance } => (*radiance, made.patterns.sky.clone()),
             // All its light has one direction.
             Kind::Aimed { radiance, spread, .. } => (*radiance * spread.at(-direction, 1.0) as f32, None),
-            _ => return self.said.once(at, "a source that does not shine is not shown"),
+            _ => return self.said.once(at, "a source without emission is left out"),
         };
         let cosine = fp::sin_cos_degrees(0.5 * f64::from(degrees)).1;
         if degrees <= SMALL && sky.is_none() {

@@ -27,7 +27,7 @@ const MOST_COPIES: usize = 1 << 16;
 /// Maximum number of corners and shapes of a scene.
 const MAX_THINGS: usize = 1 << 26;
 
-/// A material or pattern as written.
+/// A material or pattern as stored in the file.
 pub(super) struct Modifier {
     pub thing: Rc<Thing>,
     /// Index of the modifier that applies to it.
@@ -156,7 +156,7 @@ impl<'a> Reader<'a> {
     pub fn is_full(&mut self, at: Span) -> bool {
         if !self.full && self.scene.materials.len() > 3 * self.modifiers.len() + MOST_COPIES {
             self.full = true;
-            self.said.bad(at, format!("more than {MOST_COPIES} materials come of patterns and `void` over others"));
+            self.said.bad(at, format!("more than {MOST_COPIES} materials result from patterns and mixtures with `void`"));
         }
         self.full
     }
@@ -167,8 +167,8 @@ impl<'a> Reader<'a> {
         self.files += 1;
         if place.depth >= DEEPEST || self.files > MAX_FILES {
             let message = match place.depth >= DEEPEST {
-                true => format!("files name each other more than {DEEPEST} deep: does one name itself?"),
-                false => format!("more than {MAX_FILES} files are too many"),
+                true => format!("files are nested more than {DEEPEST} deep: does one include itself?"),
+                false => format!("more than {MAX_FILES} files are included"),
             };
             return self.said.bad(name.at, message);
         }
@@ -219,7 +219,7 @@ impl<'a> Reader<'a> {
         } else {
             let known = SURFACES.into_iter().chain(MATERIALS).chain(PATTERNS).chain(MIXTURES);
             let help = meant(kind, known);
-            self.said.bad_with(thing.kind.at, format!("there is no type {}", thing.kind.shown()), help);
+            self.said.bad_with(thing.kind.at, format!("unknown type {}", thing.kind.shown()), help);
         }
     }
 
@@ -227,7 +227,7 @@ impl<'a> Reader<'a> {
         let below = [modifier.parent, modifier.others[0], modifier.others[1]].into_iter().flatten();
         modifier.depth = below.map(|other| 1 + self.modifiers[other].depth).max().unwrap_or(0);
         if modifier.depth > DEEPEST {
-            return self.said.bad(name.at, format!("modifiers modify each other more than {DEEPEST} deep"));
+            return self.said.bad(name.at, format!("modifiers are nested more than {DEEPEST} deep"));
         }
         self.modifiers.push(modifier);
         self.names.insert(name.text, self.modifiers.len() - 1);
@@ -257,8 +257,8 @@ impl<'a> Reader<'a> {
         let found = self.names.get(&name.text).copied();
         if found.is_none() {
             let help = meant(&name.text, self.names.keys().map(String::as_str));
-            let help = help.or_else(|| Some("files of materials come before those that use them".into()));
-            self.said.bad_with(name.at, format!("there is no modifier {} before this", name.shown()), help);
+            let help = help.or_else(|| Some("files of materials must precede the files that use them".into()));
+            self.said.bad_with(name.at, format!("no modifier {} is defined before this", name.shown()), help);
         }
         found.map(Some)
     }
@@ -269,7 +269,7 @@ impl<'a> Reader<'a> {
         self.count = self.count.saturating_add(more);
         if before <= MAX_THINGS && self.count > MAX_THINGS {
             self.said
-                .bad(at, format!("more than {MAX_THINGS} corners and shapes, those of arrays counted, are too many"));
+                .bad(at, format!("the scene has more than {MAX_THINGS} corners and shapes, including arrays"));
         }
         self.count <= MAX_THINGS
     }
@@ -291,7 +291,7 @@ impl<'a> Reader<'a> {
                 continue;
             }
             let span = body.at;
-            self.said.once(span, "the mist that the camera is in fills its box, and thins all colours alike");
+            self.said.once(span, "the mist around the camera fills its bounding box, and attenuates all colours equally");
             self.bodies.remove(&number);
             self.scene.fog = Some(Spanned { value: Fog { min: Some(min), max: Some(max), ..fog }, span });
         }

@@ -27,10 +27,10 @@ impl Reader<'_> {
                 let name = thing.texts.first().map_or(String::new(), Word::shown);
                 let help = match thing.kind.text.as_str() {
                     "mesh" => {
-                        "a mesh of Radiance's own is not read: write the OBJ that it was made of as polygons, by `obj2rad`"
+                        "Radiance meshes are not supported: convert the original OBJ to polygons with `obj2rad`"
                     }
                     _ => {
-                        "octrees are not read: write `!xform OPTIONS FILE.rad` with the file that the octree was made of"
+                        "octrees are not supported: write `!xform OPTIONS FILE.rad` with the octree's source file"
                     }
                 };
                 self.missing(thing);
@@ -52,7 +52,7 @@ impl Reader<'_> {
                 let number = match &made.kind {
                     Kind::Glass { outside: Some(outside), .. } if inward => *outside,
                     Kind::Shining { .. } if inward => {
-                        self.said.once(at, "a sphere that shines inwards has no counterpart: it shines outwards");
+                        self.said.once(at, "a sphere that emits inwards has no counterpart: it emits outwards");
                         number
                     }
                     _ => number,
@@ -63,7 +63,7 @@ impl Reader<'_> {
             "polygon" => {
                 if thing.numbers.len() < 9 || !thing.numbers.len().is_multiple_of(3) {
                     let message = format!(
-                        "a polygon has three numbers for each of at least 3 corners, and here are {} numbers",
+                        "a polygon needs three numbers for each of at least 3 corners, but this one has {} numbers",
                         thing.numbers.len()
                     );
                     return self.said.bad(at, message);
@@ -103,7 +103,7 @@ impl Reader<'_> {
                 let ends = [thing.point(0), thing.point(3)];
                 let length = ends[0].distance(ends[1]);
                 if radii[0] * radii[1] < 0.0 || radii == [0.0; 2] || (length == 0.0 && radii[0] == radii[1]) {
-                    let what = "without a length, or with radii that are all 0 or of two signs, is left out";
+                    let what = "without a length, or with radii that are all 0 or differ in sign, is left out";
                     return self.said.warn_once("bad-value", at, format!("a {kind} {what}"));
                 }
                 let inward = (matches!(kind, "cup" | "tube") != (radii[0] + radii[1] < 0.0)) != place.inverted;
@@ -142,7 +142,7 @@ impl Reader<'_> {
         let corners: Vec<Vec3> = corners.iter().map(|p| p.as_vec3()).collect();
         let mut triangles = Vec::with_capacity(corners.len() - 2);
         if self.cutter.cut(corners.len(), |i| corners[i], |triangle| triangles.push(triangle)).is_err() {
-            return self.said.bad(at, "this polygon is too crooked to be cut into triangles");
+            return self.said.bad(at, "this polygon is too complex to triangulate");
         }
         self.body(number, at).facet(&corners, &triangles);
     }

@@ -24,13 +24,13 @@ fn clean(text: &str) -> Scene {
     scene.unwrap()
 }
 
-/// Parameters of the material of a number.
+/// Returns the layers of a material by its index.
 fn layers(scene: &Scene, number: u32) -> &PrincipledMaterial {
     let Material::Principled(layers) = &scene.materials[number as usize].value else { panic!("no layers") };
     layers
 }
 
-/// Vertices of a scene's meshes.
+/// Returns the vertices of a scene's meshes.
 fn corners(scene: &Scene) -> Vec<Vec3> {
     scene.assets.meshes.values().flat_map(|mesh| mesh.positions.iter().copied()).collect()
 }
@@ -39,7 +39,7 @@ const MATTE: &str = "void plastic white 0 0 5 .7 .6 .5 0 0\n";
 
 fn sphere(material: &str) -> (PrincipledMaterial, Vec<String>) {
     let (scene, told) = read(&format!("{material} m sphere s 0 0 4 1 2 3 .5"));
-    let scene = scene.unwrap_or_else(|| panic!("{material}: {told:?}"));
+    let scene = scene.unwrap_or_else(|| panic!("{material}: {told:?}")); // prose: keep
     let number = scene.root.as_ref().unwrap().objects[0].material.unwrap();
     (layers(&scene, number).clone(), told)
 }
@@ -65,7 +65,7 @@ fn names_comments_quotes_and_aliases() {
 }
 
 #[test]
-fn commands_are_made_and_not_run() {
+fn commands_are_emulated() {
     let scene = clean(&format!("{MATTE}!genbox white box 1 2 3 | xform -t 10 0 0 -a 3 -t 0 10 0"));
     let all = corners(&scene);
     assert_eq!(all.len(), 3 * 24);
@@ -145,21 +145,21 @@ fn materials_become_layers() {
 }
 
 #[test]
-fn what_has_no_counterpart_is_told_once_with_its_place() {
+fn missing_counterpart_gives_one_warning_with_position() {
     for (text, told) in [
         (
             "void antimatter m 1 void 0 0",
-            "1:6 warning `antimatter` has no counterpart: it cuts nothing away, and is not shown",
+            "1:6 warning `antimatter` has no counterpart: it is left out and removes nothing",
         ),
         (
             "void colortext t 2 helvet.fnt x 0 15 0 0 0 1 0 0 0 1 0 1 1 1 .5 .5 .5 t plastic m 0 0 5 .8 .8 .8 0 0",
-            "1:6 warning letters have no counterpart: what is around them is taken",
+            "1:6 warning text has no counterpart: its background is used",
         ),
         (
             "void brightfunc f 2 noise(Px) . 0 0\nf plastic m 0 0 5 .8 .8 .8 0 0",
-            "1:6 warning patterns by functions (`brightfunc`) have no counterpart: the pattern is left out",
+            "1:6 warning function patterns (`brightfunc`) have no counterpart: the pattern is left out",
         ),
-        ("void BSDF m 6 0 minimal 0 0 1 . 0 0", "1:6 warning `BSDF` has no counterpart: matte grey is taken"),
+        ("void BSDF m 6 0 minimal 0 0 1 . 0 0", "1:6 warning `BSDF` has no counterpart: diffuse grey is used"),
     ] {
         let (scene, found) = read(&format!("{text}\nm sphere a 0 0 4 0 0 0 1\nm sphere b 0 0 4 3 0 0 1"));
         assert!(scene.is_some());
@@ -170,43 +170,43 @@ fn what_has_no_counterpart_is_told_once_with_its_place() {
 }
 
 #[test]
-fn errors_have_places() {
+fn errors_have_positions() {
     let cycle = folder(&[("a.rad", b"\n!xform a.rad"), ("far.rad", b"!cat ../a.rad")]);
     for (text, told) in [
-        ("void plastik m 0 0 5 1 1 1 0 0", "1:6 error there is no type `plastik` (did you mean `plastic`?)"),
-        ("void plastic m 0 0 4 1 1 1 0\nm sphere s 0 0 4 0 0 0 1", "1:6 error a plastic has 5 numbers, and here are 4"),
-        ("void plastic m 0 0 5 1 x 1 0 0", "1:24 error `x` is not a number"),
-        ("void plastic m 0 0 5 1 1e99 1 0 0", "1:24 error `1e99` is not a number"),
-        ("void plastic m 0 0 5 1 1", "1:1 error the file ends before this thing does"),
-        ("void plastic m 0 0 99999999999 1", "1:1 error the file ends before this thing does"),
-        ("void plastic m 0 0 -1", "1:20 error `-1` is not a whole number, 0 or more"),
-        ("void plastic m 0 2 1 2 0", "1:18 error nothing has whole numbers as arguments: this must be 0"),
+        ("void plastik m 0 0 5 1 1 1 0 0", "1:6 error unknown type `plastik` (did you mean `plastic`?)"),
+        ("void plastic m 0 0 4 1 1 1 0\nm sphere s 0 0 4 0 0 0 1", "1:6 error a plastic needs 5 numbers, but this one has 4"),
+        ("void plastic m 0 0 5 1 x 1 0 0", "1:24 error expected a number, found `x`"),
+        ("void plastic m 0 0 5 1 1e99 1 0 0", "1:24 error expected a number, found `1e99`"),
+        ("void plastic m 0 0 5 1 1", "1:1 error the file ends within this primitive"),
+        ("void plastic m 0 0 99999999999 1", "1:1 error the file ends within this primitive"),
+        ("void plastic m 0 0 -1", "1:20 error expected a whole number of 0 or more, found `-1`"),
+        ("void plastic m 0 2 1 2 0", "1:18 error primitives have no integer arguments: this must be 0"),
         (
             "m sphere s 0 0 4 0 0 0 1",
-            "1:1 error there is no modifier `m` before this (files of materials come before those that use them)",
+            "1:1 error no modifier `m` is defined before this (files of materials must precede the files that use them)",
         ),
         (
             "void polygon p 0 0 6 0 0 0 1 1 1",
-            "1:6 error a polygon has three numbers for each of at least 3 corners, and here are 6 numbers",
+            "1:6 error a polygon needs three numbers for each of at least 3 corners, but this one has 6 numbers",
         ),
-        ("!xform -t 1 2 missing.rad", "1:15 error `missing.rad` is not a number"),
+        ("!xform -t 1 2 missing.rad", "1:15 error expected a number, found `missing.rad`"),
         ("!xform missing.rad", "1:8 error there is no file `missing.rad`"),
         ("!xform -q far.rad", "1:8 error `xform` has no option `-q`"),
         ("!genbox m b 1 1", "1:2 error `genbox` needs a material, a name and three sizes"),
         (
             "!cat far.rad | grep x",
-            "1:16 error no command `grep` is run (known are `xform`, `cat`, `genbox`, `genprism` and `gensky`. Run the command with Radiance's own `grep`, keep what it prints in a file beside the scene, and write `!cat FILE` here)",
+            "1:16 error the command `grep` is not supported (known are `xform`, `cat`, `genbox`, `genprism` and `gensky`. Run Radiance's own `grep`, save its output in a file beside the scene, and write `!cat FILE` here)",
         ),
-        ("!| xform", "1:4 error there is no command beside `|`"),
-        ("!", "1:2 error there is no command after `!`"),
-        ("!xform -a 1000000 -t 1 0 0 -a 1000000 far.rad", "1:8 error these arrays have too many places"),
+        ("!| xform", "1:4 error a command is missing beside `|`"),
+        ("!", "1:2 error a command is missing after `!`"),
+        ("!xform -a 1000000 -t 1 0 0 -a 1000000 far.rad", "1:8 error these arrays make too many copies"),
     ] {
         let (scene, found) = read_in(cycle.path(), "scene.rad", text);
         assert!(scene.is_none(), "{text}");
         assert_eq!(found[0], format!("scene.rad:{told}"), "{text}");
     }
     let (_, found) = read_in(cycle.path(), "scene.rad", "!cat a.rad");
-    assert_eq!(found, ["a.rad:2:8 error files name each other more than 32 deep: does one name itself?"]);
+    assert_eq!(found, ["a.rad:2:8 error files are nested more than 32 deep: does one include itself?"]);
     let (_, found) = read_in(cycle.path(), "scene.rad", "!cat far.rad");
     let help = "a scene may only name files in and below its own folder, unless `--allow-outside` is given";
     assert!(found[0].starts_with("far.rad:1:6 error ") && !found[0].contains("missing"), "{found:?} {help}");
@@ -214,9 +214,9 @@ fn errors_have_places() {
     assert!(read(&many).1.len() <= 21);
 }
 
-/// A tree of mixtures, seen through other materials or below a pattern, repeatedly.
+/// A tree of mixtures, used repeatedly in partly transparent mixtures or below patterns.
 #[test]
-fn a_short_text_asks_for_no_end_of_materials() {
+fn number_of_materials_is_limited() {
     let depth = 9;
     let mut tree: String =
         (0..1 << depth).map(|i| format!("void plastic p{depth}_{i} 0 0 5 .5 .{i} .5 0 0\n")).collect();
@@ -235,7 +235,7 @@ fn a_short_text_asks_for_no_end_of_materials() {
 }
 
 #[test]
-fn a_rif_names_files_and_views() {
+fn rif_reads_files_and_views() {
     let files = folder(&[
         ("m.rad", MATTE.as_bytes()),
         ("s.rad", b"white sphere s 0 0 4 0 9 0 1"),
@@ -243,7 +243,7 @@ fn a_rif_names_files_and_views() {
     ]);
     let text = "# rad\nmat = m.rad\nscene = s.rad \\\n \"!xform -t 2 0 0 s.rad\"\nRES = 100\nEXP = +2\nview = one -vf a.vf\nview= two -vp 1 2 3 -vh 90 -vv 90\n";
     let (scene, told) = read_in(files.path(), "x.rif", text);
-    assert_eq!(told, ["x.rif:6:7 note the picture is meant to be shown with `--exposure 2.00`"]);
+    assert_eq!(told, ["x.rif:6:7 note the file sets an exposure: use `--exposure 2.00`"]);
     let scene = scene.unwrap();
     assert_eq!(scene.wishes.size, Some((100, 50)));
     assert_eq!(scene.root.as_ref().unwrap().objects.len(), 2);
@@ -253,10 +253,10 @@ fn a_rif_names_files_and_views() {
         ("scene = s.rad", "x.rif:1:9 error there is no file `s.rad`"),
         ("view = a -vp 1 2", "x.rif:1:10 error `-vp` needs 3 numbers"),
         ("banana = 1", "x.rif:1:1 error `rad` has no variable `banana`"),
-        ("scene s.rad", "x.rif:1:1 error a line is `VARIABLE = values`"),
+        ("scene s.rad", "x.rif:1:1 error a line must have the form `VARIABLE = values`"),
         (
             "OCTREE = a.oct",
-            "x.rif:1:1 error this file names no scene (octrees are not read: `scene = FILE.rad` names what one is made of)",
+            "x.rif:1:1 error this file names no scene (octrees are not supported: name their source with `scene = FILE.rad`)",
         ),
     ] {
         let (scene, found) = read_in(Path::new("/nonexistent"), "x.rif", line);

@@ -24,7 +24,7 @@ impl Reader<'_> {
             let Some((name, kind)) = word.text.rsplit_once('.') else { continue };
             let library = kind == "cal" && LIBRARY.split_whitespace().any(|known| known == name);
             if matches!(kind, "cal" | "xml" | "rtm" | "oct") && !library && !self.input.source.contains(&word.text) {
-                let message = format!("there is no file {}", word.shown());
+                let message = format!("missing file {}", word.shown());
                 self.said.warn_once("missing-file", word.at, message);
             }
         }

@@ -72,7 +72,7 @@ pub(super) fn of_file(bytes: &[u8], file: u32, said: &Said) -> Option<View> {
     }
     if view.is_none() {
         let at = Span { file, start: 0, end: bytes.len().min(1) as u32 };
-        said.bad_with(at, "there is no view in this file", Some("a line that begins with `VIEW=` has one".into()));
+        said.bad_with(at, "the file has no view", Some("add a line that begins with `VIEW=`".into()));
     }
     view
 }
@@ -107,7 +107,7 @@ impl View {
                         _ => self.up = v,
                     }
                     if name != "p" && v.try_normalize().is_none() {
-                        said.bad(option.at, "a direction needs a length");
+                        said.bad(option.at, "a direction must not be 0");
                     }
                 }
                 "h" | "v" | "s" | "l" | "o" | "a" => {
@@ -119,14 +119,14 @@ impl View {
                         "l" => self.shift[1] = value,
                         "o" => self.fore = value,
                         _ if value != 0.0 => {
-                            said.once(option.at, "a plane behind which nothing is seen has no counterpart");
+                            said.once(option.at, "the aft clipping plane has no counterpart");
                         }
                         _ => {}
                     }
                 }
                 "tv" | "tl" | "ta" | "th" | "ts" | "tc" => self.kind = name.chars().last().unwrap_or('v'),
                 _ if others => {}
-                _ => said.bad(option.at, format!("there is no option {} of views", option.shown())),
+                _ => said.bad(option.at, format!("unknown view option {}", option.shown())),
             }
         }
     }
@@ -136,7 +136,7 @@ impl View {
         if self.kind != 'l' && self.fore != 0.0 {
             said.once(
                 self.at,
-                "a plane before which nothing is seen has its counterpart in parallel views alone (`-vtl`)",
+                "the fore clipping plane has a counterpart only in parallel views (`-vtl`)",
             );
         }
         let half = |degrees: f64| 0.5 * degrees.to_radians();
@@ -151,10 +151,10 @@ impl View {
         let above = if self.kind == 'c' { 179.9 } else { most };
         if !(across > 0.0 && across <= most && upwards > 0.0 && upwards <= above) {
             return said
-                .bad(self.at, "a view's sizes (-vh, -vv) must be above 0 and below those that its type can have");
+                .bad(self.at, "a view's sizes (-vh, -vv) must be above 0 and within the range of its type");
         }
         if self.direction.cross(self.up).try_normalize().is_none() {
-            return said.bad(self.at, "what is up in a view (-vu) must not be its direction (-vd)");
+            return said.bad(self.at, "the up vector (-vu) must not be parallel to the view direction (-vd)");
         }
         let tan = |degrees: f64| fp::tan_f64(half(degrees));
         let sides = match self.kind {
@@ -210,7 +210,7 @@ impl View {
             .into(),
             kind => {
                 if across != upwards {
-                    said.once(self.at, "a fisheye is seen whole, as a disc: its picture is square");
+                    said.once(self.at, "a fisheye view shows the full disc: its picture is square");
                 }
                 let projection = match kind {
                     'h' => FisheyeProjection::Orthographic,
@@ -221,7 +221,7 @@ impl View {
             }
         };
         if shifted && !matches!(self.kind, 'v' | 'l') {
-            said.once(self.at, "views of this type are not moved aside (-vs, -vl): the middle is taken");
+            said.once(self.at, "views of this type cannot be shifted (-vs, -vl): the centre is used");
         }
         let side = |length: f64| ((f64::from(larger) * length / longest).round() as u32).max(1);
         scene.camera = Some(camera);

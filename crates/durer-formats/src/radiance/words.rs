@@ -22,7 +22,7 @@ impl Word {
     pub fn number(&self, said: &Said) -> Option<f64> {
         let number = parse_f32(self.text.as_bytes()).ok().and_then(|_| self.text.parse::<f64>().ok());
         if number.is_none() {
-            said.bad(self.at, format!("{} is not a number", self.shown()));
+            said.bad(self.at, format!("expected a number, found {}", self.shown()));
         }
         number
     }
@@ -31,7 +31,7 @@ impl Word {
     pub fn count(&self, said: &Said) -> Option<usize> {
         let count = self.text.parse().ok();
         if count.is_none() {
-            said.bad(self.at, format!("{} is not a whole number, 0 or more", self.shown()));
+            said.bad(self.at, format!("expected a whole number of 0 or more, found {}", self.shown()));
         }
         count
     }

@@ -61,7 +61,7 @@ impl Transform {
             "-s" => {
                 let factor = numbers(1).map(|v| v[0]);
                 if factor == Some(0.0) {
-                    said.bad(option.at, "things cannot be scaled by 0");
+                    said.bad(option.at, "the scale factor must not be 0");
                 }
                 (1, factor.filter(|s| *s != 0.0).map(|s| DAffine3::from_scale(DVec3::splat(s))))
             }

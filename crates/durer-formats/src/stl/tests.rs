@@ -23,7 +23,7 @@ const SQUARE: [[[f32; 3]; 3]; 2] =
     [[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]];
 
 #[test]
-fn text_and_binary_hold_the_same_triangles_with_shared_corners() {
+fn text_and_binary_are_equivalent_and_share_corners() {
     let text = read_clean(TEXT.as_bytes(), "a.stl");
     assert_eq!(text.positions, [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::X + Vec3::Y]);
     assert_eq!(text.triangles, [[0, 1, 2], [1, 3, 2]]);
@@ -36,28 +36,28 @@ fn text_and_binary_hold_the_same_triangles_with_shared_corners() {
 }
 
 #[test]
-fn what_is_wrong_is_said_at_its_place() {
+fn errors_have_positions() {
     let first = |bytes: &[u8]| read(bytes, "a.stl").1[0].clone();
     assert!(first(b"").contains("at least 84 bytes"));
     let mut short = binary(b"", &SQUARE);
     short.truncate(140);
-    assert!(first(&short).contains("promises 2 facets, and the file ends after 1 facet"));
+    assert!(first(&short).contains("promises 2 facets, but the file ends after 1 facet"));
     let mut long = binary(b"", &SQUARE);
     long.extend(b"tail");
-    assert!(first(&long).contains("Warning: 4 bytes left out"));
+    assert!(first(&long).contains("Warning: ignored 4 bytes"));
     let infinite = [[[f32::INFINITY; 3], [0.0; 3], [1.0; 3]]];
     assert!(first(&binary(b"", &infinite)).contains("facet 1 has a corner that is not finite"));
     let wrong = TEXT.replace("vertex 1 0 0\n", "vertex 1 0 x\n");
     assert_eq!(first(wrong.as_bytes()), "5:18+1 Error: expected a number, found `x`");
     let missing = TEXT.replace("VERTEX 1 1 0\n", "");
-    assert!(first(missing.as_bytes()).contains("a facet has 3 corners, found 2 corners"));
+    assert!(first(missing.as_bytes()).contains("a facet needs 3 corners, found 2 corners"));
     let odd = TEXT.replace("outer loop", "inner loop");
     assert!(first(odd.as_bytes()).starts_with("3:5+5 Error: expected `facet`"));
     assert!(first(b"solid nothing\nendsolid\n").contains("no triangles"));
 }
 
 #[test]
-fn no_bytes_break_it() {
+fn nothing_panics() {
     abuse(TEXT.as_bytes(), "a.stl");
     abuse(&binary(b"", &SQUARE), "a.stl");
 }

@@ -35,7 +35,7 @@ pub fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
             }
             _ => {
                 let message = format!(
-                    "expected `facet`, `vertex` or another word of STL, found {}",
+                    "expected `facet`, `vertex` or another STL keyword, found {}",
                     shown(&bytes[first.clone()])
                 );
                 report.error(first, message);
@@ -52,7 +52,7 @@ pub fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
 fn unfinished(corners: &mut Vec<Vec3>, facet: Option<Range<usize>>, report: &mut Report) {
     // An invalid number has been reported already.
     if let Some(at) = facet.filter(|_| !report.has_errors()) {
-        report.error(at, format!("a facet has 3 corners, found {}", counted(corners.len(), "corner", "corners")));
+        report.error(at, format!("a facet needs 3 corners, found {}", counted(corners.len(), "corner", "corners")));
     }
     corners.clear();
 }

@@ -115,11 +115,11 @@ impl Parser<'_, '_> {
         let (base, indices) = (self.whole_number(tag, "matid"), self.list(tag, "matindices"));
         let known = base.and_then(|base| self.model.count(base));
         if let (Some(base), None) = (base, known) {
-            self.said.bad(tag.at, format!("there is no list of base materials {base} before this"));
+            self.said.bad(tag.at, format!("no list of base materials {base} is defined before this"));
         }
         let parts: Vec<Color> = indices.iter().filter_map(|index| self.model.color(base?, *index)).collect();
         if known.is_some() && parts.len() < indices.len() {
-            self.said.bad(tag.at, "`matindices` leads to base materials that are not there");
+            self.said.bad(tag.at, "`matindices` refers to base materials that do not exist");
         }
         let mut colors = Vec::new();
         while let Some(mixture) = self.next()? {
@@ -143,13 +143,13 @@ impl Parser<'_, '_> {
     fn several(&mut self, tag: &Tag) -> Result<Option<Group>, Broken> {
         let pids = self.list(tag, "pids");
         if let Some(missing) = pids.iter().find(|pid| !self.model.properties.contains_key(pid)) {
-            self.said.bad(tag.at, format!("there is no list of properties {missing} before this"));
+            self.said.bad(tag.at, format!("no list of properties {missing} is defined before this"));
         }
         if pids
             .iter()
             .any(|pid| matches!(self.model.properties.get(pid).map(|p| &p.group), Some(Group::Texture { .. })))
         {
-            self.said.once(tag.at, "pictures among several properties have no counterpart: the colours are shown");
+            self.said.once(tag.at, "pictures in multiproperties have no counterpart: only the colours are shown");
         }
         let mut colors = Vec::new();
         while let Some(several) = self.next()? {

@@ -43,7 +43,7 @@ impl Parser<'_, '_> {
         let number = self.whole_number(tag, name)?;
         if number as usize >= count {
             let at = tag.get(name).map_or(tag.at, |attribute| attribute.at);
-            self.said.bad(at, format!("there are {count} vertices, counted from 0 on: there is no {number}"));
+            self.said.bad(at, format!("vertex {number} does not exist: there are {count} vertices, counted from 0"));
             return None;
         }
         Some(number)
@@ -81,14 +81,14 @@ impl Parser<'_, '_> {
         };
         let Some(count) = self.model.count(pid) else {
             let at = tag.get("pid").map_or(tag.at, |attribute| attribute.at);
-            self.said.bad(at, format!("there is no list of properties {pid} before this"));
+            self.said.bad(at, format!("no list of properties {pid} is defined before this"));
             return None;
         };
         let corners = [Some(p1), self.optional_number(tag, "p2"), self.optional_number(tag, "p3")];
         let corners = corners.map(|corner| corner.unwrap_or(p1));
         if let Some(wrong) = corners.iter().find(|corner| **corner as usize >= count) {
             self.said
-                .bad(tag.at, format!("the list {pid} has {count} properties, counted from 0 on: there is no {wrong}"));
+                .bad(tag.at, format!("property {wrong} does not exist: the list {pid} has {count} properties, counted from 0"));
             return None;
         }
         Some((pid, corners))

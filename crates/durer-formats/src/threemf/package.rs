@@ -87,15 +87,14 @@ impl<'a> Package<'a> {
             _ if broken => None,
             [only] => Some(only.to_string()),
             _ => {
-                let message = "the archive has no model: this is no file of 3MF";
+                let message = "the archive has no model: it is not a 3MF file";
                 self.said.push(Diagnostic::error(message).code("bad-file").at(at));
                 None
             }
         }
     }
 
-    /// The name of a part as the archive has it: names are the same whatever the case of their
-    /// letters, and may be written with percent escapes.
+    /// Name of a part in the archive. Names are compared without case and percent escapes.
     fn known(&self, name: &str) -> Option<String> {
         let plain = |name: &str| unescaped(name).unwrap_or_else(|| name.to_string()).to_lowercase();
         let same = |part: &&str| *part == name;
@@ -103,7 +102,7 @@ impl<'a> Package<'a> {
         self.zip.names().find(same).or_else(|| self.zip.names().find(alike)).map(str::to_string)
     }
 
-    /// The bytes of a part; complains if it cannot be read.
+    /// Returns the bytes of a part; reports an error if it cannot be read.
     pub fn bytes(&mut self, name: &str, at: Span) -> Option<Arc<[u8]>> {
         let name = &self.known(name)?;
         match self.zip.part(name)? {

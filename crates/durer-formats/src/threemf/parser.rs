@@ -81,7 +81,7 @@ impl<'x> Parser<'_, 'x> {
                 Some(row) => self.model.unit = row.1,
                 None => {
                     let help = meant(&unit.value, UNITS.map(|row| row.0));
-                    self.said.bad_with(unit.at, format!("there is no unit `{}`", unit.value), help);
+                    self.said.bad_with(unit.at, format!("unknown unit `{}`", unit.value), help);
                 }
             }
         }
@@ -103,7 +103,7 @@ impl<'x> Parser<'_, 'x> {
         // No element may follow the model.
         self.next()?;
         if built.is_none() {
-            self.said.bad(tag.at, "a model needs a `<build>`, which says what is shown");
+            self.said.bad(tag.at, "a model needs a `<build>` that lists the objects to show");
         }
         Ok(())
     }
@@ -124,7 +124,7 @@ impl<'x> Parser<'_, 'x> {
         let id = self.whole_number(tag, "id")?;
         let known = self.model.objects.get(&id).map(|known| known.1);
         if let Some(first) = known.or(self.model.properties.get(&id).map(|known| known.at)) {
-            let error = Diagnostic::error(format!("there are two resources {id}")).code("bad-value").at(tag.at);
+            let error = Diagnostic::error(format!("two resources have the id {id}")).code("bad-value").at(tag.at);
             self.said.push(error.related(first, "the first is here"));
             return None;
         }
@@ -164,7 +164,7 @@ impl<'x> Parser<'_, 'x> {
         let id = self.new_id(tag);
         if let Some(kind) = tag.get("type").filter(|kind| !TYPES.contains(&&*kind.value)) {
             let help = meant(&kind.value, TYPES);
-            self.said.bad_with(kind.at, format!("there is no type of objects `{}`", kind.value), help);
+            self.said.bad_with(kind.at, format!("unknown object type `{}`", kind.value), help);
         }
         let (pid, pindex) = (self.optional_number(tag, "pid"), self.optional_number(tag, "pindex"));
         if let (None, Some(_), Some(attribute)) = (pid, pindex, tag.get("pindex")) {
@@ -218,7 +218,7 @@ impl<'x> Parser<'_, 'x> {
         match map {
             Some(map) if map.matrix3.determinant() != 0.0 => map,
             found => {
-                let what = if found.is_some() { "a transform that flattens nothing" } else { "twelve numbers" };
+                let what = if found.is_some() { "an invertible transform" } else { "twelve numbers" };
                 self.said.bad(attribute.at, format!("expected {what}, found `{}`", attribute.value));
                 DAffine3::IDENTITY
             }

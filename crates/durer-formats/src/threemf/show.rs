@@ -56,7 +56,7 @@ pub(super) fn scene(package: Package, said: &Said) -> Option<Scene> {
     let items = show.places(&root, &model.items, 0);
     show.scene.root = Some(scene::Group { objects: items });
     if show.count == 0 && !said.has_errors() {
-        let warning = durer_diag::Diagnostic::warning("the file has no shapes that can be shown");
+        let warning = durer_diag::Diagnostic::warning("the file has no visible shapes");
         said.push(warning.code("no-objects").at(at));
     }
     Some(show.scene)
@@ -68,7 +68,7 @@ impl Show<'_> {
             return known.clone();
         }
         if self.models.len() >= MAX_PARTS {
-            self.said.bad(at, format!("more than {MAX_PARTS} parts are too many"));
+            self.said.bad(at, format!("more than {MAX_PARTS} parts in an archive"));
             return None;
         }
         let model = parser::read(&mut self.package, part, at, self.said).map(Rc::new);
@@ -84,7 +84,7 @@ impl Show<'_> {
             let Some((group, count)) = self.object(&other, place, depth) else { continue };
             self.count = self.count.saturating_add(count);
             if self.count > MAX_OBJECTS {
-                let message = format!("more than {MAX_OBJECTS} objects, those of components counted, are too many");
+                let message = format!("the model has more than {MAX_OBJECTS} objects, counting each use of a component");
                 self.said.bad(place.at, message);
                 return objects;
             }
@@ -103,14 +103,14 @@ impl Show<'_> {
             return Some(known.clone());
         }
         if depth > DEEPEST {
-            self.said.bad(place.at, format!("objects are nested more than {DEEPEST} deep: is one inside of itself?"));
+            self.said.bad(place.at, format!("objects are nested more than {DEEPEST} deep: does one contain itself?"));
             return None;
         }
         let model = self.model(part, place.at)?;
         let Some((object, at)) = model.objects.get(&place.id) else {
             let ids: Vec<String> = model.objects.keys().map(u32::to_string).collect();
             let help = meant(&place.id.to_string(), ids.iter().map(String::as_str));
-            self.said.bad_with(place.at, format!("there is no object {}", place.id), help);
+            self.said.bad_with(place.at, format!("object {} does not exist", place.id), help);
             return None;
         };
         let before = self.count;
@@ -151,7 +151,7 @@ impl Show<'_> {
                 },
                 Some((None, _)) => {
                     let list = mesh.usual.map_or(0, |usual| usual.0);
-                    self.said.bad(at, format!("there is no list of properties {list} before this"));
+                    self.said.bad(at, format!("no list of properties {list} is defined before this"));
                     return Vec::new();
                 }
                 None => skin(None),
@@ -199,7 +199,7 @@ impl Show<'_> {
             return *known;
         }
         let Some(Group::Picture { part: name, styles, at: named }) = model.properties.get(&id).map(|p| &p.group) else {
-            self.said.bad(at, format!("there is no `<texture2d>` {id}"));
+            self.said.bad(at, format!("`<texture2d>` {id} does not exist"));
             return None;
         };
         let bytes = self.package.bytes(name, *named);

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 const RELATIONS: &str = "<Relationships><Relationship Target='/3D/a.model' Type='http://x/3dmodel'/></Relationships>";
 
-/// An archive of deflated parts.
+/// Returns an archive of deflated parts.
 fn archive(parts: &[(&str, &[u8])]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut zip = ZipArchiveWriter::new(&mut bytes);
@@ -53,8 +53,8 @@ fn read_parts(parts: &[(&str, &[u8])]) -> (Option<Scene>, Vec<String>) {
     read_file(&path)
 }
 
-/// A model of a tetrahedron with additional attributes on its triangles, additional resources, and
-/// build items.
+/// Returns a model of a tetrahedron with additional attributes on its triangles, additional
+/// resources, and build items.
 fn model(resources: &str, object: &str, triangles: [&str; 4], items: &str) -> String {
     let corners =
         ["<triangle v1='0' v2='2' v3='1'", "<triangle v1='0' v2='1' v3='3'", "<triangle v1='1' v2='2' v3='3'"];
@@ -79,7 +79,7 @@ fn clean(model: &str) -> Scene {
     scene.unwrap()
 }
 
-/// The shapes of the file with their transforms to world space.
+/// Returns the shapes of the file with their transforms to world space.
 fn shown(scene: &Scene) -> Vec<(DAffine3, &Object)> {
     fn gather<'a>(object: &'a Object, map: DAffine3, all: &mut Vec<(DAffine3, &'a Object)>) {
         match &object.node {
@@ -96,7 +96,7 @@ fn shown(scene: &Scene) -> Vec<(DAffine3, &Object)> {
 }
 
 #[test]
-fn units_items_and_components_have_their_places() {
+fn units_items_and_components_are_transformed() {
     let scene = clean(&model("", "", [""; 4], ITEM));
     let data = scene.assets.meshes.values().next().unwrap();
     let most = data.positions.iter().copied().reduce(Vec3::max).unwrap();
@@ -144,25 +144,25 @@ fn colours_mixtures_and_pictures() {
 }
 
 #[test]
-fn what_is_wrong_is_told_at_its_place() {
+fn errors_have_positions() {
     let usual = || model("", "", [""; 4], ITEM);
     for (text, expected) in [
-        (usual().replace("v3='1'", "v3='9'"), "a.model:1:239 Error there are 4 vertices"),
+        (usual().replace("v3='1'", "v3='9'"), "a.model:1:239 Error vertex 9 does not exist: there are 4 vertices"),
         (usual().replace("x='1'", "x='one'"), "expected a number, found `one`"),
-        (usual().replace("centimeter", "cm"), "Error there is no unit `cm`"),
-        (usual().replace("objectid='1'", "objectid='3'"), "Error there is no object 3"),
+        (usual().replace("centimeter", "cm"), "Error unknown unit `cm`"),
+        (usual().replace("objectid='1'", "objectid='3'"), "Error object 3 does not exist"),
         (usual().replace("<build>", "<!--").replace("</build>", "-->"), "Error a model needs a `<build>`"),
-        (usual().replace("object id='1'", "object id='1' type='thing'"), "there is no type of objects `thing`"),
+        (usual().replace("object id='1'", "object id='1' type='thing'"), "unknown object type `thing`"),
         (usual().replace("v1='0' v2='2'", "p1='0' v1='0' v2='2'"), "`p1` needs a `pid`"),
-        (usual().replace("v1='0' v2='2'", "pid='4' p1='0' v1='0' v2='2'"), "there is no list of properties 4"),
+        (usual().replace("v1='0' v2='2'", "pid='4' p1='0' v1='0' v2='2'"), "no list of properties 4"),
         (usual().replace("<item", "<item transform='1 2'"), "expected twelve numbers, found `1 2`"),
-        (usual().replace("<item", "<item transform='0 0 0 0 0 0 0 0 0 0 0 0'"), "expected a transform"),
+        (usual().replace("<item", "<item transform='0 0 0 0 0 0 0 0 0 0 0 0'"), "expected an invertible transform"),
         (format!("<!DOCTYPE model>{}", usual()), "a.model:1:1 Error declarations"),
-        (model("<basematerials id='1'/>", "", [""; 4], ITEM), "there are two resources 1"),
-        (usual().replace("</mesh>", "</mash>"), "Error `</mash>` closes what is not open"),
+        (model("<basematerials id='1'/>", "", [""; 4], ITEM), "two resources have the id 1"),
+        (usual().replace("</mesh>", "</mash>"), "Error `</mash>` closes an element that is not open"),
     ] {
         let (scene, told) = read(&text);
-        assert!(scene.is_none() && told.iter().any(|line| line.contains(expected)), "{expected}: {told:?}");
+        assert!(scene.is_none() && told.iter().any(|line| line.contains(expected)), "{expected}: {told:?}"); // prose: keep
     }
     let (_, told) = read_parts(&[("a.txt", b"x")]);
     assert!(told[0].contains("the archive has no model"), "{told:?}");
@@ -171,7 +171,7 @@ fn what_is_wrong_is_told_at_its_place() {
 }
 
 #[test]
-fn bombs_and_circles_are_refused() {
+fn bombs_and_cycles_are_errors() {
     let blanks = vec![b' '; 96 << 20];
     let (scene, told) = read_parts(&[("_rels/.rels", RELATIONS.as_bytes()), ("3D/a.model", &blanks)]);
     assert!(scene.is_none() && told[0].contains("unpacks to 100663296 bytes"), "{told:?}");
@@ -189,7 +189,7 @@ fn bombs_and_circles_are_refused() {
     let text =
         model("", "", [""; 4], "<item objectid='29'/>").replace("</resources>", &format!("{laughs}</resources>"));
     let (scene, told) = read(&text);
-    assert!(scene.is_none() && told[0].contains("are too many"), "{told:?}");
+    assert!(scene.is_none() && told[0].contains("counting each use"), "{told:?}");
 }
 
 #[test]
@@ -227,7 +227,7 @@ fn corpus() -> Option<PathBuf> {
     let corpus = std::env::var_os("DURER_CORPUS").map_or(usual, PathBuf::from).join("samples/meshes/3mf");
     let there = corpus.is_dir();
     if !there {
-        println!("skipped: there is no {}", corpus.display());
+        println!("skipped: no {}", corpus.display());
     }
     there.then_some(corpus)
 }
@@ -264,12 +264,12 @@ const HARMLESS: [&str; 18] = [
 ];
 
 #[test]
-fn the_consortiums_files_are_read_or_refused() {
+fn consortium_files_are_accepted_or_rejected() {
     let Some(corpus) = corpus() else { return };
     let sound = entries(&corpus).into_iter().chain(entries(&corpus.join("mustpass")));
     for path in sound {
         let (scene, told) = read_file(&path);
-        let scene = scene.unwrap_or_else(|| panic!("{}: {told:?}", path.display()));
+        let scene = scene.unwrap_or_else(|| panic!("{}: {told:?}", path.display())); // prose: keep
         assert!(!shown(&scene).is_empty(), "{}", path.display());
     }
     let read = entries(&corpus.join("mustfail")).into_iter().filter(|path| read_file(path).0.is_some());
@@ -278,7 +278,7 @@ fn the_consortiums_files_are_read_or_refused() {
 }
 
 #[test]
-fn names_of_parts_have_no_case_and_may_be_escaped() {
+fn part_names_ignore_case_and_escapes() {
     let text = model("", "", [""; 4], ITEM);
     let relation = |target: &str| {
         format!("<Relationships><Relationship Target='{target}' Type='http://x/3dmodel'/></Relationships>")
@@ -287,7 +287,7 @@ fn names_of_parts_have_no_case_and_may_be_escaped() {
         [("/3D/A.model", "3D/a.model"), ("/3D/a%20b.model", "3D/a b.model"), ("/3D/a%20b.model", "3D/a%20b.model")]
     {
         let (scene, told) = read_parts(&[("_rels/.rels", relation(target).as_bytes()), (part, text.as_bytes())]);
-        assert!(scene.is_some() && told.is_empty(), "{target} {part}: {told:?}");
+        assert!(scene.is_some() && told.is_empty(), "{target} {part}: {told:?}"); // prose: keep
     }
 }
 

@@ -410,7 +410,7 @@ impl<'r> Loader<'r> {
             Ok(bytes) => return Some(bytes),
             Err(error) => error,
         };
-        let message = format!("the {what} cannot be had: {error}");
+        let message = format!("the {what} cannot be read: {error}");
         let diagnostic = Diagnostic::error(message).code("missing-file").at(name.span);
         diagnostics.push(match error {
             SourceError::Missing { tried, near, .. } => {

@@ -155,7 +155,7 @@ fn height_fields_are_closed_landscapes() {
         assert!(world.is_none() && findings.iter().any(|d| d.message.contains(what)), "{findings:?}");
     };
     refused("HeightField { picture dot.ppm min 0 0 0 max 1 1 1 }", "1 x 1 pixels make no landscape");
-    refused("HeightField { picture none.ppm min 0 0 0 max 1 1 1 }", "the picture of heights cannot be had");
+    refused("HeightField { picture none.ppm min 0 0 0 max 1 1 1 }", "the picture of heights cannot be read");
     refused("HeightField { picture hills.ppm min 0 0 0 max 1 0 1 }", "`min` of a `HeightField` must be less");
 }
 

@@ -255,7 +255,7 @@ fn materials_of_gltf_are_told_in_openpbr_s_words() {
         "KHR_materials_subsurface": {} } }, {}], "meshes""#;
     let folder = changed("\"meshes\"", material);
     let (scene, found) = read(folder.path(), "a.gltf", &LoadOptions::default());
-    assert_eq!(found, ["KHR_materials_subsurface: scattering below the surface is left out"]);
+    assert_eq!(found, ["KHR_materials_subsurface: subsurface scattering is left out"]);
     let scene = scene.unwrap();
     let m = principled(&scene, 0);
     assert_eq!((m.base_color, m.base_metalness, m.specular_roughness), (Vec3::new(0.5, 0.25, 1.0), 0.25, 0.75));
@@ -309,7 +309,7 @@ fn obj_is_parted_by_material_and_reads_mtl() {
     );
     fs::write(folder.path().join("a b.ppm"), b"P6 1 1 255\n\xff\xff\xff").unwrap();
     let (scene, found) = read(folder.path(), "m.obj", &LoadOptions::default());
-    assert!(found[0].starts_with("no-material: no file of materials has `gone`") && found.len() == 1, "{found:?}");
+    assert!(found[0].starts_with("no-material: no material file has `gone`") && found.len() == 1, "{found:?}");
     let scene = scene.unwrap();
     // Three meshes in the order of each material's first triangle, then the ground.
     let objects = &scene.root.as_ref().unwrap().objects;

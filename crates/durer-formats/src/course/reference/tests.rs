@@ -1,4 +1,4 @@
-//! The reference has every word, and its examples are scenes.
+//! Tests that the reference has every word, and that its examples are scenes.
 
 use super::*;
 use crate::course::tests::clean;
@@ -15,7 +15,7 @@ fn every_word_of_the_reader_is_in_the_reference() {
 }
 
 #[test]
-fn every_example_is_a_scene_in_which_something_is_seen() {
+fn every_example_is_a_visible_scene() {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     for entry in entries() {
         let Some(text) = entry.scene() else { continue };
@@ -24,7 +24,7 @@ fn every_example_is_a_scene_in_which_something_is_seen() {
     }
 }
 
-/// A scene of four sections around an example of what scenes are made of.
+/// Returns a scene of four sections around an example of a part of a scene.
 fn around(example: &str) -> (Dialect, String) {
     let first = example.split(' ').next().unwrap_or_default();
     if let "Scene" | "Node" | "Component<Object>" | "Component<Light>" | "Component<Material>" = first {
@@ -56,10 +56,10 @@ fn around(example: &str) -> (Dialect, String) {
 }
 
 #[test]
-fn every_word_has_an_example_that_can_be_read() {
+fn every_word_has_a_readable_example() {
     for entry in entries() {
         assert!(!entry.example.is_empty(), "{} has no example", entry.name());
-        // A file is read there; the tests of `include` have one.
+        // Included files do not exist here; the tests of `include` have one.
         if entry.chapter == Chapter::Structure && entry.name() != "include" {
             let (dialect, text) = around(&entry.example);
             assert!(dialect.is_in(entry.dialects()), "{}", entry.name());

@@ -1,9 +1,9 @@
-//! The course's scenes, where they are: `DURER_CORPUS` names their folder.
+//! Tests on the course's scenes in the folder `DURER_CORPUS`, if they are there.
 
 use super::*;
 use std::path::{Path, PathBuf};
 
-/// Every scene of the course with its dialect; none where the corpus is absent.
+/// Returns every scene of the course with its dialect; empty if the corpus is absent.
 pub(super) fn scenes() -> Vec<(PathBuf, Dialect)> {
     let default = || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared"));
     let root = std::env::var_os("DURER_CORPUS").map_or_else(default, PathBuf::from).join("course/scenes");
@@ -12,7 +12,7 @@ pub(super) fn scenes() -> Vec<(PathBuf, Dialect)> {
         collect(&root.join(dialect.name()), dialect, &mut found);
     }
     if found.is_empty() {
-        println!("skipped: there are no scenes in {}", root.display());
+        println!("skipped: no scenes in {}", root.display());
     }
     found.sort();
     found.into_iter().map(|(path, bit)| (path, Dialect::ALL.into_iter().find(|d| *d as u8 == bit).unwrap())).collect()
@@ -32,7 +32,7 @@ fn collect(folder: &Path, dialect: Dialect, found: &mut Vec<(PathBuf, u8)>) {
 }
 
 #[test]
-fn the_corpus_reads_without_a_finding() {
+fn course_scenes_have_no_findings() {
     let mut wrong = Vec::new();
     for (path, dialect) in scenes() {
         let text = std::fs::read(&path).unwrap();
@@ -45,7 +45,7 @@ fn the_corpus_reads_without_a_finding() {
 }
 
 #[test]
-fn mistakes_in_the_grid_of_2003_are_told() {
+fn grid_of_2003_reports_mistakes() {
     let found = |inside: &str| {
         let text = format!("Group {{\n numObjects 1\n Grid {{ {inside} }}\n}}\n");
         read_as(text.as_bytes(), Dialect::F03, false).1
@@ -58,28 +58,29 @@ fn mistakes_in_the_grid_of_2003_are_told() {
     assert_eq!(
         found(ball),
         [
-            "3:47 error: `rasterizeSphere` has no `center` [rasterizeSphere] (write it into the block, as in `center 0 0 5`)"
+            "3:47 error: `rasterizeSphere` has no `center` [rasterizeSphere] (add it to the block, as in `center 0 0 5`)"
         ]
     );
 }
 
 #[test]
-fn the_guess_of_every_scene_is_its_year_or_leaves_it_open() {
+fn guess_of_every_scene_includes_its_year() {
     for (path, dialect) in scenes() {
         let text = std::fs::read(&path).unwrap();
         let folder = path.parent().unwrap();
         let guess = guess(&text, 0, &[], &|name| folder.join(name).exists());
         println!("{} {}", path.display(), guess.note().message);
-        // The two years' files with `falloff` differ in nothing: one is tried, the other left open.
+        // Files of the two years with `falloff` do not differ: one is guessed, the other remains
+        // possible.
         assert!(guess.dialect == dialect || guess.others.contains(&dialect), "{}: {guess:?}", path.display());
-        // What is guessed reads it without complaint.
+        // The guessed dialect reads the file without findings.
         let (_, findings) = read_as(&text, guess.dialect, false);
         assert_eq!(findings, [""; 0], "{}", path.display());
     }
 }
 
 #[test]
-fn telling_words_decide_the_guess() {
+fn distinctive_words_decide_the_guess() {
     let of = |text: &str| guess(text.as_bytes(), 0, &[], &|name| name == "sky/left.png").dialect;
     for (text, dialect) in [
         ("PerspectiveCamera { }", Dialect::F12a4),
@@ -98,7 +99,7 @@ fn telling_words_decide_the_guess() {
     ] {
         assert_eq!(of(text), dialect, "{text}");
     }
-    // Only what is needed for the guess is told.
+    // The note has only the reasons that the guess needs.
     let note = guess(
         b"PerspectiveCamera { } PointLight { falloff 1 } Materials { Material { refractionIndex 2 } }",
         0,

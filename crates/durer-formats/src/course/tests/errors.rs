@@ -1,4 +1,4 @@
-//! Each kind of error and warning, with its place and words.
+//! Tests of each kind of error and warning, with span and message.
 
 use super::*;
 use durer_scene::math::Vec3;
@@ -27,7 +27,7 @@ fn in_group(text: &str, expected: &str) {
 fn unknown_words() {
     one(
         "\nBackgrund { color 1 1 1 }",
-        "2:1 error: `Backgrund` means nothing at the top of a scene [Backgrund] (did you mean `Background`?)",
+        "2:1 error: unknown word `Backgrund` at the top of a scene [Backgrund] (did you mean `Background`?)",
     );
     one(
         "Background { colour 1 1 1 }",
@@ -35,36 +35,36 @@ fn unknown_words() {
     );
     in_group(
         "Sphre { center 0 0 0 radius 1 }",
-        "2:1 error: `Sphre` means nothing among objects [Sphre] (did you mean `Sphere`?)",
+        "2:1 error: unknown word `Sphre` among objects [Sphre] (did you mean `Sphere`?)",
     );
     in_group(
         "materialIndex 0\nSphere { center 0 0 0 radius 1 }",
-        "2:1 error: `materialIndex` means nothing among objects [materialIndex] (did you mean `MaterialIndex`?)",
+        "2:1 error: unknown word `materialIndex` among objects [materialIndex] (did you mean `MaterialIndex`?)",
     );
     in_group(
         "numObject 0",
-        "2:1 error: `numObject` means nothing among objects [numObject] (did you mean `numObjects`?)",
+        "2:1 error: unknown word `numObject` among objects [numObject] (did you mean `numObjects`?)",
     );
     in_group(
         "Transform { Translat 1 2 3 Sphere { center 0 0 0 radius 1 } }",
-        "2:13 error: `Translat` means nothing in a transform [Translat] (did you mean `Translate`?)",
+        "2:13 error: unknown word `Translat` in a transform [Translat] (did you mean `Translate`?)",
     );
     one(
         "Lights { PointLihgt { position 0 0 0 color 1 1 1 } }",
-        "1:10 error: `PointLihgt` means nothing among lights [PointLihgt] (did you mean `PointLight`?)",
+        "1:10 error: unknown word `PointLihgt` among lights [PointLihgt] (did you mean `PointLight`?)",
     );
     one(
         "Materials { PhongMateral { diffuseColor 1 1 1 } }",
-        "1:13 error: `PhongMateral` means nothing among materials [PhongMateral] (did you mean `PhongMaterial`?)",
+        "1:13 error: unknown word `PhongMateral` among materials [PhongMateral] (did you mean `PhongMaterial`?)",
     );
     one(
         "Materials { Material { difuseColor 1 1 1 } }",
         "1:24 error: `Material` has no field `difuseColor` [difuseColor] (did you mean `diffuseColor`?)",
     );
-    one_of_nodes("Scene { Nod { } }", "1:9 error: `Nod` means nothing in a node [Nod] (did you mean `Node`?)");
+    one_of_nodes("Scene { Nod { } }", "1:9 error: unknown word `Nod` in a node [Nod] (did you mean `Node`?)");
     one_of_nodes(
         "Scene { Node { Transform { xrotate 4 } Component<Object> { type sphere radius 1 } } }",
-        "1:28 error: `xrotate` means nothing in a transform [xrotate] (did you mean `x_rotate`?)",
+        "1:28 error: unknown word `xrotate` in a transform [xrotate] (did you mean `x_rotate`?)",
     );
     one_of_nodes(
         "Scene { Component<Object> { type spere radius 1 } }",
@@ -77,18 +77,18 @@ fn unknown_words() {
 }
 
 #[test]
-fn a_byte_order_mark_is_no_column_and_other_bytes_are_shown_safely() {
+fn byte_order_mark_takes_no_column_and_control_bytes_are_escaped() {
     let help = "(known here: PerspectiveCamera, OrthographicCamera, Background, Lights, Materials, Group)";
     let found = |text: &str| findings(text, Dialect::F04);
     assert_eq!(
         found("\u{feff}Foo { }\n Foo { }"),
         [
-            format!("1:1 error: `Foo` means nothing at the top of a scene [Foo] {help}"),
-            format!("2:2 error: `Foo` means nothing at the top of a scene [Foo] {help}"),
+            format!("1:1 error: unknown word `Foo` at the top of a scene [Foo] {help}"),
+            format!("2:2 error: unknown word `Foo` at the top of a scene [Foo] {help}"),
         ]
     );
     assert!(
-        found("\u{1b}[31m { }")[0].starts_with("1:1 error: `\\u{1b}[31m` means nothing"),
+        found("\u{1b}[31m { }")[0].starts_with("1:1 error: unknown word `\\u{1b}[31m`"),
         "{:?}",
         found("\u{1b}[31m")
     );
@@ -101,20 +101,20 @@ fn a_byte_order_mark_is_no_column_and_other_bytes_are_shown_safely() {
 fn words_in_the_wrong_place() {
     one(
         "Sphere { center 0 0 0 radius 1 }",
-        "1:1 error: `Sphere` means nothing at the top of a scene [Sphere] (it belongs into a `Group`)",
+        "1:1 error: unknown word `Sphere` at the top of a scene [Sphere] (it belongs in a `Group`)",
     );
     one(
         "PointLight { position 0 0 0 color 1 1 1 }",
-        "1:1 error: `PointLight` means nothing at the top of a scene [PointLight] (it belongs into a `Lights`)",
+        "1:1 error: unknown word `PointLight` at the top of a scene [PointLight] (it belongs in a `Lights`)",
     );
     in_group(
         "Translate 1 2 3",
-        "2:1 error: `Translate` means nothing among objects [Translate] (it belongs into a `Transform`)",
+        "2:1 error: unknown word `Translate` among objects [Translate] (it belongs in a `Transform`)",
     );
-    one("Scene { Node { } }", "1:1 error: `Scene` means nothing at the top of a scene [Scene] (it is a word of f23)");
+    one("Scene { Node { } }", "1:1 error: unknown word `Scene` at the top of a scene [Scene] (it is a word of f23)");
     one_of_nodes(
         "Group { numObjects 0 }",
-        "1:1 error: `Group` means nothing at the top of a scene [Group] (it is a word of f03, f04, f12a4, f12a5, f16, durer; in f23 it is `Node`)",
+        "1:1 error: unknown word `Group` at the top of a scene [Group] (it is a word of f03, f04, f12a4, f12a5, f16, durer; in f23 it is `Node`)",
     );
 }
 
@@ -122,7 +122,7 @@ fn words_in_the_wrong_place() {
 fn fields_and_values() {
     in_group(
         "Sphere { center 0 0 0 }",
-        "2:1 error: `Sphere` has no `radius` [Sphere] (write it into the block, as in `radius 1`)",
+        "2:1 error: `Sphere` has no `radius` [Sphere] (add it to the block, as in `radius 1`)",
     );
     in_group(
         "Sphere { center 0 0\n radius 1 }",
@@ -140,19 +140,19 @@ fn fields_and_values() {
     }
     in_group(
         "Sphere { center 0 0 0 radius 0x10 }",
-        "2:30 error: `radius` needs a number, but found `0x10` [0x10] (numbers are written in decimal)",
+        "2:30 error: `radius` needs a number, but found `0x10` [0x10] (write numbers in decimal)",
     );
     in_group(
         "Sphere { center 0 0 0 radius 1,5 }",
-        "2:30 error: `radius` needs a number, but found `1,5` [1,5] (decimals are written with a point, and nothing stands between numbers but blanks)",
+        "2:30 error: `radius` needs a number, but found `1,5` [1,5] (use a decimal point, and only blanks between numbers)",
     );
     in_group(
         "Sphere { center 1, 2, 3 radius 1 }",
-        "2:17 error: `center` needs number 1 of 3, but found `1,` [1,] (numbers stand alone, with blanks between them: `1 0.5 0`)",
+        "2:17 error: `center` needs number 1 of 3, but found `1,` [1,] (separate numbers by blanks only: `1 0.5 0`)",
     );
     in_group(
         "Sphere { center 0 0 0 radius 1.f }",
-        "2:30 error: `radius` needs a number, but found `1.f` [1.f] (numbers stand alone, with blanks between them: `1 0.5 0`)",
+        "2:30 error: `radius` needs a number, but found `1.f` [1.f] (separate numbers by blanks only: `1 0.5 0`)",
     );
     in_group("MaterialIndex -1", "2:15 error: `MaterialIndex` needs a whole number, but found `-1` [-1]");
     in_group("MaterialIndex 1.5", "2:15 error: `MaterialIndex` needs a whole number, but found `1.5` [1.5]");
@@ -161,10 +161,10 @@ fn fields_and_values() {
 }
 
 #[test]
-fn values_too_many() {
+fn surplus_values() {
     in_group(
         "Sphere { center 0 0 0 4 radius 1 }",
-        "2:23 error: `4` is a number too many in `Sphere` [4] (its fields are center, radius)",
+        "2:23 error: unexpected number `4` in `Sphere` [4] (its fields are center, radius)",
     );
     in_group(
         "TriangleMesh { obj_file my cube.obj }",
@@ -172,7 +172,7 @@ fn values_too_many() {
     );
     one(
         "Lights { numLights 0 0 }",
-        "1:22 error: `0` is a number too many among lights [0] (known here: DirectionalLight, PointLight, numLights)",
+        "1:22 error: unexpected number `0` among lights [0] (known here: DirectionalLight, PointLight, numLights)",
     );
 }
 
@@ -213,11 +213,11 @@ fn counts_and_indices() {
     );
     one(
         "Materials { Checkerboard { materialIndex 0 materialIndex 1 } Material { } }",
-        "1:13 error: material 0 is mixed of earlier ones, but 0 is not before 0 [Checkerboard] (materials are numbered from 0, as they are written)",
+        "1:13 error: material 0 may use only earlier materials, but 0 is not before 0 [Checkerboard] (materials are numbered from 0, in file order)",
     );
     in_group(
         "MaterialIndex 7",
-        "2:1 warning: material 7 does not exist: there are no materials [MaterialIndex 7] (objects that use it are drawn in plain grey)",
+        "2:1 warning: material 7 does not exist: the scene has no materials [MaterialIndex 7] (objects that use it are drawn in plain grey)",
     );
     one_of_nodes(
         "Materials { Material { } } Scene { Node { Component<Material> { index 1 } } }",
@@ -230,7 +230,7 @@ fn transforms() {
     let ball = "Sphere { center 0 0 0 radius 1 }";
     in_group(
         &format!("Transform {{ MaterialIndex 0 {ball} }}"),
-        "2:13 error: `MaterialIndex` cannot stand in a `Transform` [MaterialIndex] (write it before the `Transform`)",
+        "2:13 error: `MaterialIndex` is not allowed in a `Transform` [MaterialIndex] (write it before the `Transform`)",
     );
     in_group(
         &format!("Transform {{ {ball} {ball} {ball} }}"),
@@ -248,17 +248,17 @@ fn transforms() {
         in_group(
             &format!("Transform {{ {scale} {ball} }}"),
             &format!(
-                "2:13 error: a scale by 0 flattens space, which cannot be undone [{scale}] (what should keep its size along an axis has a scale of 1 there)"
+                "2:13 error: a scale by 0 flattens space and has no inverse [{scale}] (use a scale of 1 along axes that keep their size)"
             ),
         );
     }
     in_group(
         &format!("Transform {{ Rotate {{ 0 0 0 45 }} {ball} }}"),
-        "2:13 error: an axis of 0 0 0 points nowhere [Rotate { 0 0 0 45 }] (write the axis first, then the angle)",
+        "2:13 error: an axis of 0 0 0 has no direction [Rotate { 0 0 0 45 }] (write the axis first, then the angle)",
     );
     in_group(
         &format!("Transform {{ Rotate 0 1 0 45 {ball} }}"),
-        "2:13 error: the axis and the angle of `Rotate` stand in braces [Rotate 0 1 0 45] (write `Rotate { 0 1 0 45 }`)",
+        "2:13 error: `Rotate` needs braces around its axis and angle [Rotate 0 1 0 45] (write `Rotate { 0 1 0 45 }`)",
     );
     in_group(
         &format!("Transform {{ Translate 1 x 3 {ball} }}"),
@@ -270,9 +270,9 @@ fn transforms() {
     );
     one_of_nodes(
         "Scene { Node { Transform { scale 1 0 1 } } }",
-        "1:28 error: a scale by 0 flattens space, which cannot be undone [scale 1 0 1] (what should keep its size along an axis has a scale of 1 there)",
+        "1:28 error: a scale by 0 flattens space and has no inverse [scale 1 0 1] (use a scale of 1 along axes that keep their size)",
     );
-    // A scale that is small is none by 0.
+    // A small scale is not a scale by 0.
     assert_eq!(findings(&format!("Group {{ Transform {{ Scale 1e-30 1e-30 1 {ball} }} }}"), Dialect::F04), [""; 0]);
 }
 
@@ -280,28 +280,28 @@ fn transforms() {
 fn braces() {
     one("Group {\n numObjects 0", "2:14 error: the file ends inside `Group` []");
     one("Group { Transform { Sphere { center 0 0", "1:40 error: `center` needs number 3 of 3, but the file ends []");
-    one("}\n", "1:1 error: this `}` closes nothing [}] (is there a `}` too many before it?)");
+    one("}\n", "1:1 error: this `}` has no matching `{` [}] (is there an extra `}` before it?)");
     one("{ Sphere { } }", "1:1 error: `{` without a keyword [{]");
     one("Group { { } }", "1:9 error: `{` without a keyword in `Group` [{]");
     one(
         "Group {\nSphere { center 0 0 0 radius 1\nPlane { normal 0 1 0 offset 0 } }",
-        "3:1 error: `Plane` cannot stand in `Sphere` [Plane]",
+        "3:1 error: `Plane` is not allowed in `Sphere` [Plane]",
     );
-    one("Group { numObjects 0\nLights { numLights 0 }", "2:1 error: `Lights` cannot stand in `Group` [Lights]");
+    one("Group { numObjects 0\nLights { numLights 0 }", "2:1 error: `Lights` is not allowed in `Group` [Lights]");
     one(
         "Group { numObjects 2 Sphere { center 0 0 0 radius 1 }\n}\nPlane { normal 0 1 0 offset 0 } }",
-        "2:1 error: this `}` ends `Group` after 1, but more of it follow [}]",
+        "2:1 error: this `}` ends `Group` after 1 of its elements, but more follow [}]",
     );
     one_of_nodes("Scene { Node {", "1:15 error: the file ends inside `Node` []");
-    one_of_nodes("}", "1:1 error: this `}` closes nothing [}] (is there a `}` too many before it?)");
+    one_of_nodes("}", "1:1 error: this `}` has no matching `{` [}] (is there an extra `}` before it?)");
 }
 
 #[test]
-fn what_is_written_twice_or_by_another_year_is_told_once() {
-    one("Background { color 1 1 1 color 0 0 0 }", "1:26 warning: `color` is given twice; the last counts [color]");
+fn repeated_and_foreign_words_give_one_warning() {
+    one("Background { color 1 1 1 color 0 0 0 }", "1:26 warning: `color` is given twice; the last one is used [color]");
     one(
         "Group { numObjects 0 } Group { numObjects 0 }",
-        "1:24 warning: this is another `Group`: the last counts, the others are dropped [Group]",
+        "1:24 warning: this is another `Group`: only the last is used [Group]",
     );
     one(
         "Materials { Material { shininess 1 } Material { shininess 2 } }",
@@ -314,12 +314,12 @@ fn what_is_written_twice_or_by_another_year_is_told_once() {
     let twice = "Scene { Node { Transform { scale 2 2 2 } Transform { translate 1 0 0 } Component<Object> { type sphere radius 1 } } }";
     one_of_nodes(
         twice,
-        "1:42 warning: a node has one transform; the last counts [Transform] (nested nodes have one each)",
+        "1:42 warning: a node has one transform; the last one is used [Transform] (nested nodes have one each)",
     );
     let objects = read_as(twice.as_bytes(), Dialect::F23, false).0.unwrap().root.unwrap().objects;
     let Node::Transform(ops, _) = &objects[0].node else { panic!("{objects:?}") };
     assert_eq!(ops[..], [MatrixOp::Translate(Vec3::X)]);
-    one("Group { } // no", "1:11 warning: comments begin with `#`; this one is passed over all the same [// no]");
+    one("Group { } // no", "1:11 warning: comments begin with `#`; this one is ignored anyway [// no]");
     let shared = "Lights { PointLight { position 0 0 0 color 1 1 1 attenuation 1 0 0 attenuation 1 0 0 } }";
     assert_eq!(findings(shared, Dialect::F12a5).len(), 2, "{:?}", findings(shared, Dialect::F12a5));
 }

@@ -1,4 +1,4 @@
-//! Everything that may be written, and how.
+//! Tests of every form of the language.
 
 use super::*;
 use durer_scene::camera::Camera;
@@ -10,7 +10,7 @@ use durer_scene::medium::Fog;
 use durer_scene::scene::{Background, Material, MatrixOp, Node, Object};
 use durer_scene::shape::{HeightField, Primitive, TriangleMesh};
 
-/// A value of a kind, unlike the default, as text and as read.
+/// Returns a value of a kind, different from the default, as text and as read.
 fn sample(kind: Kind, rule: Rule) -> (String, Value) {
     let (text, value) = match kind {
         Kind::Word(words) => (words[words.len() - 1], Value::Word(words[words.len() - 1].into())),
@@ -22,7 +22,7 @@ fn sample(kind: Kind, rule: Rule) -> (String, Value) {
         }
         Kind::Float if matches!(rule, Rule::Share | Rule::Between(..)) => ("0.125", Value::Float(0.125)),
         Kind::Float => ("12.5", Value::Float(12.5)),
-        // A solid of two materials before it.
+        // Index of one of the two materials before a solid texture.
         Kind::Int if rule == Rule::Any => ("1", Value::Int(1)),
         Kind::Int => ("7", Value::Int(7)),
         Kind::Vec3 if matches!(rule, Rule::Counts(_)) => ("3 1. 2", Value::Vec3(Vec3::new(3.0, 1.0, 2.0))),
@@ -34,8 +34,8 @@ fn sample(kind: Kind, rule: Rule) -> (String, Value) {
     (text.into(), value)
 }
 
-/// Writes every described thing of a list with all fields of a dialect, reads it as `wrap` says and
-/// compares.
+/// Writes every statement of a list with all fields of a dialect, reads it inside the text of
+/// `wrap`, and compares.
 fn every_word<T: DescribedList + PartialEq + std::fmt::Debug>(
     wrap: impl Fn(&str, &str) -> String,
     find: impl Fn(Scene) -> T,
@@ -112,7 +112,7 @@ fn every_keyword_and_field_is_read_in_every_dialect_that_has_it() {
 }
 
 #[test]
-fn blanks_line_ends_comments_and_a_byte_order_mark_change_nothing() {
+fn blanks_comments_and_byte_order_mark_are_ignored() {
     for (dialect, text) in SMALL {
         let scene = clean(text, dialect);
         let dressed = [
@@ -131,7 +131,7 @@ fn blanks_line_ends_comments_and_a_byte_order_mark_change_nothing() {
 }
 
 #[test]
-fn strictly_the_small_scenes_are_legal_too() {
+fn small_scenes_are_valid_if_strict() {
     for (dialect, text) in SMALL {
         let (scene, findings) = read_as(text.as_bytes(), dialect, true);
         assert_eq!(findings, [""; 0], "{}", dialect.name());
@@ -140,7 +140,7 @@ fn strictly_the_small_scenes_are_legal_too() {
 }
 
 #[test]
-fn numbers_are_as_scanf_reads_them() {
+fn numbers_are_read_as_by_scanf() {
     for (text, value) in
         [(".4", 0.4), ("-.16", -0.16), ("0.", 0.0), ("1e3", 1e3), ("+5", 5.0), ("1E-2", 0.01), ("-3.4e38", -3.4e38)]
     {
@@ -151,7 +151,7 @@ fn numbers_are_as_scanf_reads_them() {
 }
 
 #[test]
-fn an_attenuation_of_three_numbers_and_one_of_one_are_told_apart() {
+fn count_of_numbers_decides_between_attenuations() {
     let light =
         |dialect, text: &str| match read_as(text.as_bytes(), dialect, false).0.unwrap().lights.unwrap().remove(0).value
         {
@@ -172,7 +172,7 @@ fn an_attenuation_of_three_numbers_and_one_of_one_are_told_apart() {
 }
 
 #[test]
-fn matrices_of_2004_list_rows_and_later_ones_columns() {
+fn matrix_lists_rows_in_2004_and_columns_later() {
     let read = |word: &str, dialect| {
         let numbers = "1 2 3 4 5 6 7 8 9 10 11 12 0 0 0 1";
         let columns = "1 5 9 0 2 6 10 0 3 7 11 0 4 8 12 1";
@@ -194,7 +194,7 @@ fn matrices_of_2004_list_rows_and_later_ones_columns() {
 }
 
 #[test]
-fn a_material_index_holds_for_all_that_follows() {
+fn material_index_applies_to_all_following_objects() {
     let ball = "Sphere { center 0 0 0 radius 1 }";
     let text = format!(
         "Materials {{ numMaterials 3 Material {{ }} Material {{ }} Material {{ }} }} Group {{ numObjects 4\n\
@@ -210,7 +210,7 @@ fn a_material_index_holds_for_all_that_follows() {
     assert_eq!(inner.material, Some(2));
 }
 
-/// The shapes of a scene of nodes with their materials, in order.
+/// Collects the shapes of a scene of nodes with their materials, in order.
 fn flat(objects: &[Object], out: &mut Vec<(String, Option<u32>)>) {
     for object in objects {
         match &object.node {
@@ -225,7 +225,7 @@ fn flat(objects: &[Object], out: &mut Vec<(String, Option<u32>)>) {
 }
 
 #[test]
-fn a_nodes_material_is_its_own_whatever_is_around_it() {
+fn node_does_not_inherit_its_material() {
     let sphere = "Component<Object> { type sphere radius 1 }";
     let material = |i: u32| format!("Component<Material> {{ index {i} }}");
     let text = format!(
@@ -247,7 +247,7 @@ fn a_nodes_material_is_its_own_whatever_is_around_it() {
 }
 
 #[test]
-fn a_point_light_is_where_its_nodes_put_it() {
+fn point_light_is_positioned_by_its_nodes() {
     let text = "Scene { Node { Component<Light> { type point color 1 2 3 }\n\
                 Node { Transform { translate 0 0 2 } Component<Light> { type point color 1 1 1 attenuation 7 }\n\
                 Component<Light> { type directional direction 1 0 0 color 1 1 1 } }\n\
@@ -256,15 +256,15 @@ fn a_point_light_is_where_its_nodes_put_it() {
     let lights: Vec<Light> = scene.lights.unwrap().into_iter().map(|light| light.value).collect();
     let [Light::Point(near), Light::Point(far), Light::Directional(sun)] = &lights[..] else { panic!("{lights:?}") };
     assert_eq!(near.position, Vec3::X);
-    // Moved by 2 along z, stretched by 3, turned from z to x, moved by 1.
+    // Moved by 2 along z, scaled by 3, rotated from z to x, moved by 1.
     assert_eq!((far.position, far.falloff, near.falloff), (Vec3::new(7.0, 0.0, 0.0), Some(7.0), None));
     assert_eq!(sun.direction, Vec3::X);
-    // Nodes that hold lights alone are no objects.
+    // A node with lights only is not an object.
     assert_eq!(scene.root.unwrap().objects, []);
 }
 
 #[test]
-fn a_node_with_several_objects_moves_them_together() {
+fn node_transforms_all_its_objects() {
     let text = "Scene { Node { Transform { scale 2 2 2 } Component<Object> { type sphere radius 1 }\n\
                 Component<Object> { type sphere radius 2 } } }";
     let objects = clean(text, Dialect::F23).root.unwrap().objects;

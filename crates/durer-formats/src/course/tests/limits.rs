@@ -1,4 +1,4 @@
-//! What strictness refuses, and what is too much.
+//! Tests of strict reading and of limits.
 
 use super::*;
 
@@ -7,7 +7,7 @@ fn findings(text: &str, dialect: Dialect) -> Vec<String> {
 }
 
 #[test]
-fn strictly_only_the_old_language_is_allowed() {
+fn strict_reading_allows_only_the_course_language() {
     let strict = |text: &str, dialect| read_as(text.as_bytes(), dialect, true).1;
     let ball = "Sphere { center 0 0 0 radius 1 }";
     for (dialect, text, expected) in [
@@ -52,12 +52,12 @@ fn strictly_only_the_old_language_is_allowed() {
         (
             Dialect::Durer,
             "Group { numObjects 1 Xor { numObjects 0 } }".into(),
-            "1:22 error: `Xor` is Dürer's own, and no word of the course's language [Xor]",
+            "1:22 error: `Xor` is a Dürer extension, not a word of the course's language [Xor]",
         ),
         (
             Dialect::F04,
             "Group { numObjects 1 HeightField { } }".into(),
-            "1:22 error: `HeightField` is Dürer's own, and no word of the course's language [HeightField]",
+            "1:22 error: `HeightField` is a Dürer extension, not a word of the course's language [HeightField]",
         ),
         (
             Dialect::F12a4,
@@ -67,12 +67,12 @@ fn strictly_only_the_old_language_is_allowed() {
     ] {
         assert_eq!(strict(&text, dialect), [expected]);
     }
-    // A brace may touch the number before it, as in an official scene.
+    // A brace may directly follow a number, as in one of the course's scenes.
     assert_eq!(strict("Materials { numMaterials 1 Material { exponent 20} }", Dialect::F04), [""; 0]);
 }
 
 #[test]
-fn no_more_than_twenty_errors_are_told() {
+fn at_most_twenty_errors_are_reported() {
     for text in
         ["Foo { } ".repeat(1000), "} ".repeat(1000), "{ } ".repeat(1000), "Group { Sphere { radius x } } ".repeat(1000)]
     {
@@ -82,7 +82,7 @@ fn no_more_than_twenty_errors_are_told() {
 }
 
 #[test]
-fn nesting_has_a_limit_and_no_cost() {
+fn deep_nesting_is_an_error_and_fast() {
     let start = std::time::Instant::now();
     for (dialect, head, level) in [
         (Dialect::F04, "", "Group { "),
@@ -105,7 +105,7 @@ fn nesting_has_a_limit_and_no_cost() {
 }
 
 #[test]
-fn a_file_of_one_long_word_is_refused_in_few_words() {
+fn error_about_a_long_word_is_short() {
     let found = findings(&"x".repeat(10_000_000), Dialect::F04);
     assert_eq!(found.len(), 1);
     let message = found[0].split('[').next().unwrap();

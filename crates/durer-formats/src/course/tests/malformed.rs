@@ -1,4 +1,4 @@
-//! Broken files by the thousand: never a panic, never slow, and every error has a place in the
+//! Tests with thousands of broken files: no panic, bounded time, and every error has a span in the
 //! file.
 
 use super::*;
@@ -32,7 +32,7 @@ fn every_prefix_of_a_scene() {
     for (dialect, text) in SMALL {
         for end in 0..text.len() {
             try_it(&text.as_bytes()[..end], dialect, end % 2 == 0, &source);
-            // A cut file is one mistake, or two where a word was cut.
+            // A truncated file is one mistake, or two if a word was cut.
             let errors = read_as(&text.as_bytes()[..end], dialect, false).1;
             let errors = errors.iter().filter(|f| f.contains(" error: ")).count();
             assert!(errors <= 2, "{end}: {:?}", read_as(&text.as_bytes()[..end], dialect, false).1);
@@ -53,7 +53,7 @@ fn changed_bytes() {
                 0 => bytes[at] ^= 1 << random.below(8),
                 1 => bytes[at] = random.below(256) as u8,
                 2 => bytes[at] = b" {}0-.#\n"[random.below(8)],
-                // A byte from elsewhere in the file makes likelier mistakes.
+                // Bytes from elsewhere in the file make realistic mistakes.
                 _ => bytes[at] = bytes[random.below(bytes.len())],
             }
         }
@@ -62,7 +62,7 @@ fn changed_bytes() {
 }
 
 #[test]
-fn words_left_out_doubled_and_moved() {
+fn words_removed_doubled_and_moved() {
     let (_folder, source) = folder();
     let mut random = Random::seeded(4);
     for i in 0..12_000 {
@@ -81,7 +81,7 @@ fn words_left_out_doubled_and_moved() {
                 break;
             }
         }
-        // Any dialect may be asked for.
+        // Read some files in a dialect other than theirs.
         let dialect = if random.below(4) == 0 { Dialect::ALL[random.below(7)] } else { dialect };
         try_it(words.join(" ").as_bytes(), dialect, random.below(4) == 0, &source);
     }
@@ -100,7 +100,7 @@ fn random_scenes_compile_without_panic() {
 }
 
 #[test]
-fn large_files_take_time_in_proportion() {
+fn time_is_linear_in_file_size() {
     let ball = "MaterialIndex 0 Sphere { center 0 0 0 radius 1 }\n";
     let start = std::time::Instant::now();
     let text = format!("Materials {{ Material {{ }} }} Group {{ {} }}", ball.repeat(100_000));

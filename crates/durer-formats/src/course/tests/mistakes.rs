@@ -1,4 +1,4 @@
-//! What students write: one mistake is one error, at its place.
+//! Tests of typical mistakes of students: each gives one error at its place.
 
 use super::*;
 
@@ -121,7 +121,7 @@ fn one_mistake_gives_one_error() {
         ("radius 1\n    }", "radius 1\n    } }", "39:7"),
         ("angle 30\n}", "angle 30\n} }", "6:3"),
         ("vertex2 0 1 0\n    }", "vertex2 0 1 0\n    } }", "60:1"),
-        // Things in the wrong place.
+        // Words in the wrong place.
         ("Transform {", "Transform {\n MaterialIndex 0", "42:2"),
         ("radius 1", "radius 1 MaterialIndex 0", "38:18"),
         ("    Triangle {", "}\n    Triangle {", "55:1"),
@@ -154,9 +154,9 @@ fn two_mistakes_give_two_errors() {
 }
 
 #[test]
-fn a_brace_lost_among_others_is_told_where_it_shows_and_where_the_file_ends() {
+fn lost_brace_gives_an_error_at_its_effect_and_at_the_end() {
     for (from, to, places) in [
-        // The `}` of the transform closes the mesh: the group after it stands in the transform.
+        // The `}` of the transform closes the mesh, so the next group is inside the transform.
         ("cube.obj\n        }\n", "cube.obj\n", ["47:5", "60:1"]),
         ("diffuseColor 1 0 0", "diffuseColor 1 0 0 }", ["26:9", "28:5"]),
     ] {

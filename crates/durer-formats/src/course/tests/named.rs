@@ -1,4 +1,4 @@
-//! Files in files, names of materials, objects that are defined and used.
+//! Tests of `include`, named materials, `define` and `use`.
 
 use super::*;
 use crate::testing::{folder, read_in};
@@ -18,7 +18,7 @@ fn refused(text: &str) -> Vec<String> {
     found
 }
 
-/// The materials of all shapes, in their order.
+/// Collects the materials of all shapes, in order.
 fn materials(object: &Object, found: &mut Vec<Option<u32>>) {
     match &object.node {
         Node::Group(group) => group.objects.iter().for_each(|object| materials(object, found)),
@@ -29,7 +29,7 @@ fn materials(object: &Object, found: &mut Vec<Option<u32>>) {
 }
 
 #[test]
-fn names_are_numbers_in_other_words() {
+fn material_names_are_equivalent_to_numbers() {
     let named = ours(
         "Group { MaterialIndex blue Sphere { center 0 0 0 radius 1 } MaterialIndex both Sphere { center 0 0 0 radius 1 } }",
     );
@@ -42,7 +42,7 @@ fn names_are_numbers_in_other_words() {
 }
 
 #[test]
-fn what_is_defined_is_there_as_often_as_it_is_used() {
+fn each_use_copies_the_defined_object() {
     let ball = "Sphere { center 1 2 3 radius 1 }";
     let scene = ours(&format!(
         "define ball {ball} define two Group {{ use ball MaterialIndex 1 Transform {{ Translate 1 0 0 use ball }} }}\n\
@@ -50,9 +50,9 @@ fn what_is_defined_is_there_as_often_as_it_is_used() {
     ));
     let mut found = Vec::new();
     scene.root.iter().flat_map(|root| &root.objects).for_each(|object| materials(object, &mut found));
-    // What has a material in its definition keeps it.
+    // An object with a material in its definition keeps it.
     assert_eq!(found, [Some(0), Some(1), Some(2), Some(1), Some(2), Some(2)]);
-    // The same as if it were written out.
+    // A use equals the object written out.
     let used =
         ours(&format!("define ball {ball} Group {{ MaterialIndex 0 Transform {{ Translate 1 0 0 use ball }} }}"));
     let plain = ours(&format!("Group {{ MaterialIndex 0 Transform {{ Translate 1 0 0 Group {{ {ball} }} }} }}"));
@@ -60,15 +60,15 @@ fn what_is_defined_is_there_as_often_as_it_is_used() {
 }
 
 #[test]
-fn wrong_names_are_told() {
+fn wrong_names_are_errors() {
     for (text, told) in [
         (
             "Group { MaterialIndex rad Sphere { center 0 0 0 radius 1 } }",
-            "3:23 error: there is no material `rad` before this [rad] (did you mean `red`?)",
+            "3:23 error: no material `rad` is defined before this [rad] (did you mean `red`?)",
         ),
         (
             "Group { use ball }",
-            "3:13 error: nothing is defined as `ball` before this [ball] (write `define NAME` and an object first, outside of what uses it)",
+            "3:13 error: nothing is defined as `ball` before this [ball] (write `define NAME` and an object first, outside the object that uses it)",
         ),
         ("define a Sphere { center 0 0 0 radius 1 } define a use a", "3:50 error: `a` is defined already [a]"),
         (
@@ -76,29 +76,29 @@ fn wrong_names_are_told() {
             "3:8 error: `Sphere` cannot be a name: it is a word of the language [Sphere]",
         ),
         ("define 3 Sphere { center 0 0 0 radius 1 }", "3:8 error: `3` cannot be a name: it is a number [3]"),
-        // No circle can be written: what is being defined is not there yet.
+        // Cycles are impossible: an object is not available inside its own definition.
         (
             "define a Group { use a }",
-            "3:22 error: nothing is defined as `a` before this [a] (write `define NAME` and an object first, outside of what uses it)",
+            "3:22 error: nothing is defined as `a` before this [a] (write `define NAME` and an object first, outside the object that uses it)",
         ),
-        ("include lamp.txt", "3:1 error: this text is in no folder: it includes no files [include lamp.txt]"),
-        ("include", "3:1 error: `include` needs the name of a file [include] (as in `include lamp.txt`)"),
+        ("include light.txt", "3:1 error: a text without a folder cannot include files [include light.txt]"),
+        ("include", "3:1 error: `include` needs the name of a file [include] (as in `include light.txt`)"),
     ] {
         assert_eq!(refused(text)[0], told, "{text}");
     }
-    // Twice as many in each: a bomb is refused before it takes memory.
+    // Each definition doubles the size: reject the bomb before it takes memory.
     let mut text = "define a0 Sphere { center 0 0 0 radius 1 }\n".to_string();
     for i in 1..64 {
         text += &format!("define a{i} Group {{ use a{} use a{} }}\n", i - 1, i - 1);
     }
     assert!(refused(&text)[0].contains("more than 1048576 objects"), "{:?}", refused(&text));
-    // Other years have none of these words.
+    // Other years lack these words.
     let (_, found) = read_as(b"Group { numObjects 1 use ball }", Dialect::F04, true);
     assert!(!found.is_empty());
 }
 
 #[test]
-fn files_stand_where_they_are_included() {
+fn included_file_replaces_its_include() {
     let files: [(&str, &[u8]); 9] = [
         ("paints.txt", PAINTS.as_bytes()),
         ("parts/ball.txt", b"# a ball\nSphere { center 0 0 0 radius 1 }"),
@@ -121,7 +121,7 @@ fn files_stand_where_they_are_included() {
     for (text, told) in [
         ("Group { include a.txt }", "b.txt:2:3 error `a.txt` includes itself"),
         ("Group { include open.txt }", "open.txt:1:7 error this block is not closed in its file"),
-        ("Group { include close.txt }", "close.txt:1:34 error this `}` closes nothing in its file"),
+        ("Group { include close.txt }", "close.txt:1:34 error this `}` has no matching `{` in its file"),
         ("Group { include wrong.txt }", "wrong.txt:2:23 error "),
         ("Group { include missing.txt }", "s.txt:2:17 error there is no file `missing.txt`"),
         ("Group { include ../s.txt }", "s.txt:2:17 error "),

@@ -1,10 +1,10 @@
-//! Scene to text to scene.
+//! Round-trip tests: scene to text to scene.
 
 use super::corpus::scenes;
 use super::*;
 use crate::course::random::Random;
 
-/// Equal to the bit: `PartialEq` takes 0 and -0 for one, and spans may differ.
+/// Compares bit for bit, except for spans: `PartialEq` treats 0 and -0 as equal.
 #[track_caller]
 fn same(a: &Scene, b: &Scene, context: &str) {
     assert_eq!(a, b, "{context}");
@@ -13,7 +13,7 @@ fn same(a: &Scene, b: &Scene, context: &str) {
 }
 
 #[test]
-fn the_corpus_survives_in_every_dialect() {
+fn course_scenes_round_trip_in_every_dialect() {
     for (path, dialect) in scenes() {
         let scene = read_as(&std::fs::read(&path).unwrap(), dialect, false).0.unwrap();
         for target in Dialect::ALL {
@@ -21,12 +21,12 @@ fn the_corpus_survives_in_every_dialect() {
             let (again, findings) = read_as(text.as_bytes(), target, false);
             let context = format!("{} as {}: {findings:?}", path.display(), target.name());
             let mut again = again.expect(&context);
-            // A scene of nodes cannot say that it has no section for lights.
+            // A scene of nodes cannot express a missing section of lights.
             if target == Dialect::F23 && scene.lights.is_none() {
                 assert_eq!(again.lights.take(), Some(Vec::new()));
             }
             same(&scene, &again, &context);
-            // In its own words there is nothing to complain of, not even strictly.
+            // Written in its own dialect, it has no findings, even if strict.
             if target == dialect {
                 assert_eq!(read_as(text.as_bytes(), target, true).1, [""; 0], "{context}\n{text}");
             }
@@ -37,7 +37,7 @@ fn the_corpus_survives_in_every_dialect() {
 }
 
 #[test]
-fn random_scenes_survive_in_every_dialect() {
+fn random_scenes_round_trip_in_every_dialect() {
     let mut random = Random::seeded(1);
     for i in 0..2000 {
         for dialect in Dialect::ALL {
@@ -51,10 +51,10 @@ fn random_scenes_survive_in_every_dialect() {
 }
 
 #[test]
-fn random_scenes_survive_as_json() {
+fn random_scenes_round_trip_as_json() {
     let mut random = Random::seeded(2);
     for _ in 0..3000 {
-        // Meshes and pictures are told by their hashes, and not read.
+        // JSON has only hashes of meshes and pictures, and reading does not restore them.
         let scene = Scene { assets: Default::default(), ..random.scene(Dialect::Durer) };
         let json = serde_json::to_string(&scene).unwrap();
         let again: Scene = serde_json::from_str(&json).unwrap();
@@ -63,13 +63,13 @@ fn random_scenes_survive_as_json() {
 }
 
 #[test]
-fn a_scene_of_one_year_is_written_in_the_words_of_another_without_needless_ones() {
+fn scene_is_written_in_another_year_without_needless_words() {
     let scene = clean(SMALL[3].1, Dialect::F23);
     let text = write(&scene, Dialect::F12a5);
-    // What 2012 has no word for was not given, so it is not written either.
+    // Defaults that 2012 has no word for are omitted.
     assert!(!text.contains("reflectiveColor") && !text.contains("bump"), "{text}");
     assert_eq!(read_as(text.as_bytes(), Dialect::F12a5, true).1, [""; 0], "{text}");
     let text = write(&clean(SMALL[0].1, Dialect::F04), Dialect::F23);
-    // A node has no word for Blinn's exponent: it stays all the same.
+    // Nodes have no word for Blinn's exponent, so the word of the other years is used.
     assert!(text.contains("exponent 20"), "{text}");
 }

@@ -1,8 +1,8 @@
-//! Where in a JSON text a pointer leads: the text is walked once more, for messages only.
+//! Search for the byte range of a JSON pointer in a text. Only diagnostics need it.
 
 use std::ops::Range;
 
-/// The range of the value that a pointer names or, where it is not there, of the innermost value
+/// Returns the range of the value at a pointer or, if it does not exist, of the innermost value
 /// around it.
 pub(super) fn locate(text: &[u8], pointer: &str) -> Range<usize> {
     let mut walk = Walk { text, at: 0 };
@@ -44,7 +44,7 @@ pub(super) fn locate(text: &[u8], pointer: &str) -> Range<usize> {
     walk.here()
 }
 
-/// Where the items of a list begin that is a property of the document.
+/// Returns the byte offsets of the items of a top-level list.
 pub(super) fn items(text: &[u8], key: &str) -> Vec<usize> {
     let list = locate(text, &format!("/{key}"));
     let (mut walk, mut starts) = (Walk { text, at: list.start }, Vec::new());
@@ -82,7 +82,7 @@ impl Walk<'_> {
         }
     }
 
-    /// The value here, or the first byte of one of several parts.
+    /// Range of the value here; for an object or array, of its first byte only.
     fn here(&self) -> Range<usize> {
         let mut walk = Walk { ..*self };
         if matches!(walk.peek(), Some(b'{' | b'[')) {
@@ -111,7 +111,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Goes past a value: to where brackets that were opened are closed again.
+    /// Skips a value, including nested brackets.
     fn skip(&mut self) {
         let mut depth = 0usize;
         loop {
@@ -158,7 +158,7 @@ mod tests {
         assert_eq!(at("/a/1/d"), "[");
         assert_eq!(items(text, "a").iter().map(|&i| text[i]).collect::<Vec<_>>(), b"1{-");
         assert!(items(text, "e").is_empty() && items(text, "x").is_empty());
-        // What is not there is said of what is around it.
+        // A missing value is reported at the value around it.
         assert_eq!((at("/a/7"), at("/a/1/none"), at("/e/x")), ("[".into(), "{".into(), "true".into()));
         for end in 0..text.len() {
             for pointer in ["", "/a/2", "/a/1/d/0", "/e", "/e/f/g"] {

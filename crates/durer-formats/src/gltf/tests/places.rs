@@ -1,23 +1,23 @@
-//! Where findings are told, and how things are called.
+//! Tests of positions of findings and of names in messages.
 
 use super::{BOUNDS, document, mesh};
 use crate::testing::read_in;
 use durer_scene::math::Vec3;
 use durer_scene::scene::Node;
 
-/// What is told of a file.
+/// Returns the findings of a file.
 fn told(name: &str, bytes: &[u8]) -> Vec<String> {
     read_in(std::path::Path::new("."), name, bytes).1
 }
 
-/// A binary file of JSON alone, so long that its head has a byte that ends a line.
+/// Returns a GLB file with JSON only, so long that its header contains a line feed byte.
 fn glb(json: &str) -> Vec<u8> {
     let json = format!("{json:<2560}");
     let length = |bytes: usize| (bytes as u32).to_le_bytes();
     [b"glTF", &length(2)[..], &length(json.len() + 20), &length(json.len()), b"JSON", json.as_bytes()].concat()
 }
 
-/// A document of four corners, without blanks at the ends of lines.
+/// Returns a document of four vertices, without blanks at line ends.
 fn corners(primitive: &str, nodes: &str) -> String {
     let corners = [[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let faces = [0u8, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3];
@@ -33,7 +33,7 @@ fn corners(primitive: &str, nodes: &str) -> String {
 const PLAIN: &str = r#""nodes":[{"mesh":0}]"#;
 
 #[test]
-fn places_in_binary_files_are_those_of_their_text() {
+fn glb_findings_have_positions_in_the_json() {
     let wrong = "{\"asset\":{\"version\":\"2.0\"},\n\"nodes\":[{\"mesh\":3}]}";
     for (name, bytes) in [("a.gltf", wrong.as_bytes().to_vec()), ("a.glb", glb(wrong))] {
         assert_eq!(told(name, &bytes), [format!("{name}:2:18 error /nodes/0/mesh: unresolved reference: 3")]);
@@ -41,11 +41,11 @@ fn places_in_binary_files_are_those_of_their_text() {
     let broken = told("a.glb", &glb("{\"asset\":\n  }"));
     assert!(broken.len() == 1 && broken[0].starts_with("a.glb:2:3 error invalid JSON"), "{broken:?}");
     let empty = told("a.glb", &glb("{\"asset\":{\"version\":\"2.0\"},\n\"scene\":0,\"scenes\":[{\"name\":\"S\"}]}"));
-    assert_eq!(empty, ["a.glb:2:21 warning /scenes/0: nothing is shown that has triangles"]);
+    assert_eq!(empty, ["a.glb:2:21 warning /scenes/0: the scene has no visible triangles"]);
 }
 
 #[test]
-fn what_is_shown_otherwise_is_named() {
+fn warnings_name_the_part_of_the_file() {
     let line = |text: &str, what: &str| {
         let at = text.find(what).unwrap();
         let before = &text[..at];
@@ -60,14 +60,14 @@ fn what_is_shown_otherwise_is_named() {
     assert_eq!(told("a.gltf", text.as_bytes()), [expected]);
 
     let text = corners(r#","COLOR_1":0},"indices":1"#, PLAIN);
-    let expected = "further sets of an attribute, here of mesh, are left out";
+    let expected = "additional attribute sets, here of mesh, are left out";
     let place = line(&text, r#"0},"indices""#);
     let expected = format!("{place} warning /meshes/0/primitives/0/attributes/COLOR_1: {expected}");
     assert_eq!(told("a.gltf", text.as_bytes()), [expected]);
 
     let nodes = r#""nodes":[{"children":[1],"scale":[1,0,1]},{"mesh":0,"name":"Gone","scale":[0,2,1]}]"#;
     let text = corners(r#"},"indices":1"#, nodes);
-    let expected = "node `Gone` is scaled to a line or less, or beyond the range of numbers, and left out";
+    let expected = "node `Gone` is left out: its transform flattens it to a line or point, or overflows";
     let found = told("a.gltf", text.as_bytes());
     assert_eq!(found[0], format!("{} warning /nodes/1: {expected}", line(&text, r#"{"mesh":0,"name""#)));
 
@@ -75,11 +75,11 @@ fn what_is_shown_otherwise_is_named() {
         {"baseColorTexture":{"index":0,"texCoord":2}}}],"nodes":[{"mesh":0}]"#;
     let text = corners(r#"},"indices":1,"material":0"#, material);
     let expected =
-        "this texture of material `Wood` asks for TEXCOORD_2, and only two sets are read: TEXCOORD_0 is taken";
+        "this texture of material `Wood` uses TEXCOORD_2, but only two sets are supported: TEXCOORD_0 is used";
     let at = "/materials/0/pbrMetallicRoughness/baseColorTexture";
     let found = told("a.gltf", text.as_bytes());
     assert_eq!(found, [format!("{} warning {at}: {expected}", line(&text, r#"{"index":0,"texCoord""#))]);
-    // What is wrong with a picture is told where that is named.
+    // Errors about a picture are reported where the file names it.
     let (scene, _) = read_in(std::path::Path::new("."), "a.gltf", text.as_bytes());
     let durer_scene::scene::Material::Principled(layers) = &scene.unwrap().materials[0].value else { panic!() };
     let span = layers.base_color_texture.as_ref().unwrap().span;
@@ -87,7 +87,7 @@ fn what_is_shown_otherwise_is_named() {
 }
 
 #[test]
-fn animations_that_are_not_shown_are_told() {
+fn animations_not_shown_are_noted() {
     let animated = |names: &[&str]| {
         let all: Vec<String> = names.iter().map(|name| format!(r#"{{"name":"{name}"}}"#)).collect();
         let text = corners(r#"},"indices":1"#, &format!(r#""animations":[{}],{PLAIN}"#, all.join(",")));
@@ -101,26 +101,26 @@ fn animations_that_are_not_shown_are_told() {
 }
 
 #[test]
-fn what_is_flat_along_one_axis_is_a_sheet() {
+fn mesh_scaled_to_zero_along_one_axis_is_a_sheet() {
     let sheet = |node: &str| mesh(&corners(r#"},"indices":1"#, &format!(r#""nodes":[{{"mesh":0,{node}}}]"#)));
-    // Of the four faces of a tetrahedron, two stand on the sheet and are gone.
+    // Two of the four faces of the tetrahedron are perpendicular to the sheet and vanish.
     let flat = sheet(r#""scale":[2,1,0],"translation":[0,0,5]"#);
     let at = |x: f32, y: f32| Vec3::new(x, y, 5.0);
     assert_eq!(flat.positions, [at(0.0, 0.0), at(2.0, 0.0), at(0.0, 1.0), at(0.0, 0.0)]);
     assert_eq!(flat.triangles, [[0, 2, 1], [1, 2, 3]]);
     assert!(flat.flat && flat.normals.is_empty() && flat.triangle_normals.is_empty());
-    // Turned, nothing of it is exact.
+    // With a rotation, no coordinate is exact.
     let turn = r#""rotation":[0.1825742,0.3651484,0.5477226,0.7302967],"translation":[1000,2000,3000]"#;
     let turned = sheet(&format!(r#""scale":[1,1,0],{turn}"#));
     assert_eq!(turned.triangles, [[0, 2, 1], [1, 2, 3]]);
-    // A map that no rotation has brought about, flat along no axis of its own.
+    // A shear: the map is singular, but no axis is scaled to 0.
     let leaning = sheet(r#""matrix":[1,0,0,0,0,1,0,0,1,1,0,0,0,0,0,1]"#);
     assert_eq!(leaning.positions[3], Vec3::new(1.0, 1.0, 0.0));
     assert_eq!(leaning.triangles.len(), 4);
 }
 
 #[test]
-fn each_place_of_a_flat_thing_has_its_own_sheet() {
+fn each_instance_of_a_flat_mesh_has_its_own_sheet() {
     let nodes = r#""nodes":[{"mesh":0,"scale":[1,1,0]},{"mesh":0,"scale":[0,1,1]},{"mesh":0}]"#;
     let text = corners(r#"},"indices":1"#, nodes).replace(r#""nodes":[0]"#, r#""nodes":[0,1,2]"#);
     let (scene, found) = read_in(std::path::Path::new("."), "a.gltf", text.as_bytes());
@@ -131,6 +131,6 @@ fn each_place_of_a_flat_thing_has_its_own_sheet() {
         Node::Mesh(mesh) => Some(scene.assets.meshes[&mesh.obj_file.path].triangles.len()),
         _ => None,
     });
-    // The last is the ground.
+    // Skip the ground plane at the end.
     assert_eq!(counts.take(3).collect::<Vec<_>>(), [2, 2, 4]);
 }

@@ -1,11 +1,11 @@
-//! What the colours of vertices do.
+//! Tests of vertex colours.
 
 use super::{material, staged};
 use durer_scene::material::principled::Switch;
 use durer_scene::scene::{Material, Staging};
 use std::path::Path;
 
-/// The material of a triangle whose vertices have colours.
+/// Returns the material of a triangle with vertex colours.
 fn colored(words: &str) -> durer_scene::material::PrincipledMaterial {
     let text = format!(
         r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
@@ -23,16 +23,16 @@ fn colored(words: &str) -> durer_scene::material::PrincipledMaterial {
 }
 
 #[test]
-fn they_multiply_what_is_not_lit() {
+fn vertex_colours_multiply_unlit_emission() {
     let unlit = r#""extensions":{"KHR_materials_unlit":{}}"#;
     assert_eq!(colored(unlit).emission_vertex_colors, Switch::On);
-    // Without colours all points shine alike, and can be chosen as lights.
+    // Without colours the emission is uniform, so the mesh can be sampled as a light.
     assert_eq!(material(unlit).emission_vertex_colors, Switch::Off);
     assert_eq!(colored(r#""emissiveFactor":[1,1,1]"#).emission_vertex_colors, Switch::Off);
 }
 
 #[test]
-fn their_alpha_counts_before_the_cutoff_of_a_mask() {
+fn vertex_alpha_applies_before_the_mask_cutoff() {
     let factor = r#""alphaMode":"MASK","alphaCutoff":0.25,"pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.5]}"#;
     let m = colored(factor);
     assert_eq!((m.opacity, m.opacity_cutoff), (0.5, Some(0.25)));

@@ -15,8 +15,8 @@ use serde_json::{Map, Value, json};
 use std::f32::consts::TAU;
 
 impl Writer<'_> {
-    /// Index of the glTF material for a material of the scene; writes it on the first use. `holes`:
-    /// some vertex colours are not opaque.
+    /// Index of the glTF material for a material of the scene; writes it on the first use. `holes`
+    /// is true if some vertex colours are not opaque.
     pub(super) fn material(&mut self, number: u32, holes: bool) -> Option<usize> {
         if let Some(known) = self.materials.get(&number) {
             return *known;
@@ -169,22 +169,22 @@ impl Writer<'_> {
             let Some(name) = (row.picture)(m) else { continue };
             if !self.add_picture(m, row.field, name, &mut extensions) {
                 self.left_out(format!(
-                    "glTF has no place for a picture such as that of `{}`: it is left out",
+                    "glTF has no texture for `{}`: it is left out",
                     row.field
                 ));
             }
         }
         if dark_backs && m.backs == Backs::Shown {
-            self.left_out("glTF has no surface that shines on one side alone: its back is left out");
+            self.left_out("glTF has no one-sided emitters: the back side is left out");
         }
         if is_metal && m.specular_color != Vec3::ONE {
-            self.left_out("glTF's metals have no tint at their border: it is left out");
+            self.left_out("glTF metals have no tint at grazing angles: it is left out");
         }
         if m.bump_texture.is_some() || m.opacity_texture.is_some() {
-            self.left_out("glTF has no pictures of bumps and of opacity alone: they are left out");
+            self.left_out("glTF has no bump or opacity textures: they are left out");
         }
         if (m.subsurface_weight > 0.0 && !sheet) || (clear && m.transmission_scatter != Vec3::ZERO) {
-            self.left_out("glTF has no light that is scattered below the surface: it is left out");
+            self.left_out("glTF has no subsurface scattering: it is left out");
         }
         if !unlit
             && m.emission_luminance > 0.0
@@ -271,7 +271,7 @@ const PICTURES: [(&str, &str, &str, Option<Channel>); 11] = [
     ("thin_film_thickness_texture", "KHR_materials_iridescence", "iridescenceThicknessTexture", Some(Channel::Green)),
 ];
 
-/// Extensions that materials and lights are written with.
+/// Extensions that the writer uses for materials and lights.
 const EXTENSIONS: [&str; 13] = [
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",

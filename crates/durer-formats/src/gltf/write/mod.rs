@@ -1,8 +1,7 @@
 //! Writer of scenes as glTF 2.0: a self-contained JSON file, or a binary file.
 //!
-//! Source: *glTF 2.0 Specification*, Khronos Group, 2021, and the extensions that are named where
-//! they are written. Content that glTF cannot represent is reported once per message, without a
-//! span.
+//! Source: *glTF 2.0 Specification*, Khronos Group, 2021, and the extensions named in the
+//! submodules. Content that glTF cannot represent is reported once per message, without a span.
 
 mod material;
 mod mesh;
@@ -185,11 +184,11 @@ impl Writer<'_> {
                 let angle = match other {
                     Camera::Perspective(plain) => plain.angle,
                     Camera::ThinLens(lens) => {
-                        self.left_out("glTF's cameras have no lens: everything is sharp, and nothing is shifted");
+                        self.left_out("glTF cameras have no lens: depth of field and shift are left out");
                         lens.angle
                     }
                     _ => {
-                        self.left_out("glTF has no such camera: one in perspective is written in its place");
+                        self.left_out("glTF has no such camera: a perspective camera is written");
                         60.0
                     }
                 };
@@ -211,7 +210,7 @@ impl Writer<'_> {
         let (mut written, center, direction) = match light {
             Light::Point(point) => {
                 if point.attenuation != Some(Vec3::Z) {
-                    self.left_out("light fades with the square of the distance in glTF");
+                    self.left_out("glTF lights fall off with the squared distance: other attenuation is left out");
                 }
                 (json!({ "type": "point" }), point.position, Vec3::NEG_Z)
             }
@@ -246,7 +245,7 @@ impl Writer<'_> {
     fn surroundings(&mut self) {
         let background = &self.scene.background;
         if background.environment.is_some() || background.sun().is_some() || background.cie_sky.is_some() {
-            self.left_out("glTF has no light from all around: it is left out");
+            self.left_out("glTF has no environment light: it is left out");
         } else if background.color != Vec3::ZERO && background != &durer_scene::scene::Background::default() {
             self.left_out("glTF has no background: its colour and light are left out");
         }

@@ -65,7 +65,7 @@ impl Writer<'_> {
         let side = if a * d - b * c < 0.0 { -1.0 } else { 1.0 };
         let sy = side * (b * b + d * d).sqrt();
         if (a * b + c * d).abs() > 1e-4 * (sx * sy).abs() {
-            self.left_out("glTF's textures are turned and stretched, but not sheared");
+            self.left_out("glTF textures cannot be sheared: the shear is left out");
         }
         let turn = durer_scene::math::fp::atan2(-c, a);
         json!({ "offset": [x, y], "rotation": turn, "scale": [sx, sy] })

@@ -37,7 +37,7 @@ fn again(scene: &Scene, name: &str) -> (Scene, Vec<String>) {
 const HEAD: &str = "PerspectiveCamera { center 1 2 9 direction 0 0 -1 up 0 1 0 angle 30 } ";
 
 #[test]
-fn materials_come_back() {
+fn materials_round_trip() {
     let words = "PrincipledMaterial { baseColor 0.1 0.2 0.3 specularRoughness 0.5 specularIor 1.7 specularWeight 0.5
         coatWeight 0.75 coatRoughness 0.1 coatIor 1.5 coatDarkening 0 fuzzWeight 0.5 fuzzColor 1 0.5 0.25 fuzzRoughness 0.3 specularAnisotropy 0.4
         specularRotation 0.125 emissionLuminance 8 emissionColor 1 0.5 0 opacity 0.5 walls thin }
@@ -70,14 +70,14 @@ fn materials_come_back() {
 }
 
 #[test]
-fn what_shines_on_one_side_loses_its_back() {
+fn one_sided_emitter_loses_its_back_side() {
     let materials = "numMaterials 2 PrincipledMaterial { emissionLuminance 8 } PrincipledMaterial { emissionLuminance 8 walls thin }";
     let lamps: String = (0..2)
         .map(|i| format!("MaterialIndex {i} Rectangle {{ corner {i} 0 0 edge0 0.5 0 0 edge1 0 0.5 0 }} "))
         .collect();
-    let before = scene(&format!("{HEAD} Materials {{ {materials} }} Group {{ numObjects 2 {lamps} }}"));
+    let before = scene(&format!("{HEAD} Materials {{ {materials} }} Group {{ numObjects 2 {lamps} }}")); // prose: keep
     let (after, told) = again(&before, "a.glb");
-    assert_eq!(told, ["glTF has no surface that shines on one side alone: its back is left out"]);
+    assert_eq!(told, ["glTF has no one-sided emitters: the back side is left out"]);
     let sides = after.materials.iter().map(|material| match &material.value {
         Material::Principled(m) => (m.walls, m.backs),
         other => panic!("{other:?}"),
@@ -86,7 +86,7 @@ fn what_shines_on_one_side_loses_its_back() {
 }
 
 #[test]
-fn cameras_and_lights_come_back() {
+fn cameras_and_lights_round_trip() {
     let lights = "Lights { numLights 3 PointLight { position 1 2 3 color 1 0.5 0.25 attenuation 0 0 1 }
         DirectionalLight { direction 0 -1 0 color 2 2 1 } SpotLight { position 0 5 0 direction 1 -1 0 color 3 3 3 angle 40 innerAngle 20 } }";
     let before = scene(&format!(
@@ -118,7 +118,7 @@ fn cameras_and_lights_come_back() {
 const SOLID: &str = "Difference { Sphere { center 0 0 0 radius 1 } Sphere { center 1 0 0 radius 1 } }";
 
 #[test]
-fn what_gltf_has_no_words_for_is_told_once() {
+fn each_loss_is_reported_once() {
     let before = scene(&format!(
         "{HEAD} Background {{ sun 0 1 1 }} Materials {{ numMaterials 1 PrincipledMaterial {{ subsurfaceWeight 1 }} }}
          Group {{ numObjects 3 MaterialIndex 0 {SOLID} {SOLID}
@@ -131,7 +131,7 @@ fn what_gltf_has_no_words_for_is_told_once() {
 }
 
 #[test]
-fn a_mesh_stays_what_it_was() {
+fn mesh_round_trips() {
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0.5\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0.25 1\nvn 0 0 1\nvn 0.6 0 0.8\nf 1/1/1 2/2/2 3/3/1\nf 2/2/2 4/3/1 3/3/1\n";
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let staging = Staging { bare: true, ..Staging::default() };

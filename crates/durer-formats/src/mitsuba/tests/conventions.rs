@@ -564,7 +564,7 @@ fn curve_files_with_hair_become_tubes() {
             "linearcurve",
             "thin.txt:2:1 error a point of a curve must be three numbers and a radius of 0 or more",
         ),
-        ("none.txt", "linearcurve", "error the curves cannot be had"),
+        ("none.txt", "linearcurve", "error the curves cannot be read"),
     ] {
         let (scene, told) = read_in(folder.path(), "scene.xml", text(kind, file));
         assert!(scene.is_none() && told.iter().any(|told| told.contains(wanted)), "{told:#?}");

@@ -5,7 +5,7 @@ use durer_scene::scene::Material;
 
 const FACES: &str = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
 
-/// Reads a material of some statements; returns it with the findings.
+/// Reads a material with some statements; returns it with the findings.
 fn read(statements: &str) -> (PrincipledMaterial, Vec<String>) {
     let folder = folder(&[("m.mtl", format!("newmtl a\n{statements}\n").as_bytes())]);
     let (scene, told) = read_in(folder.path(), "m.obj", FACES);
@@ -22,7 +22,7 @@ fn of(statements: &str) -> PrincipledMaterial {
 }
 
 #[test]
-fn highlights_are_those_of_ks_beside_physical_words_too() {
+fn specular_weight_follows_ks_in_physical_materials_too() {
     let weight = |statements: &str| of(statements).specular_weight;
     assert_eq!((weight("Ks 0 0 0\nillum 1"), weight("Ks 0.5 0.5 0.5\nillum 2"), weight("illum 2")), (0.0, 0.5, 0.0));
     // 0.5 is Disney's and Blender's default: the reflectance of the index alone.
@@ -38,14 +38,14 @@ fn highlights_are_those_of_ks_beside_physical_words_too() {
 }
 
 #[test]
-fn colours_may_be_written_in_xyz() {
-    // The colour of the white of D65, half as bright.
+fn colours_may_be_in_xyz() {
+    // The D65 white point at half luminance.
     let grey = of("Kd xyz 0.475235 0.5 0.544525").base_color;
     assert!((grey - 0.5).abs().max_element() < 1e-3, "{grey}");
 }
 
 #[test]
-fn glass_is_what_tf_lets_through_beside_physical_words() {
+fn tf_is_the_transmission_of_physical_materials() {
     // As written by Blender.
     let glass = of("Kd 0.25 1 1\nKs 0.5 0.5 0.5\nNi 1.5\nd 1\nillum 2\nPr 0\nPm 0\nTf 1 1 1");
     assert_eq!((glass.transmission_weight, glass.transmission_color), (1.0, Vec3::new(0.5, 1.0, 1.0)));
@@ -61,11 +61,11 @@ fn glass_is_what_tf_lets_through_beside_physical_words() {
     assert_eq!(of("Tf 0 0 0\nillum 2\nd 1").transmission_weight, 0.0);
     let (layers, told) = read("illum 2\nd 0.5\nTf 1 0 0");
     assert_eq!((layers.transmission_weight, layers.opacity), (0.0, 0.5));
-    assert_eq!(told, ["m.mtl:4:1 note words without a counterpart, which are left out: Tf"]);
+    assert_eq!(told, ["m.mtl:4:1 note statements without a counterpart are left out: Tf"]);
 }
 
 #[test]
-fn what_is_wrong_or_left_out_is_told_at_its_place() {
+fn findings_have_line_and_column() {
     assert_eq!(read("Pr 1\naniso 0\nanisor 0.000\nsharpness 60").1, [""; 0]);
     let (_, told) =
         read("anisor 0.25\nKd 1 x 1 # red\n\tNs much\n  map_Kd -s 2 2 2 no \"such.png\nsharpness 9\nd -halo");
@@ -73,9 +73,9 @@ fn what_is_wrong_or_left_out_is_told_at_its_place() {
         told,
         [
             "m.mtl:4:5 warning material `a`: `Ns` needs a number, found `much`",
-            "m.mtl:5:19 warning material `a`: there is no picture `no \\\"such.png` (map_Kd)",
-            "m.mtl:7:1 warning material `a`: `d` has no number",
-            "m.mtl:2:1 note words without a counterpart, which are left out: anisor, sharpness",
+            "m.mtl:5:19 warning material `a`: picture `no \\\"such.png` not found (map_Kd)",
+            "m.mtl:7:1 warning material `a`: `d` needs a number",
+            "m.mtl:2:1 note statements without a counterpart are left out: anisor, sharpness",
         ]
     );
 }

@@ -90,11 +90,11 @@ fn errors_have_place_and_suggestion() {
         ),
         (
             "WorldBegin Shape \"plymesh\" \"string filename\" \"none.ply\"",
-            "error the mesh cannot be had: there is no file `none.ply`",
+            "error the mesh cannot be read: there is no file `none.ply`",
         ),
         (
             "WorldBegin Shape \"plymesh\" \"string filename\" \"../../../../../../etc/passwd\"",
-            "error the mesh cannot be had",
+            "error the mesh cannot be read",
         ),
         (
             "WorldBegin LightSource \"point\" \"spectrum I\" [ 400 1 300 2 ]",

@@ -9,8 +9,8 @@ use durer_scene::math::{Vec2, fp};
 use durer_scene::sampler::SampleId;
 use std::f64::consts::PI;
 
-/// Irradiance over pi at a point with a normal, by many samples: the reflected radiance of a white
-/// matte surface.
+/// Estimates the irradiance over pi at a point with a normal: the reflected radiance of a white
+/// diffuse surface.
 fn shown(text: &str, point: Vec3, normal: Vec3) -> Vec3 {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let options = LoadOptions::default();
@@ -35,7 +35,7 @@ fn lit(text: &str, point: Vec3, normal: Vec3, expected: f64) {
 }
 
 #[test]
-fn lights_have_the_radiance_that_is_written() {
+fn emitters_have_the_given_radiance() {
     let light = "void light l 0 0 3 8 8 8\n";
     // A sphere: L (r / d)².
     lit(&format!("{light}l sphere s 0 0 4 0 0 5 1"), Vec3::ZERO, Vec3::Z, 8.0 / 25.0);
@@ -79,7 +79,7 @@ fn sees(options: &str, x: f32, y: f32) -> Vec3 {
 }
 
 #[test]
-fn views_see_what_radiance_s_do() {
+fn views_match_radiance() {
     let close = |a: Vec3, b: Vec3| assert!((a - b).length() < 1e-5, "{a} is not {b}");
     // With the default view, x is to the right and z upwards.
     close(sees("-vh 90 -vv 90", 1.0, 0.0), Vec3::new(1.0, 1.0, 0.0).normalize());
@@ -104,7 +104,7 @@ fn views_see_what_radiance_s_do() {
 }
 
 #[test]
-fn round_things_are_lit_as_flat_ones_are() {
+fn tessellated_cone_has_uniform_irradiance() {
     // The irradiance of a cone's side from a light above must not depend on its tessellation into
     // triangles with interpolated normals.
     let text = "void plastic w 0 0 5 .5 .5 .5 0 0\nvoid light l 0 0 3 9 9 9\nw cone c 0 0 8 0 0 0 0 0 .5 1 .1\n\

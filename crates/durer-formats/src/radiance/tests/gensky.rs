@@ -14,7 +14,7 @@ fn words(text: &str) -> Vec<Word> {
     std::iter::from_fn(|| words.next()).collect()
 }
 
-/// Radiance of the sun, and the arguments of the sky.
+/// Returns the radiance of the sun, and the arguments of the sky.
 fn printed(args: &str) -> (f64, Vec<f64>) {
     let (said, words) = (Said::default(), words(&format!("gensky {args}")));
     let text = gensky::text(&said, &words[0], &words[1..]).unwrap_or_else(|| panic!("{args}"));
@@ -28,7 +28,7 @@ fn printed(args: &str) -> (f64, Vec<f64>) {
 }
 
 #[test]
-fn it_prints_what_radiance_6_0_prints() {
+fn output_matches_radiance_6_0() {
     let cases: [(&str, f64, &[f64]); 11] = [
         ("6 21 12 +s -a 42.3 -o 71 -m 75", 7.150e6, &[1.0, 24.09, 29.14, 1.368, -0.058393, -0.321824, 0.944997]),
         ("6 21 12:30EDT +i -a 42.3 -o 71 -g .3", 1.072e6, &[4.0, 32.35, 10.91, 1.107, 0.061608, -0.321682, 0.944841]),
@@ -58,7 +58,7 @@ fn it_prints_what_radiance_6_0_prints() {
 }
 
 #[test]
-fn a_sky_by_command_is_that_by_its_text() {
+fn command_gives_the_sky_of_its_output() {
     let glow = "skyfunc glow g 0 0 4 1 1 1 0 g source s 0 0 4 0 0 1 180\n";
     let sun = |text: &str| {
         let scene = clean(text);
@@ -75,25 +75,25 @@ fn a_sky_by_command_is_that_by_its_text() {
 }
 
 #[test]
-fn what_is_wrong_is_told_at_its_place() {
+fn errors_have_positions() {
     for (text, told) in [
         ("!gensky 6 21", "1:2 error `gensky` needs month, day and hour, or `-ang` with altitude and azimuth"),
-        ("!gensky 13 21 12", "1:9 error the month is from 1 to 12"),
-        ("!gensky 6 21 25", "1:14 error the hour is as 14.5, 14:30, 14:30EST or, by the sun, +14.5"),
-        ("!gensky 6 21 12:75", "1:14 error the hour is as 14.5, 14:30, 14:30EST or, by the sun, +14.5"),
+        ("!gensky 13 21 12", "1:9 error the month must be from 1 to 12"),
+        ("!gensky 6 21 25", "1:14 error the hour must be of the form 14.5, 14:30, 14:30EST or, in solar time, +14.5"),
+        ("!gensky 6 21 12:75", "1:14 error the hour must be of the form 14.5, 14:30, 14:30EST or, in solar time, +14.5"),
         ("!gensky 6 21 12 -q", "1:17 error `gensky` has no option `-q`"),
         ("!gensky 6 21 12 -a", "1:17 error `-a` needs a number"),
-        ("!gensky 6 21 12 -a north", "1:20 error `north` is not a number"),
+        ("!gensky 6 21 12 -a north", "1:20 error expected a number, found `north`"),
     ] {
         let (scene, found) = read(text);
         assert!(scene.is_none() && found == [format!("scene.rad:{told}")], "{text}: {found:?}");
     }
     let (_, found) = read("!gensky 6 21 12:30XYZ");
-    assert!(found[0].starts_with("scene.rad:1:14 error no clock is called `12:30XYZ`: known are YST"), "{found:?}");
+    assert!(found[0].starts_with("scene.rad:1:14 error unknown time zone in `12:30XYZ`: known are YST"), "{found:?}");
 }
 
 #[test]
-fn skies_of_any_weather_are_as_bright_as_rtrace_says() {
+fn perez_sky_matches_rtrace() {
     let text =
         "void brightfunc f 2 skybright perezlum.cal 0 10 37.1 29.99 -0.953158 -0.216935 17.406817 -3.934951 0.685099
         -0.058393 -0.321824 0.944997";

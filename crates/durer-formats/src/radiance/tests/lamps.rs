@@ -41,7 +41,7 @@ fn by_two() -> String {
     format!("2 0 180 19 0 180 37 {}", values.collect::<Vec<_>>().join(" "))
 }
 
-/// Values of that table, which is linear.
+/// Returns the value of that table, which is linear in both angles.
 fn of_two(theta: f64, phi: f64) -> f64 {
     let folded = if phi > 180.0 { 360.0 - phi } else { phi };
     1.0 + 0.01 * folded + 0.04 * theta
@@ -50,7 +50,7 @@ fn of_two(theta: f64, phi: f64) -> f64 {
 type Expected = Box<dyn Fn(f64, f64) -> f64>;
 
 #[test]
-fn lamps_shine_as_their_tables_say() {
+fn intensity_follows_the_table() {
     let cosines: Vec<String> = (0..=90).map(|i| cos(f64::from(i)).to_string()).collect();
     let files = folder(&[
         ("a.dat", format!("1 0 90 91 {}", cosines.join(" ")).as_bytes()),
@@ -95,7 +95,7 @@ fn lamps_shine_as_their_tables_say() {
         ),
         // Rotated by a right angle about z, and upside down, by a command and by explicit options.
         (
-            "!xform -rz 90 lamp.rad",
+            "!xform -rz 90 lamp.rad", // prose: keep
             Box::new(
                 |theta, phi| if theta < 90.0 { 4.0 * of_two(theta, (phi + 270.0).rem_euclid(360.0)) } else { 0.0 },
             ),
@@ -118,11 +118,11 @@ fn lamps_shine_as_their_tables_say() {
     ];
     let lamp = "void brightdata d 5 flatcorr b.dat source.cal src_phi2 src_theta 0 0 d glow l 0 0 4 1 1 1 0
         l polygon r 0 0 12 -1 -1 0 -1 1 0 1 1 0 1 -1 0";
-    std::fs::write(files.path().join("lamp.rad"), lamp).unwrap();
+    std::fs::write(files.path().join("lamp.rad"), lamp).unwrap(); // prose: keep
     for (text, expected) in cases {
         let (scene, told) = read_in(files.path(), "scene.rad", text);
-        let what = "a lamp that shines otherwise in each direction is points all over it, and is not shown";
-        assert!(told.len() == 1 && told[0].ends_with(what), "{text}: {told:?}");
+        let what = "an emitter with a directional distribution becomes point lights and is not visible";
+        assert!(told.len() == 1 && told[0].ends_with(what), "{text}: {told:?}"); // prose: keep
         let scene = scene.unwrap();
         for (theta, phi) in
             [(1.0, 0.0), (5.0, 40.0), (29.0, 211.0), (31.0, 80.0), (62.0, 133.0), (115.0, 301.0), (170.0, 3.0)]
@@ -134,12 +134,12 @@ fn lamps_shine_as_their_tables_say() {
 }
 
 #[test]
-fn lamps_of_one_kind_share_a_profile_and_are_written_beside_a_scene() {
+fn equal_distributions_share_a_profile_and_are_exported() {
     let files = folder(&[("b.dat", by_two().as_bytes())]);
     let lamp = "void brightdata d 5 flatcorr b.dat source.cal src_phi2 src_theta 0 0 d light l 0 0 3 1 1 1
         l polygon r 0 0 12 -1 -1 0 -1 1 0 1 1 0 1 -1 0";
-    std::fs::write(files.path().join("lamp.rad"), lamp).unwrap();
-    let text = format!("{lamp} l polygon q 0 0 12 -1 -1 2 -1 1 2 1 1 2 1 -1 2 !xform -t 5 0 0 lamp.rad");
+    std::fs::write(files.path().join("lamp.rad"), lamp).unwrap(); // prose: keep
+    let text = format!("{lamp} l polygon q 0 0 12 -1 -1 2 -1 1 2 1 1 2 1 -1 2 !xform -t 5 0 0 lamp.rad"); // prose: keep
     let (scene, _) = read_in(files.path(), "scene.rad", &text);
     let scene = scene.unwrap();
     // The last text is a different one.
@@ -148,14 +148,14 @@ fn lamps_of_one_kind_share_a_profile_and_are_written_beside_a_scene() {
     let names: Vec<&str> = beside.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["kept/lamp-1.ies", "kept/lamp-2.ies"]);
     assert!(made.assets.is_empty());
-    let Light::Photometric(first) = &made.lights.as_ref().unwrap()[0].value else { panic!("no lamp") };
+    let Light::Photometric(first) = &made.lights.as_ref().unwrap()[0].value else { panic!("not a photometric light") };
     assert_eq!(first.file.path, "kept/lamp-1.ies");
     let read = photometry::read(&beside[0].1, 0, &mut durer_diag::Diagnostics::default());
     assert_eq!(read.as_ref(), Some(&*scene.assets.profiles["lamp-1.ies"]));
 }
 
 #[test]
-fn points_of_a_lamp_lie_around_its_middle() {
+fn points_of_an_emitter_are_centred() {
     let files = folder(&[("one.dat", b"1 0 180 2 1 1")]);
     let lamp = "void brightdata d 4 corr one.dat source.cal src_theta 0 0 d light l 0 0 3 1 1 1\n";
     for (surface, middle) in [
@@ -176,7 +176,7 @@ fn points_of_a_lamp_lie_around_its_middle() {
 }
 
 #[test]
-fn angles_may_have_something_added() {
+fn angles_may_have_an_offset() {
     // As `ies2rad` writes files from 90 to 270 degrees.
     let files = folder(&[("b.dat", by_two().as_bytes())]);
     let text = "void brightdata d 7 flatcorr b.dat source.cal src_phi2+20 src_theta -rz -90 0 0 d light l 0 0 3 1 1 1
@@ -194,7 +194,7 @@ fn angles_may_have_something_added() {
 }
 
 #[test]
-fn so_many_lamps_of_their_own_and_no_more() {
+fn number_of_profiles_is_limited() {
     let files = folder(&[("one.dat", b"1 0 180 2 1 1")]);
     let mut text = "void brightdata d 4 corr one.dat source.cal src_theta 0 0 d light l 0 0 3 1 1 1".to_string();
     for i in 0..300 {
@@ -202,20 +202,20 @@ fn so_many_lamps_of_their_own_and_no_more() {
     }
     let (scene, told) = read_in(files.path(), "scene.rad", &text);
     assert_eq!(scene.unwrap().assets.profiles.len(), 256);
-    assert!(told.iter().any(|line| line.contains("more than 256 lamps")), "{told:?}");
+    assert!(told.iter().any(|line| line.contains("more than 256 directional distributions")), "{told:?}");
 }
 
 #[test]
-fn tables_of_other_functions_have_their_mean() {
+fn tables_of_other_functions_are_replaced_by_their_mean() {
     let files = folder(&[("one.dat", b"1 0 180 2 1 2")]);
     for (text, what) in [
-        ("4 mine one.dat source.cal src_theta", "patterns of data have no counterpart: the mean is taken"),
-        ("4 corr one.dat my.cal angle", "patterns of data have no counterpart: the mean is taken"),
-        ("5 corr one.dat source.cal src_phi src_theta", "patterns of data have no counterpart: the mean is taken"),
+        ("4 mine one.dat source.cal src_theta", "data patterns have no counterpart: the mean is used"),
+        ("4 corr one.dat my.cal angle", "data patterns have no counterpart: the mean is used"),
+        ("5 corr one.dat source.cal src_phi src_theta", "data patterns have no counterpart: the mean is used"),
     ] {
         let text = format!("void brightdata d {text} 0 0 d light l 0 0 3 3 3 3 l sphere r 0 0 4 1 2 3 1");
         let (scene, told) = read_in(files.path(), "scene.rad", &text);
-        assert!(told.iter().any(|line| line.ends_with(what)), "{text}: {told:?}");
+        assert!(told.iter().any(|line| line.ends_with(what)), "{text}: {told:?}"); // prose: keep
         assert_eq!(layers(&scene.unwrap(), 0).emission_luminance, 4.5);
     }
 }

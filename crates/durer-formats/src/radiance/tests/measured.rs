@@ -27,7 +27,7 @@ fn first(scene: &Scene) -> &PrincipledMaterial {
 }
 
 #[test]
-fn a_surface_of_a_pattern_has_the_material_below_it() {
+fn surface_with_a_pattern_has_the_material_below_it() {
     let base = "void plastic m 0 0 5 .6 .4 .2 0 0\n";
     for (patterns, share) in [
         ("m brightfunc t 2 1 . 0 0", 1.0),
@@ -52,7 +52,7 @@ fn a_surface_of_a_pattern_has_the_material_below_it() {
     );
 }
 
-/// Radiance of a sky in four directions.
+/// Returns the radiance of a sky in four directions.
 fn skies(numbers: &str, turn: DMat3) -> [f32; 4] {
     let text = format!("void brightfunc f 2 skybr skybright.cal 0 {numbers}");
     let said = Said::default();
@@ -64,7 +64,7 @@ fn skies(numbers: &str, turn: DMat3) -> [f32; 4] {
 }
 
 #[test]
-fn skies_are_as_bright_as_rtrace_says() {
+fn skies_match_rtrace() {
     let about = DMat3::from_rotation_x(20f64.to_radians()) * DMat3::from_rotation_z(70f64.to_radians());
     let sun = "-0.058393 -0.321824 0.944997";
     for (numbers, still, turned) in [
@@ -90,7 +90,7 @@ fn skies_are_as_bright_as_rtrace_says() {
 }
 
 #[test]
-fn skies_are_turned_by_what_is_around_them_and_behind_their_names() {
+fn skies_are_rotated_by_xform_and_by_their_arguments() {
     // The bright side of a clear sky, at y, rotated to x: by text, pipe and file.
     let numbers = "0 7 1 30 7 1.1 0 .7 .714143";
     let rest = "f glow g 0 0 4 1 1 1 0 g source s 0 0 4 0 0 1 180";
@@ -121,7 +121,7 @@ fn skies_are_turned_by_what_is_around_them_and_behind_their_names() {
 }
 
 #[test]
-fn commands_of_a_file_for_xform_are_run_beside_it() {
+fn commands_run_in_the_folder_of_the_file_of_xform() {
     let files = folder(&[
         ("fur/desk.rad", b"!xform -t .5 0 0 leg.rad\n!cat parts/foot.rad"),
         ("fur/leg.rad", b"white sphere s 0 0 4 0 0 0 1"),
@@ -140,16 +140,16 @@ fn commands_of_a_file_for_xform_are_run_beside_it() {
         let (scene, told) = read_in(files.path(), "scene.rad", format!("{MATTE}{command}{SUN}"));
         match objects {
             Ok(count) => {
-                let scene = scene.unwrap_or_else(|| panic!("{command}: {told:?}"));
-                assert_eq!((scene.root.unwrap().objects.len(), told.len()), (count, 0), "{command}: {told:?}");
+                let scene = scene.unwrap_or_else(|| panic!("{command}: {told:?}")); // prose: keep
+                assert_eq!((scene.root.unwrap().objects.len(), told.len()), (count, 0), "{command}: {told:?}"); // prose: keep
             }
-            Err(name) => assert!(told[0].contains(&format!("there is no file `{name}`")), "{command}: {told:?}"),
+            Err(name) => assert!(told[0].contains(&format!("there is no file `{name}`")), "{command}: {told:?}"), // prose: keep
         }
     }
 }
 
 #[test]
-fn pictures_are_views_by_their_header() {
+fn picture_header_is_a_view() {
     let text = b"#?RADIANCE\noconv scene.rad\n/usr/bin/rpict -vf v.vf -vp 9 9 9 -x 32 -y 32\n\
                  VIEW= -vtv -vp 1 2 3 -vd 0 1 0 -vu 0 0 1 -vh 40 -vv 40\n\nVIEW= -vp \x80 x y\n";
     let files = folder(&[("s.rad", b"void plastic w 0 0 5 1 1 1 0 0 w sphere s 0 0 4 0 0 0 1"), ("a.hdr", text)]);
@@ -159,7 +159,7 @@ fn pictures_are_views_by_their_header() {
 }
 
 #[test]
-fn standard_views_are_those_of_rad() {
+fn standard_views_match_rad() {
     let files = folder(&[("s.rad", b"void plastic w 0 0 5 1 1 1 0 0 w polygon p 0 0 9 -4 -4 0 4 -4 0 4 4 4")]);
     for (lines, center, direction, up) in [
         ("view= XYZ\nZONE= E -4 4 -4 4 0 6", [16.0, 16.0, 15.0], [-8.0, -8.0, -6.0], Vec3::Z),
@@ -171,7 +171,7 @@ fn standard_views_are_those_of_rad() {
         ("view= XYZ", [16.0, 16.0, 18.0], [-8.0, -8.0, -8.0], Vec3::Z),
     ] {
         let (scene, told) = read_in(files.path(), "x.rif", format!("scene = s.rad\n{lines}\n"));
-        let camera = scene.unwrap_or_else(|| panic!("{lines}: {told:?}")).camera.unwrap();
+        let camera = scene.unwrap_or_else(|| panic!("{lines}: {told:?}")).camera.unwrap(); // prose: keep
         let pose = camera.pose();
         let close = |a: Vec3, b: [f32; 3]| (a - Vec3::from_array(b)).length() < 1e-4;
         assert!(close(pose.center, center) && close(pose.direction, direction) && pose.up == up, "{lines}: {camera:?}");
@@ -182,7 +182,7 @@ fn standard_views_are_those_of_rad() {
 }
 
 #[test]
-fn a_sheet_has_the_shares_that_are_written() {
+fn sheet_has_the_given_reflectance_and_transmittance() {
     // By the formulas of thin sheets at normal incidence: 2 F / (1 + F) of the specularly
     // transmitted part, F of the rest.
     for (numbers, [reflected, straight, matte]) in [
@@ -210,7 +210,7 @@ fn a_sheet_has_the_shares_that_are_written() {
 }
 
 #[test]
-fn rough_plastic_reflects_what_is_written_from_everywhere() {
+fn rough_plastic_has_the_given_reflectance_in_all_directions() {
     let sky = "void glow g 0 0 4 1 1 1 0 g source s 0 0 4 0 0 1 360\n";
     for (material, expected) in [
         ("plastic m 0 0 5 .2 .2 .2 .04 .05", 0.2 * 0.96 + 0.04),
@@ -234,9 +234,9 @@ fn rough_plastic_reflects_what_is_written_from_everywhere() {
 }
 
 #[test]
-fn mirrors_show_what_stands_for_them_and_void_lets_see_through() {
+fn mirror_uses_its_substitute_and_void_is_transparent() {
     let other = "void plastic blue 0 0 5 0 0 .7 0 0\n";
-    let what = "scene.rad:2:6 warning `mirror` has no counterpart: what is shown instead of it is taken, which mirrors no lamps";
+    let what = "scene.rad:2:6 warning `mirror` has no counterpart: its substitute is used, which does not mirror lights";
     let (scene, told) = read(&format!("{other}void mirror m 1 blue 0 3 .8 .8 .8 m sphere s 0 0 4 0 0 0 1"));
     assert_eq!((first(&scene.unwrap()).base_color, told.as_slice()), (0.7 * Vec3::Z, [what.to_string()].as_slice()));
     let (scene, told) = read(&format!("{other}void mirror m 1 void 0 3 .8 .8 .8 m sphere s 0 0 4 0 0 0 1{SUN}"));
@@ -254,27 +254,27 @@ fn mirrors_show_what_stands_for_them_and_void_lets_see_through() {
 }
 
 #[test]
-fn what_is_no_surface_is_left_out() {
+fn degenerate_surfaces_are_left_out() {
     for (thing, told) in [
         ("sphere s 0 0 4 0 0 0 0", "a sphere of radius 0 is left out"),
         ("ring s 0 0 8 0 0 0 0 0 0 0 1", "a ring without a direction or a radius is left out"),
         (
             "cylinder s 0 0 7 0 0 0 0 0 0 1",
-            "a cylinder without a length, or with radii that are all 0 or of two signs, is left out",
+            "a cylinder without a length, or with radii that are all 0 or differ in sign, is left out",
         ),
         (
             "cone s 0 0 8 0 0 0 0 0 1 -1 1",
-            "a cone without a length, or with radii that are all 0 or of two signs, is left out",
+            "a cone without a length, or with radii that are all 0 or differ in sign, is left out",
         ),
     ] {
         let (scene, found) = read(&format!("{MATTE}white {thing}\nwhite {thing}\nwhite sphere b 0 0 4 0 0 0 1{SUN}"));
         assert_eq!(scene.unwrap().root.unwrap().objects.len(), 1);
-        assert_eq!(found, [format!("scene.rad:2:7 warning {told}")]);
+        assert_eq!(found, [format!("scene.rad:2:7 warning {told}")]); // prose: keep
     }
 }
 
 #[test]
-fn only_materials_that_are_used_are_there() {
+fn unused_materials_are_removed() {
     // The materials of a sun and of the outer side of glass are removed.
     let scene = clean(
         "void light l 0 0 3 9 9 9 l source s 0 0 4 0 0 1 .5 void interface g 0 0 8 1 1 1 1.5 1 1 1 1.33 g bubble b 0 0 4 0 0 0 1",
@@ -284,17 +284,17 @@ fn only_materials_that_are_used_are_there() {
 }
 
 #[test]
-fn files_that_nothing_reads_and_that_are_not_there_are_told_of() {
+fn missing_files_that_are_not_read_give_a_warning() {
     let files = folder(&[("here.cal", b"")]);
     for (kind, missing) in [
-        ("brightfunc f 2 f(Px) gone.cal 0 0 f plastic", Some("1:27 warning there is no file `gone.cal`")),
+        ("brightfunc f 2 f(Px) gone.cal 0 0 f plastic", Some("1:27 warning missing file `gone.cal`")),
         ("brightfunc f 2 f(Px) here.cal 0 0 f plastic", None),
         ("brightfunc f 2 f(Px) noise.cal 0 0 f plastic", None),
     ] {
         let text = format!("void {kind} m 0 0 5 1 1 1 0 0 m sphere b 0 0 4 0 0 0 1");
         let (scene, told) = read_in(files.path(), "scene.rad", text);
         assert!(scene.is_some());
-        let found: Vec<&String> = told.iter().filter(|told| told.contains("there is no file")).collect();
+        let found: Vec<&String> = told.iter().filter(|told| told.contains("missing file")).collect();
         assert_eq!(found, missing.map(|missing| format!("scene.rad:{missing}")).iter().collect::<Vec<_>>());
     }
     for thing in [
@@ -303,6 +303,6 @@ fn files_that_nothing_reads_and_that_are_not_there_are_told_of() {
         "void instance m 1 gone.oct 0 0",
     ] {
         let (_, told) = read_in(files.path(), "scene.rad", format!("{MATTE}white sphere b 0 0 4 0 0 0 1\n{thing}"));
-        assert!(told.iter().any(|told| told.contains("there is no file `gone.")), "{told:?}");
+        assert!(told.iter().any(|told| told.contains("missing file `gone.")), "{told:?}");
     }
 }
