@@ -1,7 +1,7 @@
 //! Real roots of polynomials, in double precision.
 
-/// Roots of a t^2 + 2 b t + c where the sign changes, in ascending order: two or none. A double
-/// root does not count.
+/// Roots of a t^2 + 2 b t + c at sign changes, in ascending order: two or none. A double root does
+/// not count.
 ///
 /// `a` must not be 0. Computing one root as c / q avoids cancellation. Source: Press et al.,
 /// *Numerical Recipes*, section 5.6.

@@ -1,7 +1,7 @@
 use super::testing::{chi_squared, chi_squared_quantile};
 use super::*;
 
-/// Two-sided significance 2e-4: neither uneven nor too even to be independent.
+/// Two-sided significance 2e-4: rejects uneven points and points too even to be independent.
 fn assert_uniform(what: &str, points: impl Iterator<Item = Vec2>) {
     let mut cells = [0_u32; 256];
     for p in points {
