@@ -472,7 +472,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         ("groundReflectance 0.3".into(), "`groundReflectance` has no effect"),
         ("environmentRotation 30".into(), "`environmentRotation` has no effect"),
         ("environmentScale 2 2 2".into(), "`environmentScale` has no effect"),
-        ("environment black.ppm".into(), "the picture `black.ppm` around the scene is black"),
+        ("environment black.ppm".into(), "the environment `black.ppm` is black"),
     ] {
         let said = told(&format!("Background {{ {sky} }}"));
         assert!(said.contains(words) && said.contains("s.txt:2:"), "{sky}: {said}");

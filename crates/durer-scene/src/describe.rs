@@ -181,7 +181,7 @@ impl Field {
 
 /// Type with a description of its fields.
 pub trait Describe: Default {
-    /// The keywords that begin it; the first is written.
+    /// Keywords of the object; the writer uses the first.
     const KEYWORDS: &'static [(&'static str, DialectSet)];
     /// Documentation of the object.
     const DOC: &'static str;
@@ -348,7 +348,7 @@ macro_rules! described {
     (@documented $name:ident $field:ident []) => {
         compile_error!(concat!(
             "described!: `", stringify!($name), "::", stringify!($field),
-            "` needs a doc comment before it: its meaning, unit and range",
+            "` has no doc comment; describe its meaning, unit and range",
         ));
     };
     // The struct without a doc comment.

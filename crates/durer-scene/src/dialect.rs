@@ -89,17 +89,18 @@ impl Dialect {
 /// Construction of normals for a mesh without normals.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum MeshNormals {
-    /// One normal a triangle.
+    /// One normal per triangle.
     Flat,
-    /// Mean of the faces around a vertex, weighted by their areas.
+    /// Mean over the faces around a vertex, weighted by area.
     SmoothByArea,
-    /// Mean of the faces around a vertex, each counting alike.
+    /// Mean over the faces around a vertex, with equal weights.
     SmoothByFace,
-    /// Like `SmoothByFace`, but a face without area makes the normals of its vertices NaN.
+    /// `SmoothByFace`, but a degenerate face makes the normals of its vertices NaN.
     SpoiledByFace,
-    /// As `SmoothByArea` for meshes of more vertices than this, else flat.
+    /// `SmoothByArea` for meshes with more vertices than this, else `Flat`.
     SmoothAbove(usize),
-    /// Mean by angle over those faces around a vertex that meet at less than this many degrees.
+    /// Mean, weighted by angle, over the faces around a vertex that meet at less than this many
+    /// degrees.
     Crease(f32),
 }
 
@@ -130,15 +131,16 @@ pub enum Falloff {
 /// Reflection and refraction of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Secondary {
-    /// Local light only.
+    /// Direct lighting only.
     None,
-    /// `reflectiveColor` and `transparentColor` weigh the secondary rays; both are added.
+    /// Reflected and refracted rays, weighted by `reflectiveColor` and `transparentColor`; both are
+    /// added.
     Colors,
-    /// `specularColor` weighs the mirrored ray.
+    /// Reflected ray, weighted by `specularColor`.
     Specular,
-    /// `specularColor` weighs both, divided by Fresnel where `refractionIndex` is given.
+    /// Both rays, weighted by `specularColor` and split by Fresnel if `refractionIndex` is given.
     SpecularFresnel,
-    /// By the words that are there: `reflectiveColor`, `transparentColor`, `refractionIndex`.
+    /// By the words that are present: `reflectiveColor`, `transparentColor`, `refractionIndex`.
     ByKeyword,
 }
 
@@ -176,7 +178,7 @@ pub enum PathBase {
 pub enum Arithmetic {
     /// Dürer's own.
     Own,
-    /// Single precision, operation by operation as the programs of Fall 2012.
+    /// Single precision, operation by operation as in the programs of Fall 2012.
     Of2012,
     /// Single precision as in the program of 2016.
     Of2016,

@@ -77,8 +77,8 @@ described! {
         alpha_cutoff: Option<f32> = None, optional, Rule::Any, ["alphaCutoff" in set::DURER];
         /// Factor on the slope of the normals of a normal map.
         normal_scale: f32 = 1.0, optional, Rule::Any, ["normalScale" in set::DURER];
-        /// What counts where a number is wanted: `r`, `g`, `b`, `a`, or the `angle` of the
-        /// direction in red and green; where nothing is written, red, or of opacity what there is.
+        /// Channel for a scalar field: `r`, `g`, `b`, `a`, or the `angle` of the direction in red
+        /// and green; by default red, and for opacity alpha if there is one.
         channel: Option<Channel> = None, optional, Rule::Any, ["channel" in set::DURER];
         /// Values of texels 0 and 1 if the picture modulates a scalar field.
         texel_range: Vec<[f32; 2]> = vec![[0.0, 1.0]], optional, Rule::Rows(1, 1), ["texelRange" in set::DURER];

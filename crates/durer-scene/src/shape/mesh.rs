@@ -14,7 +14,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 described! {
-    /// A triangle mesh in a file of its own.
+    /// A triangle mesh in a separate file.
     TriangleMesh ["TriangleMesh" in set::CLASSIC, "mesh" in set::F23] {
         /// Path of the mesh file: `.obj`, `.ply` or `.stl`.
         obj_file: FileName = FileName::default(), required, Rule::Any, ["obj_file" in set::ALL];

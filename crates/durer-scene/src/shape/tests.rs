@@ -87,7 +87,7 @@ fn the_first_crossing_in_the_open_interval_is_found() {
                 assert!(grazing || all.iter().any(|c| near(c.0, t)), "{shape:?} {ray:?} {crossing:?} {all:?}");
                 found[kind] += 1;
             }
-            // A certain crossing inside the interval must neither be missed nor passed over.
+            // A certain crossing inside the interval must neither be missed nor skipped.
             for &(t, _) in all.iter().filter(|c| c.1) {
                 let clear = |end: f32| !near(t, f64::from(end));
                 if clear(t_min) && clear(t_max) && ray.contains(t as f32) {
@@ -164,7 +164,7 @@ fn the_surface_is_on_the_shape_within_its_error_and_in_its_bounds() {
 }
 
 #[test]
-fn a_ray_that_is_no_ray_hits_nothing() {
+fn invalid_ray_hits_nothing() {
     let mut random = Random(4);
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
     for _ in 0..300 {

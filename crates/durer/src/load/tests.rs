@@ -62,8 +62,8 @@ fn a_file_outside_is_refused_at_the_line_that_names_it() {
     assert_eq!(
         found,
         [
-            "scene/scene.txt:5:25 error: the mesh cannot be had: `../outside.obj` lies outside the scene's folder (a scene \
-          may only name files in and below its own folder, unless `--allow-outside` is given)"
+            "scene/scene.txt:5:25 error: cannot load the mesh: `../outside.obj` lies outside the scene's folder (a scene \
+          may only name files in or below its own folder, unless `--allow-outside` is given)"
         ]
     );
     let (world, found) = made(&root, &LoadOptions { allow_outside: true, ..Default::default() });
@@ -79,7 +79,7 @@ fn a_missing_mesh_is_told_once_with_a_near_name() {
     assert_eq!(
         found,
         [
-            "scene/scene.txt:5:25 error: the mesh cannot be had: there is no file `tir.obj` (did you mean `tri.obj`? Looked \
+            "scene/scene.txt:5:25 error: cannot load the mesh: there is no file `tir.obj` (did you mean `tri.obj`? Looked \
           for scene/tir.obj)"
         ]
     );
@@ -93,14 +93,14 @@ fn what_is_wrong_in_a_mesh_is_told_there_and_in_the_scene() {
     let root = house(&mesh("bad.obj"));
     fs::write(root.path().join("scene/bad.obj"), "v 0 0 0\nv 1 0 zero\nf 1 2 9\n").unwrap();
     let (_, found) = made(&root, &LoadOptions::default());
-    assert!(found[0].starts_with("scene/scene.txt:5:25 error: the mesh `bad.obj` cannot be used"), "{found:?}");
+    assert!(found[0].starts_with("scene/scene.txt:5:25 error: cannot use the mesh `bad.obj`"), "{found:?}");
     assert!(found[1].starts_with("bad.obj:2:7 error: "), "{found:?}");
 }
 
 #[test]
 fn folders_are_no_meshes() {
     let found = findings(&mesh("."));
-    assert_eq!(found, ["scene/scene.txt:5:25 error: the mesh cannot be had: `.` is not a regular file"]);
+    assert_eq!(found, ["scene/scene.txt:5:25 error: cannot load the mesh: `.` is not a regular file"]);
 }
 
 #[test]
@@ -153,7 +153,7 @@ fn a_flattening_transform_is_told_at_its_object() {
     let found =
         findings("Transform { Matrix4f { 1 1 0 0 1 1 0 0 0 0 1 0 0 0 0 1 }\n Sphere { center 0 0 0 radius 1 } }");
     let expected =
-        "scene/scene.txt:6:2 error: the transforms around this object flatten space, or leave the range of numbers";
+        "scene/scene.txt:6:2 error: the transforms around this object are singular, or their numbers overflow";
     assert_eq!(found, [expected]);
 }
 

@@ -85,7 +85,7 @@ proptest! {
 }
 
 #[test]
-fn what_is_not_seen_is_transparent_black_by_its_weight() {
+fn misses_are_transparent_black_by_their_weight() {
     let mut film = Film::new(3, 1);
     film.add(0, 0, 0, Vec3::ONE, 0.5);
     film.add_if_seen(0, 0, 1, None, 1.5);
@@ -130,7 +130,7 @@ fn rejected_samples_are_counted_and_the_first_ones_named() {
 }
 
 #[test]
-fn the_variance_of_anything_finite_is_finite_and_of_equal_samples_nothing() {
+fn variance_is_finite_for_finite_samples_and_zero_for_equal_ones() {
     for size in [0.0, 1.0, 1e3, 1e6, 1e12, 1e18, 1e30, f32::MAX] {
         let mut film = Film::new(2, 1);
         for s in 0..9 {
@@ -146,7 +146,7 @@ fn the_variance_of_anything_finite_is_finite_and_of_equal_samples_nothing() {
         let mut bytes = Vec::new();
         film.write(&mut bytes);
         assert_eq!(Film::new(2, 1).read(&mut Bytes(&bytes), 9), Some(film));
-        assert_eq!(Film::new(2, 1).read(&mut Bytes(&bytes), 8), None, "more samples than there can be");
+        assert_eq!(Film::new(2, 1).read(&mut Bytes(&bytes), 8), None, "more samples than possible");
     }
 }
 

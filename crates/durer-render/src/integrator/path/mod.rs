@@ -4,7 +4,7 @@
 //! of them calls another bounce, so a wavefront can run each over an array of states:
 //!
 //! 1. `Path::propagate`: the ray flies to the next vertex, through media and past surfaces that
-//!    change nothing.
+//!    have no effect.
 //! 2. `Path::add_background`, `Path::add_emission`: light at the end of the ray, weighted
 //!    against light sampling at the previous vertex.
 //! 3. `Path::choose_light`, `Path::add_direct`: a point on a light, with its shadow ray.

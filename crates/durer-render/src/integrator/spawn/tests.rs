@@ -113,7 +113,7 @@ fn leaks(world: &World, at: Vec3, count: usize) -> usize {
 }
 
 #[test]
-fn no_light_comes_into_a_closed_room_however_far_it_is_from_the_origin() {
+fn closed_rooms_stay_dark_at_any_distance_from_the_origin() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("near.obj"), room_file(Vec3::ZERO)).unwrap();
     std::fs::write(folder.path().join("ball.obj"), ball_file(Vec3::ZERO)).unwrap();

@@ -69,7 +69,7 @@ fn fields_are_checked_together_once_each_is_valid() {
     assert_eq!(messages(&with_shape(upside_down)), ["`min` of a `Box` must be less than its `max` in x, y and z"]);
     let camera = |camera: CaveCamera| messages(&Scene { camera: Some(camera.into()), ..Scene::default() });
     assert_eq!(camera(CaveCamera::default()), [""; 0]);
-    // Its walls are only checked once all numbers are finite.
+    // Walls are checked only if all numbers are finite.
     let walls = vec![[f32::NAN; 9]];
     assert_eq!(camera(CaveCamera { walls, ..CaveCamera::default() }), ["CaveCamera: walls must be finite"]);
     let light = PointLight { candela: Some(1.0), lumens: Some(1.0), ..PointLight::default() };
@@ -106,7 +106,7 @@ fn numbers_of_materials_must_exist_but_for_objects_of_files() {
     let board = |material1, material2| Material::Solid(Checkerboard { material1, material2 }.into(), Vec::new());
     let plain = || Material::from(PhongMaterial::default());
     assert_eq!(messages(&with_materials(vec![plain(), board(0, 0)])), [""; 0]);
-    assert_eq!(messages(&with_materials(vec![plain(), board(0, 1)])), ["a solid material is made of earlier ones"]);
+    assert_eq!(messages(&with_materials(vec![plain(), board(0, 1)])), ["a solid material must be made of earlier materials"]);
 }
 
 #[test]

@@ -67,7 +67,7 @@ fn agree(mut data: MeshData) -> usize {
         assert_eq!(data.positions[vertex as usize], places[corner]);
         let ours = data.tangents[vertex as usize];
         let far = ours.iter().zip(theirs).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-        assert!(far < 1e-4, "corner {corner}: {ours:?}, and not {theirs:?}");
+        assert!(far < 1e-4, "corner {corner}: {ours:?}, expected {theirs:?}");
     }
     originals.len()
 }

@@ -12,7 +12,7 @@ fn field(min: Vec3, columns: usize, rows: usize, random: &mut Random) -> Terrain
 }
 
 #[test]
-fn a_landscape_is_its_lists() {
+fn terrain_equals_its_mesh_as_lists() {
     let mut random = Random(3);
     let rules = [
         MeshNormals::Flat,
@@ -62,7 +62,7 @@ fn corners_around_a_crossing_are_known_without_lists() {
 }
 
 #[test]
-fn what_differs_has_another_hash() {
+fn different_terrains_have_different_hashes() {
     let [mut random, mut again] = [Random(5), Random(5)];
     let terrain = field(Vec3::ZERO, 4, 3, &mut random);
     assert_eq!(terrain.digest(), field(Vec3::ZERO, 4, 3, &mut again).digest());
