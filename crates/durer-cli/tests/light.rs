@@ -199,7 +199,7 @@ fn options_of_light_that_make_no_sense_are_refused_and_noise_is_taken_out_beside
     }
     let explain = "explain scene.txt --pixel 3,3 --size 8x8 --samples 2 --color spectral";
     let told = place.gives(0, explain).out;
-    assert!(told.contains(" nm; the eye makes of it") && told.contains("red: ("), "{told}");
+    assert!(told.contains(" nm; converted to RGB") && told.contains("red: ("), "{told}");
     let told: serde_json::Value = serde_json::from_str(&place.gives(0, &format!("{explain} --json")).out).unwrap();
     let light = &told["pixel"]["samples"][0]["light"];
     let (value, observer) = (light["value"].as_array().unwrap(), light["waves"]["observer"].as_array().unwrap());

@@ -259,7 +259,7 @@ fn unfinished_work_is_not_thrown_away_unasked() {
     }
     let saved = place.bytes("s.part");
     place.put("s.part", &saved[..saved.len() / 2]);
-    place.refused(2, &format!("{work} --shard 1/2 -o s.part"), &["torn or damaged", "--restart"]);
+    place.refused(2, &format!("{work} --shard 1/2 -o s.part"), &["truncated or damaged", "--restart"]);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Tests of scenes and jobs with invalid values: refused with a diagnostic, never rendered.
+//! Tests of scenes and jobs with invalid values: rejected with a diagnostic, never rendered.
 
 use super::{Control, Job, PartialRender, RenderError, Sampling, Shard, explain, render};
 use crate::compile::testing::read;
@@ -104,7 +104,7 @@ fn invalid_jobs_are_refused() {
     let light_scale = Some(LightScale { low: 0.0, high: 1.0, logarithmic: true });
     assert!(refused(Job { light_scale, ..small() }).contains("from 0 to 1"));
     let mut method = Method::PATH;
-    let clamp = method.fields().iter().position(|field| field.name == "clamp").expect("its name");
+    let clamp = method.fields().iter().position(|field| field.name == "clamp").expect("path tracing has `clamp`");
     method.set(clamp, Value::Float(-1.0));
     assert_eq!(refused(Job { method, ..small() }), "clamp of path must be more than 0");
 }

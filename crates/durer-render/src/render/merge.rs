@@ -34,7 +34,7 @@ pub enum MergeError {
         what: String,
     },
     /// Some work is in no part.
-    #[error("there is something missing:\n{0}")]
+    #[error("the parts are incomplete:\n{0}")]
     Missing(String),
     /// The merged picture would be too large.
     #[error(transparent)]

@@ -51,7 +51,7 @@ impl<I: Iterator<Item = u32>> Iterator for Passes<I> {
         let (done, samples, began) = self.last;
         let now = Instant::now();
         let mut end = self.ends.next()?;
-        // Without a clock nobody knows how long a pass takes.
+        // Without a clock, the duration of a pass is unknown.
         if self.joins && samples > 0 && !cfg!(target_family = "wasm") {
             let each = now.duration_since(began) / samples;
             let is_soon = |next: &u32| each.saturating_mul(next - done) < SOON;
@@ -88,7 +88,7 @@ mod tests {
     use durer_scene::sampler::random_2d;
 
     #[test]
-    fn passes_end_where_they_should() {
+    fn passes_end_at_the_documented_counts() {
         let ends = |n| ends(n).collect::<Vec<_>>();
         assert_eq!(ends(1), [1]);
         assert_eq!(ends(5), [1, 2, 4, 5]);

@@ -177,7 +177,7 @@ fn a_film_is_the_sum_of_its_samples_taken_one_by_one() {
 fn a_difference_is_found_and_named() {
     let world = world();
     let (a, b) = (all(&world, &small()), all(&world, &Job { seed: 1, ..small() }));
-    assert!(compare(&a, &b).is_none(), "one ray through the centre needs no random numbers");
+    assert!(compare(&a, &b).is_none(), "one ray through the centre uses no random numbers");
     let b = all(&world, &Job { settings: Settings { shadows: false, ..small().settings }, ..small() });
     let difference = compare(&a, &b).unwrap();
     assert!(difference.place.starts_with("pixel ") && difference.expected != difference.found, "{difference:?}");
@@ -203,7 +203,7 @@ fn a_crop_is_cut_from_the_whole_picture() {
 }
 
 #[test]
-fn noise_decides_where_samples_are_taken() {
+fn noise_threshold_controls_the_number_of_samples() {
     let world = world();
     let noise = 0.004;
     let job = Job { sampling: filtered(256), noise: Some(noise), width: 40, height: 40, ..Job::default() };
@@ -224,7 +224,7 @@ fn noise_decides_where_samples_are_taken() {
 }
 
 #[test]
-fn what_does_not_fit_is_not_merged() {
+fn inconsistent_parts_are_not_merged() {
     let world = world();
     let job = Job { sampling: filtered(4), aovs: vec![Aov::from_name("depth").unwrap()], ..small() };
     let make = |job: &Job, index, count, by| {
@@ -249,7 +249,7 @@ fn what_does_not_fit_is_not_merged() {
     let other = Job { seed: 1, ..job.clone() };
     let foreign = [make(&job, 1, 2, ShardBy::Tiles), make(&other, 2, 2, ShardBy::Tiles)];
     let message = merge(&foreign).unwrap_err().to_string();
-    assert!(message.contains("`seed` is 1, and wanted is 0"), "{message}");
+    assert!(message.contains("`seed` is 1, expected 0"), "{message}");
     assert!(matches!(merge(&[]), Err(MergeError::NoParts)));
     let unfinished = [("x".to_string(), PartialRender::new(&world, &job, Shard::WHOLE).unwrap())];
     let message = merge(&unfinished).unwrap_err().to_string();
@@ -257,7 +257,7 @@ fn what_does_not_fit_is_not_merged() {
 }
 
 #[test]
-fn work_that_cannot_be_split_is_refused() {
+fn unsuitable_shards_are_rejected() {
     let world = world();
     let refused = |job: &Job, index, count, by| PartialRender::new(&world, job, Shard { index, count, by }).is_err();
     let (tiles, samples) = (ShardBy::Tiles, ShardBy::Samples);
@@ -271,7 +271,7 @@ fn work_that_cannot_be_split_is_refused() {
 }
 
 #[test]
-fn parts_come_back_from_bytes_and_no_bytes_harm() {
+fn parts_survive_serialization_and_invalid_bytes_are_rejected() {
     let world = world();
     let job = Job { sampling: filtered(2), aovs: AOVS.iter().collect(), width: 12, height: 9, ..Job::default() };
     let part = all(&world, &job);
@@ -296,7 +296,7 @@ fn parts_come_back_from_bytes_and_no_bytes_harm() {
             changed[at] = new;
             changed.extend(Digest::of(&changed).0);
             if let Ok(read) = PartialRender::read(&changed) {
-                assert!(read.write() == changed, "{at}: written in another way");
+                assert!(read.write() == changed, "{at}: written differently");
                 // Everything is finite, except the variance of a single sample.
                 let rendered = read.pictures().unwrap();
                 let finite =
@@ -309,7 +309,7 @@ fn parts_come_back_from_bytes_and_no_bytes_harm() {
 }
 
 #[test]
-fn work_is_gone_on_with_only_where_it_is_the_same() {
+fn only_the_same_work_is_resumed() {
     let (world, job) = (world(), Job { sampling: filtered(2), ..small() });
     let part = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
     let other = |world: &World, job: &Job, shard| part.same_work(&PartialRender::new(world, job, shard).unwrap());
@@ -332,7 +332,7 @@ fn work_is_gone_on_with_only_where_it_is_the_same() {
 }
 
 #[test]
-fn a_panic_is_an_error_that_knows_its_sample_and_the_rest_is_kept() {
+fn panic_is_an_error_with_its_sample_and_other_work_is_kept() {
     let mut broken = world();
     // A tree that refers to a missing object: rays that hit the sphere's bounds panic.
     let mut boxes = vec![Aabb::EMPTY; 1000];
@@ -343,7 +343,7 @@ fn a_panic_is_an_error_that_knows_its_sample_and_the_rest_is_kept() {
     let part = PartialRender::new(&broken, &job, Shard::WHOLE).unwrap();
     let control = Control { threads: Some(1), ..Control::default() };
     let RenderOutcome::Panicked(panicked) = part.render(&broken, &control, &mut |_, _| {}).unwrap() else {
-        panic!("the sphere is seen");
+        panic!("rays must hit the sphere");
     };
     assert_eq!(panicked.sample, Some(0), "{panicked}");
     assert!(panicked.message.contains("index out of bounds") && panicked.to_string().contains("pixel "), "{panicked}");
@@ -362,7 +362,7 @@ fn a_panic_is_an_error_that_knows_its_sample_and_the_rest_is_kept() {
 }
 
 #[test]
-fn time_and_cancel_stop_soon_and_the_watcher_is_called() {
+fn time_limit_and_cancel_stop_soon_and_the_callback_is_called() {
     let world = world();
     let job = Job { sampling: filtered(1 << 20), width: 64, height: 64, ..Job::default() };
     let (mut passes, mut saves) = (0, 0);
@@ -397,7 +397,7 @@ fn time_and_cancel_stop_soon_and_the_watcher_is_called() {
 }
 
 #[test]
-fn memory_is_estimated_before_it_is_taken() {
+fn memory_is_estimated_before_it_is_allocated() {
     let (world, job) = (world(), Job { width: 4000, height: 4000, sampling: filtered(4), ..Job::default() });
     let part = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
     let control = Control { memory: Some(1 << 30), ..Control::default() };
@@ -428,7 +428,7 @@ fn samples_that_are_not_finite_are_named() {
 }
 
 #[test]
-fn files_tell_the_job_and_the_scene() {
+fn files_have_attributes_of_job_and_scene() {
     let world = world();
     let part = all(&world, &small());
     let rendered = part.pictures().unwrap();

@@ -125,7 +125,7 @@ fn what_the_picture_may_lack_is_warned_of() {
         (
             text(LIGHT, &format!("Group {{\n{} }}", ball.repeat(100))),
             vec![
-                "scene/scene.txt:5:1 warning: this object has no material, and is drawn in plain grey; so are 99 others (write `MaterialIndex 0` before it)",
+                "scene/scene.txt:5:1 warning: this object has no material and is drawn in plain grey; 99 other objects have none either (write `MaterialIndex 0` before it)",
             ],
         ),
         (

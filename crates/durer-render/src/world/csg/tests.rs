@@ -111,7 +111,7 @@ fn goes_out(world: &World, ray: impl Into<Ray64>, hit: &Hit) -> bool {
 }
 
 #[test]
-fn solids_have_the_points_that_their_words_say() {
+fn solids_contain_the_points_of_their_operations() {
     // Distance to a surface below which single precision may err.
     const DISTANCE: f64 = 1e-4;
     let wanted = std::env::var("DURER_SOLID_POINTS").ok().and_then(|n| n.parse().ok()).unwrap_or(20_000);
@@ -154,7 +154,7 @@ fn solids_have_the_points_that_their_words_say() {
             }
         }
     }
-    println!("{points} points, {inside} inside, none wrong; {near} nearer than {DISTANCE} to a surface left out");
+    println!("{points} points, {inside} inside, none wrong; skipped {near} closer than {DISTANCE} to a surface");
     assert!(inside > points / 10 && near < points / 10, "{points} {inside} {near}");
 }
 
@@ -212,7 +212,7 @@ fn volumes_are_those_of_closed_forms() {
         ),
     ] {
         let (found, error) = volume(&solid, &mut random, 40_000);
-        assert!((found - expected).abs() < 3.0 * error, "{name}: {found} +- {error}, not {expected}");
+        assert!((found - expected).abs() < 3.0 * error, "{name}: {found} +- {error}, expected {expected}");
         assert!(error < 0.02 * expected, "{name}: {error}");
     }
 }
@@ -352,7 +352,7 @@ fn each_surface_has_the_material_of_its_part() {
 }
 
 #[test]
-fn a_lens_of_two_balls_focuses_where_the_lensmaker_says() {
+fn lens_of_two_spheres_focuses_by_the_lensmakers_equation() {
     // 1/f = (n - 1) (2/R - (n - 1) d / (n R^2)), measured from behind the lens by f (1 - (n - 1) d
     // / (n R)).
     let (n, radius, offset) = (1.5f64, 2.2f64, 1.9f64);
@@ -397,7 +397,7 @@ fn a_union_keeps_inner_surfaces_and_a_merge_does_not() {
 }
 
 #[test]
-fn parts_apart_from_each_other_are_things_of_their_own() {
+fn disjoint_parts_become_separate_objects() {
     use Operation::*;
     let balls: Vec<scene::Object> = (0..1000).map(|i| ball([3.0 * i as f32, 0.0, 0.0], 1.0)).collect();
     let list: Vec<&scene::Object> = balls.iter().collect();
@@ -421,7 +421,7 @@ fn parts_apart_from_each_other_are_things_of_their_own() {
 }
 
 #[test]
-fn a_chain_of_many_parts_is_seen_as_all_of_them_are() {
+fn cluster_of_many_parts_matches_its_parts() {
     // One cluster with its own tree, from outside and inside.
     let mut random = Random(26);
     let balls: Vec<scene::Object> =
@@ -456,7 +456,7 @@ fn a_chain_of_many_parts_is_seen_as_all_of_them_are() {
 
 /// Compares a tree over subtracted parts, clipped to the bounds of the whole, with all parts.
 #[test]
-fn parts_matter_in_the_box_of_the_whole_alone() {
+fn parts_are_clipped_to_the_bounds_of_the_whole() {
     let (mut random, mut hits) = (Random(28), 0);
     let operand = |shape| Solid::Operand(Arc::new(world(&shape).objects()[0].clone()));
     for _ in 0..20 {
@@ -479,7 +479,7 @@ fn parts_matter_in_the_box_of_the_whole_alone() {
 }
 
 #[test]
-fn rays_that_leave_a_solid_do_not_meet_it_there() {
+fn rays_that_leave_a_solid_do_not_hit_it_at_their_start() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("cube.obj"), CUBE).unwrap();
     let mut random = Random(27);
@@ -515,8 +515,7 @@ fn rays_that_leave_a_solid_do_not_meet_it_there() {
     assert!(count > 10_000, "{count}");
 }
 
-/// As many crossings coincide as there are parts: each is visited a few times, not once for each
-/// other.
+/// Coincident crossings, as many as parts: each is visited a few times, not once for each other.
 #[test]
 fn coincident_parts_do_not_cost_the_square_of_their_number() {
     let count = 30_000;

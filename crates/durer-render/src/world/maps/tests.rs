@@ -59,7 +59,7 @@ fn parameters(world: &World) -> Parameters {
 const BALL: &str = "Sphere { center 0 0 0 radius 1 }";
 
 #[test]
-fn every_picture_changes_its_parameter() {
+fn every_texture_changes_its_parameter() {
     let grey = |_, _| [100, 150, 200];
     let folder = folder("grey", &[("grey.ppm", 2, &grey)]);
     // One sphere for each, so that tables are built once.

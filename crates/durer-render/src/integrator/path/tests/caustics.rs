@@ -134,7 +134,7 @@ fn photons_and_paths_start_in_the_surrounding_medium() {
 }
 
 #[test]
-fn photon_maps_do_not_depend_on_threads() {
+fn photon_maps_do_not_depend_on_how_they_are_built() {
     let world = scene(
         &format!("{MATTE} {GLASS}"),
         "PointLight { position 0.5 4 0 color 9 9 9 falloff 1 }",

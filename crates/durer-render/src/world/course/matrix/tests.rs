@@ -15,12 +15,12 @@ fn random_ops(random: &mut Random) -> Vec<MatrixOp> {
 
 fn close(a: &Matrix, b: &Matrix, most: f32) {
     for (p, q) in a.0.iter().flatten().zip(b.0.iter().flatten()) {
-        assert!((p - q).abs() <= most, "{a:?} is not {b:?}");
+        assert!((p - q).abs() <= most, "{a:?} differs from {b:?}");
     }
 }
 
 #[test]
-fn products_and_what_is_left_without_shear_are_those_of_double_precision() {
+fn products_and_shear_removal_match_double_precision() {
     let mut random = Random(59);
     for _ in 0..500 {
         let ops = random_ops(&mut random);
@@ -49,7 +49,7 @@ fn both_inverses_undo_a_matrix() {
 }
 
 #[test]
-fn a_flat_matrix_is_told_and_a_tiny_one_passed_over() {
+fn singular_matrix_is_detected_and_tiny_one_is_skipped() {
     let flat = [MatrixOp::Scale(Vec3::new(1.0, 0.0, 1.0))];
     assert!(!Matrix::of(&flat, MatrixRules::default(), Vectors::Vecmath).is_regular());
     let tiny = MatrixRules { dropped_tiny: true, ..MatrixRules::default() };

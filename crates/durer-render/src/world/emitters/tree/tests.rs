@@ -53,7 +53,7 @@ fn probabilities_are_those_of_sampling_and_sum_to_one() {
 }
 
 #[test]
-fn what_lies_behind_a_surface_is_not_chosen() {
+fn lights_behind_a_surface_are_not_chosen() {
     let mut random = Random(7);
     let all: Vec<Bounds> = lights(&mut random, 300).into_iter().map(|light| Bounds { each: 0.0, ..light }).collect();
     let (tree, order) = LightTree::new(&all);
@@ -72,7 +72,7 @@ fn what_lies_behind_a_surface_is_not_chosen() {
 }
 
 #[test]
-fn whatever_can_shine_on_a_point_can_be_chosen() {
+fn every_light_that_reaches_a_point_can_be_chosen() {
     let mut random = Random(6);
     let all = lights(&mut random, 300);
     let (tree, order) = LightTree::new(&all);
