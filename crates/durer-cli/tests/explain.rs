@@ -61,7 +61,7 @@ fn the_text_names_things_by_their_place_in_the_file() {
     let ran = place.gives(0, &format!("explain scene.txt --pixel 20,13 {SMALL}"));
     for wanted in [
         "pixel 20,13 = (",
-        "the mean of 16 samples",
+        "weighted mean of 16 samples",
         "hits Sphere of line 8 at t = ",
         "material 0 of line 5",
         "DirectionalLight of line 2: (sum below) · (0.9, 0.9, 0.8)",

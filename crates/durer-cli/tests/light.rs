@@ -273,16 +273,16 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {thin
     for (base, lamp, sky, words) in [
         ("baseSpectrum paints.csv:blue", "", "", "there are grey, red"),
         ("baseSpectrum none.csv", "", "", "none.csv"),
-        ("baseSpectrum lamp.csv", "", "", "shares go from 0 to 1"),
-        ("", "emissionSpectrum warm", "", "known are A, D50"),
+        ("baseSpectrum lamp.csv", "", "", "must be from 0 to 1"),
+        ("", "emissionSpectrum warm", "", "use A, D50"),
         ("", "", "cieSky 12", "write `sun x y z`"),
         ("", "", "cieSky 17", "from 1 to 16"),
-        ("", "", "sunAltitude 30", "beside `sunAltitude` there is no `sunAzimuth`"),
+        ("", "", "sunAltitude 30", "`sunAltitude` needs `sunAzimuth`"),
         ("", "", "sunAltitude 95 sunAzimuth 0", "must be from -90 to 90"),
-        ("", "", "sun 0 1 0 date 2026 6 21", "said twice, by `sun` and by `date`"),
-        ("", "", "timeZone 2", "there is no `latitude`"),
-        ("", "", "latitude 60 longitude 25 date 2026 2 30 time 12 0 0", "no such `date`"),
-        ("", "", "latitude 60 longitude 25 date 2026 2 3 time 12 70 0", "no such `time`"),
+        ("", "", "sun 0 1 0 date 2026 6 21", "given twice, by `sun` and by `date`"),
+        ("", "", "timeZone 2", "needs `latitude`"),
+        ("", "", "latitude 60 longitude 25 date 2026 2 30 time 12 0 0", "`date` does not exist"),
+        ("", "", "latitude 60 longitude 25 date 2026 2 3 time 12 70 0", "`time` does not exist"),
         ("", "", "latitude 60 longitude 25 date 2026 2.5 3 time 12 0 0", "must be whole numbers"),
     ] {
         write(base, lamp, sky);

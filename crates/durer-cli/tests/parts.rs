@@ -39,7 +39,7 @@ fn shards_merge_to_the_bytes_of_one_run() {
     let bytes = place.bytes("2.part");
     place.put("torn.part", &bytes[..bytes.len() / 2]);
     place.refused(2, "merge 1.part torn.part 3.part -o m.exr", &["torn.part", "truncated or damaged"]);
-    place.refused(2, "merge scene.txt -o m.exr", &["scene.txt", "no part"]);
+    place.refused(2, "merge scene.txt -o m.exr", &["scene.txt", "not a part"]);
     place.refused(2, "merge missing.part -o m.exr", &["missing.part"]);
     place.refused(2, &format!("{SMALL} --shard 7/7 --shard-by samples -o 7.part"), &["only 6 samples"]);
     place.refused(2, &format!("{SMALL} --shard 4/3 -o 4.part"), &["3/3"]);

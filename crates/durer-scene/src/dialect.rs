@@ -54,14 +54,14 @@ pub mod set {
     pub const OLD: DialectSet = F03 | F04;
     /// 2012 and later, before nodes.
     pub const NEW: DialectSet = F12A4 | F12A5 | F16;
-    /// All dialects with the grammar of 2004.
+    /// Dialects with the grammar of 2004.
     pub const CLASSIC: DialectSet = OLD | NEW | DURER;
-    /// All dialects.
+    /// Every dialect.
     pub const ALL: DialectSet = CLASSIC | F23;
 }
 
 impl Dialect {
-    /// All dialects, oldest first, Dürer's own last.
+    /// Every dialect, oldest first, Dürer's own last.
     pub const ALL: [Dialect; 7] =
         [Dialect::F03, Dialect::F04, Dialect::F12a4, Dialect::F12a5, Dialect::F16, Dialect::F23, Dialect::Durer];
 

@@ -127,7 +127,7 @@ impl SourceError {
         match self {
             SourceError::Missing { near: Some(near), .. } => Some(format!("did you mean `{near}`?")),
             SourceError::Outside { .. } => {
-                let only = "a scene may only name files in or below its own folder, unless `--allow-outside` is given";
+                let only = "a scene may only name files in and below its own folder, unless `--allow-outside` is given";
                 Some(only.into())
             }
             _ => None,

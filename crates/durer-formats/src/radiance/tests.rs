@@ -208,7 +208,7 @@ fn errors_have_places() {
     let (_, found) = read_in(cycle.path(), "scene.rad", "!cat a.rad");
     assert_eq!(found, ["a.rad:2:8 error files name each other more than 32 deep: does one name itself?"]);
     let (_, found) = read_in(cycle.path(), "scene.rad", "!cat far.rad");
-    let help = "a scene may only name files in or below its own folder, unless `--allow-outside` is given";
+    let help = "a scene may only name files in and below its own folder, unless `--allow-outside` is given";
     assert!(found[0].starts_with("far.rad:1:6 error ") && !found[0].contains("missing"), "{found:?} {help}");
     let many = "void plastic".to_string() + &"\nvoid plastik m 0 0 0".repeat(100);
     assert!(read(&many).1.len() <= 21);

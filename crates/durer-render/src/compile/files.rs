@@ -171,7 +171,7 @@ impl<'r> Loader<'r> {
     /// Returns the mesh of a height field.
     pub(super) fn height_field(&mut self, field: &HeightField, diagnostics: &mut Diagnostics) -> Option<Arc<MeshTree>> {
         let name = &field.picture;
-        let bytes = self.read(name, "height picture", diagnostics)?;
+        let bytes = self.read(name, "picture of heights", diagnostics)?;
         let encoded = used(name, &name.path, Encoded::open(&bytes, &name.path), diagnostics)?;
         let (width, height) = encoded.size();
         let mut refuse = |message: String| diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
@@ -410,20 +410,20 @@ impl<'r> Loader<'r> {
             Ok(bytes) => return Some(bytes),
             Err(error) => error,
         };
-        let message = format!("cannot load the {what}: {error}");
+        let message = format!("the {what} cannot be read: {error}");
         let diagnostic = Diagnostic::error(message).code("missing-file").at(name.span);
         diagnostics.push(match error {
             SourceError::Missing { tried, near, .. } => {
                 let (help, folder) =
                     (missing_help(&tried, near.as_deref()), name.path.rfind('/').map_or(0, |at| at + 1));
                 // The scene names only the folder of a cube map's faces.
-                match near.filter(|_| matches!(what, "mesh" | "texture" | "height picture")) {
+                match near.filter(|_| matches!(what, "mesh" | "texture" | "picture of heights")) {
                     Some(near) => diagnostic.help(help).fix(name.span, format!("{}{near}", &name.path[..folder])),
                     None => diagnostic.help(help),
                 }
             }
             SourceError::Outside { .. } => diagnostic
-                .help("a scene may only name files in or below its own folder, unless `--allow-outside` is given"),
+                .help("a scene may only name files in and below its own folder, unless `--allow-outside` is given"),
             _ => diagnostic,
         });
         None

@@ -15,7 +15,7 @@ fn errors(text: &str, accel: AccelKind) -> Vec<String> {
 }
 
 #[test]
-fn transforms_that_flatten_space_are_refused() {
+fn singular_transforms_are_rejected() {
     let ball = "Sphere { center 0 0 0 radius 1 }";
     let flat = "are singular, or their numbers overflow";
     for ops in [
@@ -32,7 +32,7 @@ fn transforms_that_flatten_space_are_refused() {
 }
 
 #[test]
-fn materials_that_double_or_nest_too_deeply_are_refused() {
+fn materials_with_too_many_parts_or_levels_are_rejected() {
     let chain = |count: usize, solid: &dyn Fn(usize) -> String| {
         let solids: String = (0..count).map(solid).collect();
         errors(&format!("Materials {{ Material {{ }} {solids} }} Group {{ }}"), AccelKind::Bvh)
@@ -46,7 +46,7 @@ fn materials_that_double_or_nest_too_deeply_are_refused() {
 }
 
 #[test]
-fn solids_are_made_of_closed_parts() {
+fn solids_reject_parts_without_an_inside() {
     let ball = "Sphere { center 0 0 0 radius 1 }";
     let open = "a surface without an inside cannot be part of a solid";
     for flat in [
@@ -128,7 +128,7 @@ fn shapes_with_inconsistent_fields_are_rejected() {
 }
 
 #[test]
-fn height_fields_are_closed_landscapes() {
+fn height_fields_are_closed_meshes() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("hills.ppm"), b"P6 3 2 255\n\0\0\0\xff\xff\xff\0\0\0\0\0\0\0\0\0\0\0\0").unwrap();
     std::fs::write(folder.path().join("dot.ppm"), b"P6 1 1 255\n\0\0\0").unwrap();
@@ -155,7 +155,7 @@ fn height_fields_are_closed_landscapes() {
         assert!(world.is_none() && findings.iter().any(|d| d.message.contains(what)), "{findings:?}");
     };
     refused("HeightField { picture dot.ppm min 0 0 0 max 1 1 1 }", "a height field cannot have 1 x 1 pixels");
-    refused("HeightField { picture none.ppm min 0 0 0 max 1 1 1 }", "cannot load the height picture");
+    refused("HeightField { picture none.ppm min 0 0 0 max 1 1 1 }", "the picture of heights cannot be read");
     refused("HeightField { picture hills.ppm min 0 0 0 max 1 0 1 }", "`min` of a `HeightField` must be less");
 }
 
@@ -188,7 +188,7 @@ fn a_picture_multiplies_the_share_of_a_mix() {
 }
 
 #[test]
-fn a_grid_of_cells_needs_a_volume() {
+fn cell_grid_needs_a_volume() {
     let grid = |max: &str| {
         errors(
             &format!(
@@ -204,7 +204,7 @@ fn a_grid_of_cells_needs_a_volume() {
 }
 
 #[test]
-fn grids_that_cannot_be_made_are_refused() {
+fn invalid_grids_are_rejected() {
     let balls = "Sphere { center 0 0 0 radius 1 } ".repeat(1000);
     assert_eq!(errors(&format!("Group {{ {balls} }}"), AccelKind::Grid(Some([0, 1, 1]))).len(), 1);
     assert_eq!(errors(&format!("Group {{ {balls} }}"), AccelKind::Grid(Some([256, 256, 256]))).len(), 1);

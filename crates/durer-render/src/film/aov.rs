@@ -136,7 +136,7 @@ pub fn fill_from_last_hit(pixels: &mut [Color], hits: &[bool], width: usize) {
     }
 }
 
-/// All AOVs.
+/// Table of all AOVs, in the order of the help.
 pub static AOVS: &[Aov] = &[
     Aov {
         name: "depth",

@@ -39,7 +39,7 @@ fn compiled(change: impl FnOnce(&mut Scene, &mut Sphere, &mut PrincipledMaterial
 }
 
 #[test]
-fn invalid_values_of_scenes_are_refused() {
+fn invalid_values_of_scenes_are_rejected() {
     assert_eq!(compiled(|_, _, _| {}), [""; 0]);
     assert_eq!(compiled(|_, ball, _| ball.radius = -1.0), ["Sphere: radius -1 must be more than 0"]);
     assert_eq!(compiled(|_, ball, _| ball.radius = f32::NAN), ["Sphere: radius NaN must be finite"]);
@@ -73,7 +73,7 @@ fn refused(job: Job) -> String {
 }
 
 #[test]
-fn invalid_jobs_are_refused() {
+fn invalid_jobs_are_rejected() {
     let small = || Job { width: 8, height: 8, ..Job::default() };
     assert!(small().validate().is_ok());
     assert_eq!(refused(Job { width: 0, ..small() }), "the size 0 x 8 must be at least 1 x 1");

@@ -11,7 +11,7 @@ use std::sync::Arc;
 #[derive(Debug, thiserror::Error)]
 pub enum MergeError {
     /// No parts were given.
-    #[error("there are no parts to merge")]
+    #[error("give at least one part to merge")]
     NoParts,
     /// A part belongs to another picture than the first.
     #[error("`{name}` cannot be merged with `{first}`: {error}")]

@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn short_passes_are_joined_unless_they_decide_something() {
+    fn short_passes_are_joined_unless_they_make_decisions() {
         let of = |joins| Passes::new(ends(100), 0, joins, [0; 2]).collect::<Vec<_>>();
         assert_eq!(of(false), ends(100).collect::<Vec<_>>());
         // The passes do no work.
@@ -113,7 +113,7 @@ mod tests {
 
     /// Compares the estimate with the truth: the mean of n uniform numbers has variance 1 / (12 n).
     #[test]
-    fn the_error_is_that_of_the_mean() {
+    fn error_estimate_matches_the_error_of_the_mean() {
         let rect = Crop { left: 0, top: 0, width: 8, height: 8 };
         let mut film = Film::new(8, 8);
         let n = 64;

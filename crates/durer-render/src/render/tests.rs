@@ -73,7 +73,7 @@ fn one_ray(x: u32) -> Digest {
 }
 
 #[test]
-fn every_way_gives_one_film() {
+fn film_does_not_depend_on_how_it_is_rendered() {
     let world = world();
     for job in jobs() {
         let plain = all(&world, &job);
@@ -96,7 +96,7 @@ fn every_way_gives_one_film() {
 
 /// Samples are generated and shaded in batches, but explained and replayed one by one.
 #[test]
-fn a_film_is_the_sum_of_its_samples_taken_one_by_one() {
+fn film_equals_the_sum_of_single_samples() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("ball.obj"), include_str!("../../../../scenes/meshes/ball80-smooth.obj"))
         .unwrap();
@@ -174,7 +174,7 @@ fn a_film_is_the_sum_of_its_samples_taken_one_by_one() {
 }
 
 #[test]
-fn a_difference_is_found_and_named() {
+fn differences_are_found_and_described() {
     let world = world();
     let (a, b) = (all(&world, &small()), all(&world, &Job { seed: 1, ..small() }));
     assert!(compare(&a, &b).is_none(), "one ray through the centre uses no random numbers");
@@ -184,7 +184,7 @@ fn a_difference_is_found_and_named() {
 }
 
 #[test]
-fn a_crop_is_cut_from_the_whole_picture() {
+fn crop_equals_that_part_of_the_whole_picture() {
     let world = world();
     let crop = Crop { left: 9, top: 11, width: 13, height: 10 };
     let scale = crate::film::false_color::LightScale { low: 0.01, high: 2.0, logarithmic: true };
@@ -414,7 +414,7 @@ fn memory_is_estimated_before_it_is_allocated() {
 }
 
 #[test]
-fn samples_that_are_not_finite_are_named() {
+fn non_finite_samples_are_reported() {
     let mut world = world();
     world.edit().ambient = Vec3::new(f32::NAN, 0.0, 0.0);
     let part = all(&world, &Job { sampling: filtered(2), ..small() });
@@ -442,7 +442,7 @@ fn files_have_attributes_of_job_and_scene() {
 }
 
 #[test]
-fn a_picture_made_in_bands_is_the_same() {
+fn bands_give_the_same_picture() {
     let world = world();
     let crop = Some(Crop { left: 5, top: 3, width: 20, height: 24 });
     for job in [Job { sampling: filtered(3), ..small() }, Job { sampling: filtered(3), crop, ..small() }, small()] {
@@ -475,7 +475,7 @@ fn a_picture_made_in_bands_is_the_same() {
 }
 
 #[test]
-fn colours_written_row_by_row_are_the_file_of_their_picture() {
+fn writing_row_by_row_gives_the_same_file() {
     let fisheye = TEXT.replace("PerspectiveCamera", "FisheyeCamera").replace("angle 40", "angle 180");
     let crop = Some(Crop { left: 5, top: 3, width: 20, height: 24 });
     let tall = Job { width: 5, height: 200, ..Job::default() };
@@ -512,7 +512,7 @@ fn colours_written_row_by_row_are_the_file_of_their_picture() {
 }
 
 #[test]
-fn light_in_watts_is_shown_in_lumens() {
+fn light_in_watts_is_converted_to_lumens() {
     let mut world = world();
     let aovs = AOVS.iter().filter(|aov| aov.unit.is_some()).collect();
     let job = Job { aovs, method: Method::PATH, ..small() };

@@ -152,7 +152,7 @@ fn invalid_transforms_are_rejected() {
 }
 
 #[test]
-fn a_floor_in_a_coordinate_plane_is_left() {
+fn rays_leave_a_floor_in_a_coordinate_plane() {
     let mut random = Random(9);
     for round in 0..20_000 {
         let size = [1.0, 1000.0][round % 2];

@@ -16,8 +16,8 @@ pub struct Object {
     pub geometry: Geometry,
     /// Transform from object to world space; `None` for the identity.
     pub to_world: Option<Affine>,
-    /// The transforms around it as an official program multiplies them, the outermost first; empty
-    /// where nobody asks for its arithmetic. That of a flat one has no `to_world`.
+    /// Enclosing transforms as an official program multiplies them, outermost first; empty if its
+    /// arithmetic is not active. With a singular transform, `to_world` is `None`.
     pub matrices: Vec<Matrix>,
     /// Translation that moved the geometry to the origin of object space; [`Object::to_world`]
     /// moves it back.

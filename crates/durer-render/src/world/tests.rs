@@ -194,7 +194,7 @@ fn invalid_ray_hits_nothing() {
 }
 
 #[test]
-fn transforms_apply_from_the_last_written_to_the_first_and_keep_t() {
+fn transforms_apply_last_to_first_and_preserve_t() {
     let text = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }\n\
         Group { Transform { Translate 10 0 0 ZRotate 90 Scale 2 1 1
         Transform { Translate 1 0 0 Sphere { center 0 0 0 radius 1 } } } }";

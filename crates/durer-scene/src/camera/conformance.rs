@@ -115,7 +115,7 @@ fn rounding(ray: &Ray, t: f32) -> f64 {
 }
 
 #[test]
-fn points_come_back_from_the_world() {
+fn projection_inverts_rays() {
     let (mut checked, mut skipped, mut hopeless) = (0, 0, 0);
     all(1, |camera, random| {
         let (enough, before) = (checked + POINTS, (checked, skipped));
@@ -156,7 +156,7 @@ fn points_come_back_from_the_world() {
 }
 
 #[test]
-fn rays_pass_the_points_that_were_projected() {
+fn rays_pass_through_projected_points() {
     let mut checked = 0;
     all(2, |camera, random| {
         let frame = frame(camera);
@@ -185,7 +185,7 @@ fn rays_pass_the_points_that_were_projected() {
 }
 
 #[test]
-fn footprints_are_areas() {
+fn footprints_match_areas_by_differences() {
     let (mut checked, mut skipped) = (0, 0);
     all(3, |camera, random| {
         for _ in 0..POINTS / 10 {
@@ -219,7 +219,7 @@ fn footprints_are_areas() {
 }
 
 #[test]
-fn rays_side_by_side_are_those_one_by_one() {
+fn batched_rays_match_single_rays() {
     all(8, |camera, random| {
         for rules in [Aim::Own, Aim::ScreenPoint, Aim::Of2012, Aim::Of2016, Aim::Of2020]
             .map(|aim| CameraRules { aim, ..CameraRules::default() })

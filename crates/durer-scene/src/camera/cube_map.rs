@@ -1,4 +1,4 @@
-//! All directions on the six faces of a cube, as one picture.
+//! Cube map: every direction on the six faces of a cube, as one picture.
 //!
 //! `cross` has four faces in a row (left, front, right, back), with up above and down below the
 //! front, so every fold is an edge of the cube. `strip` has the faces in one row: right, left, up,

@@ -202,7 +202,7 @@ pub trait Projection {
     ///
     /// This is the Jacobian |(dX/dx × dX/dy) · dir| of X = origin + t dir with respect to the
     /// picture's point. If all rays meet in one eye, it is t² times the solid angle per area of the
-    /// picture; for parallel rays it is constant. Undefined if there is no ray.
+    /// picture; for parallel rays it is constant. Undefined without a ray.
     fn footprint(&self, frame: &CameraBasis, sample: &CameraSample, t: f32) -> f32;
 }
 

@@ -2,9 +2,9 @@
 //! and scanners.
 //!
 //! The column at the fraction u of the way is a fan of rays from e(u) = start + u (end - start):
-//! direction = forward + h up, |h| <= tan(angle / 2). There is no perspective along the way, only
-//! across it. The area across a ray grows linearly with distance: t |m·right| / |direction|² per du
-//! dh, m = end - start.
+//! direction = forward + h up, |h| <= tan(angle / 2). The picture has perspective across the way,
+//! but not along it. The area across a ray grows linearly with distance: t |m·right| / |direction|²
+//! per du dh, m = end - start.
 //!
 //! Source: Gupta, Hartley, *Linear Pushbroom Cameras*, PAMI 19(9), 1997.
 

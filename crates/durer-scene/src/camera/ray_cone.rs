@@ -37,7 +37,7 @@ mod tests {
     use crate::camera::{CameraRules, OrthographicCamera, PerspectiveCamera};
 
     #[test]
-    fn cones_widen_in_perspective_and_nowhere_else() {
+    fn ray_cones_widen_only_in_perspective() {
         let cone = |camera: Camera, side: f32| {
             let basis = CameraBasis::of(&camera, CameraRules::default());
             RayCone::new(&camera, &basis, side * side).unwrap()

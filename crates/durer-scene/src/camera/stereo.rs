@@ -1,7 +1,7 @@
 //! Two perspective cameras side by side: a stereo pair.
 //!
 //! `offAxis` shears both views so that they share one window at the convergence distance: objects
-//! there appear on the screen, nearer objects in front of it, and there is no vertical parallax.
+//! there appear on the screen, nearer objects in front of it, without vertical parallax.
 //! `toeIn` turns both cameras to one point there, as a toed-in camera rig does; the heights of
 //! their pictures differ towards the corners. `parallel` neither turns nor shears: all objects
 //! appear in front of the screen.

@@ -12,7 +12,7 @@ macro_rules! compats {
         pub enum Compat { $($(#[doc = $doc])+ $variant,)+ }
 
         impl Compat {
-            /// All compatibilities, with name and meaning.
+            /// Every compatibility, with name and meaning.
             pub const ALL: &'static [(Compat, &'static str, &'static str)] =
                 &[$((Compat::$variant, $name, concat!($($doc, "\n"),+)),)+];
         }

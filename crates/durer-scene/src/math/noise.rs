@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn permutation_is_a_permutation() {
+    fn table_is_a_permutation() {
         let mut sorted = PERMUTATION;
         sorted.sort_unstable();
         assert!(sorted.iter().enumerate().all(|(i, &p)| i == usize::from(p)));

@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn handles_of_another_builder_are_refused() {
+    fn handles_of_another_builder_are_rejected() {
         let mut other = Scene::builder();
         let mesh = other.mesh(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]);
         let material = other.material(PhongMaterial::default());

@@ -50,7 +50,7 @@ fn crossings(shape: &Primitive, o: DVec3, d: DVec3) -> Vec<(f64, bool)> {
 }
 
 #[test]
-fn the_first_crossing_in_the_open_interval_is_found() {
+fn first_crossing_in_the_open_interval_is_found() {
     let mut random = Random(1);
     let mut found = [0; 11];
     for round in 0..40_000 {
@@ -101,7 +101,7 @@ fn the_first_crossing_in_the_open_interval_is_found() {
 }
 
 #[test]
-fn a_crossing_at_either_end_of_the_interval_does_not_count() {
+fn crossing_at_an_end_of_the_interval_does_not_count() {
     let mut random = Random(2);
     for _ in 0..3_000 {
         for shape in samples(&mut random, 1.0, 2.0) {
@@ -116,7 +116,7 @@ fn a_crossing_at_either_end_of_the_interval_does_not_count() {
 }
 
 #[test]
-fn the_surface_is_on_the_shape_within_its_error_and_in_its_bounds() {
+fn surface_is_on_the_shape_within_its_error_and_bounds() {
     let mut random = Random(3);
     for round in 0..30_000 {
         let size = libm::powf(10.0, (round % 13) as f32 - 6.0);

@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_ball_of_cells_is_closed_and_has_the_volume_of_its_cells() {
+    fn sphere_of_cells_is_closed_and_has_their_volume() {
         let grid =
             VoxelGrid { min: Vec3::splat(-1.5), max: Vec3::new(1.5, 1.5, 3.0), num_cells: Vec3::new(3.0, 6.0, 9.0) };
         let balls =

@@ -62,8 +62,8 @@ fn a_file_outside_is_refused_at_the_line_that_names_it() {
     assert_eq!(
         found,
         [
-            "scene/scene.txt:5:25 error: cannot load the mesh: `../outside.obj` lies outside the scene's folder (a scene \
-          may only name files in or below its own folder, unless `--allow-outside` is given)"
+            "scene/scene.txt:5:25 error: the mesh cannot be read: `../outside.obj` lies outside the scene's folder (a scene \
+          may only name files in and below its own folder, unless `--allow-outside` is given)"
         ]
     );
     let (world, found) = made(&root, &LoadOptions { allow_outside: true, ..Default::default() });
@@ -79,7 +79,7 @@ fn a_missing_mesh_is_told_once_with_a_near_name() {
     assert_eq!(
         found,
         [
-            "scene/scene.txt:5:25 error: cannot load the mesh: there is no file `tir.obj` (did you mean `tri.obj`? Looked \
+            "scene/scene.txt:5:25 error: the mesh cannot be read: there is no file `tir.obj` (did you mean `tri.obj`? Looked \
           for scene/tir.obj)"
         ]
     );
@@ -100,7 +100,7 @@ fn what_is_wrong_in_a_mesh_is_told_there_and_in_the_scene() {
 #[test]
 fn folders_are_no_meshes() {
     let found = findings(&mesh("."));
-    assert_eq!(found, ["scene/scene.txt:5:25 error: cannot load the mesh: `.` is not a regular file"]);
+    assert_eq!(found, ["scene/scene.txt:5:25 error: the mesh cannot be read: `.` is not a regular file"]);
 }
 
 #[test]

@@ -21,7 +21,7 @@ pub struct StoredSample {
     pub color: Color,
 }
 
-/// All samples of a picture, with an equal number in each pixel.
+/// Samples of a picture, with an equal number in each pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StoredSamples {
     width: u32,

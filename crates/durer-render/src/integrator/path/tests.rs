@@ -82,7 +82,7 @@ fn shown(irradiance: f64) -> f64 {
 }
 
 #[test]
-fn a_closed_furnace_has_the_sum_of_a_geometric_series() {
+fn closed_furnace_sums_a_geometric_series() {
     // L = Le (1 - rho^n) / (1 - rho) with n scatterings and the emission itself counted.
     for form in ["Sphere { center 0 0 0 radius 2 }", "Box { min -2 -2 -2 max 2 2 2 }"] {
         let material = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 emissionLuminance 0.5 walls thin }";
@@ -317,7 +317,7 @@ fn several_directions_to_an_environment_have_the_mean_of_one() {
 }
 
 #[test]
-fn an_integrating_sphere_has_the_same_indirect_light_everywhere() {
+fn integrating_sphere_has_uniform_indirect_light() {
     // A point light of intensity I anywhere in a sphere of area S and albedo rho: E = I cos / d^2 +
     // 4 pi I / S rho / (1 - rho). A light of colour c gives an irradiance of pi c at distance 1.
     let world = scene(
@@ -363,7 +363,7 @@ fn objects_without_absorption_vanish_in_a_uniform_environment() {
 }
 
 #[test]
-fn an_absorbing_slab_dims_by_beer_and_fresnel() {
+fn absorbing_slab_follows_beer_and_fresnel() {
     // At normal incidence: T = (1 - F)^2 a / (1 - F^2 a^2) with a = exp(-sigma s); behind it is a
     // radiance of 1.
     let (f, a) = (0.04_f64, 0.3_f64);
@@ -409,7 +409,7 @@ fn many_lights_equal_their_sum() {
 }
 
 #[test]
-fn half_a_screen_casts_half_a_shadow() {
+fn partially_opaque_screen_casts_a_partial_shadow() {
     let world = scene(
         &format!("{MATTE} PrincipledMaterial {{ baseColor 0 0 0 opacity 0.25 }}"),
         "PointLight { position 0 4 0 color 1 1 1 attenuation 0 0 1 }",

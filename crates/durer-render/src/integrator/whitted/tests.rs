@@ -66,7 +66,7 @@ fn mirrored_directions_keep_the_angle() {
 }
 
 #[test]
-fn schlicks_share_is_r0_straight_on_and_one_at_grazing() {
+fn schlicks_reflectance_is_r0_at_normal_and_one_at_grazing_incidence() {
     let share = |zero: bool, cosine: f32, here: f32, there: f32| {
         let d = Vec3::new((1.0 - cosine * cosine).sqrt(), -cosine, 0.0);
         let before = if zero { 1.0 } else { here };
@@ -88,7 +88,7 @@ fn schlicks_share_is_r0_straight_on_and_one_at_grazing() {
 }
 
 #[test]
-fn two_facing_mirrors_make_a_geometric_series() {
+fn facing_mirrors_sum_a_geometric_series() {
     // Each wall has radiance 1 from ambient light and reflects one half.
     let hall = "Background { color 0 0 0 ambientLight 1 1 1 }
         Lights { DirectionalLight { direction 0 -1 0 color 0.001 0.001 0.001 } }
@@ -117,7 +117,7 @@ fn two_facing_mirrors_make_a_geometric_series() {
 }
 
 #[test]
-fn rays_of_many_levels_need_no_deep_stack() {
+fn deep_recursion_needs_no_deep_stack() {
     // A hall of two perfect mirrors, each of which has radiance 1.
     let hall = "Background { color 0 0 0 ambientLight 1 1 1 }
         Lights { DirectionalLight { direction 0 -1 0 color 0.001 0.001 0.001 } }
@@ -191,7 +191,7 @@ fn sphere_with_the_index_of_air_is_invisible() {
 }
 
 #[test]
-fn light_and_highlight_follow_the_cosine_of_their_model() {
+fn diffuse_light_and_highlight_follow_their_models() {
     let lit = |words: &str, dir: [f32; 3]| {
         let text = format!(
             "Background {{ color 0 0 0 ambientLight 0 0 0 }}
@@ -213,7 +213,7 @@ fn light_and_highlight_follow_the_cosine_of_their_model() {
 }
 
 #[test]
-fn coloured_glass_casts_coloured_shadows_if_asked() {
+fn coloured_glass_casts_coloured_shadows_if_enabled() {
     let text = "Lights { PointLight { position 0 5 0 color 1 1 1 } }
         Materials { Material { diffuseColor 1 1 1 } Material { transparentColor 0.5 1 0 } }
         Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 3 0 radius 1 } }";

@@ -8,7 +8,7 @@ use crate::render::explain::explain;
 use crate::render::{Sampling, Shard};
 
 #[test]
-fn students_quantiles_are_those_of_the_tables() {
+fn students_quantiles_match_tables() {
     for (freedom, quantile) in [(2.0, 2.920), (3.0, 2.353), (5.0, 2.015), (10.0, 1.812), (30.0, 1.697), (1e9, 1.645)] {
         assert!((student(freedom) / quantile - 1.0).abs() < 0.003, "{freedom}: {}", student(freedom));
     }

@@ -33,7 +33,7 @@ impl Explanation {
     /// Explains in sentences why that sample is so bright; empty if none stands out.
     pub fn firefly(&self) -> Vec<String> {
         let Some((number, share)) = self.outlier() else { return Vec::new() };
-        let mut said = vec![format!("sample {number} is {:.0} % of the pixel", 100.0 * share)];
+        let mut said = vec![format!("sample {number} alone is {:.0} % of the pixel", 100.0 * share)];
         said.extend(self.samples[number].light.iter().flat_map(cause));
         said.push(
             "more samples make such pixels rarer, not darker; `--clamp 10` limits them, and removes some light"

@@ -66,7 +66,7 @@ pub struct HitRules {
     pub octree: bool,
 }
 
-/// All objects of a world, in the form of an official program.
+/// Objects of a world, in the form of an official program.
 #[derive(Clone, Debug)]
 pub struct CourseHits {
     rules: HitRules,
@@ -85,7 +85,7 @@ struct Thing {
 /// Traversal order of the triangles of a mesh.
 #[derive(Debug)]
 enum Walk {
-    /// All triangles that a ray may hit; the order does not matter.
+    /// BVH of all triangles; their order does not matter.
     Boxes(Bvh),
     /// Triangles of the cells that the starter code's octree visits.
     Octree(Octree),

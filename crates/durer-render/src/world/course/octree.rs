@@ -126,7 +126,7 @@ impl Octree {
                 leave: [0, 1, 2].map(|axis| if is_upper[axis] { leave[axis] } else { middle[axis] }),
             };
             self.visit(children + (child ^ mirrored), mirrored, own, offer);
-            // Leave through the nearest exit plane; behind an outer plane there is no child.
+            // Leave through the nearest exit plane; nothing lies behind an outer plane.
             let axis = first_plane(own.leave);
             if is_upper[axis] {
                 return;

@@ -179,7 +179,7 @@ fn volume(solid: &scene::Object, random: &mut Random, rays: usize) -> (f64, f64)
 }
 
 #[test]
-fn volumes_are_those_of_closed_forms() {
+fn volumes_match_closed_forms() {
     use std::f64::consts::PI;
     let mut random = Random(22);
     let rod = |axis: Vec3, radius: f32| shape(Cylinder { base: -1.8 * axis, top: 1.8 * axis, radius });
@@ -235,7 +235,7 @@ fn assert_same(a: &scene::Object, b: &scene::Object, random: &mut Random) -> usi
 }
 
 #[test]
-fn laws_of_sets_hold_to_the_bit() {
+fn set_identities_hold_bit_for_bit() {
     use Operation::*;
     let mut random = Random(23);
     let mut part = || loop {
@@ -277,7 +277,7 @@ fn laws_of_sets_hold_to_the_bit() {
 }
 
 #[test]
-fn faces_that_coincide_leave_no_skin() {
+fn coincident_faces_leave_no_skin() {
     use Operation::*;
     let mut random = Random(25);
     let long = cuboid([0.0; 3], [0.3, 0.1, 0.1]);
@@ -328,7 +328,7 @@ fn faces_that_coincide_leave_no_skin() {
 }
 
 #[test]
-fn each_surface_has_the_material_of_its_part() {
+fn surfaces_have_the_material_of_their_part() {
     let text = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }\n\
         Materials { Material { } Material { } Material { } } Group {
         Difference { MaterialIndex 1 Box { min -1 -1 -1 max 1 1 1 }
@@ -517,7 +517,7 @@ fn rays_that_leave_a_solid_do_not_hit_it_at_their_start() {
 
 /// Coincident crossings, as many as parts: each is visited a few times, not once for each other.
 #[test]
-fn coincident_parts_do_not_cost_the_square_of_their_number() {
+fn coincident_parts_take_linear_time() {
     let count = 30_000;
     for (operation, there) in [(Operation::Merge, true), (Operation::Xor, false), (Operation::Intersection, true)] {
         let parts = vec![ball([0.0; 3], 1.0); count];

@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn all_roots_between_0_and_1_are_found_and_no_others() {
+    fn finds_exactly_the_roots_between_0_and_1() {
         let mut random = Random(1);
         for _ in 0..20_000 {
             let mut roots: [f64; 6] = std::array::from_fn(|_| f64::from(random.between(-1.5, 2.5)));
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn a_polynomial_without_roots_has_none_and_zero_has_none() {
+    fn polynomial_without_roots_and_zero_polynomial_give_none() {
         let mut found = 0;
         each([0.0; 7], &mut |_| found += 1);
         each([1.0, -0.1, 1.0, 1.0, 1.0, -0.1, 1.0], &mut |_| found += 1);

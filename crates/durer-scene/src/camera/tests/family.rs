@@ -77,7 +77,7 @@ fn pictures_cover_the_solid_angles_of_their_fields_of_view() {
 }
 
 #[test]
-fn directions_in_the_pictures_lie_where_the_maps_say() {
+fn directions_match_the_map_projections() {
     let fisheye = FisheyeCamera::default();
     close(dir(&fisheye, 0.0, 0.0), Vec3::NEG_Z);
     close(dir(&fisheye, 1.0, 0.0), Vec3::X);
@@ -119,7 +119,7 @@ fn directions_in_the_pictures_lie_where_the_maps_say() {
 }
 
 #[test]
-fn a_filter_that_reaches_over_a_seam_continues_the_face() {
+fn filter_across_a_seam_continues_the_face() {
     let cross = CubeMapCamera::default();
     // A pixel of the up face at its right edge, where the picture continues with black or with
     // another face.
@@ -138,7 +138,7 @@ fn a_filter_that_reaches_over_a_seam_continues_the_face() {
 }
 
 #[test]
-fn walls_that_share_an_edge_show_the_same_along_it() {
+fn walls_agree_along_their_common_edge() {
     // Left, front and right walls, 2 wide and 1.5 high each; off-centre eyes that are turned.
     let walls = vec![
         [-1.0, 0.0, 1.0, -1.0, 0.0, -1.0, -1.0, 1.5, 1.0],
@@ -183,7 +183,7 @@ fn walls_that_share_an_edge_show_the_same_along_it() {
 }
 
 #[test]
-fn a_path_along_a_straight_line_is_a_push_broom() {
+fn straight_path_equals_a_push_broom() {
     let way = Vec3::new(3.0, 0.5, -0.5);
     let push = PushBroomCamera { start: -way, end: way, angle: 50.0, aspect: 3.0, ..PushBroomCamera::default() };
     let row = |u: f32| {
@@ -200,7 +200,7 @@ fn a_path_along_a_straight_line_is_a_push_broom() {
 }
 
 #[test]
-fn a_closed_path_is_smooth_where_it_closes_and_sees_all_sides() {
+fn closed_path_is_smooth_and_sees_all_sides() {
     let row = |k: i32| {
         let angle = f64::from(k).to_radians() * 30.0;
         [4.0 * libm::sin(angle) as f32, 0.0, 4.0 * libm::cos(angle) as f32, 0.0, 0.0, 0.0]

@@ -11,7 +11,7 @@ use crate::math::random::Random;
 use glam::DVec2;
 
 #[test]
-fn points_fill_the_opening_evenly() {
+fn aperture_samples_are_uniform() {
     let mut random = Random(1);
     for blades in [0, 3, 4, 6, 9] {
         const COUNT: usize = 200_000;
@@ -39,7 +39,7 @@ fn points_fill_the_opening_evenly() {
 }
 
 #[test]
-fn all_rays_of_a_point_meet_in_the_plane_of_focus_and_nowhere_else() {
+fn rays_of_a_picture_point_meet_only_in_the_focus_plane() {
     let camera = ThinLensCamera {
         center: Vec3::Y,
         angle: 90.0,
@@ -68,7 +68,7 @@ fn all_rays_of_a_point_meet_in_the_plane_of_focus_and_nowhere_else() {
 }
 
 #[test]
-fn a_hole_blurs_far_points_to_its_own_size_and_near_ones_more() {
+fn pinhole_blurs_near_points_more_than_far_ones() {
     let camera = PinholeCamera { angle: 90.0, hole: 0.2, film_distance: 0.5, ..PinholeCamera::default() };
     let frame = CameraBasis::of(&camera, OURS);
     let (mut random, mut far, mut near) = (Random(3), 0f32, 0f32);
@@ -83,7 +83,7 @@ fn a_hole_blurs_far_points_to_its_own_size_and_near_ones_more() {
 }
 
 #[test]
-fn pairs_of_eyes_agree_where_their_views_converge() {
+fn stereo_views_agree_at_the_convergence_distance() {
     let camera = StereoCamera { angle: 60.0, separation: 0.3, convergence: 5.0, ..StereoCamera::default() };
     assert_eq!(camera.proportions(), Some(Vec2::new(2.0, 1.0)));
     let frame = CameraBasis::of(&camera, OURS);
@@ -118,7 +118,7 @@ fn photograph() -> ProjectiveCamera {
 }
 
 #[test]
-fn a_matrix_of_a_plain_camera_is_that_camera_at_any_scale() {
+fn projection_matrix_gives_the_camera_at_any_scale() {
     let angle = (2.0 * libm::atan(100.0 / 150.0)).to_degrees() as f32;
     let plain = PerspectiveCamera { center: Vec3::new(1.0, 2.0, 3.0), angle, ..PerspectiveCamera::default() };
     for scale in [1.0, -2.0, 1e-3] {
@@ -134,7 +134,7 @@ fn a_matrix_of_a_plain_camera_is_that_camera_at_any_scale() {
 }
 
 #[test]
-fn lenses_distort_as_the_formula_says_and_see_nothing_behind_a_fold() {
+fn distortion_matches_the_formula_and_ends_at_the_fold() {
     let frame = CameraBasis::of(&photograph(), OURS);
     let seen = |camera: &ProjectiveCamera, x: f32, y: f32| {
         let mut found = None;

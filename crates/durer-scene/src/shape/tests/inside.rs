@@ -20,7 +20,7 @@ fn line(shape: &Primitive, random: &mut Random, size: f32) -> Line {
 }
 
 #[test]
-fn all_crossings_are_where_a_line_goes_in_or_out() {
+fn crossings_are_exactly_entries_and_exits() {
     const STEPS: usize = 400;
     let mut random = Random(11);
     let mut found = [0; 11];

@@ -77,7 +77,7 @@ fn faces_around_a_vertex_are_weighted_by_area_or_equally() {
 }
 
 #[test]
-fn above_a_number_of_vertices_a_mesh_is_smooth() {
+fn meshes_with_many_vertices_are_smooth() {
     let count = ball(8).positions.len();
     let smooth = |limit: usize| {
         let mesh = Mesh::new(ball(8), MeshNormals::SmoothAbove(limit), true);
@@ -88,7 +88,7 @@ fn above_a_number_of_vertices_a_mesh_is_smooth() {
 }
 
 #[test]
-fn a_crease_keeps_a_cube_flat_and_makes_a_ball_smooth() {
+fn crease_angle_keeps_a_cube_flat_and_a_sphere_smooth() {
     let rule = MeshNormals::Crease(40.0);
     let mesh = Mesh::new(cube(), rule, true);
     for part in 0..12 {
@@ -168,7 +168,7 @@ fn loosened_triangles_share_their_vertices() {
 }
 
 #[test]
-fn a_files_normals_and_coordinates_are_interpolated() {
+fn normals_and_coordinates_of_files_are_interpolated() {
     let mut data = MeshData {
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
         uvs: vec![Vec2::ZERO, Vec2::new(2.0, 0.0), Vec2::new(0.0, 3.0)],

@@ -41,7 +41,7 @@ fn assert_few_differ(name: &str, pixels: &[Color], expected: &[[u8; 3]]) {
 }
 
 #[test]
-fn filter_diagrams_are_the_official_ones() {
+fn filter_diagrams_match_the_official_ones() {
     use CourseFilter::{Box, Gaussian, Tent};
     for (name, size, zoom, kernel) in [
         ("filter7_01a_low_res", 12, 15, Box { radius: 0.5 }),
@@ -85,7 +85,7 @@ fn course_samples(size: u32, n: u32) -> StoredSamples {
 }
 
 #[test]
-fn sample_diagrams_are_the_official_ones() {
+fn sample_diagrams_match_the_official_ones() {
     for (name, size, zoom, n) in
         [("samples7_01b", 9, 20, 4), ("samples7_01b_low_res", 12, 15, 9), ("samples7_01e", 9, 20, 9)]
     {
@@ -95,7 +95,7 @@ fn sample_diagrams_are_the_official_ones() {
 }
 
 #[test]
-fn filtered_pictures_are_the_official_ones() {
+fn filtered_pictures_match_the_official_ones() {
     let samples = course_samples(12, 9);
     for (name, filter) in [
         ("output7_01d_low_res", CourseFilter::Box { radius: 0.5 }),
@@ -126,7 +126,7 @@ fn chessboard(p: DVec2) -> Color {
 }
 
 #[test]
-fn a_filtered_chessboard_is_the_official_one() {
+fn filtered_chessboard_matches_the_official_one() {
     let samples = StoredSamples::take(180, 180, 16, |x, y, s| {
         let position = Sampler::Uniform.pixel_position(0, x, y, s, 16);
         let in_picture = (DVec2::new(x.into(), y.into()) + position.as_dvec2()) / 90.0 - 1.0;

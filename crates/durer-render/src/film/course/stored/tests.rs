@@ -37,7 +37,7 @@ fn part_equals_that_of_the_whole_picture() {
 }
 
 #[test]
-fn one_colour_stays_that_colour() {
+fn constant_colour_is_preserved() {
     let color = Vec3::new(0.1, 0.7, 12.3);
     let samples = random_samples(7, |_, _, _| color);
     for filter in FILTERS {

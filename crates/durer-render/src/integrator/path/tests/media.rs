@@ -91,7 +91,7 @@ fn spectral_rendering_keeps_grey_and_approximates_colours() {
 }
 
 #[test]
-fn glass_spreads_colours_by_its_abbe_number() {
+fn glass_disperses_by_its_abbe_number() {
     let material = durer_scene::material::PrincipledMaterial {
         transmission_weight: 1.0,
         transmission_dispersion_scale: 0.5,

@@ -32,7 +32,7 @@ fn products_and_shear_removal_match_double_precision() {
 }
 
 #[test]
-fn both_inverses_undo_a_matrix() {
+fn inverse_of_both_libraries_undoes_the_matrix() {
     let mut random = Random(60);
     for _ in 0..500 {
         let matrix = Matrix::of(&random_ops(&mut random), MatrixRules::default(), Vectors::Vecmath);
@@ -62,7 +62,7 @@ fn singular_matrix_is_detected_and_tiny_one_is_skipped() {
 }
 
 #[test]
-fn the_sign_of_a_zero_is_that_of_each_library() {
+fn sign_of_zero_matches_each_library() {
     let moved = Matrix::of(&[MatrixOp::Translate(Vec3::ONE)], MatrixRules::default(), Vectors::Vecmath);
     let inverse = moved.inverse(Vectors::Vecmath);
     assert!(inverse.vector(Vec3::new(-0.5, 0.9, -0.0)).z.is_sign_positive());

@@ -27,7 +27,7 @@ fn goes_through(ray: &Ray, b: &Aabb) -> bool {
 }
 
 #[test]
-fn a_ray_visits_every_box_that_it_goes_through() {
+fn ray_visits_every_box_on_its_way() {
     let mut random = Random(7);
     for count in [1, 7, 8, 200, 3000] {
         let boxes = boxes(count, &mut random);
@@ -45,7 +45,7 @@ fn a_ray_visits_every_box_that_it_goes_through() {
 }
 
 #[test]
-fn a_ray_along_an_axis_loses_the_far_half_of_divided_cells() {
+fn axis_parallel_ray_loses_the_far_half_of_divided_cells() {
     // Eight small boxes at the corners of a cube, each twice, so that the root is divided.
     let at = |i: u32| Vec3::from_array([4, 2, 1].map(|bit| if i & bit != 0 { 1.0 } else { -1.0 }));
     let small = |i: u32| Aabb { min: at(i) - 0.1, max: at(i) + 0.1 };

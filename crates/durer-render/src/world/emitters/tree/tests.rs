@@ -25,7 +25,7 @@ fn all_ways() -> Bounds {
 }
 
 #[test]
-fn probabilities_are_those_of_sampling_and_sum_to_one() {
+fn probabilities_match_sampling_and_sum_to_one() {
     let mut random = Random(5);
     for (count, alike) in [(1, false), (2, false), (3, false), (17, false), (400, false), (400, true)] {
         let mut all = lights(&mut random, count);
