@@ -163,7 +163,7 @@ impl Field {
     }
 
     /// Returns the value that official programs use if the written one breaks the rule, for an
-    /// object's keyword: see [`Compat::AnyValues`]. `None` if they draw nothing sensible either.
+    /// object's keyword: see [`Compat::AnyValues`]. `None` if they draw nothing sensible with it.
     ///
     /// [`Compat::AnyValues`]: crate::dialect::Compat::AnyValues
     pub fn drawn_anyway(&self, keyword: &str, value: &Value) -> Option<Value> {

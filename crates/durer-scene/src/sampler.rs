@@ -206,7 +206,7 @@ impl Stream {
     }
 }
 
-/// The least number from 1 to 65535 whose square is at least `samples`.
+/// Smallest integer from 1 to 65535 whose square is at least `samples`.
 fn grid_side(samples: u32) -> u32 {
     let root = samples.isqrt();
     let up = if root * root < samples { root + 1 } else { root };

@@ -80,7 +80,7 @@ impl std::fmt::Debug for Digest {
 #[derive(Debug, thiserror::Error)]
 pub enum SourceError {
     /// The file is in none of the searched places.
-    #[error("there is no file `{name}`")]
+    #[error("there is no file `{name}`")] // prose: keep
     Missing {
         /// Requested name.
         name: String,
@@ -122,7 +122,7 @@ pub enum SourceError {
 }
 
 impl SourceError {
-    /// Help text: a similar name, or what to do.
+    /// Help text: a similar name, or the option to use.
     pub fn help(&self) -> Option<String> {
         match self {
             SourceError::Missing { near: Some(near), .. } => Some(format!("did you mean `{near}`?")),
@@ -220,7 +220,7 @@ pub trait AssetSource: std::fmt::Debug + Sync {
     ///
     /// # Errors
     ///
-    /// Those of [`AssetSource::read`].
+    /// See [`AssetSource::read`].
     fn read_user_file(&self, path: &Path) -> Result<Arc<[u8]>, SourceError> {
         self.read(&path.to_string_lossy())
     }

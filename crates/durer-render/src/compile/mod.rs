@@ -277,7 +277,7 @@ fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Res
         let [x, y, z] = counts;
         let most = Grid::MAX_CELLS;
         let message = format!("cannot build a grid of {x} x {y} x {z} cells");
-        let help = format!("it must have 1 to {most} cells, and large objects must not lie in too many of them");
+        let help = format!("use 1 to {most} cells; large objects must not overlap too many of them");
         Box::new(Diagnostic::error(message).help(help))
     })?;
     Ok(Accel::Grid { grid, parts })
@@ -304,8 +304,8 @@ fn check_sky(scene: &Scene, diagnostics: &mut Diagnostics) {
     let any = standard || sun || picture;
     for (word, given, has_use, wanted) in [
         ("zenithLuminance", sky.zenith_luminance.is_some(), standard, "`cieSky`"),
-        ("turbidity", sky.turbidity.is_some(), clear, "clear sky, which a sun without `cieSky` has"),
-        ("groundReflectance", sky.ground_reflectance.is_some(), standard || sun, "sun and no `cieSky`"),
+        ("turbidity", sky.turbidity.is_some(), clear, "clear sky (a sun without `cieSky`)"),
+        ("groundReflectance", sky.ground_reflectance.is_some(), standard || sun, "sun or `cieSky`"),
         ("environmentRotation", sky.environment_rotation.is_some(), any, "`environment`, sun or `cieSky`"),
         ("environmentScale", sky.environment_scale.is_some(), any, "`environment`, sun or `cieSky`"),
     ] {
@@ -319,7 +319,7 @@ fn check_sky(scene: &Scene, diagnostics: &mut Diagnostics) {
 fn check_camera(scene: &Scene, pose: durer_scene::camera::Pose, diagnostics: &mut Diagnostics) {
     let parallel = pose.direction.as_dvec3().normalize_or_zero().cross(pose.up.as_dvec3().normalize_or_zero()).length();
     if parallel < 1e-6 {
-        let message = "the camera's `up` is parallel to its `direction`, so which way is up is arbitrary";
+        let message = "the camera's `up` is parallel to its `direction`, so the picture's rotation is arbitrary";
         let warning = Diagnostic::warning(message).code("up-parallel").at(scene.camera_span);
         diagnostics.push(warning.help("choose another `up`"));
     }

@@ -70,7 +70,7 @@ pub(super) fn count(samples: u32, target: u32, end: u32) -> u32 {
 /// Returns the reason why a job cannot be sampled adaptively, if there is one.
 pub(super) fn refusal(job: &Job, is_whole: bool) -> Option<String> {
     let is_spread = match job.sampling {
-        // Too few samples reject `Center` below.
+        // The number of samples rejects `Center` below.
         Sampling::Center | Sampling::Filtered { .. } => true,
         Sampling::Course2004 { sampler, filter: None, .. } => matches!(sampler, Sampler::Sobol | Sampler::Random),
         _ => false,

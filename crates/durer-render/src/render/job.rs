@@ -86,7 +86,7 @@ pub struct Job {
     pub seed: u64,
     /// Sampling of the colour picture.
     pub sampling: Sampling,
-    /// Noise threshold: sampling stops where the estimated error is below, see [`passes::error`].
+    /// Noise threshold: a block stops when its estimated error is below it, see [`passes::error`].
     /// `None`: never.
     pub noise: Option<f32>,
     /// Adaptive sampling: the number of samples is an average; noisier pixels get more, as the

@@ -34,7 +34,7 @@ pub enum MergeError {
         what: String,
     },
     /// Some work is in no part.
-    #[error("the parts are incomplete:\n{0}")]
+    #[error("some work is missing:\n{0}")]
     Missing(String),
     /// The merged picture would be too large.
     #[error(transparent)]

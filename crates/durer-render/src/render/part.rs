@@ -64,7 +64,8 @@ impl BlockSamples {
         self.targets.as_ref().map_or(end, |targets| count(job.sampling.samples(), targets[pixel], end))
     }
 
-    /// Returns the number of samples of all its pixels then, without those before `from`.
+    /// Returns the number of samples of all its pixels when the average is `end`, without those
+    /// before `from`.
     pub(super) fn total(&self, job: &Job, pixels: u64, end: u32) -> u64 {
         match &self.targets {
             None => pixels * u64::from(end - self.from),

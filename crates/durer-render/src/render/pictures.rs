@@ -91,7 +91,7 @@ impl PartialRender {
     /// never in memory. `look` is called with all of them, some rows at a time.
     ///
     /// # Errors
-    /// Those of the file, and [`BandsError::Image`] for formats that need all rows at once.
+    /// Errors of the file, and [`BandsError::Image`] for formats that need all rows at once.
     pub fn write_colors(
         &self,
         format: &Format,

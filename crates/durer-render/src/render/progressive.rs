@@ -39,7 +39,7 @@ impl ProgressiveRender {
     ///
     /// # Errors
     ///
-    /// Those of [`PartialRender::new`].
+    /// See [`PartialRender::new`].
     pub fn new(world: &World, job: &Job) -> Result<Self, RenderError> {
         let part = PartialRender::new(world, job, Shard::WHOLE)?;
         Ok(ProgressiveRender { part, ends: Box::new(passes_of(job, Shard::WHOLE)), stopped: None, is_over: false })

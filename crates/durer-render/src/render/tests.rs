@@ -321,7 +321,7 @@ fn only_the_same_work_is_resumed() {
     assert!(matches!(other(&world, &more, Shard::WHOLE), Err(PartError::OtherJob(why)) if why.contains("sampling")));
     let half = Shard { index: 1, count: 2, by: ShardBy::Tiles };
     assert!(matches!(other(&world, &job, half), Err(PartError::OtherJob(why)) if why.contains("1/2")));
-    // Another version writes another number at this place.
+    // Another version has a different character at this position.
     let mut bytes = part.write();
     let version = env!("CARGO_PKG_VERSION").len();
     bytes[9 + version] = b'x';

@@ -6,7 +6,8 @@
 //! - `equidistant`: f = θ: equal angles are equal lengths along the radius;
 //! - `equisolid`: f = 2 sin(θ/2): equal solid angles are equal areas;
 //! - `stereographic`: f = 2 tan(θ/2): small circles stay circles;
-//! - `orthographic`: f = sin θ: the orthographic projection of the hemisphere; area is irradiance.
+//! - `orthographic`: f = sin θ: parallel projection of the hemisphere; equal areas of a uniform sky
+//!   light a horizontal surface equally.
 //!
 //! The solid angle per area is sin θ F² / (f f'), with F = f(angle / 2).
 //!

@@ -99,7 +99,7 @@ impl Mesh {
         }
     }
 
-    /// Returns the mesh with normals computed by `rule`, whatever its normals are.
+    /// Returns the mesh with normals computed by `rule`, replacing its normals.
     pub fn with_normals(&self, rule: MeshNormals) -> Mesh {
         let mesh = match &self.form {
             Form::Lists(data) => Mesh::new(data.clone(), rule, false),

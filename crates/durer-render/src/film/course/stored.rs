@@ -70,7 +70,7 @@ impl StoredSamples {
     /// pixels within the filter's support, inside the picture.
     ///
     /// If all weights are zero (a filter narrower than the gaps between samples), a pixel is the
-    /// mean of its own samples.
+    /// mean of the samples within it.
     pub fn reconstruct(&self, filter: CourseFilter) -> Vec<Color> {
         let Ok(pixels) = self.try_reconstruct(filter, (0, 0), self.size(), || Ok::<_, Infallible>(()));
         pixels

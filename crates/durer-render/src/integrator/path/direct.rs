@@ -1,8 +1,8 @@
 //! Light sampling: a point on a light, its MIS weight, and the shadow ray.
 //!
 //! Lights are found by sampling points on them and by the directions that BSDFs sample; the power
-//! heuristic weighs what both can find. Source: Veach, *Robust Monte Carlo Methods for Light
-//! Transport Simulation*, 1997, chapter 9.
+//! heuristic weights the lights that both can find. Source: Veach, *Robust Monte Carlo Methods for
+//! Light Transport Simulation*, 1997, chapter 9.
 
 use super::Path;
 use super::radiance::{Contribution, Output};

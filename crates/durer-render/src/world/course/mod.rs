@@ -60,7 +60,8 @@ pub struct HitRules {
     pub tied_triangles: bool,
     /// True if a plane is also hit at the very start of a ray.
     pub closed_planes: bool,
-    /// True if a sphere with NaN crossings is hit at 10000, as in the starter code of 2016.
+    /// True if a sphere is hit at 10000 when its crossings are NaN or one is exactly at the ray's
+    /// start, as in the starter code of 2016.
     pub far_spheres: bool,
     /// True to traverse meshes by an octree that loses the far half of cells.
     pub octree: bool,

@@ -192,8 +192,8 @@ fn volumes_match_closed_forms() {
     let half = shape(Plane { normal: Vec3::X, offset: 0.5 });
     use Operation::*;
     for (name, solid, expected) in [
-        ("two rods crossing: Archimedes, Steinmetz", join(Intersection, &[&x, &y]), 16.0 / 3.0),
-        ("three of them", join(Intersection, &[&x, &y, &z]), 8.0 * (2.0 - 2f64.sqrt())),
+        ("two crossing rods (Archimedes, Steinmetz)", join(Intersection, &[&x, &y]), 16.0 / 3.0),
+        ("three crossing rods", join(Intersection, &[&x, &y, &z]), 8.0 * (2.0 - 2f64.sqrt())),
         ("a cube without its ball", join(Difference, &[&cube, &unit]), 8.0 - 4.0 * PI / 3.0),
         ("a lens of two balls", join(Intersection, &[&unit, &ball([1.0, 0.0, 0.0], 1.0)]), 2.0 * cap(0.5)),
         ("two balls", join(Merge, &[&unit, &ball([1.0, 0.0, 0.0], 1.0)]), 8.0 * PI / 3.0 - 2.0 * cap(0.5)),
