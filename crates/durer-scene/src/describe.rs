@@ -83,7 +83,7 @@ pub enum Rule {
     From(f32, f32),
     /// Greater than 0 and at most this.
     UpTo(f32),
-    /// From 0 to 1.
+    /// Number from 0 to 1.
     Share,
     /// Integer, at most this.
     AtMost(u32),
@@ -361,9 +361,9 @@ macro_rules! described {
 #[allow(non_upper_case_globals)]
 #[doc(hidden)]
 pub mod presence {
-    /// Every scene must set it.
+    /// Every scene must set the field.
     pub const required: bool = true;
-    /// It has a default.
+    /// The field has a default.
     pub const optional: bool = false;
 }
 

@@ -140,7 +140,8 @@ pub enum Secondary {
     Specular,
     /// Both rays, weighted by `specularColor` and split by Fresnel if `refractionIndex` is given.
     SpecularFresnel,
-    /// By the words that are present: `reflectiveColor`, `transparentColor`, `refractionIndex`.
+    /// Selected by the words that are present: `reflectiveColor`, `transparentColor`,
+    /// `refractionIndex`.
     ByKeyword,
 }
 
@@ -169,7 +170,7 @@ pub enum PathBase {
     Current,
     /// The directory of the scene file.
     SceneFile,
-    /// This folder below the current directory.
+    /// Folder below the current directory.
     Assets(&'static str),
 }
 

@@ -96,7 +96,7 @@ pub enum Value {
     Sums(fn(&Sums) -> Vec3),
 }
 
-/// One kind of picture.
+/// Description of an AOV.
 #[derive(Debug)]
 pub struct Aov {
     /// Name on the command line and in files.

@@ -40,7 +40,7 @@ impl Default for Passage {
 pub struct Body {
     /// Index of the object.
     pub object: u32,
-    /// Its index of refraction.
+    /// Index of refraction.
     pub ior: f32,
     /// Half the surface area of its bounds; `None` for an open surface, which has no inside.
     pub size: Option<f32>,

@@ -176,7 +176,7 @@ fn rays_pass_through_projected_points() {
                 let off = f64::from(ray.at(t).distance(world));
                 let moved = 1e-6 + f64::from(point.distance(sample.point));
                 assert!(off <= rounding(&ray, t) + moved * most, "{off}: {camera:?} {sample:?} {world}");
-                assert!(t >= 0.0 || ray.t_min < 0.0, "{camera:?} sees {world} behind itself");
+                assert!(t >= 0.0 || ray.t_min < 0.0, "{camera:?} sees {world}, which is behind it");
                 checked += 1;
             }
         }

@@ -90,8 +90,8 @@ impl Central for OmnimaxCamera {
         let outside = |place: Vec3| place.length() >= 0.99;
         match (outside(self.projector), outside(self.viewer)) {
             (false, false) => Ok(()),
-            (true, _) => Err("the projector must be inside the dome: less than 0.99 from its middle".into()),
-            _ => Err("the viewer must be inside the dome: less than 0.99 from its middle".into()),
+            (true, _) => Err("the projector must be inside the dome: less than 0.99 from its centre".into()),
+            _ => Err("the viewer must be inside the dome: less than 0.99 from its centre".into()),
         }
     }
 

@@ -184,7 +184,7 @@ impl Projection for ProjectiveCamera {
         // Relative to orthogonal rows of these lengths.
         let singular = volume <= 1e-9 * a.length() * b.length() * c.length() || !self.pose().center.is_finite();
         match singular {
-            true => Err("the left three columns of `matrix` are singular: such a camera has no eye".into()),
+            true => Err("the left three columns of `matrix` are singular, so the camera has no eye".into()),
             false => Ok(()),
         }
     }

@@ -281,7 +281,7 @@ pub enum Material {
 /// A list of objects.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Group {
-    /// In file order.
+    /// Objects in file order.
     pub objects: Vec<Object>,
 }
 
@@ -312,7 +312,7 @@ impl Object {
 /// Kinds of objects.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Node {
-    /// Several objects.
+    /// Group of objects.
     Group(Group),
     /// An object transformed by M = M1 M2 ...
     Transform(Vec<MatrixOp>, Box<Object>),

@@ -214,8 +214,8 @@ impl<'w> Path<'w> {
         Some(self.world.closest_along(&mut stack.active.ray, tally))
     }
 
-    /// One bounce: flies to the next vertex, adds the light found there, and turns the active state
-    /// into that of the next ray. Returns false when the active path has ended.
+    /// Runs one bounce: flies to the next vertex, adds the light found there, and turns the active
+    /// state into that of the next ray. Returns false when the active path has ended.
     fn bounce<T: TraceListener>(
         &self,
         hit: Option<Hit>,

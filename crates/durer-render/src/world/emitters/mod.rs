@@ -22,7 +22,7 @@ const MANY: usize = 10_000;
 /// An emissive part of an object that can be sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AreaLight {
-    /// Its shape.
+    /// Shape of the part.
     pub form: EmitterShape,
     /// Unit normal; zero for curved shapes.
     pub normal: Vec3,
