@@ -31,7 +31,6 @@ impl Diagram {
 ///
 /// The course's `-render_samples`: `width * zoom` columns. A `zoom` of 0 counts as 1; the caller
 /// limits the size.
-/// size.
 pub fn samples(samples: &StoredSamples, zoom: u32) -> Diagram {
     let zoom = zoom.max(1);
     let (width, height) = samples.size();
@@ -57,7 +56,6 @@ pub fn samples(samples: &StoredSamples, zoom: u32) -> Diagram {
 ///
 /// The course's `-render_filter`: `width * zoom + 1` columns. A `zoom` of 0 counts as 1; the caller
 /// limits the size.
-/// size.
 pub fn filter(width: u32, height: u32, zoom: u32, filter: CourseFilter) -> Diagram {
     weights(width, height, zoom, filter.support(), |offset| filter.weight(offset))
 }
