@@ -113,7 +113,7 @@ const ADDITIONS: &[Addition] = &[
         file: "durer-render/src/film/aov/heights.rs",
         content: include_str!("additions/heights.rs"),
         words: &[
-            (AOVS, "/// All kinds of picture beside colour.", "mod heights;\n\n"),
+            (AOVS, "/// Table of all AOVs, in the order of the help.", "mod heights;\n\n"),
             (AOVS, "    Aov {\n        name: \"normals\"", "    heights::AOV,\n"),
         ],
     },

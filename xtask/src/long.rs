@@ -13,7 +13,7 @@ const TESTS: [(&str, &str, u32); 4] = [
     // 10^8 rays.
     ("durer-bvh", "triangles::tests::a_closed_mesh_is_crossed_evenly_from_outside_and_oddly_from_inside", 2_100),
     // 10^7 rays from each shape.
-    ("durer", "shape::tests::leaving::no_ray_meets_the_surface_that_it_leaves", 100),
+    ("durer", "shape::tests::leaving::rays_do_not_hit_the_surface_that_they_leave", 100),
 ];
 
 pub fn run(arguments: &[String]) -> Result<ExitCode> {

@@ -44,13 +44,13 @@ fn samplers_of_the_course_are_explained_with_their_neighbours() {
     let place = Place::new();
     let ran = |options: &str| place.gives(0, &format!("explain scene.txt --pixel 20,13 {options} {SMALL}")).out;
     let text = ran("--sampler jittered --samples 4 --filter gaussian");
-    assert!(text.contains("the mean of 36 samples by weight, also those of pixels around; "), "{text}");
+    assert!(text.contains("weighted mean of 36 samples, including samples of neighbouring pixels; "), "{text}");
     assert!(text.contains("(number 3 of pixel 21,14) at 21."), "{text}");
     // Only a count is printed for surfaces that are too far away.
     let text = ran("--sampler uniform --samples 4 --filter tent --filter-radius 0.9");
-    assert!(text.contains(" samples more have no weight here"), "{text}");
+    assert!(text.contains(" more samples have no weight here"), "{text}");
     let text = ran("--jitter --blur");
-    assert!(text.contains("the mean of 49 samples by weight: sub-pixels, blurred"), "{text}");
+    assert!(text.contains("weighted mean of 49 samples: sub-pixels, blurred"), "{text}");
     assert!(text.contains("hits Sphere of line 8"), "{text}");
     assert_eq!(ran("--sampler random --samples 5").matches("  sample ").count(), 5);
 }
@@ -61,7 +61,7 @@ fn the_text_names_things_by_their_place_in_the_file() {
     let ran = place.gives(0, &format!("explain scene.txt --pixel 20,13 {SMALL}"));
     for wanted in [
         "pixel 20,13 = (",
-        "the mean of 16 samples",
+        "weighted mean of 16 samples",
         "hits Sphere of line 8 at t = ",
         "material 0 of line 5",
         "DirectionalLight of line 2: (sum below) · (0.9, 0.9, 0.8)",

@@ -199,7 +199,7 @@ fn options_of_light_that_make_no_sense_are_refused_and_noise_is_taken_out_beside
     }
     let explain = "explain scene.txt --pixel 3,3 --size 8x8 --samples 2 --color spectral";
     let told = place.gives(0, explain).out;
-    assert!(told.contains(" nm; the eye makes of it") && told.contains("red: ("), "{told}");
+    assert!(told.contains(" nm; converted to RGB") && told.contains("red: ("), "{told}");
     let told: serde_json::Value = serde_json::from_str(&place.gives(0, &format!("{explain} --json")).out).unwrap();
     let light = &told["pixel"]["samples"][0]["light"];
     let (value, observer) = (light["value"].as_array().unwrap(), light["waves"]["observer"].as_array().unwrap());
@@ -273,16 +273,16 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {thin
     for (base, lamp, sky, words) in [
         ("baseSpectrum paints.csv:blue", "", "", "there are grey, red"),
         ("baseSpectrum none.csv", "", "", "none.csv"),
-        ("baseSpectrum lamp.csv", "", "", "shares go from 0 to 1"),
-        ("", "emissionSpectrum warm", "", "known are A, D50"),
+        ("baseSpectrum lamp.csv", "", "", "must be from 0 to 1"),
+        ("", "emissionSpectrum warm", "", "use A, D50"),
         ("", "", "cieSky 12", "write `sun x y z`"),
         ("", "", "cieSky 17", "from 1 to 16"),
-        ("", "", "sunAltitude 30", "beside `sunAltitude` there is no `sunAzimuth`"),
+        ("", "", "sunAltitude 30", "`sunAltitude` needs `sunAzimuth`"),
         ("", "", "sunAltitude 95 sunAzimuth 0", "must be from -90 to 90"),
-        ("", "", "sun 0 1 0 date 2026 6 21", "said twice, by `sun` and by `date`"),
-        ("", "", "timeZone 2", "there is no `latitude`"),
-        ("", "", "latitude 60 longitude 25 date 2026 2 30 time 12 0 0", "no such `date`"),
-        ("", "", "latitude 60 longitude 25 date 2026 2 3 time 12 70 0", "no such `time`"),
+        ("", "", "sun 0 1 0 date 2026 6 21", "given twice, by `sun` and by `date`"),
+        ("", "", "timeZone 2", "needs `latitude`"),
+        ("", "", "latitude 60 longitude 25 date 2026 2 30 time 12 0 0", "`date` does not exist"),
+        ("", "", "latitude 60 longitude 25 date 2026 2 3 time 12 70 0", "`time` does not exist"),
         ("", "", "latitude 60 longitude 25 date 2026 2.5 3 time 12 0 0", "must be whole numbers"),
     ] {
         write(base, lamp, sky);
@@ -472,7 +472,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         ("groundReflectance 0.3".into(), "`groundReflectance` has no effect"),
         ("environmentRotation 30".into(), "`environmentRotation` has no effect"),
         ("environmentScale 2 2 2".into(), "`environmentScale` has no effect"),
-        ("environment black.ppm".into(), "the picture `black.ppm` around the scene is black"),
+        ("environment black.ppm".into(), "the environment `black.ppm` is black"),
     ] {
         let said = told(&format!("Background {{ {sky} }}"));
         assert!(said.contains(words) && said.contains("s.txt:2:"), "{sky}: {said}");

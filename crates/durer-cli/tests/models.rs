@@ -105,7 +105,7 @@ fn things_of_models_are_told_once_by_their_names() {
     place.put("a.obj", "ply\nformat ascii 1.0\n");
     place.refused(2, "render a.obj -o a.png", &["a.obj:1:1", "`a.obj` is PLY", "`a.ply`"]);
     place.put("a.txt", "Lights { } Group { TriangleMesh { obj_file a.obj } }\nPerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }");
-    place.refused(2, "render a.txt -o a.png", &["a.obj:1:1", "`a.obj` is PLY", "asked for here"]);
+    place.refused(2, "render a.txt -o a.png", &["a.obj:1:1", "`a.obj` is PLY", "named here"]);
 }
 
 const RAD: &str = "void plastic grey 0 0 5 .5 .5 .5 0 0\nvoid light lamp 0 0 3 9 9 9\ngrey polygon floor 0 0 12 -4 -4 0 4 -4 0 4 4 0 -4 4 0\n\
@@ -226,7 +226,7 @@ fn an_environment_lights_a_model() {
     // A black environment is legal, but reported.
     place.put("black.pfm", b"PF\n1 1\n-1\n\0\0\0\0\0\0\0\0\0\0\0\0".as_slice());
     let dark = place.gives(0, &format!("render a.stl -o dark.pfm {SMALL} --environment black.pfm --integrator path"));
-    assert!(dark.err.contains("around the scene is black"), "{}", dark.err);
+    assert!(dark.err.contains("is black: it emits no light"), "{}", dark.err);
     assert!(place.bytes("dark.pfm").iter().rev().take(48).all(|&byte| byte == 0));
     place.refused(2, "render a.stl -o a.png --environment none.hdr", &["none.hdr"]);
     place.refused(2, "render a.stl -o a.png --environment scene.txt", &["scene.txt"]);

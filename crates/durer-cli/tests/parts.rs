@@ -38,8 +38,8 @@ fn shards_merge_to_the_bytes_of_one_run() {
     place.refused(2, "merge 1.part other.part 3.part -o m.exr", &["other.part", "`seed` is 7"]);
     let bytes = place.bytes("2.part");
     place.put("torn.part", &bytes[..bytes.len() / 2]);
-    place.refused(2, "merge 1.part torn.part 3.part -o m.exr", &["torn.part", "torn or damaged"]);
-    place.refused(2, "merge scene.txt -o m.exr", &["scene.txt", "no part"]);
+    place.refused(2, "merge 1.part torn.part 3.part -o m.exr", &["torn.part", "truncated or damaged"]);
+    place.refused(2, "merge scene.txt -o m.exr", &["scene.txt", "not a part"]);
     place.refused(2, "merge missing.part -o m.exr", &["missing.part"]);
     place.refused(2, &format!("{SMALL} --shard 7/7 --shard-by samples -o 7.part"), &["only 6 samples"]);
     place.refused(2, &format!("{SMALL} --shard 4/3 -o 4.part"), &["3/3"]);
@@ -104,9 +104,9 @@ fn rules_of_stopping_and_limits() {
     let adaptive = "render scene.txt --size 64x48 --adaptive -o x.exr";
     place.refused(2, &format!("{adaptive} --samples 15"), &["at least 16"]);
     place.refused(2, &format!("{adaptive} --noise-threshold 0.1"), &["--adaptive", "cannot be used with"]);
-    place.refused(2, &format!("{adaptive} --sampler jittered --samples 16"), &["as many for all"]);
+    place.refused(2, &format!("{adaptive} --sampler jittered --samples 16"), &["cannot be adaptive"]);
     place.refused(2, &format!("{adaptive} --time-limit 1s"), &["--samples"]);
-    place.refused(2, &format!("{adaptive} --shard 1/2"), &["not split"]);
+    place.refused(2, &format!("{adaptive} --shard 1/2"), &["cannot be split"]);
     place.refused(2, &format!("{adaptive} --integrator photons"), &["photons"]);
     let ran = place.gives(0, "render scene.txt --size 64x48 --time 100ms --preview v.png -o t.png");
     assert!(ran.err.contains("the time limit ended the render after"), "{}", ran.err);

@@ -42,7 +42,7 @@ fn errors_are_shown_beside_the_work() {
     let bound = told["pixel"]["error"]["bound"].as_f64().unwrap();
     assert_eq!(errors.get(8, 8).unwrap().x, bound as f32);
     let text = place.gives(0, explain).out;
-    assert!(text.contains("with 90 % confidence at most"), "{text}");
+    assert!(text.contains("with 90 % confidence: "), "{text}");
     place.refused(2, "render glass.txt --integrator whitted --show error -o p.png", &["--show error"]);
     place.refused(2, "render glass.txt --show error --shard 1/2 -o p.part", &["--show error"]);
     let noise =

@@ -32,20 +32,21 @@ pub fn is_packed(bytes: &[u8]) -> bool {
 ///
 /// # Errors
 ///
-/// A sentence: the data are damaged or would become too large.
+/// A message: the data are damaged or would become too large.
 pub fn unpacked(bytes: &[u8], budget: u64) -> Result<Arc<[u8]>, String> {
-    // Deflate packs at most 1032 bytes into one. The last four tell the size of the last piece.
+    // Deflate compresses at most 1032 bytes into one. The last four bytes state the size of the
+    // last member.
     let most = budget.min(1032 * bytes.len() as u64);
     let declared = bytes.last_chunk().map_or(0, |size| u64::from(u32::from_le_bytes(*size)));
     if declared > most {
-        return Err(format!("the packed file would have {declared} bytes: that is too large"));
+        return Err(format!("the gzip file is too large: {declared} bytes unpacked"));
     }
     let mut all = Vec::new();
     let mut decoder = flate2::read::MultiGzDecoder::new(bytes).take(most + 1);
     match decoder.read_to_end(&mut all) {
         Ok(_) if all.len() as u64 <= most => Ok(all.into()),
-        Ok(_) => Err(format!("the packed file would have more than {most} bytes: that is too large")),
-        Err(error) => Err(format!("the file cannot be unpacked: {error}")),
+        Ok(_) => Err(format!("the gzip file is too large: more than {most} bytes unpacked")),
+        Err(error) => Err(format!("cannot unpack the gzip file: {error}")),
     }
 }
 
@@ -54,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn files_of_several_packed_pieces_are_the_pieces_one_after_the_other() {
+    fn gzip_members_are_concatenated() {
         use std::io::Write as _;
         let packed = |text: &str| {
             let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());

@@ -70,7 +70,7 @@ def test_shards_merge_to_one_run(whitted, tmp_path):
         durer.Part.merge([parts[0], parts[2]])
     with pytest.raises(durer.RenderError, match="overlap"):
         durer.Part.merge([parts[0], parts[0], parts[1]])
-    with pytest.raises(durer.RenderError, match="no part"):
+    with pytest.raises(durer.RenderError, match="not a part"):
         durer.Part.read(b"something else")
     damaged = bytearray(parts[0].bytes())
     damaged[-40] ^= 1
@@ -317,4 +317,4 @@ def test_depth_is_what_its_words_say_where_nothing_is_seen(whitted):
     camera = durer.PerspectiveCamera(center=(0, 0, 5), direction=(0, 0, -1), up=(0, 1, 0), angle=60)
     pictures = durer.World(camera, [durer.Sphere(center=(0, 0, 0), radius=1)], []).render(size=(16, 16), samples=1, show="depth,normals")
     assert pictures["depth"][0, 0] == 0 and pictures["depth"][8, 8] == pytest.approx(4, abs=0.1)
-    assert (pictures["normals"][0, 0] == 0).all() and "0 where nothing is hit" in durer.kinds()["depth"]
+    assert (pictures["normals"][0, 0] == 0).all() and "0 for a miss" in durer.kinds()["depth"]

@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn there_are_as_many_as_asked_for_and_never_too_many() {
+    fn thread_count_is_as_requested_up_to_the_maximum() {
         assert_eq!(pool(Some(3)).unwrap().current_num_threads(), 3);
         assert_eq!((wanted(Some(0)), wanted(Some(usize::MAX))), (1, MOST));
         assert_eq!(install(Some(2), rayon::current_num_threads), 2);

@@ -1,52 +1,52 @@
-//! What a thing in a scene file is made of, said once.
+//! Descriptions of scene objects: keyword and fields, stated once.
 //!
 //! Every shape, camera, material and light states its keyword and its fields in one `described!`
-//! block. The reader, the writer, the manual and the generator of random test scenes walk that
-//! statement.
+//! block. The reader, the writer, the manual and the generator of random test scenes use that
+//! description.
 
 use crate::dialect::{Dialect, DialectSet};
 use crate::math::Vec3;
 use durer_diag::Span;
 use serde::{Deserialize, Serialize};
 
-/// The type of a field, as the reader sees it.
+/// Type of a field, as the reader sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// One number.
+    /// A number.
     Float,
-    /// One whole number, zero or more.
+    /// A non-negative integer.
     Int,
     /// Three numbers: a point, a direction or a colour.
     Vec3,
-    /// A file's path.
+    /// Path of a file.
     Path,
     /// One of these words.
     Word(&'static [&'static str]),
-    /// Rows of so many numbers, in braces.
+    /// Rows of `n` numbers, in braces.
     Rows(usize),
 }
 
-/// The path of a file that a scene names, and where it names it.
+/// Path of a file that a scene names, with its span.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FileName {
-    /// As written.
+    /// Path as written in the scene.
     pub path: String,
-    /// Where.
+    /// Span in the scene's text.
     #[serde(skip)]
     pub span: Span,
 }
 
-/// A value of a field.
+/// Value of a field.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// One number.
+    /// A number.
     Float(f32),
-    /// One whole number.
+    /// An integer.
     Int(u32),
     /// Three numbers.
     Vec3(Vec3),
-    /// A file's path, as written.
+    /// Path of a file, as written.
     Path(FileName),
     /// A word.
     Word(String),
@@ -55,7 +55,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Whether all its numbers are finite. Paths and words have none.
+    /// True if all numbers are finite. Paths and words have none.
     pub fn is_finite(&self) -> bool {
         match self {
             Value::Float(x) => x.is_finite(),
@@ -69,38 +69,39 @@ impl Value {
 /// Constraint on a value, beyond being finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rule {
-    /// Anything.
+    /// No constraint.
     Any,
-    /// More than zero.
+    /// Greater than 0.
     Positive,
-    /// Zero or more.
+    /// Greater than or equal to 0.
     NonNegative,
-    /// A vector that is not zero.
+    /// Vector other than 0 0 0.
     NonZero,
-    /// Between these, both excluded.
+    /// Between two numbers, both excluded.
     Between(f32, f32),
-    /// Between these, both included.
+    /// Between two numbers, both included.
     From(f32, f32),
-    /// More than zero and at most this.
+    /// Greater than 0 and at most this.
     UpTo(f32),
-    /// From 0 to 1.
+    /// Number from 0 to 1.
     Share,
-    /// At most this whole number.
+    /// Integer, at most this.
     AtMost(u32),
-    /// A whole number from 1 to this.
+    /// Integer from 1 to this.
     Numbered(u32),
-    /// At least so many rows, and at most so many.
+    /// Minimum and maximum number of rows.
     Rows(usize, usize),
-    /// A vector of whole numbers from 1 to this.
+    /// Vector of integers from 1 to this.
     Counts(u32),
 }
 
 impl Rule {
-    /// Checks a value: every number must be finite and keep to this rule.
+    /// Checks a value: every number must be finite and satisfy this rule.
     ///
     /// # Errors
     ///
-    /// The rest of a sentence that begins with the field's name, such as "must be more than 0".
+    /// The predicate of a sentence whose subject is the field's name, such as "must be more than
+    /// 0".
     pub fn validate(self, value: &Value) -> Result<(), String> {
         if !value.is_finite() {
             return Err("must be finite".into());
@@ -138,36 +139,36 @@ impl Rule {
     }
 }
 
-/// One field of a thing.
+/// Field of a description.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
     /// Name in code and JSON.
     pub name: &'static str,
     /// Type.
     pub kind: Kind,
-    /// Whether a scene must give it.
+    /// True if a scene must set the field.
     pub required: bool,
-    /// What its value must be.
+    /// Constraint on the value.
     pub rule: Rule,
-    /// How each dialect spells it.
+    /// Keyword in each dialect.
     pub spellings: &'static [(&'static str, DialectSet)],
     /// Meaning and unit.
     pub doc: &'static str,
 }
 
 impl Field {
-    /// The keyword of this field in a dialect, if it has one there.
+    /// Returns the keyword of this field in a dialect, or `None` if the dialect does not have it.
     pub fn spelling(&self, dialect: Dialect) -> Option<&'static str> {
         self.spellings.iter().find(|(_, set)| dialect.is_in(*set)).map(|(word, _)| *word)
     }
 
-    /// The value that official programs draw with, of a thing by its keyword, where the written one
-    /// breaks the rule: see [`Compat::AnyValues`]. `None`: they draw nothing sensible either.
+    /// Returns the value that official programs use if the written one breaks the rule, for an
+    /// object's keyword: see [`Compat::AnyValues`]. `None` if they draw nothing sensible with it.
     ///
     /// [`Compat::AnyValues`]: crate::dialect::Compat::AnyValues
     pub fn drawn_anyway(&self, keyword: &str, value: &Value) -> Option<Value> {
         match (keyword, self.name, value) {
-            // The square of the radius is asked for, and nothing is as small as this.
+            // The program squares the radius; no usable radius is smaller than this.
             ("Sphere", "radius", Value::Float(r)) => Some(Value::Float(r.abs().max(f32::MIN_POSITIVE))),
             ("PhongMaterial" | "Material", "shininess", Value::Float(x)) => Some(Value::Float(*x)),
             ("PerspectiveCamera", "angle", Value::Float(180.0)) => Some(Value::Float(180.0)),
@@ -178,29 +179,29 @@ impl Field {
     }
 }
 
-/// A thing whose parameters are stated once.
+/// Type with a description of its fields.
 pub trait Describe: Default {
-    /// The keywords that begin it; the first is written.
+    /// Keywords of the object; the writer uses the first.
     const KEYWORDS: &'static [(&'static str, DialectSet)];
-    /// What it is.
+    /// Documentation of the object.
     const DOC: &'static str;
-    /// Its fields, in the order in which they are written.
+    /// Fields, in the order in which they are written.
     const FIELDS: &'static [Field];
 
-    /// The value of the i-th field; `None` where it is not given.
+    /// Returns the value of a field by index; `None` if it is not set.
     fn get(&self, field: usize) -> Option<Value>;
 
-    /// Sets the i-th field. A value of another kind changes nothing.
+    /// Sets a field by index. Ignores a value of another kind.
     fn set(&mut self, field: usize, value: Value);
 }
 
-/// A Rust type that a field can have.
+/// Rust type that a field can have.
 pub trait FieldType: Sized {
-    /// Its kind in scene files.
+    /// Kind in scene files.
     const KIND: Kind;
-    /// Its value, unless absent.
+    /// Returns the value; `None` if absent.
     fn value(&self) -> Option<Value>;
-    /// From a value of its kind.
+    /// Converts from a value of this kind.
     fn from_value(value: Value) -> Option<Self>;
 }
 
@@ -239,7 +240,7 @@ impl<const N: usize> FieldType for Vec<[f32; N]> {
     }
 }
 
-/// Declares an `enum` of words that a field can have as its value; the first is the default.
+/// Declares an `enum` of words for the value of a field; the first is the default.
 #[macro_export]
 macro_rules! described_words {
     ($(#[doc = $doc:literal])+ $name:ident { $first:ident = $first_word:literal $(, $variant:ident = $word:literal)* }) => {
@@ -326,7 +327,7 @@ macro_rules! described {
             }
         }
     };
-    // A field without a doc comment: says so, and goes on with the rest.
+    // A field without a doc comment: report it, and continue with the rest.
     (
         $(#[doc = $doc:literal])+
         $name:ident [$($keyword:literal in $kset:expr),+] {
@@ -347,33 +348,34 @@ macro_rules! described {
     (@documented $name:ident $field:ident []) => {
         compile_error!(concat!(
             "described!: `", stringify!($name), "::", stringify!($field),
-            "` needs a doc comment before it: its meaning, unit and range",
+            "` has no doc comment; describe its meaning, unit and range",
         ));
     };
     // The struct without a doc comment.
     ($name:ident [$($keyword:tt)+] $fields:tt) => {
-        compile_error!(concat!("described!: `", stringify!($name), "` needs a doc comment before it: what it is"));
+        compile_error!(concat!("described!: `", stringify!($name), "` has no doc comment; describe the object"));
     };
 }
 
-/// The words that say whether a scene must give a field.
+/// Words that state if a scene must set a field.
 #[allow(non_upper_case_globals)]
 #[doc(hidden)]
 pub mod presence {
-    /// Every scene gives it.
+    /// Every scene must set the field.
     pub const required: bool = true;
-    /// It has a default.
+    /// The field has a default.
     pub const optional: bool = false;
 }
 
-/// A closed list of described things: an `enum` with one variant each, which delegates to it.
+/// Declares a closed list of described types: an `enum` with one variant each, which delegates to
+/// it.
 ///
-/// After the colon stands the trait that all its types implement; after `=>` a macro that takes the
-/// variants' names and implements the trait for the enum.
+/// The path after the colon is the trait that all types implement. The name after `=>` is a macro
+/// that takes the names of the variants and implements the trait for the enum.
 #[macro_export]
 macro_rules! described_list {
     ($(#[doc = $doc:literal])+ $name:ident : $trait:path => $delegate:ident { $($variant:ident($type:ty),)+ }) => {
-        // Before all else, so that the first error names the trait and points at the type.
+        // First, so that the first error names the trait and points at the type.
         const _: fn() = || {
             fn is_described<T: $crate::describe::Describe>() {}
             fn is_one<T: $trait>() {}
@@ -415,44 +417,44 @@ macro_rules! described_list {
 
 pub use {described, described_list, described_words};
 
-/// A list of described things, seen from the reader: what [`described_list!`] makes.
+/// List of described types, as the reader sees it. [`described_list!`] implements it.
 pub trait DescribedList: Sized {
-    /// One of each, with default values.
+    /// Returns one of each, with default values.
     fn kinds() -> Vec<Self>;
-    /// Keywords that begin it.
+    /// Keywords of the object.
     fn keywords(&self) -> &'static [(&'static str, DialectSet)];
-    /// What it is.
+    /// Documentation of the object.
     fn doc(&self) -> &'static str;
-    /// Its fields.
+    /// Fields of the object.
     fn fields(&self) -> &'static [Field];
-    /// The value of the i-th field.
+    /// Returns the value of a field by index.
     fn get(&self, field: usize) -> Option<Value>;
-    /// Sets the i-th field.
+    /// Sets a field by index.
     fn set(&mut self, field: usize, value: Value);
 
-    /// Whether only our own dialect has it.
+    /// True if only Dürer's own dialect has it.
     fn is_ours(&self) -> bool {
         self.keywords().iter().all(|(_, set)| *set == Dialect::Durer as DialectSet)
     }
 
-    /// Its keyword in our own dialect.
+    /// Keyword in Dürer's own dialect.
     fn own_keyword(&self) -> &'static str {
         self.keyword(Dialect::Durer)
     }
 
-    /// A thing with default values, by a keyword of any dialect.
+    /// Returns an object with default values, by a keyword of any dialect.
     fn from_keyword(word: &str) -> Option<Self> {
         Self::kinds().into_iter().find(|kind| kind.keywords().iter().any(|(keyword, _)| *keyword == word))
     }
 
-    /// The keyword with which a dialect writes it, or its first where the dialect has none.
+    /// Keyword in a dialect, or the first keyword if the dialect has none.
     fn keyword(&self, dialect: Dialect) -> &'static str {
         let words = self.keywords();
         words.iter().find(|(_, set)| dialect.is_in(*set)).unwrap_or(&words[0]).0
     }
 }
 
-/// Every single described thing is a list of one: the reader needs only one way.
+/// Every described type is a list of one, so the reader needs only one path.
 impl<T: Describe> DescribedList for T {
     fn kinds() -> Vec<Self> {
         vec![T::default()]

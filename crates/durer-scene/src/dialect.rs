@@ -1,8 +1,8 @@
-//! The dialects of the scene language, as one table of differences.
+//! Dialects of the scene language, as one table of differences.
 //!
-//! A [`Dialect`] names a year's language; its [`Rules`] say what its words mean; its [`Compat`]s
-//! are the known bugs of that year's official program, which hold only where the dialect was asked
-//! for.
+//! A [`Dialect`] is the language of a year; its [`Rules`] define the meaning of its words; its
+//! [`Compat`]s are the known bugs of that year's official program, active only if the user selects
+//! the dialect.
 
 mod compat;
 
@@ -10,7 +10,7 @@ use compat::bits;
 pub use compat::{Compat, CompatSet};
 use serde::{Deserialize, Serialize};
 
-/// A year's scene language. The discriminants are bits of a [`DialectSet`].
+/// Scene language of a year. The discriminants are bits of a [`DialectSet`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Dialect {
@@ -18,7 +18,7 @@ pub enum Dialect {
     F03 = 1,
     /// Fall 2004, assignments 1 to 8.
     F04 = 2,
-    /// Fall 2012, assignment 4; TIEA311's.
+    /// Fall 2012, assignment 4; also TIEA311.
     F12a4 = 4,
     /// Fall 2012, assignment 5.
     F12a5 = 8,
@@ -26,14 +26,14 @@ pub enum Dialect {
     F16 = 16,
     /// 2020 to 2023: nodes and components.
     F23 = 32,
-    /// Ours: every word of the years before, with sane rules.
+    /// Dürer's own: every word of the other years, with sane rules.
     Durer = 64,
 }
 
-/// Some dialects, as bits.
+/// Set of dialects, as bits.
 pub type DialectSet = u8;
 
-/// The bits of the dialects, for tables.
+/// Sets of dialects, for tables.
 pub mod set {
     use super::{Dialect, DialectSet};
     /// 2003.
@@ -48,62 +48,63 @@ pub mod set {
     pub const F16: DialectSet = Dialect::F16 as u8;
     /// 2020 to 2023.
     pub const F23: DialectSet = Dialect::F23 as u8;
-    /// Our own.
+    /// Dürer's own.
     pub const DURER: DialectSet = Dialect::Durer as u8;
     /// 2003 and 2004.
     pub const OLD: DialectSet = F03 | F04;
     /// 2012 and later, before nodes.
     pub const NEW: DialectSet = F12A4 | F12A5 | F16;
-    /// Everything with the grammar of 2004.
+    /// Dialects with the grammar of 2004.
     pub const CLASSIC: DialectSet = OLD | NEW | DURER;
-    /// Everything.
+    /// Every dialect.
     pub const ALL: DialectSet = CLASSIC | F23;
 }
 
 impl Dialect {
-    /// All dialects, oldest first, ours last.
+    /// Every dialect, oldest first, Dürer's own last.
     pub const ALL: [Dialect; 7] =
         [Dialect::F03, Dialect::F04, Dialect::F12a4, Dialect::F12a5, Dialect::F16, Dialect::F23, Dialect::Durer];
 
-    /// Its name on the command line.
+    /// Returns the name on the command line.
     pub fn name(self) -> &'static str {
         self.rules().name
     }
 
-    /// The dialect of a name.
+    /// Returns the dialect of a name.
     pub fn from_name(name: &str) -> Option<Dialect> {
         Dialect::ALL.into_iter().find(|d| d.name() == name)
     }
 
-    /// Whether a set contains it.
+    /// True if a set contains it.
     pub fn is_in(self, set: DialectSet) -> bool {
         set & self as u8 != 0
     }
 
-    /// Its row of the table, with the old programs' bugs.
+    /// Returns its row of the table, with the bugs of the old programs.
     pub fn rules(self) -> &'static Rules {
         &TABLE[(self as u8).trailing_zeros() as usize]
     }
 }
 
-/// How normals of a mesh that brings none are made.
+/// Construction of normals for a mesh without normals.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum MeshNormals {
-    /// One normal a triangle.
+    /// One normal per triangle.
     Flat,
-    /// Mean of the faces around a vertex, weighted by their areas.
+    /// Mean over the faces around a vertex, weighted by area.
     SmoothByArea,
-    /// Mean of the faces around a vertex, each counting alike.
+    /// Mean over the faces around a vertex, with equal weights.
     SmoothByFace,
-    /// Like `SmoothByFace`, but a face without area makes the normals of its vertices NaN.
+    /// `SmoothByFace`, but a degenerate face makes the normals of its vertices NaN.
     SpoiledByFace,
-    /// As `SmoothByArea` for meshes of more vertices than this, else flat.
+    /// `SmoothByArea` for meshes with more vertices than this, else `Flat`.
     SmoothAbove(usize),
-    /// Mean by angle over those faces around a vertex that meet at less than this many degrees.
+    /// Mean, weighted by angle, over the faces around a vertex that meet at less than this many
+    /// degrees.
     Crease(f32),
 }
 
-/// The specular highlight of a light.
+/// Specular highlight of a light.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Highlight {
     /// max(0, N·H)^exponent, only where N·L > 0.
@@ -116,33 +117,35 @@ pub enum Highlight {
     ByKeyword,
 }
 
-/// How light fades with distance d, from `attenuation a0 a1 a2` or `falloff f`.
+/// Attenuation of a light with distance d, from `attenuation a0 a1 a2` or `falloff f`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Falloff {
-    /// Light does not fade.
+    /// No attenuation.
     None,
     /// 1 / (a0 + a1 d + a2 d^2), or 1 / (1 + f d^2).
     OnePlus,
-    /// 1 / (f d^2), with this f where none is written; `None` means that light does not fade then.
+    /// 1 / (f d^2), with this default for f; `None` means no attenuation by default.
     Bare(Option<f32>),
 }
 
-/// What a surface reflects and transmits.
+/// Reflection and refraction of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Secondary {
-    /// Local light only.
+    /// Direct lighting only.
     None,
-    /// `reflectiveColor` and `transparentColor` weigh the secondary rays; both are added.
+    /// Reflected and refracted rays, weighted by `reflectiveColor` and `transparentColor`; both are
+    /// added.
     Colors,
-    /// `specularColor` weighs the mirrored ray.
+    /// Reflected ray, weighted by `specularColor`.
     Specular,
-    /// `specularColor` weighs both, divided by Fresnel where `refractionIndex` is given.
+    /// Both rays, weighted by `specularColor` and split by Fresnel if `refractionIndex` is given.
     SpecularFresnel,
-    /// By the words that are there: `reflectiveColor`, `transparentColor`, `refractionIndex`.
+    /// Selected by the words that are present: `reflectiveColor`, `transparentColor`,
+    /// `refractionIndex`.
     ByKeyword,
 }
 
-/// How a normal becomes a colour.
+/// Map from a normal to a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum NormalsPicture {
     /// |n|, background black.
@@ -151,7 +154,7 @@ pub enum NormalsPicture {
     Half,
 }
 
-/// How a depth becomes a grey.
+/// Map from a depth to a grey.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum DepthPicture {
     /// (max - t) / (max - min): near is white, background black.
@@ -160,23 +163,23 @@ pub enum DepthPicture {
     NearBlack,
 }
 
-/// Where a file that a scene names is looked for first.
+/// First folder in which to look for a file that a scene names.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum PathBase {
     /// The current directory.
     Current,
     /// The directory of the scene file.
     SceneFile,
-    /// This folder below the current directory.
+    /// Folder below the current directory.
     Assets(&'static str),
 }
 
-/// How camera rays are aimed and hits are found.
+/// Arithmetic of camera rays and intersections.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Arithmetic {
     /// Dürer's own.
     Own,
-    /// Single precision, operation by operation as the programs of Fall 2012.
+    /// Single precision, operation by operation as in the programs of Fall 2012.
     Of2012,
     /// Single precision as in the program of 2016.
     Of2016,
@@ -184,70 +187,68 @@ pub enum Arithmetic {
     Of2020,
 }
 
-/// What the words of a dialect mean.
+/// Meaning of the words of a dialect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Rules {
     /// Name on the command line.
     pub name: &'static str,
-    /// One line for people.
+    /// Title, one line.
     pub title: &'static str,
-    /// Picture size where none is asked for.
+    /// Default picture size, in pixels.
     pub size: (u32, u32),
-    /// Levels of secondary rays where none are asked for.
+    /// Default number of levels of secondary rays.
     pub bounces: u32,
-    /// Whether lights cast shadows where nothing is said of it.
+    /// True if lights cast shadows by default.
     pub shadows: bool,
-    /// Whether a surface seen from behind is shaded with its normal turned, where nothing is said
-    /// of it.
+    /// True if a surface seen from behind is shaded with its normal flipped by default.
     pub shade_back: bool,
     /// Normals of meshes without normals.
     pub mesh_normals: MeshNormals,
-    /// Whether normals in mesh files (`vn`) count.
+    /// True if normals in mesh files (`vn`) are used.
     pub file_normals: bool,
     /// Highlights.
     pub highlight: Highlight,
-    /// Fading of point lights.
+    /// Attenuation of point lights.
     pub falloff: Falloff,
     /// Reflection and refraction.
     pub secondary: Secondary,
-    /// Least `t` of secondary rays; `None`: none is needed, rays start at an error-bounded offset.
+    /// Minimum `t` of secondary rays; `None` if rays start at an error-bounded offset instead.
     pub epsilon: Option<f32>,
-    /// How camera rays are aimed and hits are found.
+    /// Arithmetic of camera rays and intersections.
     pub arithmetic: Arithmetic,
     /// Normals as colours.
     pub normals_picture: NormalsPicture,
     /// Depth as grey.
     pub depth_picture: DepthPicture,
-    /// Whether pictures on surfaces and of the sky are decoded by sRGB's curve, and not taken as
-    /// they are.
+    /// True if textures and sky pictures are decoded by the sRGB curve, instead of taken as linear.
     pub srgb_textures: bool,
-    /// Where files are looked for.
+    /// First folder in which to look for files.
     pub paths: PathBase,
-    /// Whether the ambient light is multiplied with a texture or noise, not just `diffuseColor`.
+    /// True if the ambient light is multiplied by a texture or noise, not only by `diffuseColor`.
     pub ambient_textured: bool,
-    /// Whether ambient light is 1 1 1, whatever is written, in a scene without lights.
+    /// True if ambient light is 1 1 1, whatever the scene says, in a scene without lights.
     pub ambient_alone: bool,
-    /// Whether coloured, transparent things cast coloured shadows.
+    /// True if coloured, transparent objects cast coloured shadows.
     pub transparent_shadows: bool,
     /// Bugs of the official program.
     pub compat: CompatSet,
 }
 
 impl Rules {
-    /// Whether a compatibility is on.
+    /// True if a compatibility is on.
     pub fn has(&self, compat: Compat) -> bool {
         self.compat & compat.bit() != 0
     }
 
-    /// Whether a picture is to be what an official program made: with its epsilon, its points are
-    /// its ray's, rounding and all.
+    /// True if the picture must equal an official program's: the rules have an epsilon, and hit
+    /// points are points of the ray, rounding included.
     pub fn is_official(&self) -> bool {
         self.epsilon.is_some()
     }
 
-    /// The meaning of the same words without the old program's bugs, and with good defaults.
+    /// Returns these rules without the old program's bugs and with good defaults.
     ///
-    /// This is what a file gets whose dialect nobody asked for.
+    /// A file gets these rules if the user did not select a dialect.
     pub fn sane(&self) -> Rules {
         let ours = Dialect::Durer.rules();
         Rules {
@@ -460,7 +461,7 @@ const DURER: Rules = Rules {
     compat: 0,
 };
 
-/// The table, in the order of the discriminants.
+/// Rules of all dialects, in the order of the discriminants.
 static TABLE: [Rules; 7] = [F03, F04, F12A4, F12A5, F16, F23, DURER];
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Sample numbers, each a pure function of (seed, pixel, sample index, dimension).
 //!
-//! No generator has a state, so the order of work cannot change a number.
+//! Generators have no state, so the order of work cannot change a number.
 //!
 //! Sources: the mixing function is the finaliser of SplitMix64 (Steele, Lea, Flood, *Fast
 //! Splittable Pseudorandom Number Generators*, OOPSLA 2014; constants: Stafford's variant 13). The
@@ -23,7 +23,7 @@ mod tests;
 /// Distribution of the samples in a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Sampler {
-    /// Owen-scrambled Sobol (0,2)-sequence, with another scrambling in each pixel: the least noise.
+    /// Owen-scrambled Sobol (0,2)-sequence, scrambled differently in each pixel: the least noise.
     #[default]
     Sobol,
     /// Independent and uniform.
@@ -206,7 +206,7 @@ impl Stream {
     }
 }
 
-/// The least number from 1 to 65535 whose square is at least `samples`.
+/// Smallest integer from 1 to 65535 whose square is at least `samples`.
 fn grid_side(samples: u32) -> u32 {
     let root = samples.isqrt();
     let up = if root * root < samples { root + 1 } else { root };

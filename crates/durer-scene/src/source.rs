@@ -81,7 +81,7 @@ impl std::fmt::Debug for Digest {
 #[non_exhaustive]
 pub enum SourceError {
     /// The file is in none of the searched places.
-    #[error("there is no file `{name}`")]
+    #[error("there is no file `{name}`")] // prose: keep
     Missing {
         /// Requested name.
         name: String,
@@ -103,7 +103,7 @@ pub enum SourceError {
         name: String,
     },
     /// The file exceeds the remaining budget.
-    #[error("`{name}` is too large: {size} bytes, and at most {left} may still be read")]
+    #[error("`{name}` is too large: {size} bytes, but only {left} bytes of the budget are left")]
     TooLarge {
         /// Requested name.
         name: String,
@@ -123,7 +123,7 @@ pub enum SourceError {
 }
 
 impl SourceError {
-    /// Help text: a similar name, or what to do.
+    /// Help text: a similar name, or the option to use.
     pub fn help(&self) -> Option<String> {
         match self {
             SourceError::Missing { near: Some(near), .. } => Some(format!("did you mean `{near}`?")),
@@ -219,7 +219,7 @@ pub trait AssetSource: std::fmt::Debug + Sync {
     ///
     /// # Errors
     ///
-    /// Those of [`AssetSource::read`].
+    /// See [`AssetSource::read`].
     fn read_user_file(&self, path: &Path) -> Result<Arc<[u8]>, SourceError> {
         self.read(&path.to_string_lossy())
     }

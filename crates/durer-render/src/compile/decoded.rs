@@ -48,12 +48,11 @@ pub(super) fn decode(
     }
 }
 
-/// The brightest value that a picture of half-precision numbers can have. What is infinite is clamped
-/// to it: a sun that a camera could not measure, mostly.
+/// Largest finite half-precision number. Infinite texels are clamped to it: usually a sun too
+/// bright for the camera.
 const BRIGHTEST: f32 = 65_504.0;
 
-/// Makes numbers of texels that are none: 0 of NaN, the brightest of infinite ones. Returns what to say
-/// of them.
+/// Replaces invalid texels: NaN by 0, infinity by the largest value. Returns a message about them.
 pub(super) fn mend(texels: &mut [Vec3], width: u32, path: &str) -> Option<String> {
     let (mut count, mut first) = (0_usize, None);
     for (i, texel) in texels.iter_mut().enumerate().filter(|(_, texel)| !texel.is_finite()) {
@@ -64,15 +63,15 @@ pub(super) fn mend(texels: &mut [Vec3], width: u32, path: &str) -> Option<String
     let (i, texel) = first?;
     let (column, row) = (i % width as usize, i / width as usize);
     let texels =
-        if count == 1 { "one texel that is no number".into() } else { format!("{count} texels that are no numbers") };
+        if count == 1 { "one invalid texel".into() } else { format!("{count} invalid texels") };
     let [r, g, b] = texel.to_array();
     Some(format!(
-        "the picture `{path}` has {texels}: {r} {g} {b} in column {column} of row {row}, from the upper left; NaN counts as 0, \
-         what is infinite as {BRIGHTEST}"
+        "the picture `{path}` has {texels}: {r} {g} {b} in column {column} of row {row}, from the upper left; NaN is \
+         read as 0, infinity as {BRIGHTEST}"
     ))
 }
 
-/// What came of reading a picture; an error is said at the place that names it.
+/// Unwraps a picture that was read; reports an error at the span that names it.
 pub(super) fn used<T>(
     name: &FileName,
     path: &str,
@@ -80,7 +79,7 @@ pub(super) fn used<T>(
     diagnostics: &mut Diagnostics,
 ) -> Option<T> {
     let refuse = |error: ImageError| {
-        let message = format!("the picture `{path}` cannot be used: {error}");
+        let message = format!("cannot use the picture `{path}`: {error}");
         let diagnostic = Diagnostic::error(message).code("bad-file").at(name.span);
         diagnostics.push(match error {
             ImageError::Memory { .. } => diagnostic.help("see `--memory`"),

@@ -22,10 +22,10 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Temporary bytes a triangle for the tree and its construction.
+/// Temporary bytes per triangle for the tree and its construction.
 const TREE_BYTES: u64 = 200;
-/// Temporary bytes a height while normals are computed: the normals at the corners of its two
-/// triangles, also in crossing order, each three times four bytes.
+/// Temporary bytes per height while normals are computed: the normals at the corners of its two
+/// triangles, also in vertex order, each three times four bytes.
 const HEIGHT_BYTES: u64 = 112;
 
 /// Width of a sky picture in pixels.
@@ -112,7 +112,7 @@ impl<'r> Loader<'r> {
             };
             let mesh = Mesh::new(data, normals, self.rules.file_normals || by_vertex);
             let mesh = self.centered(mesh);
-            // The official program takes smaller determinants for zero.
+            // The official program treats smaller determinants as zero.
             let least_volume = if self.rules.has(Compat::ThinTriangles) { 1e-6 } else { 0.0 };
             Arc::new(self.tree(mesh).least_volume(least_volume))
         });
@@ -160,9 +160,9 @@ impl<'r> Loader<'r> {
         let data = read(&bytes, file, &mut own);
         self.resources.files.cut(file, 0, &own);
         if own.has_errors() {
-            let message = format!("the {what} `{}` cannot be used", name.path);
+            let message = format!("cannot use the {what} `{}`", name.path);
             let error = Diagnostic::error(message).code("bad-file").at(name.span);
-            diagnostics.push(error.label("asked for here"));
+            diagnostics.push(error.label("named here"));
         }
         diagnostics.extend(own);
         data
@@ -177,7 +177,7 @@ impl<'r> Loader<'r> {
         let mut refuse = |message: String| diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
         if width < 2 || height < 2 || width * height > HeightField::MAX_PIXELS {
             let most = HeightField::MAX_PIXELS;
-            refuse(format!("{width} x {height} pixels make no landscape: 2 x 2 to {most} in all are needed"));
+            refuse(format!("a height field cannot have {width} x {height} pixels: it needs at least 2 x 2 and at most {most} in all"));
             return None;
         }
         let picture = encoded.read(self.resources.memory, image::decode_linear);
@@ -186,17 +186,17 @@ impl<'r> Loader<'r> {
         let heights: Vec<f32> = picture.pixels.iter().map(|pixel| (pixel.x + pixel.y + pixel.z) / 3.0).collect();
         drop(picture);
         if heights.iter().any(|height| !height.is_finite()) {
-            refuse(format!("the picture `{}` has heights that are no numbers", name.path));
+            refuse(format!("the picture `{}` has heights that are not finite", name.path));
             return None;
         }
         if let Some(least) = heights.iter().copied().reduce(f32::min).filter(|least| *least < 0.0) {
-            refuse(format!("the picture `{}` has heights of {least}; none may be less than 0", name.path));
+            refuse(format!("the picture `{}` has heights of {least}: heights must not be less than 0", name.path));
             return None;
         }
         let needed = HEIGHT_BYTES * heights.len() as u64;
         let terrain = field.terrain(width, heights);
         let Some(terrain) = terrain else {
-            refuse(format!("the heights of `{}` leave the range of numbers", name.path));
+            refuse(format!("the coordinates of the height field `{}` overflow", name.path));
             return None;
         };
         if !self.charge(name, needed, diagnostics) {
@@ -232,7 +232,7 @@ impl<'r> Loader<'r> {
         for mut finding in own.iter().cloned() {
             if self.resources.sky_optional {
                 finding.severity = Severity::Warning;
-                finding.label = "the background's colour is shown instead".into();
+                finding.label = "the picture shows the background's colour instead".into();
             }
             diagnostics.push(finding);
         }
@@ -263,7 +263,7 @@ impl<'r> Loader<'r> {
         }
         let (decoder, memory) = (self.resources.decoder, self.resources.memory);
         let read = |bytes: &[u8], file: u32, own: &mut Diagnostics| decoder.density(bytes, file, memory, own);
-        let (bounds, grid) = self.parsed(name, "file of densities", diagnostics, read)?;
+        let (bounds, grid) = self.parsed(name, "density file", diagnostics, read)?;
         self.charge(name, grid.bytes() as u64, diagnostics).then(|| (bounds, Arc::new(grid)))
     }
 
@@ -271,7 +271,7 @@ impl<'r> Loader<'r> {
     pub(super) fn reflectance(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Arc<Curve>> {
         let rows = self.curve(name, diagnostics)?;
         if let Some([nm, share]) = rows.iter().find(|row| row[1] > 1.0) {
-            let message = format!("at {nm} nm this thing would give back {share} of the light: shares go from 0 to 1");
+            let message = format!("the reflectance at {nm} nm is {share}: it must be from 0 to 1");
             diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
             return None;
         }
@@ -284,15 +284,15 @@ impl<'r> Loader<'r> {
             return Some(Arc::new(known));
         }
         if !name.path.contains('.') {
-            let message = format!("there is no illuminant `{}`", name.path);
+            let message = format!("unknown illuminant `{}`", name.path);
             let names = illuminants::NAMES;
-            let help = format!("known are {names}, black bodies from 1000K to 20000K, and files by their path");
+            let help = format!("use {names}, a black body from 1000K to 20000K, or the path of a file");
             diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span).help(help));
             return None;
         }
         let lamp = Curve::light(self.curve(name, diagnostics)?);
         if lamp.is_none() {
-            let message = format!("the lamp of `{}` is black", name.path);
+            let message = format!("the spectrum `{}` is black", name.path);
             diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
         }
         lamp.map(Arc::new)
@@ -344,9 +344,9 @@ impl<'r> Loader<'r> {
         }
         let environment = Environment::new(width, height, picture.pixels, turn, scale);
         if environment.is_none() {
-            let message = format!("the picture `{}` around the scene is black: no light comes from there", name.path);
+            let message = format!("the environment `{}` is black: it emits no light", name.path);
             let warning = Diagnostic::warning(message).code("bad-file");
-            // A name from an option has no place in the file.
+            // A name from an option has no span in the file.
             diagnostics.push(if name.span.is_place() { warning.at(name.span) } else { warning });
         }
         environment.filter(|environment| self.charge(name, environment.bytes() as u64, diagnostics))
@@ -394,7 +394,7 @@ impl<'r> Loader<'r> {
         self.resources.memory = left.saturating_sub(needed);
         if needed > left {
             let (needed, left) = (at_least(needed), at_most(left));
-            let message = format!("`{}` needs about {needed} of memory, and what is left for it is {left}", name.path);
+            let message = format!("`{}` needs about {needed} of memory, but only {left} are left", name.path);
             diagnostics.push(Diagnostic::error(message).at(name.span).help("see `--memory`"));
         }
         needed <= left
@@ -435,7 +435,7 @@ fn missing_help(tried: &[PathBuf], near: Option<&str>) -> String {
     let shown: Vec<String> = tried.iter().map(|path| path.display().to_string()).collect();
     match near {
         Some(near) if tried.is_empty() => format!("did you mean `{near}`?"),
-        None if tried.is_empty() => "the scene is in memory, and brings no file of that name".into(),
+        None if tried.is_empty() => "the scene is in memory and has no file of this name".into(),
         Some(near) => format!("did you mean `{near}`? Looked for {}", shown.join(", ")),
         None => format!("looked for {}", shown.join(", ")),
     }

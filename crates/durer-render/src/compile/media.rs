@@ -51,12 +51,12 @@ fn density(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &mut Diagno
         None
     };
     if rows != 4 {
-        return refuse("`transmissionDensityBox` needs four rows: a corner and three edges");
+        return refuse("`transmissionDensityBox` must have four rows: a corner and three edges");
     }
     let row = |i: usize| m.transmission_density_box.get(i).map_or(DVec3::ZERO, |row| Vec3::from_array(*row).as_dvec3());
     let map = DAffine3::from_mat3_translation(DMat3::from_cols(row(1), row(2), row(3)), row(0));
     let Some(placed) = Affine::new(map) else {
-        return refuse("the edges of `transmissionDensityBox` bound no body");
+        return refuse("the edges of `transmissionDensityBox` must span a volume");
     };
     Some(Place { bounds: Aabb { min: Vec3::ZERO, max: Vec3::ONE }, placed: Some(placed), ..place })
 }

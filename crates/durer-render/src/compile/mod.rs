@@ -165,8 +165,8 @@ pub fn compile(
         } else {
             scene.background.color
         },
-        // Under paths light is only what a scene says; Whitted's light does not come from there. A model
-        // stands before grey.
+        // Under `path`, only the lights that the scene defines emit; Whitted's method takes no
+        // light from the background. A model has a grey background.
         dark: scene.up.is_none()
             && environment.is_none()
             && scene.background == scene::Background::default()
@@ -276,8 +276,8 @@ fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Res
     let grid = Grid::build(bounds, counts, &boxes, overlaps).ok_or_else(|| {
         let [x, y, z] = counts;
         let most = Grid::MAX_CELLS;
-        let message = format!("a grid of {x} x {y} x {z} cells cannot be made");
-        let help = format!("it must have 1 to {most} cells, and large objects must not lie in too many of them");
+        let message = format!("cannot build a grid of {x} x {y} x {z} cells");
+        let help = format!("use 1 to {most} cells; large objects must not overlap too many of them");
         Box::new(Diagnostic::error(message).help(help))
     })?;
     Ok(Accel::Grid { grid, parts })
@@ -291,8 +291,8 @@ fn check_sun(scene: &Scene, diagnostics: &mut Diagnostics) {
     {
         let message = format!("the sun is {:.1} degrees below the horizon", low(way));
         let warning = Diagnostic::warning(message).code("sun-below").at(scene.background_span);
-        let help = "for dusk write a sun on the horizon, for night what lights the scene then";
-        diagnostics.push(warning.effect("neither it nor its sky shines").help(help));
+        let help = "for dusk move the sun to the horizon; for night add lights";
+        diagnostics.push(warning.effect("the sun and its sky emit no light").help(help));
     }
 }
 
@@ -304,8 +304,8 @@ fn check_sky(scene: &Scene, diagnostics: &mut Diagnostics) {
     let any = standard || sun || picture;
     for (word, given, has_use, wanted) in [
         ("zenithLuminance", sky.zenith_luminance.is_some(), standard, "`cieSky`"),
-        ("turbidity", sky.turbidity.is_some(), clear, "clear sky, which a sun without `cieSky` has"),
-        ("groundReflectance", sky.ground_reflectance.is_some(), standard || sun, "sun and no `cieSky`"),
+        ("turbidity", sky.turbidity.is_some(), clear, "clear sky (a sun without `cieSky`)"),
+        ("groundReflectance", sky.ground_reflectance.is_some(), standard || sun, "sun or `cieSky`"),
         ("environmentRotation", sky.environment_rotation.is_some(), any, "`environment`, sun or `cieSky`"),
         ("environmentScale", sky.environment_scale.is_some(), any, "`environment`, sun or `cieSky`"),
     ] {
@@ -319,7 +319,7 @@ fn check_sky(scene: &Scene, diagnostics: &mut Diagnostics) {
 fn check_camera(scene: &Scene, pose: durer_scene::camera::Pose, diagnostics: &mut Diagnostics) {
     let parallel = pose.direction.as_dvec3().normalize_or_zero().cross(pose.up.as_dvec3().normalize_or_zero()).length();
     if parallel < 1e-6 {
-        let message = "the camera's `up` is parallel to its `direction`, so which way is up is arbitrary";
+        let message = "the camera's `up` is parallel to its `direction`, so the picture's rotation is arbitrary";
         let warning = Diagnostic::warning(message).code("up-parallel").at(scene.camera_span);
         diagnostics.push(warning.help("choose another `up`"));
     }
@@ -350,7 +350,7 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
         let (message, ambient) = match rules.ambient_alone {
             true => ("the scene has no lights: its ambient light is set to 1 1 1, so colours are flat", Color::ONE),
             false => {
-                ("the scene has no lights: colours are flat, as ambient as is written", scene.background.ambient_light)
+                ("the scene has no lights: only its ambient light is visible, so colours are flat", scene.background.ambient_light)
             }
         };
         // The first assignments intentionally have no lights and ambient light of 1 1 1.
@@ -361,7 +361,7 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
     }
     for light in written {
         if light.value.color() == Color::ZERO {
-            let message = "this light reaches nothing: its color is 0 0 0";
+            let message = "this light has no effect: its color is 0 0 0";
             diagnostics.push(Diagnostic::warning(message).code("black-light").at(light.span));
         }
     }
@@ -374,9 +374,9 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
                 Light::Point(lamp) if lamp.falloff.is_some() => format!("the `{word}` of this light is 0"),
                 _ => format!("this light has no `{word}`"),
             };
-            let message = format!("{message}, and it divides by zero as the official program does");
+            let message = format!("{message}: like the official program, this divides by zero");
             let warning = Diagnostic::warning(message).code("no-falloff").at(written.span);
-            diagnostics.push(warning.help(format!("the picture will be black; write `{word} 1`, say")));
+            diagnostics.push(warning.help(format!("the picture will be black; write `{word} 1`, for example")));
         }
     }
     (compiled, scene.background.ambient_light)
@@ -395,8 +395,8 @@ struct SceneFlattener<'a, 'r> {
     bare: Option<(Span, usize)>,
     /// Number of transforms around the current object.
     transforms: u32,
-    /// Their matrices as an official program multiplies them, the outermost first; `None` inside a
-    /// solid, which the course has not.
+    /// Matrices of these transforms as an official program multiplies them, outermost first; `None`
+    /// inside a solid, which the course does not have.
     matrices: Option<Vec<Matrix>>,
     /// An edge at which a mesh is open, if there is one, by its path.
     open_edges: HashMap<String, Option<[Vec3; 2]>>,
@@ -411,11 +411,11 @@ impl SceneFlattener<'_, '_> {
     /// Warns once of objects without a material.
     fn warn_of_bare(&mut self) {
         let Some((span, count)) = self.bare else { return };
-        let mut message = "this object has no material, and is drawn in plain grey".to_string();
+        let mut message = "this object has no material and is drawn in plain grey".to_string();
         match count {
             1 => {}
-            2 => message += "; so is another",
-            n => message += &format!("; so are {} others", n - 1),
+            2 => message += "; another object has none either",
+            n => message += &format!("; {} other objects have none either", n - 1),
         }
         let warning = Diagnostic::warning(message).code("no-material").at(span);
         self.diagnostics.push(warning.help(match is_nodes(self.rules) {
@@ -494,13 +494,13 @@ impl SceneFlattener<'_, '_> {
                 Some(affine) if affine.is_identity() => None,
                 Some(affine) => Some(affine),
                 None if self.rules.has(Compat::AnyValues) && !matrices.is_empty() => {
-                    let message = "the transforms around this object flatten space";
+                    let message = "the transforms around this object are singular";
                     let warning = Diagnostic::warning(message).code("flat-transform").at(object.span);
-                    self.diagnostics.push(warning.effect("rays are divided by zero, as by the official program"));
+                    self.diagnostics.push(warning.effect("rays are divided by zero, as in the official program"));
                     None
                 }
                 None => {
-                    let message = "the transforms around this object flatten space, or leave the range of numbers";
+                    let message = "the transforms around this object are singular, or their numbers overflow";
                     self.diagnostics.push(Diagnostic::error(message).code("flat-transform").at(object.span));
                     return None;
                 }
@@ -526,8 +526,8 @@ impl SceneFlattener<'_, '_> {
         Some(Object { geometry, to_world, matrices, center, material, normal_length, span: object.span })
     }
 
-    /// The matrices around an object, where an official program's arithmetic is wanted: each, or
-    /// with glm their product.
+    /// Returns the matrices around an object if an official program's arithmetic is active: each
+    /// one, or with glm their product.
     fn matrices_around(&self, to_world: DAffine3) -> Vec<Matrix> {
         let Some(rules) = rules::hit_rules(self.rules) else { return Vec::new() };
         match (&self.matrices, rules.vectors) {

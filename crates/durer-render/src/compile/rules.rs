@@ -1,5 +1,5 @@
-//! What a scene's dialect means to each part of the renderer. Dialects end here: everything behind
-//! this module sees plain values.
+//! Meaning of a scene's dialect for each part of the renderer. Code after this module does not
+//! depend on dialects.
 
 use crate::world::{Contents, DisplayRules, Epsilon, HitRules, ShadingRules, Vectors};
 use durer_scene::camera::{Aim, CameraRules, UpRule};
@@ -38,7 +38,7 @@ pub fn matrix_rules(rules: &Rules) -> MatrixRules {
     }
 }
 
-/// How an official program finds hits; `None` where our own ways do.
+/// Hit rules of an official program; `None` for Dürer's own arithmetic.
 pub fn hit_rules(rules: &Rules) -> Option<HitRules> {
     let vectors = match rules.arithmetic {
         Arithmetic::Own => return None,
@@ -83,7 +83,7 @@ pub fn shading_rules(rules: &Rules) -> ShadingRules {
     }
 }
 
-/// Rules of pictures of values. `lumens` of the scene.
+/// Display rules of pictures of values. `lumens` are those of the scene.
 pub fn display_rules(rules: &Rules, lumens: Option<Vec3>) -> DisplayRules {
     DisplayRules {
         normals: rules.normals_picture,
@@ -107,13 +107,14 @@ impl Contents {
     }
 }
 
-/// A light with its strength in its colour, and with the falloff that its words mean.
+/// Returns a light with its power folded into its colour, and with the attenuation that its dialect
+/// defines.
 pub(super) fn light(light: &Light, rules: &Rules) -> Light {
     match light {
         Light::Point(lamp) if lamp.candela.or(lamp.lumens).is_none() => {
             PointLight { attenuation: attenuation(lamp, rules), falloff: None, ..lamp.clone() }.into()
         }
-        // Its direction becomes no number, and so does all light from there.
+        // The direction normalizes to NaN, and so does all light from it.
         Light::Directional(sun) if sun.direction == Vec3::ZERO => {
             DirectionalLight { color: Vec3::NAN, ..sun.clone() }.into()
         }

@@ -25,7 +25,7 @@ impl SceneFlattener<'_, '_> {
         }
         solid.into_iter().flat_map(Solid::pieces).for_each(|piece| self.piece(piece, span));
         if self.objects.len() == before && self.diagnostics.error_count() == errors {
-            let message = format!("nothing is left of this `{}`: its parts do not meet", operation.keyword());
+            let message = format!("this `{}` is empty: its parts do not overlap", operation.keyword());
             self.diagnostics.push(Diagnostic::warning(message).code("empty-solid").at(span));
         }
     }
@@ -70,7 +70,7 @@ impl SceneFlattener<'_, '_> {
         match parts.len() {
             0 => self.diagnostics.push(Diagnostic::error(format!("this `{name}` has no parts")).at(span)),
             1 if operation == Operation::Difference => {
-                let message = "nothing is cut away: this `Difference` has one part only";
+                let message = "this `Difference` removes nothing: it has only one part";
                 self.diagnostics.push(Diagnostic::warning(message).at(span));
             }
             _ => {}
@@ -116,8 +116,8 @@ impl SceneFlattener<'_, '_> {
     fn check_shape(&mut self, shape: &Primitive, span: Span) {
         if shape.inside(glam::DVec3::ZERO).is_none() {
             let message = "a surface without an inside cannot be part of a solid";
-            let help = "solids are made of closed shapes: a flat `Box` or `Cylinder`, say, or a `Plane`, whose inside is \
-                        all that is behind it";
+            let help = "use closed shapes: a flat `Box` or `Cylinder`, for example, or a `Plane`, whose inside is the \
+                        half space behind it";
             self.diagnostics.push(Diagnostic::error(message).code("open-solid").at(span).help(help));
         }
     }
@@ -126,9 +126,9 @@ impl SceneFlattener<'_, '_> {
         let Geometry::Mesh(tree) = &object.geometry else { return };
         let edge = *self.open_edges.entry(path.to_string()).or_insert_with(|| tree.mesh.open_edge());
         if let Some([p, q]) = edge {
-            let message = format!("the mesh `{path}` is not closed, and cannot be part of a solid");
+            let message = format!("the mesh `{path}` is not closed and cannot be part of a solid");
             let text = |p: Vec3| format!("{} {} {}", p.x, p.y, p.z);
-            let help = format!("the edge from {} to {} borders on an odd number of triangles", text(p), text(q));
+            let help = format!("the edge from {} to {} has an odd number of triangles", text(p), text(q));
             self.diagnostics.push(Diagnostic::error(message).code("open-solid").at(span).help(help));
         }
     }

@@ -26,7 +26,7 @@ pub fn try_read(text: &str, rules: &Rules, accel: AccelKind, folder: &Path) -> (
     (world, diagnostics)
 }
 
-/// Compiles a scene text with our own dialect's rules.
+/// Compiles a scene text with the rules of Dürer's own dialect.
 pub fn read(text: &str) -> World {
     let (world, diagnostics) = try_read(text, Dialect::Durer.rules(), AccelKind::Bvh, Path::new("."));
     world.unwrap_or_else(|| panic!("{diagnostics:?}"))

@@ -15,9 +15,9 @@ fn errors(text: &str, accel: AccelKind) -> Vec<String> {
 }
 
 #[test]
-fn transforms_that_flatten_space_are_refused() {
+fn singular_transforms_are_rejected() {
     let ball = "Sphere { center 0 0 0 radius 1 }";
-    let flat = "flatten space, or leave the range of numbers";
+    let flat = "are singular, or their numbers overflow";
     for ops in [
         "Matrix { 1 2 3 0  2 4 6 0  0 0 1 0  0 0 0 1 }",
         "Matrix { 0 0 0 0  0 0 0 0  0 0 0 0  0 0 0 1 }",
@@ -32,7 +32,7 @@ fn transforms_that_flatten_space_are_refused() {
 }
 
 #[test]
-fn materials_that_double_or_nest_too_deeply_are_refused() {
+fn materials_with_too_many_parts_or_levels_are_rejected() {
     let chain = |count: usize, solid: &dyn Fn(usize) -> String| {
         let solids: String = (0..count).map(solid).collect();
         errors(&format!("Materials {{ Material {{ }} {solids} }} Group {{ }}"), AccelKind::Bvh)
@@ -40,13 +40,13 @@ fn materials_that_double_or_nest_too_deeply_are_refused() {
     let doubled = |i: usize| format!("Noise {{ materialIndex {i} materialIndex {i} octaves 1 }} ");
     let nested = |i: usize| format!("Checkerboard {{ materialIndex {i} materialIndex 0 }} ");
     assert_eq!(chain(12, &doubled), [""; 0]);
-    assert_eq!(chain(60, &doubled), ["this material is made of others 13 deep and 8192 in all"]);
+    assert_eq!(chain(60, &doubled), ["this material has 13 levels and 8192 parts"]);
     assert_eq!(chain(64, &nested), [""; 0]);
-    assert_eq!(chain(100_000, &nested), ["this material is made of others 65 deep and 66 in all"]);
+    assert_eq!(chain(100_000, &nested), ["this material has 65 levels and 66 parts"]);
 }
 
 #[test]
-fn solids_are_made_of_closed_parts() {
+fn solids_reject_parts_without_an_inside() {
     let ball = "Sphere { center 0 0 0 radius 1 }";
     let open = "a surface without an inside cannot be part of a solid";
     for flat in [
@@ -79,7 +79,7 @@ fn solids_are_made_of_closed_parts() {
 }
 
 #[test]
-fn open_meshes_are_no_parts_and_closed_ones_are() {
+fn solids_reject_open_meshes_and_accept_closed_ones() {
     let folder = tempfile::tempdir().unwrap();
     let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
     let sides = ["f 1 3 2\n", "f 1 2 4\n", "f 2 3 4\n", "f 1 4 3\n"];
@@ -97,14 +97,14 @@ fn open_meshes_are_no_parts_and_closed_ones_are() {
         assert_eq!(world.is_some(), closed, "{name} {findings:?}");
         let error = findings.iter().find(|d| d.severity == durer_diag::Severity::Error);
         if let Some(error) = error {
-            assert_eq!(error.message, "the mesh `open.obj` is not closed, and cannot be part of a solid");
+            assert_eq!(error.message, "the mesh `open.obj` is not closed and cannot be part of a solid");
             assert!(error.span.is_some() && error.help.as_ref().unwrap().contains("the edge from 0 0 "), "{error:?}");
         }
     }
 }
 
 #[test]
-fn shapes_whose_numbers_do_not_fit_together_are_refused() {
+fn shapes_with_inconsistent_fields_are_rejected() {
     for (shape, message) in [
         ("Box { min 0 0 0 max 1 0 1 }", "`min` of a `Box` must be less than its `max` in x, y and z"),
         ("Cylinder { base 1 1 1 top 1 1 1 radius 1 }", "`base` and `top` of a `Cylinder` must not be the same point"),
@@ -114,7 +114,7 @@ fn shapes_whose_numbers_do_not_fit_together_are_refused() {
             "`minorRadius` of a `Torus` must be less than its `majorRadius`",
         ),
         ("Ellipsoid { center 0 0 0 radii 1 0 1 }", "all `radii` of an `Ellipsoid` must be more than 0"),
-        ("Quadric { squares 0 0 0 constant 1 }", "a `Quadric` needs a number beside its `constant` that is not 0"),
+        ("Quadric { squares 0 0 0 constant 1 }", "a `Quadric` needs a coefficient other than its `constant` that is not 0"),
         (
             "Disc { center 0 0 0 normal 0 1 0 radius 1 innerRadius 1 }",
             "`innerRadius` of a `Disc` must be less than its `radius`",
@@ -128,7 +128,7 @@ fn shapes_whose_numbers_do_not_fit_together_are_refused() {
 }
 
 #[test]
-fn height_fields_are_closed_landscapes() {
+fn height_fields_are_closed_meshes() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("hills.ppm"), b"P6 3 2 255\n\0\0\0\xff\xff\xff\0\0\0\0\0\0\0\0\0\0\0\0").unwrap();
     std::fs::write(folder.path().join("dot.ppm"), b"P6 1 1 255\n\0\0\0").unwrap();
@@ -141,7 +141,7 @@ fn height_fields_are_closed_landscapes() {
     let Geometry::Mesh(tree) = &world.objects()[0].geometry else { panic!() };
     assert_eq!(tree.mesh.open_edge(), None);
     assert_eq!((tree.mesh.len(), world.bounds().min, world.bounds().max.y), (4 + 18, [0.0, -0.5, 0.0].into(), 1.0));
-    // The white pixel is in the middle of the top row, at the least z.
+    // The white pixel is in the middle of the top row, at the smallest z.
     let down = |x: f32, z: f32| {
         let ray = durer_scene::math::Ray::new([x, 5.0, z].into(), [0.0, -1.0, 0.0].into());
         world.closest(&ray, &mut ()).map(|hit| 5.0 - hit.t)
@@ -154,7 +154,7 @@ fn height_fields_are_closed_landscapes() {
         let (world, findings) = read(body);
         assert!(world.is_none() && findings.iter().any(|d| d.message.contains(what)), "{findings:?}");
     };
-    refused("HeightField { picture dot.ppm min 0 0 0 max 1 1 1 }", "1 x 1 pixels make no landscape");
+    refused("HeightField { picture dot.ppm min 0 0 0 max 1 1 1 }", "a height field cannot have 1 x 1 pixels");
     refused("HeightField { picture none.ppm min 0 0 0 max 1 1 1 }", "the picture of heights cannot be read");
     refused("HeightField { picture hills.ppm min 0 0 0 max 1 0 1 }", "`min` of a `HeightField` must be less");
 }
@@ -188,7 +188,7 @@ fn a_picture_multiplies_the_share_of_a_mix() {
 }
 
 #[test]
-fn a_grid_of_cells_needs_a_volume() {
+fn cell_grid_needs_a_volume() {
     let grid = |max: &str| {
         errors(
             &format!(
@@ -204,7 +204,7 @@ fn a_grid_of_cells_needs_a_volume() {
 }
 
 #[test]
-fn grids_that_cannot_be_made_are_refused() {
+fn invalid_grids_are_rejected() {
     let balls = "Sphere { center 0 0 0 radius 1 } ".repeat(1000);
     assert_eq!(errors(&format!("Group {{ {balls} }}"), AccelKind::Grid(Some([0, 1, 1]))).len(), 1);
     assert_eq!(errors(&format!("Group {{ {balls} }}"), AccelKind::Grid(Some([256, 256, 256]))).len(), 1);
@@ -214,7 +214,7 @@ fn grids_that_cannot_be_made_are_refused() {
 }
 
 #[test]
-fn tables_that_a_material_can_ask_for_are_worked_out_before_rays_are_traced() {
+fn tables_of_a_material_are_computed_before_rays_are_traced() {
     use crate::world::Material;
     for (words, opaque_glass_coat) in [
         ("", [true, false, false]),
@@ -232,7 +232,7 @@ fn tables_that_a_material_can_ask_for_are_worked_out_before_rays_are_traced() {
         let Material::Phong(phong) = &world.materials()[0] else { panic!("{words}") };
         let own = phong.principled.as_ref().unwrap();
         assert_eq!(own.tables.prepared(), opaque_glass_coat, "{words}");
-        // Shading asks for no other tables.
+        // Shading needs no other tables.
         let lanes = durer_scene::spectrum::Lanes::Rgb;
         let wo = Vec3::new(0.6, 0.0, 0.8);
         for inside in [false, true] {

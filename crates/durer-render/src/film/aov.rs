@@ -1,4 +1,4 @@
-//! Table of the pictures beside colour (AOVs).
+//! Table of the arbitrary output variables (AOVs): pictures of values other than colour.
 //!
 //! Most use one ray through each pixel's centre, some the sums of the colour's samples.
 //! Floating-point files get the values unchanged; eight-bit files get a mapping to 0 to 1.
@@ -96,7 +96,7 @@ pub enum Value {
     Sums(fn(&Sums) -> Vec3),
 }
 
-/// One kind of picture.
+/// Description of an AOV.
 #[derive(Debug)]
 pub struct Aov {
     /// Name on the command line and in files.
@@ -136,11 +136,11 @@ pub fn fill_from_last_hit(pixels: &mut [Color], hits: &[bool], width: usize) {
     }
 }
 
-/// All kinds of picture beside colour.
+/// Table of all AOVs, in the order of the help.
 pub static AOVS: &[Aov] = &[
     Aov {
         name: "depth",
-        doc: "t of the first hit: the distance, for cameras; 0 where nothing is hit",
+        doc: "ray parameter t of the first hit, a distance for camera rays; 0 for a miss",
         value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(f32::INFINITY, |at| at.hit.t))),
         picture: depth_picture,
         relative: true,
@@ -148,7 +148,7 @@ pub static AOVS: &[Aov] = &[
     },
     Aov {
         name: "normals",
-        doc: "the shading normal in world space",
+        doc: "shading normal, in world space",
         value: Value::Ray(|seen| of_surface(seen, |s| s.n_shade)),
         picture: normal_picture,
         // For misses, one quirk shows the previous hit's normal.
@@ -157,7 +157,7 @@ pub static AOVS: &[Aov] = &[
     },
     Aov {
         name: "geometric-normals",
-        doc: "the normal of the surface itself in world space",
+        doc: "geometric normal, in world space",
         value: Value::Ray(|seen| of_surface(seen, |s| s.n_geo)),
         picture: normal_picture,
         relative: false,
@@ -165,7 +165,7 @@ pub static AOVS: &[Aov] = &[
     },
     Aov {
         name: "position",
-        doc: "the point in world space; as a picture, within the box of all points seen",
+        doc: "hit point, in world space; as a picture, relative to the bounds of all hit points",
         value: Value::Ray(|seen| of_surface(seen, |s| s.position)),
         picture: |p, hit, display| {
             let (size, min) = (display.hits.size(), display.hits.min);
@@ -177,7 +177,7 @@ pub static AOVS: &[Aov] = &[
     },
     Aov {
         name: "uv",
-        doc: "texture coordinates in red and green, 0 where there are none; as a picture, their fraction",
+        doc: "texture coordinates in red and green, 0 if there are none; as a picture, their fractional part",
         value: Value::Ray(|seen| of_surface(seen, |s| s.uv.get().unwrap_or_default().extend(0.0))),
         picture: |uv, _, _| uv - uv.floor(),
         relative: false,
@@ -185,7 +185,7 @@ pub static AOVS: &[Aov] = &[
     },
     Aov {
         name: "barycentric",
-        doc: "barycentric coordinates on the triangle, 0 on other shapes",
+        doc: "barycentric coordinates on triangles, 0 on other shapes",
         value: Value::Ray(|seen| of_surface(seen, |s| s.barycentric)),
         picture: |b, _, _| b,
         relative: false,
@@ -193,7 +193,7 @@ pub static AOVS: &[Aov] = &[
     },
     Aov {
         name: "albedo",
-        doc: "the diffuse colour, from textures and patterns too, without any light; 0 where nothing is hit",
+        doc: "diffuse colour with textures and patterns, without lighting; 0 for a miss",
         value: Value::Ray(|seen| seen.albedo),
         picture: |albedo, _, _| albedo,
         relative: false,
@@ -201,7 +201,7 @@ pub static AOVS: &[Aov] = &[
     },
     Aov {
         name: "object",
-        doc: "number of the object, -1 where there is none; as a picture, a colour of its own",
+        doc: "index of the object, -1 for a miss; as a picture, one colour per object",
         value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(-1.0, |at| at.hit.object as f32))),
         picture: |id, hit, _| if hit { id_color(id.x) } else { Vec3::ZERO },
         relative: false,
@@ -209,7 +209,7 @@ pub static AOVS: &[Aov] = &[
     },
     Aov {
         name: "material",
-        doc: "number of the material, -1 where there is none; as a picture, a colour of its own",
+        doc: "index of the material, -1 for a miss; as a picture, one colour per material",
         value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(-1.0, |at| at.material as f32))),
         picture: |id, hit, _| if hit { id_color(id.x) } else { Vec3::ZERO },
         relative: false,
@@ -217,7 +217,7 @@ pub static AOVS: &[Aov] = &[
     },
     Aov {
         name: "luminance",
-        doc: "luminance of the colour, in cd/m^2 where the scene's light is, or in watts; as a picture, false colours with their scale",
+        doc: "luminance of the colour, in cd/m^2 if the scene's light is in cd/m^2 or in watts; as a picture, false colours with a scale",
         value: Value::Sums(|sums| Vec3::splat(sums.luminance() as f32)),
         picture: light_picture,
         relative: true,
@@ -225,7 +225,7 @@ pub static AOVS: &[Aov] = &[
     },
     Aov {
         name: "illuminance",
-        doc: "light that arrives at the surface, in lux where the scene's light is in cd/m^2, or in watts, by paths; false colours with their scale",
+        doc: "illuminance of the surface by path tracing, in lux if the scene's light is in cd/m^2 or in watts; as a picture, false colours with a scale",
         value: Value::Ray(|seen| Vec3::splat(seen.illuminance)),
         picture: |value, hit, display| if hit { light_picture(value, hit, display) } else { Vec3::ZERO },
         relative: true,
@@ -233,7 +233,7 @@ pub static AOVS: &[Aov] = &[
     },
     Aov {
         name: "sample-count",
-        doc: "how many samples the colour is the mean of; as a picture, a heat map",
+        doc: "number of samples of the pixel; as a picture, a heat map",
         value: Value::Sums(|sums| Vec3::splat(sums.samples() as f32)),
         picture: heat_picture,
         relative: true,
@@ -241,7 +241,7 @@ pub static AOVS: &[Aov] = &[
     },
     Aov {
         name: "variance",
-        doc: "estimated variance of the mean luminance, infinite for one sample; as a picture, a heat map of its root up to 0.1",
+        doc: "estimated variance of the mean luminance, infinite for one sample; as a picture, a heat map of its square root, up to 0.1",
         value: Value::Sums(|sums| Vec3::splat(sums.variance() as f32)),
         picture: |variance, _, _| heat(variance.x.sqrt() * 10.0),
         relative: false,
@@ -249,7 +249,7 @@ pub static AOVS: &[Aov] = &[
     },
     Aov {
         name: "cost",
-        doc: "tests of boxes and shapes for the pixel, with all secondary rays; as a picture, a heat map",
+        doc: "number of box and shape tests of the pixel, secondary rays included; as a picture, a heat map",
         value: Value::Ray(|seen| Vec3::splat((seen.counts.nodes + seen.counts.tests) as f32)),
         picture: heat_picture,
         relative: true,

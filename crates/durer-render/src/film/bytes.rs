@@ -65,7 +65,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn numbers_come_back(numbers in prop::collection::vec((any::<u128>(), any::<i128>(), 0_u32..128), 1..20)) {
+        fn numbers_survive_encoding(numbers in prop::collection::vec((any::<u128>(), any::<i128>(), 0_u32..128), 1..20)) {
             let numbers: Vec<_> = numbers.into_iter().map(|(u, i, s)| (u >> s, i >> s)).collect();
             let mut out = Vec::new();
             for &(whole, signed) in &numbers {
@@ -80,7 +80,7 @@ mod tests {
         }
 
         #[test]
-        fn any_bytes_are_read_or_refused(junk in prop::collection::vec(any::<u8>(), 0..60)) {
+        fn arbitrary_bytes_are_read_or_rejected(junk in prop::collection::vec(any::<u8>(), 0..60)) {
             let mut bytes = Bytes(&junk);
             while bytes.signed::<i64>().is_some() {}
             let _ = (bytes.float(), bytes.take(usize::MAX));

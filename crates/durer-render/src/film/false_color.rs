@@ -140,7 +140,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_and_values_are_each_other_s_inverse() {
+    fn positions_and_values_are_inverse() {
         for scale in [LightScale::over([250.0].into_iter()), LightScale { low: 0.5, high: 5e4, logarithmic: true }] {
             for i in 0..=10 {
                 let place = i as f32 / 10.0;
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_have_three_digits() {
+    fn labels_have_three_digits() {
         for (value, text) in
             [(0.0, "0"), (12.5, "12.5"), (1234.0, "1230"), (0.0125, "0.0125"), (2.5e9, "2.5e9"), (1.0 / 3.0, "0.333")]
         {
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn the_scale_stays_at_its_border_and_leaves_small_pictures_alone() {
+    fn scale_stays_at_the_border_and_skips_small_pictures() {
         let (width, height) = (320, 200);
         let mut pixels = vec![Color::splat(0.25); width * height];
         LightScale::over([1000.0].into_iter()).draw(&mut pixels, width, "cd/m2");

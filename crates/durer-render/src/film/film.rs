@@ -225,7 +225,7 @@ const REMEMBERED: usize = 16;
 
 /// The film to merge is not inside this film's window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("a film of other pixels cannot be merged into this one")]
+#[error("cannot merge a film of pixels outside this film's window")]
 pub struct WrongWindow;
 
 impl Film {
@@ -280,7 +280,7 @@ impl Film {
     }
 
     fn pixel_mut(&mut self, x: u32, y: u32) -> &mut Pixel {
-        let index = self.index(x, y).expect("the pixel lies in the film's window");
+        let index = self.index(x, y).expect("the pixel must be in the film's window");
         &mut self.pixels[index]
     }
 
@@ -316,7 +316,7 @@ impl Film {
                 to.samples = to.samples.wrapping_add(from.samples);
             }
         }
-        // Samples that `other` forgot come after sixteen others, also in the union.
+        // Samples that `other` no longer remembers come after sixteen others, also in the union.
         other.first_rejected.iter().for_each(|&r| self.reject(r));
         self.rejected = self.rejected.wrapping_add(other.rejected - other.first_rejected.len() as u64);
         Ok(())
@@ -419,7 +419,7 @@ impl Film {
     }
 
     fn pixel(&self, x: u32, y: u32) -> &Pixel {
-        &self.pixels[self.index(x, y).expect("the pixel lies in the film's window")]
+        &self.pixels[self.index(x, y).expect("the pixel must be in the film's window")]
     }
 
     fn index(&self, x: u32, y: u32) -> Option<usize> {

@@ -6,7 +6,7 @@ pub mod aov;
 pub mod bytes;
 pub mod course;
 pub mod false_color;
-#[expect(clippy::module_inception, reason = "the film is what this room is about")]
+#[expect(clippy::module_inception, reason = "the module is about the film")]
 mod film;
 mod filter;
 mod packed;

@@ -172,7 +172,7 @@ impl Packed {
         }
     }
 
-    /// Returns the bytes a pixel with `samples` samples takes, for typical brightness.
+    /// Returns the typical size in bytes of a pixel with `samples` samples.
     pub fn pixel_bytes(samples: u32) -> u64 {
         (if samples == 1 { size_of::<Color>() } else { size_of::<Small>() }) as u64
     }

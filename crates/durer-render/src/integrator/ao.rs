@@ -1,4 +1,4 @@
-//! Ambient occlusion: the unoccluded share of the hemisphere over a surface.
+//! Ambient occlusion: the unoccluded fraction of the hemisphere above a surface.
 //!
 //! Source: Zhukov, Iones and Kronin, *An Ambient Light Illumination Model*, EGWR 1998; directions
 //! are weighted by the cosine.

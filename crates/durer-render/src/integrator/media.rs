@@ -1,4 +1,4 @@
-//! The stack of objects that a ray is inside: air, or nested glass.
+//! Stack of objects that a ray is inside: air, or nested glass.
 
 use crate::world::{Interaction, World};
 use durer_scene::math::Vec3;
@@ -22,7 +22,7 @@ impl Passage {
         self.there / self.here
     }
 
-    /// The same where the surface counts wherever it lies, with one index inside over that outside.
+    /// Passage of a surface that ignores surrounding media: `ior` inside, 1 outside.
     pub(crate) fn across(self, ior: f32, leaving: bool) -> Passage {
         let (here, there) = if leaving { (ior, 1.0) } else { (1.0, ior) };
         Passage { here, there, hidden: false, ..self }
@@ -40,7 +40,7 @@ impl Default for Passage {
 pub struct Body {
     /// Index of the object.
     pub object: u32,
-    /// Its index of refraction.
+    /// Index of refraction.
     pub ior: f32,
     /// Half the surface area of its bounds; `None` for an open surface, which has no inside.
     pub size: Option<f32>,
@@ -141,7 +141,7 @@ impl Media {
         Media(inside)
     }
 
-    /// Returns the transmission with nested and overlapping glass, as in our own dialect.
+    /// Returns the transmission with nested and overlapping glass, as in Dürer's own dialect.
     pub(crate) fn nested_passage(&self, world: &World, at: &Interaction, ior: f32, leaving: bool) -> Passage {
         self.passage_into(world, (at.hit.object, at.ray.rounded.origin), ior, leaving)
     }
@@ -188,7 +188,7 @@ mod tests {
     const PANE: Body = Body { object: 1, ior: 1.4, size: None };
 
     #[test]
-    fn the_smallest_closed_thing_fills_the_place_in_any_order_of_entering() {
+    fn smallest_closed_object_fills_the_space_in_any_order_of_entering() {
         for order in [[GLASS, WATER, ICE], [ICE, WATER, GLASS], [WATER, ICE, GLASS], [ICE, GLASS, WATER]] {
             let all = order.into_iter().fold(Media::default(), |media, medium| media.entered(medium));
             assert_eq!((all.ior(), all.object()), (1.31, Some(5)));

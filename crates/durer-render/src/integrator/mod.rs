@@ -19,8 +19,8 @@ use std::sync::atomic::AtomicBool;
 pub use trace::{NodeId, TraceListener, TraceNode, TraceRecorder, Tree};
 pub use whitted::{Settings, Whitted, WhittedParameters, refract};
 
-/// Parameters of an integrator: a name and options, stated in a `described!` block, which the
-/// command line walks.
+/// Parameters of an integrator: a name and options, stated in a `described!` block. The command
+/// line derives its options from it.
 pub trait Parameters: Describe + Copy {
     /// The integrator type.
     type Integrator<'w>: Integrate;
@@ -138,14 +138,14 @@ macro_rules! delegate {
 macro_rules! integrators {
     ($($variant:ident($type:ty),)+) => {
         described_list! {
-            /// Which integrator makes a picture, with what it alone is told.
+            /// Integrator of a picture, with its own options.
             Method: Parameters => delegate { $($variant($type),)+ }
         }
 
         /// An integrator of a world.
         #[derive(Clone, Debug)]
         pub enum Integrator<'w> {
-            $(#[doc = concat!("What `", stringify!($variant), "` asks for.")]
+            $(#[doc = concat!("Integrator of `", stringify!($variant), "`.")]
             $variant(<$type as Parameters>::Integrator<'w>),)+
         }
     };
@@ -167,7 +167,7 @@ impl Default for Method {
 }
 
 impl Method {
-    /// Direct light, mirrors and glass.
+    /// Direct lighting, mirrors and glass.
     pub const WHITTED: Method = Method::Whitted(WhittedParameters {});
 
     /// Path tracing with default options.

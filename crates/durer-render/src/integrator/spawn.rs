@@ -1,10 +1,10 @@
 //! Secondary rays that do not hit the surface they start from.
 //!
-//! Why no ray starts behind an adjacent wall: a surface point is known in double precision in world
-//! space, and to a few roundings in the space of its object, whose coordinates have the object's
-//! own size ([`Shape::centered`] removes larger offsets). And a shape keeps its points off its own
-//! edges by more than that error, so moving one along the normal by twice the error leaves it in
-//! front of the adjacent face as well.
+//! A ray never starts behind an adjacent wall: a surface point is known in double precision in
+//! world space, and to a few roundings in the space of its object, whose coordinates have the
+//! object's own size ([`Shape::centered`] removes larger offsets). A shape keeps its points away
+//! from its own edges by more than that error, so moving one along the normal by twice the error
+//! leaves it in front of the adjacent face as well.
 //!
 //! [`Shape::centered`]: durer_scene::shape::Shape::centered
 

@@ -170,8 +170,8 @@ pub struct TraceNode {
     pub scale: TermValue,
     /// Value of the term.
     pub value: TermValue,
-    /// For paths: factor of the terms' values in the pixel; for a source of light, factor of its
-    /// value.
+    /// Factor of the terms' values in the pixel, for paths; for a source of light, the factor of
+    /// its value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub throughput: Option<TermValue>,
     /// The terms that it sums, in the order of addition; empty if `what` states how it is computed.
@@ -392,8 +392,8 @@ pub enum TermKind {
         /// The material's share at the point.
         share: f32,
     },
-    /// One light: (diffuse + highlight) · arriving light, which is the scale. The factor is share ·
-    /// visibility.
+    /// Light of one source: (diffuse + highlight) · arriving light, which is the scale. The factor
+    /// is share · visibility.
     Light {
         /// Index of the light in the scene.
         light: usize,
@@ -433,7 +433,7 @@ pub enum TermKind {
     },
     /// A ray that is not traced because its weight is too small.
     Cut {
-        /// Its weight.
+        /// Weight of the ray.
         weight: f32,
     },
     /// Reflected and transmitted light beyond the maximum depth.

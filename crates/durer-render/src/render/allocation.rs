@@ -70,24 +70,24 @@ pub(super) fn count(samples: u32, target: u32, end: u32) -> u32 {
 /// Returns the reason why a job cannot be sampled adaptively, if there is one.
 pub(super) fn refusal(job: &Job, is_whole: bool) -> Option<String> {
     let is_spread = match job.sampling {
-        // `Center` is refused below for too few samples.
+        // The number of samples rejects `Center` below.
         Sampling::Center | Sampling::Filtered { .. } => true,
         Sampling::Course2004 { sampler, filter: None, .. } => matches!(sampler, Sampler::Sobol | Sampler::Random),
         _ => false,
     };
     let samples = job.sampling.samples();
     let why = if !is_spread {
-        "samples that count for several pixels, or are spread over the pixel only when all are there, are as many for \
-         all pixels"
+        "this sampling cannot be adaptive: its samples affect several pixels, or cover a pixel evenly only \
+         when all are taken"
             .into()
     } else if samples < LEAST_ADAPTIVE {
-        format!("what is divided by noise are at least {LEAST_ADAPTIVE} samples a pixel, and these are {samples}")
+        format!("adaptive sampling needs at least {LEAST_ADAPTIVE} samples a pixel, but there are {samples}")
     } else if job.method.prepares() {
-        "photons are sent for one sample of all pixels at a time, so all pixels have as many".into()
+        "photon mapping cannot be adaptive: photons are traced for one sample of all pixels at a time".into()
     } else if job.noise.is_some() {
-        "either a number of samples is divided by noise, or noise says how many there are".into()
+        "use either adaptive sampling or a noise threshold, not both".into()
     } else if !is_whole {
-        "how samples are divided is decided by all of the picture: such a picture is not split".into()
+        "adaptive sampling needs the whole picture: it cannot be split".into()
     } else {
         return None;
     };

@@ -42,13 +42,13 @@ impl Bands {
     pub fn new(job: &Job, memory: u64) -> Result<Self, RenderError> {
         let refuse = |why: &str| Err(RenderError::Bands(why.into()));
         if !job.color || !job.aovs.is_empty() {
-            return refuse("it has other pictures than the colours");
+            return refuse("only the colour picture can be rendered in bands");
         }
         if !job.sampling.is_local() {
-            return refuse("its samples count for several pixels");
+            return refuse("its samples affect several pixels");
         }
         if job.adaptive {
-            return refuse("its samples are divided by the noise of all of it");
+            return refuse("adaptive sampling needs the whole picture");
         }
         let window = job.window();
         let bytes = |rows: u32| {

@@ -134,7 +134,7 @@ impl FromStr for Shard {
         let (index, count) = numbers.ok_or("expected INDEX/COUNT, as in 3/16: the third of sixteen")?;
         match (1..=count).contains(&index) {
             true => Ok(Shard { index, count, by: ShardBy::Tiles }),
-            false => Err(format!("the first of {count} is 1/{count}, the last {count}/{count}")),
+            false => Err(format!("the index must be from 1 to {count}")),
         }
     }
 }

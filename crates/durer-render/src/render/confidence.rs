@@ -40,7 +40,7 @@ pub struct ErrorBound {
 }
 
 impl ErrorBound {
-    /// Computes the bound from a pixel's samples, and the same samples corrected.
+    /// Computes the bound from a pixel's samples, and from its bias-corrected samples.
     pub(super) fn new(own: &Sums, corrected: &Sums) -> Self {
         let (luminance, without) = (own.luminance(), corrected.luminance());
         let standard_error = corrected.variance().sqrt();
@@ -110,7 +110,7 @@ impl PartialRender {
         let all = u64::from(job.sampling.samples()) * job.window().pixels();
         let other = match corrected(job.method) {
             Some(_) if job.noise.is_some() || job.sampling.is_local() && own.statistics().samples != all => {
-                let message = "the error of photons is known where all samples are taken: give a number of --samples, and neither --noise-threshold nor --time-limit";
+                let message = "the error of photons needs all samples: give --samples, without --noise-threshold and --time-limit";
                 return Err(RenderError::Diagram(message.into()));
             }
             Some(method) => Some(made(&Job { method, ..job })?),

@@ -23,7 +23,7 @@ pub struct Control {
     pub cancel: AtomicBool,
     /// Total number of samples and data rays; see [`super::PartialRender::work`].
     pub all: AtomicU64,
-    /// Number of them that are done.
+    /// Number of finished samples and data rays.
     pub done: AtomicU64,
     /// Number of rays traced so far.
     pub rays: AtomicU64,

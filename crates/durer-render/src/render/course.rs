@@ -1,4 +1,4 @@
-//! The course's ways of sampling: samples that count for other pixels too, in Fall 2004 and 2012.
+//! Sampling of the course, Fall 2004 and 2012: samples that also affect other pixels.
 
 use super::aim::PixelSample;
 use super::error::MAX_KEPT;
@@ -14,10 +14,10 @@ use durer_scene::math::{Color, Vec3};
 use durer_scene::sampler::{SampleId, Sampler};
 use std::cell::Cell;
 
-/// Where the samples of a job lie, with their colours: for its diagram.
+/// Returns the positions and colours of a job's samples, for its diagram.
 ///
 /// # Errors
-/// [`RenderError`], among them [`RenderError::TooManySamples`].
+/// [`RenderError`], including [`RenderError::TooManySamples`].
 pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<StoredSamples, RenderError> {
     let (sampler, samples) = match job.sampling {
         Sampling::Course2004 { sampler, samples, .. } => (sampler, samples),
@@ -37,38 +37,38 @@ pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<Sto
     threads::install(control.threads, work).map_err(|Stopped| RenderError::Cancelled)
 }
 
-/// Bytes of the samples that are kept at once for a tile, where samples count for other pixels too.
+/// Returns the bytes of the samples stored at once for a tile, if samples affect other pixels.
 pub(super) fn kept_bytes(job: &Job, side: u32) -> u64 {
     match job.sampling {
         Sampling::Course2004 { sampler, samples, filter: Some(filter) } => {
             let across = u64::from(side) + 2 * u64::from(filter.support());
             across * across * u64::from(sampler.round_up(samples)) * size_of::<StoredSample>() as u64
         }
-        // The picture, what is blurred of it along rows, and then along columns.
+        // The picture, its blur along rows, and its blur along both axes.
         Sampling::Course2012 { .. } => 3 * 9 * 12 * u64::from(side + 2) * u64::from(side + 2),
         _ => 0,
     }
 }
 
-/// What the course's ways of sampling are made to show. They know colours only: where the camera
-/// sees nothing somewhere, it is shown a second time, white where the camera sees and black
-/// elsewhere.
+/// Content of a picture by the course's sampling, which stores colours only. If the camera sees
+/// nothing at some sample, a second picture is rendered as a mask: white where the camera sees,
+/// black elsewhere.
 #[derive(Default)]
 struct Show {
     mask: bool,
-    /// Whether the camera saw nothing at some sample.
+    /// True if the camera saw nothing at some sample.
     blind: Cell<bool>,
 }
 
-/// The share of a pixel that is seen, of what is shown white where the camera sees. Sums of a
-/// filter's weights are a little off: what is nearly all is all.
+/// Returns the coverage of a pixel from its value in the mask. Sums of filter weights are not
+/// exact, so almost complete coverage counts as complete.
 pub(super) fn share(white: Color) -> f32 {
     if white.x > 1.0 - 1e-6 { 1.0 } else { white.x.max(0.0) }
 }
 
 impl Samples<'_> {
-    /// The finished pixels of a part with their coverage, for samplings whose samples count for
-    /// other pixels too. Samples around the part that are needed for it are taken for it alone.
+    /// Returns the finished pixels of a part with their coverage, for samplings whose samples
+    /// affect other pixels. Also takes the samples around the part that it needs.
     pub(super) fn finished(
         &self,
         part: Crop,
@@ -94,7 +94,7 @@ impl Samples<'_> {
         }
     }
 
-    /// The colour of a sample that is kept.
+    /// Returns the colour of a stored sample.
     fn kept(&self, show: &Show, aim: &PixelSample, id: SampleId, rays: &mut RayCount) -> Color {
         show.blind.set(show.blind.get() || aim.ray.is_none());
         let light = |ray| if show.mask { Vec3::ONE } else { self.integrator.radiance(&ray, id, rays) };
@@ -116,7 +116,7 @@ impl Samples<'_> {
         stored.try_reconstruct(filter, from, (part.width, part.height), || self.check())
     }
 
-    /// All samples of a part of the picture; only rays of the wanted pixels are counted.
+    /// Takes all samples of a part of the picture; counts only rays of the requested pixels.
     fn stored(
         &self,
         show: &Show,
@@ -138,7 +138,8 @@ impl Samples<'_> {
         })
     }
 
-    /// `-jitter` and `-filter` of 2012. Blur without jitter works on the picture as it is.
+    /// Applies `-jitter` and `-filter` of 2012. Blur without jitter works on the unenlarged
+    /// picture.
     fn course_2012(
         &self,
         show: &Show,

@@ -1,4 +1,4 @@
-//! The denoised colour picture.
+//! Denoised colour picture.
 
 use super::part::PartialRender;
 use super::{Control, Job, RenderError, render};
@@ -51,8 +51,8 @@ impl PartialRender {
 }
 
 impl Noisy {
-    /// Denoises with our own denoiser: see [`denoise`]. The result has the same bits on any number
-    /// of threads.
+    /// Denoises with Dürer's own denoiser: see [`denoise`]. The result has the same bits on any
+    /// number of threads.
     pub fn denoised(self) -> Layer {
         let Noisy { picture, albedo, normal, position, variance, .. } = &self;
         let clean = denoise(picture, &Guides { albedo, normal, position, variance });

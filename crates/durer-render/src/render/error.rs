@@ -21,10 +21,10 @@ pub enum RenderError {
     #[error("{0}")]
     Job(String),
     /// The crop is outside the picture.
-    #[error("the crop does not lie in the picture of {0} x {1} pixels")]
+    #[error("the crop must be inside the picture of {0} x {1} pixels")]
     CropOutside(u32, u32),
     /// A diagram of samples stores them, and there are too many.
-    #[error("a diagram keeps all samples, and {0} are too many: at most {MAX_KEPT}")]
+    #[error("too many samples for a diagram: {0}, but at most {MAX_KEPT} are allowed")]
     TooManySamples(u64),
     /// The requested diagram is not possible.
     #[error("{0}")]
@@ -35,11 +35,11 @@ pub enum RenderError {
     /// The samples cannot be distributed adaptively.
     #[error("{0}")]
     Adaptive(String),
-    /// The picture is too large for memory, and cannot be rendered in bands.
-    #[error("a picture of this size is made in bands of rows, which this one cannot be: {0}")]
+    /// The picture is too large for memory and cannot be rendered in bands.
+    #[error("cannot render a picture of this size in bands of rows: {0}")]
     Bands(String),
     /// The render needs too much memory.
-    #[error("rendering needs about {} of memory, and the limit is {}", at_least(*.needed), at_most(*.allowed))]
+    #[error("rendering needs about {} of memory, but the limit is {}", at_least(*.needed), at_most(*.allowed))]
     Memory {
         /// Bytes needed.
         needed: u64,
@@ -47,7 +47,7 @@ pub enum RenderError {
         allowed: u64,
     },
     /// The part belongs to another scene.
-    #[error("this part is not of this scene")]
+    #[error("this part belongs to another scene")]
     OtherScene,
     /// A bug in this program.
     #[error(transparent)]
@@ -56,7 +56,7 @@ pub enum RenderError {
 
 /// A sample made a thread panic, which is a bug. All other work is kept.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("an error in Dürer: pixel {x},{y}{}: {message}", sample.map(|s| format!(", sample {s}")).unwrap_or_default())]
+#[error("internal error: pixel {x},{y}{}: {message}", sample.map(|s| format!(", sample {s}")).unwrap_or_default())]
 pub struct Panicked {
     /// Column.
     pub x: u32,

@@ -120,11 +120,12 @@ pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, 
     explain_of(world, job, (x, y), None)
 }
 
-/// Explains a pixel whose number of samples may be known. If the noise decides it, finding out
-/// takes some rendering, for an adaptive picture a quarter of the whole.
+/// Explains a pixel, given its number of samples if known. With a noise threshold or adaptive
+/// sampling, computing the number takes some rendering; for an adaptive picture, a quarter of the
+/// whole.
 ///
 /// # Errors
-/// Those of [`explain`].
+/// See [`explain`].
 pub fn explain_of(
     world: &World,
     job: &Job,

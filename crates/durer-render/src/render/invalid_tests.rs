@@ -1,4 +1,4 @@
-//! Tests of scenes and jobs with invalid values: refused with a diagnostic, never rendered.
+//! Tests of scenes and jobs with invalid values: rejected with a diagnostic, never rendered.
 
 use super::{Control, Job, PartialRender, RenderError, Sampling, Shard, explain, render};
 use crate::compile::testing::read;
@@ -39,7 +39,7 @@ fn compiled(change: impl FnOnce(&mut Scene, &mut Sphere, &mut PrincipledMaterial
 }
 
 #[test]
-fn invalid_values_of_scenes_are_refused() {
+fn invalid_values_of_scenes_are_rejected() {
     assert_eq!(compiled(|_, _, _| {}), [""; 0]);
     assert_eq!(compiled(|_, ball, _| ball.radius = -1.0), ["Sphere: radius -1 must be more than 0"]);
     assert_eq!(compiled(|_, ball, _| ball.radius = f32::NAN), ["Sphere: radius NaN must be finite"]);
@@ -73,7 +73,7 @@ fn refused(job: Job) -> String {
 }
 
 #[test]
-fn invalid_jobs_are_refused() {
+fn invalid_jobs_are_rejected() {
     let small = || Job { width: 8, height: 8, ..Job::default() };
     assert!(small().validate().is_ok());
     assert_eq!(refused(Job { width: 0, ..small() }), "the size 0 x 8 must be at least 1 x 1");
@@ -104,7 +104,7 @@ fn invalid_jobs_are_refused() {
     let light_scale = Some(LightScale { low: 0.0, high: 1.0, logarithmic: true });
     assert!(refused(Job { light_scale, ..small() }).contains("from 0 to 1"));
     let mut method = Method::PATH;
-    let clamp = method.fields().iter().position(|field| field.name == "clamp").expect("its name");
+    let clamp = method.fields().iter().position(|field| field.name == "clamp").expect("path tracing has `clamp`");
     method.set(clamp, Value::Float(-1.0));
     assert_eq!(refused(Job { method, ..small() }), "clamp of path must be more than 0");
 }

@@ -1,4 +1,4 @@
-//! The job: everything that determines a picture beside the scene.
+//! Job: everything that determines a picture besides the scene.
 
 use super::crop::Crop;
 use super::error::RenderError;
@@ -72,20 +72,21 @@ impl Sampling {
     }
 }
 
-/// Everything that determines the picture beside the scene. Plain data, independent of the machine.
+/// Everything that determines the picture besides the scene. Plain data, independent of the
+/// machine.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Job {
     /// Width of the whole picture.
     pub width: u32,
     /// Height of the whole picture.
     pub height: u32,
-    /// The part to render; `None`: all.
+    /// Part to render; `None`: the whole picture.
     pub crop: Option<Crop>,
     /// Seed of the random numbers.
     pub seed: u64,
     /// Sampling of the colour picture.
     pub sampling: Sampling,
-    /// Noise threshold: sampling stops where the estimated error is below, see [`passes::error`].
+    /// Noise threshold: a block stops when its estimated error is below it, see [`passes::error`].
     /// `None`: never.
     pub noise: Option<f32>,
     /// Adaptive sampling: the number of samples is an average; noisier pixels get more, as the
@@ -114,7 +115,7 @@ fn aov_names<S: Serializer>(aovs: &[&'static Aov], serializer: S) -> Result<S::O
 }
 
 fn named_aovs<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<&'static Aov>, D::Error> {
-    let unknown = |name: &str| serde::de::Error::custom(format!("there is no picture `{name}`"));
+    let unknown = |name: &str| serde::de::Error::custom(format!("unknown picture `{name}`"));
     let names = Vec::<String>::deserialize(deserializer)?;
     names.iter().map(|name| Aov::from_name(name).ok_or_else(|| unknown(name))).collect()
 }
@@ -199,7 +200,7 @@ impl Job {
             return refuse(format!("bounces {bounces} must be at most {}", Settings::MAX_BOUNCES));
         }
         if !(least_weight >= 0.0 && least_weight.is_finite()) {
-            return refuse(format!("the least throughput {least_weight} must not be less than 0"));
+            return refuse(format!("the minimum throughput {least_weight} must not be less than 0"));
         }
         if let Some(noise) = self.noise.filter(|noise| !(*noise > 0.0 && noise.is_finite())) {
             return refuse(format!("the noise threshold {noise} must be more than 0"));
@@ -218,7 +219,7 @@ impl Job {
         if let Some(LightScale { low, high, logarithmic }) = self.light_scale {
             let least = if logarithmic { f32::MIN_POSITIVE } else { 0.0 };
             if !(low >= least && high > low && high.is_finite()) {
-                return refuse(format!("false colours cannot go from {low} to {high}"));
+                return refuse(format!("false colours cannot range from {low} to {high}"));
             }
         }
         Ok(())

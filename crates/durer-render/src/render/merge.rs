@@ -12,7 +12,7 @@ use std::sync::Arc;
 #[non_exhaustive]
 pub enum MergeError {
     /// No parts were given.
-    #[error("there are no parts to merge")]
+    #[error("give at least one part to merge")]
     NoParts,
     /// A part belongs to another picture than the first.
     #[error("`{name}` cannot be merged with `{first}`: {error}")]
@@ -35,7 +35,7 @@ pub enum MergeError {
         what: String,
     },
     /// Some work is in no part.
-    #[error("there is something missing:\n{0}")]
+    #[error("some work is missing:\n{0}")]
     Missing(String),
     /// The merged picture would be too large.
     #[error(transparent)]

@@ -64,7 +64,8 @@ impl BlockSamples {
         self.targets.as_ref().map_or(end, |targets| count(job.sampling.samples(), targets[pixel], end))
     }
 
-    /// Returns the number of samples of all its pixels then, without those before `from`.
+    /// Returns the number of samples of all its pixels when the average is `end`, without those
+    /// before `from`.
     pub(super) fn total(&self, job: &Job, pixels: u64, end: u32) -> u64 {
         match &self.targets {
             None => pixels * u64::from(end - self.from),
@@ -329,7 +330,7 @@ fn check_shard(job: &Job, shard: Shard, blocks: usize) -> Result<(), RenderError
     let refuse = |why: String| Err(RenderError::Shard(why));
     let samples = job.sampling.samples();
     if !(1..=shard.count).contains(&shard.index) {
-        return refuse(format!("there is no shard {shard}"));
+        return refuse(format!("shard {shard} does not exist"));
     }
     match shard.by {
         ShardBy::Tiles if shard.count as usize > blocks => {
@@ -337,13 +338,13 @@ fn check_shard(job: &Job, shard: Shard, blocks: usize) -> Result<(), RenderError
         }
         ShardBy::Tiles => Ok(()),
         ShardBy::Samples if !job.sampling.is_local() => {
-            refuse("samples of this kind count for several pixels: such a picture is split by tiles only".into())
+            refuse("samples of this kind affect several pixels: split the picture by tiles".into())
         }
         ShardBy::Samples if job.noise.is_some() => {
-            refuse("where noise decides, it is by all samples of a pixel: such a picture is split by tiles only".into())
+            refuse("a noise threshold needs all samples of a pixel: split the picture by tiles".into())
         }
         ShardBy::Samples if shard.count > samples => {
-            refuse(format!("there are only {samples} samples a pixel, too few for {} shards", shard.count))
+            refuse(format!("{samples} samples a pixel are too few for {} shards", shard.count))
         }
         ShardBy::Samples => Ok(()),
     }
@@ -354,8 +355,8 @@ pub(super) fn film_of(part: Crop) -> Film {
     Film::window(part.left, part.top, part.width, part.height)
 }
 
-/// The passes of a shard, by the ends of their samples. Photons are made anew for each sample, and
-/// so each is a pass.
+/// Returns the passes of a shard, by the ends of their samples. Photons are traced again for each
+/// sample, so each sample is a pass.
 pub(super) fn passes_of(job: &Job, shard: Shard) -> Passes<impl Iterator<Item = u32> + Send + use<>> {
     let samples = job.sampling.samples();
     let (from, to) = shard.range(samples);

@@ -51,7 +51,7 @@ impl<I: Iterator<Item = u32>> Iterator for Passes<I> {
         let (done, samples, began) = self.last;
         let now = Instant::now();
         let mut end = self.ends.next()?;
-        // Without a clock nobody knows how long a pass takes.
+        // Without a clock, the duration of a pass is unknown.
         if self.joins && samples > 0 && !cfg!(target_family = "wasm") {
             let each = now.duration_since(began) / samples;
             let is_soon = |next: &u32| each.saturating_mul(next - done) < SOON;
@@ -88,7 +88,7 @@ mod tests {
     use durer_scene::sampler::random_2d;
 
     #[test]
-    fn passes_end_where_they_should() {
+    fn passes_end_at_the_documented_counts() {
         let ends = |n| ends(n).collect::<Vec<_>>();
         assert_eq!(ends(1), [1]);
         assert_eq!(ends(5), [1, 2, 4, 5]);
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn short_passes_are_joined_unless_they_decide_something() {
+    fn short_passes_are_joined_unless_they_make_decisions() {
         let of = |joins| Passes::new(ends(100), 0, joins, [0; 2]).collect::<Vec<_>>();
         assert_eq!(of(false), ends(100).collect::<Vec<_>>());
         // The passes do no work.
@@ -113,7 +113,7 @@ mod tests {
 
     /// Compares the estimate with the truth: the mean of n uniform numbers has variance 1 / (12 n).
     #[test]
-    fn the_error_is_that_of_the_mean() {
+    fn error_estimate_matches_the_error_of_the_mean() {
         let rect = Crop { left: 0, top: 0, width: 8, height: 8 };
         let mut film = Film::new(8, 8);
         let n = 64;

@@ -19,7 +19,7 @@ const AT_ONCE: usize = 4;
 /// Pictures and counters.
 #[derive(Debug)]
 pub struct Rendered {
-    /// Colour first, if wanted; then the AOVs in the job's order.
+    /// Colour first, if requested; then the AOVs in the job's order.
     ///
     /// Values as in floating-point files; [`Rendered::pictures`] has display values.
     pub layers: Vec<Layer>,
@@ -91,7 +91,7 @@ impl PartialRender {
     /// never in memory. `look` is called with all of them, some rows at a time.
     ///
     /// # Errors
-    /// Those of the file, and [`BandsError::Image`] for formats that need all rows at once.
+    /// Errors of the file, and [`BandsError::Image`] for formats that need all rows at once.
     pub fn write_colors(
         &self,
         format: &Format,

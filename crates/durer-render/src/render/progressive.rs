@@ -18,12 +18,12 @@ pub struct Progress {
     pub rays: u64,
 }
 
-/// A picture that is made pass by pass. Its passes are those of [`PartialRender::render`], and so are
-/// its bits.
+/// Render of a picture pass by pass. Its passes and its bits equal those of
+/// [`PartialRender::render`].
 pub struct ProgressiveRender {
     part: PartialRender,
     ends: Box<dyn Iterator<Item = u32> + Send>,
-    /// Where the pass ends that was stopped.
+    /// End of the pass that was stopped.
     stopped: Option<u32>,
     is_over: bool,
 }
@@ -35,11 +35,11 @@ impl std::fmt::Debug for ProgressiveRender {
 }
 
 impl ProgressiveRender {
-    /// Begins with a picture of which nothing is made.
+    /// Creates an empty picture.
     ///
     /// # Errors
     ///
-    /// Those of [`PartialRender::new`].
+    /// See [`PartialRender::new`].
     pub fn new(world: &World, job: &Job) -> Result<Self, RenderError> {
         let part = PartialRender::new(world, job, Shard::WHOLE)?;
         Ok(ProgressiveRender { part, ends: Box::new(passes_of(job, Shard::WHOLE)), stopped: None, is_over: false })
@@ -50,8 +50,9 @@ impl ProgressiveRender {
     ///
     /// # Errors
     ///
-    /// [`RenderError::Cancelled`] once [`Control::cancel`] is set or [`Control::most_tiles`] are made,
-    /// [`RenderError::OtherScene`], [`RenderError::Memory`], and [`RenderError::Panic`]. What was made before is kept, and a later call goes on with it.
+    /// [`RenderError::Cancelled`] after [`Control::cancel`] or [`Control::most_tiles`],
+    /// [`RenderError::OtherScene`], [`RenderError::Memory`], and [`RenderError::Panic`]. Finished
+    /// work is kept, and a later call continues it.
     pub fn next_pass(&mut self, world: &World, control: &Control) -> Result<Option<Progress>, RenderError> {
         if self.is_over {
             return Ok(None);
@@ -73,7 +74,7 @@ impl ProgressiveRender {
             RenderOutcome::Cancelled => RenderError::Cancelled,
             RenderOutcome::Panicked(panicked) => panicked.into(),
         };
-        // The pass is repeated for the blocks that lack it.
+        // The next call repeats the pass for the remaining blocks.
         self.stopped = Some(samples);
         Err(failed)
     }

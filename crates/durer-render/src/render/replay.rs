@@ -11,8 +11,8 @@ use durer_scene::math::Color;
 use std::cell::Cell;
 use std::sync::atomic::AtomicBool;
 
-/// Returns the colour of one sample of a job, if the camera sees anything there. With `None` for
-/// `sample`, replays what a pixel has besides individual samples.
+/// Returns the colour of one sample of a job, if the camera sees anything there. If `sample` is
+/// `None`, replays the work of a pixel apart from its samples.
 ///
 /// Panics if the sample panics.
 ///

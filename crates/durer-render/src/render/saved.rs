@@ -1,6 +1,6 @@
 //! File format of partial renders: checkpoints, shards and merged pictures.
 //!
-//! | bytes | what |
+//! | bytes | content |
 //! | --- | --- |
 //! | 8 | `DURERPRT` |
 //! | number | version of this format |
@@ -9,7 +9,7 @@
 //! | text, text, text | job, shard and look, as JSON |
 //! | per block with samples | index + 1; first sample, end, rays; variances (adaptive); sums |
 //! | number | 0 |
-//! | for each block with rays | its number + 1; rays; a byte a pixel: what was found; values |
+//! | for each block with rays | index + 1; rays; one byte per pixel: kind of hit; values |
 //! | number | 0 |
 //! | 32 | BLAKE3 of everything before |
 //!
@@ -36,13 +36,13 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 #[non_exhaustive]
 pub enum PartError {
     /// The bytes are something else.
-    #[error("it is no part of a picture")]
+    #[error("it is not a part of a picture")]
     NotAPart,
     /// The bytes are truncated or damaged.
-    #[error("it is torn or damaged: its checksum is wrong")]
+    #[error("it is truncated or damaged: its checksum is wrong")]
     Damaged,
     /// Another version wrote them.
-    #[error("it was made by Dürer {0}, and this is {VERSION}: pictures may differ")]
+    #[error("it was written by Dürer {0}, but this is {VERSION}: pictures may differ")]
     OtherVersion(String),
     /// The checksum is valid, but the content is not.
     #[error("it is malformed: {0}")]
@@ -51,10 +51,10 @@ pub enum PartError {
     #[error(transparent)]
     Render(#[from] RenderError),
     /// The part belongs to another scene.
-    #[error("it is of another scene, or a file of the scene was changed")]
+    #[error("it belongs to another scene, or a file of the scene has changed")]
     OtherScene,
     /// The part belongs to another job.
-    #[error("it is of another job: {0}")]
+    #[error("it belongs to another job: {0}")]
     OtherJob(String),
 }
 
@@ -113,7 +113,7 @@ impl PartialRender {
     /// Serialises the part. Equal work gives equal bytes.
     pub fn write(&self) -> Vec<u8> {
         let mut out = Vec::new();
-        self.write_to(&mut out).expect("there is always room in memory");
+        self.write_to(&mut out).expect("writing to memory never fails");
         out
     }
 
@@ -193,7 +193,7 @@ impl PartialRender {
         }
         // Reject alternative encodings.
         if part.write() != bytes {
-            return Err(malformed("it is not as Dürer writes it"));
+            return Err(malformed("Dürer would encode it differently"));
         }
         Ok(part)
     }
@@ -245,7 +245,7 @@ impl PartialRender {
     pub fn same_work(&self, other: &PartialRender) -> Result<(), PartError> {
         self.same_picture(other)?;
         if self.shard != other.shard {
-            return Err(PartError::OtherJob(format!("it is shard {}, and wanted is {}", other.shard, self.shard)));
+            return Err(PartError::OtherJob(format!("it is shard {}, expected {}", other.shard, self.shard)));
         }
         Ok(())
     }
@@ -267,6 +267,6 @@ fn first_difference(own: &str, other: &str) -> String {
     let differs = own.iter().find(|(name, value)| other.get(*name) != Some(value));
     let shown = |value: Option<&serde_json::Value>| value.map(ToString::to_string).unwrap_or_default();
     differs.map_or("it differs".into(), |(name, value)| {
-        format!("its `{name}` is {}, and wanted is {value}", shown(other.get(name)))
+        format!("its `{name}` is {}, expected {value}", shown(other.get(name)))
     })
 }

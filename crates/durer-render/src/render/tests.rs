@@ -73,7 +73,7 @@ fn one_ray(x: u32) -> Digest {
 }
 
 #[test]
-fn every_way_gives_one_film() {
+fn film_does_not_depend_on_how_it_is_rendered() {
     let world = world();
     for job in jobs() {
         let plain = all(&world, &job);
@@ -96,7 +96,7 @@ fn every_way_gives_one_film() {
 
 /// Samples are generated and shaded in batches, but explained and replayed one by one.
 #[test]
-fn a_film_is_the_sum_of_its_samples_taken_one_by_one() {
+fn film_equals_the_sum_of_single_samples() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("ball.obj"), include_str!("../../../../scenes/meshes/ball80-smooth.obj"))
         .unwrap();
@@ -174,17 +174,17 @@ fn a_film_is_the_sum_of_its_samples_taken_one_by_one() {
 }
 
 #[test]
-fn a_difference_is_found_and_named() {
+fn differences_are_found_and_described() {
     let world = world();
     let (a, b) = (all(&world, &small()), all(&world, &Job { seed: 1, ..small() }));
-    assert!(compare(&a, &b).is_none(), "one ray through the centre needs no random numbers");
+    assert!(compare(&a, &b).is_none(), "one ray through the centre uses no random numbers");
     let b = all(&world, &Job { settings: Settings { shadows: false, ..small().settings }, ..small() });
     let difference = compare(&a, &b).unwrap();
     assert!(difference.place.starts_with("pixel ") && difference.expected != difference.found, "{difference:?}");
 }
 
 #[test]
-fn a_crop_is_cut_from_the_whole_picture() {
+fn crop_equals_that_part_of_the_whole_picture() {
     let world = world();
     let crop = Crop { left: 9, top: 11, width: 13, height: 10 };
     let scale = crate::film::false_color::LightScale { low: 0.01, high: 2.0, logarithmic: true };
@@ -203,7 +203,7 @@ fn a_crop_is_cut_from_the_whole_picture() {
 }
 
 #[test]
-fn noise_decides_where_samples_are_taken() {
+fn noise_threshold_controls_the_number_of_samples() {
     let world = world();
     let noise = 0.004;
     let job = Job { sampling: filtered(256), noise: Some(noise), width: 40, height: 40, ..Job::default() };
@@ -224,7 +224,7 @@ fn noise_decides_where_samples_are_taken() {
 }
 
 #[test]
-fn what_does_not_fit_is_not_merged() {
+fn inconsistent_parts_are_not_merged() {
     let world = world();
     let job = Job { sampling: filtered(4), aovs: vec![Aov::from_name("depth").unwrap()], ..small() };
     let make = |job: &Job, index, count, by| {
@@ -249,7 +249,7 @@ fn what_does_not_fit_is_not_merged() {
     let other = Job { seed: 1, ..job.clone() };
     let foreign = [make(&job, 1, 2, ShardBy::Tiles), make(&other, 2, 2, ShardBy::Tiles)];
     let message = merge(&foreign).unwrap_err().to_string();
-    assert!(message.contains("`seed` is 1, and wanted is 0"), "{message}");
+    assert!(message.contains("`seed` is 1, expected 0"), "{message}");
     assert!(matches!(merge(&[]), Err(MergeError::NoParts)));
     let unfinished = [("x".to_string(), PartialRender::new(&world, &job, Shard::WHOLE).unwrap())];
     let message = merge(&unfinished).unwrap_err().to_string();
@@ -257,7 +257,7 @@ fn what_does_not_fit_is_not_merged() {
 }
 
 #[test]
-fn work_that_cannot_be_split_is_refused() {
+fn unsuitable_shards_are_rejected() {
     let world = world();
     let refused = |job: &Job, index, count, by| PartialRender::new(&world, job, Shard { index, count, by }).is_err();
     let (tiles, samples) = (ShardBy::Tiles, ShardBy::Samples);
@@ -271,7 +271,7 @@ fn work_that_cannot_be_split_is_refused() {
 }
 
 #[test]
-fn parts_come_back_from_bytes_and_no_bytes_harm() {
+fn parts_survive_serialization_and_invalid_bytes_are_rejected() {
     let world = world();
     let job = Job { sampling: filtered(2), aovs: AOVS.iter().collect(), width: 12, height: 9, ..Job::default() };
     let part = all(&world, &job);
@@ -296,7 +296,7 @@ fn parts_come_back_from_bytes_and_no_bytes_harm() {
             changed[at] = new;
             changed.extend(Digest::of(&changed).0);
             if let Ok(read) = PartialRender::read(&changed) {
-                assert!(read.write() == changed, "{at}: written in another way");
+                assert!(read.write() == changed, "{at}: written differently");
                 // Everything is finite, except the variance of a single sample.
                 let rendered = read.pictures().unwrap();
                 let finite =
@@ -309,7 +309,7 @@ fn parts_come_back_from_bytes_and_no_bytes_harm() {
 }
 
 #[test]
-fn work_is_gone_on_with_only_where_it_is_the_same() {
+fn only_the_same_work_is_resumed() {
     let (world, job) = (world(), Job { sampling: filtered(2), ..small() });
     let part = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
     let other = |world: &World, job: &Job, shard| part.same_work(&PartialRender::new(world, job, shard).unwrap());
@@ -321,7 +321,7 @@ fn work_is_gone_on_with_only_where_it_is_the_same() {
     assert!(matches!(other(&world, &more, Shard::WHOLE), Err(PartError::OtherJob(why)) if why.contains("sampling")));
     let half = Shard { index: 1, count: 2, by: ShardBy::Tiles };
     assert!(matches!(other(&world, &job, half), Err(PartError::OtherJob(why)) if why.contains("1/2")));
-    // Another version writes another number at this place.
+    // Another version has a different character at this position.
     let mut bytes = part.write();
     let version = env!("CARGO_PKG_VERSION").len();
     bytes[9 + version] = b'x';
@@ -332,7 +332,7 @@ fn work_is_gone_on_with_only_where_it_is_the_same() {
 }
 
 #[test]
-fn a_panic_is_an_error_that_knows_its_sample_and_the_rest_is_kept() {
+fn panic_is_an_error_with_its_sample_and_other_work_is_kept() {
     let mut broken = world();
     // A tree that refers to a missing object: rays that hit the sphere's bounds panic.
     let mut boxes = vec![Aabb::EMPTY; 1000];
@@ -343,7 +343,7 @@ fn a_panic_is_an_error_that_knows_its_sample_and_the_rest_is_kept() {
     let part = PartialRender::new(&broken, &job, Shard::WHOLE).unwrap();
     let control = Control { threads: Some(1), ..Control::default() };
     let RenderOutcome::Panicked(panicked) = part.render(&broken, &control, &mut |_, _| {}).unwrap() else {
-        panic!("the sphere is seen");
+        panic!("rays must hit the sphere");
     };
     assert_eq!(panicked.sample, Some(0), "{panicked}");
     assert!(panicked.message.contains("index out of bounds") && panicked.to_string().contains("pixel "), "{panicked}");
@@ -362,7 +362,7 @@ fn a_panic_is_an_error_that_knows_its_sample_and_the_rest_is_kept() {
 }
 
 #[test]
-fn time_and_cancel_stop_soon_and_the_watcher_is_called() {
+fn time_limit_and_cancel_stop_soon_and_the_callback_is_called() {
     let world = world();
     let job = Job { sampling: filtered(1 << 20), width: 64, height: 64, ..Job::default() };
     let (mut passes, mut saves) = (0, 0);
@@ -397,7 +397,7 @@ fn time_and_cancel_stop_soon_and_the_watcher_is_called() {
 }
 
 #[test]
-fn memory_is_estimated_before_it_is_taken() {
+fn memory_is_estimated_before_it_is_allocated() {
     let (world, job) = (world(), Job { width: 4000, height: 4000, sampling: filtered(4), ..Job::default() });
     let part = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
     let control = Control { memory: Some(1 << 30), ..Control::default() };
@@ -414,7 +414,7 @@ fn memory_is_estimated_before_it_is_taken() {
 }
 
 #[test]
-fn samples_that_are_not_finite_are_named() {
+fn non_finite_samples_are_reported() {
     let mut world = world();
     world.edit().ambient = Vec3::new(f32::NAN, 0.0, 0.0);
     let part = all(&world, &Job { sampling: filtered(2), ..small() });
@@ -428,7 +428,7 @@ fn samples_that_are_not_finite_are_named() {
 }
 
 #[test]
-fn files_tell_the_job_and_the_scene() {
+fn files_have_attributes_of_job_and_scene() {
     let world = world();
     let part = all(&world, &small());
     let rendered = part.pictures().unwrap();
@@ -442,7 +442,7 @@ fn files_tell_the_job_and_the_scene() {
 }
 
 #[test]
-fn a_picture_made_in_bands_is_the_same() {
+fn bands_give_the_same_picture() {
     let world = world();
     let crop = Some(Crop { left: 5, top: 3, width: 20, height: 24 });
     for job in [Job { sampling: filtered(3), ..small() }, Job { sampling: filtered(3), crop, ..small() }, small()] {
@@ -475,7 +475,7 @@ fn a_picture_made_in_bands_is_the_same() {
 }
 
 #[test]
-fn colours_written_row_by_row_are_the_file_of_their_picture() {
+fn writing_row_by_row_gives_the_same_file() {
     let fisheye = TEXT.replace("PerspectiveCamera", "FisheyeCamera").replace("angle 40", "angle 180");
     let crop = Some(Crop { left: 5, top: 3, width: 20, height: 24 });
     let tall = Job { width: 5, height: 200, ..Job::default() };
@@ -512,7 +512,7 @@ fn colours_written_row_by_row_are_the_file_of_their_picture() {
 }
 
 #[test]
-fn light_in_watts_is_shown_in_lumens() {
+fn light_in_watts_is_converted_to_lumens() {
     let mut world = world();
     let aovs = AOVS.iter().filter(|aov| aov.unit.is_some()).collect();
     let job = Job { aovs, method: Method::PATH, ..small() };

@@ -42,10 +42,10 @@ pub enum WayError {
     #[error(transparent)]
     Render(#[from] RenderError),
     /// The saved part could not be read.
-    #[error("what was saved cannot be read: {0}")]
+    #[error("cannot read the saved part: {0}")]
     PartialRender(#[from] PartError),
     /// The shards could not be merged.
-    #[error("shards cannot be merged: {0}")]
+    #[error("cannot merge the shards: {0}")]
     Merge(#[from] MergeError),
     /// The render was cancelled.
     #[error("cancelled")]
@@ -102,7 +102,7 @@ impl Way {
             }
             let some = hash(self.seed, 2, shard.index, round, 0) % 24;
             let control = Control {
-                // Each time on another number of threads.
+                // A different number of threads each time.
                 threads: Some(1 + (self.threads + round as usize - 1) % 7),
                 tile: Some(self.tile),
                 most_tiles: (round > 0).then_some(some),
@@ -117,7 +117,7 @@ impl Way {
     }
 }
 
-/// A way that gives another film.
+/// A way that gives a different film.
 #[derive(Clone, Debug)]
 pub struct Difference {
     /// Expected hash.

@@ -21,9 +21,9 @@ pub struct Contents {
     pub frame: CameraBasis,
     /// Colour of rays that miss.
     pub background: Color,
-    /// Whether paths find no light around, since the scene says nothing of it.
+    /// True if paths see a black background, because the scene defines none.
     pub dark: bool,
-    /// Light that is everywhere.
+    /// Ambient light.
     pub ambient: Color,
     /// Lights.
     pub lights: Vec<Light>,
@@ -33,14 +33,14 @@ pub struct Contents {
     pub objects: Vec<Object>,
     /// Rules of the camera and the raster.
     pub camera_rules: CameraRules,
-    /// How an official program finds hits, where its hits are wanted.
+    /// Hit rules of an official program, if its arithmetic is active.
     pub hits: Option<HitRules>,
     /// Rules of hits and of Whitted's integrator.
     pub shading: ShadingRules,
     /// Rules for displaying AOVs.
     pub display: DisplayRules,
-    /// The dialect's rules that all these were resolved from. Rendering does not use them; checks,
-    /// lessons and the student's tracer do.
+    /// Rules of the dialect from which the others were resolved. Rendering does not use them;
+    /// checks, lessons and the student's tracer do.
     pub(crate) rules: Rules,
 }
 
@@ -70,8 +70,8 @@ impl World {
         &mut self.contents
     }
 
-    /// Puts another camera into its place. The hash of the world is then that of the former with the
-    /// camera's: no object is looked at.
+    /// Replaces the camera. The new hash of the world combines the previous hash with the camera,
+    /// without looking at any object.
     pub fn look_through(&mut self, camera: Camera) {
         let text = format!("{} {camera:?}", self.digest());
         self.contents.frame = CameraBasis::of(&camera, self.contents.camera_rules);
@@ -79,7 +79,7 @@ impl World {
         (self.source, self.edited) = (Digest::of(text.as_bytes()), false);
     }
 
-    /// The hash of all that it holds. As it was compiled, that is the hash of what it was made of:
+    /// Returns the hash of the contents. For an unedited world it is the hash of its sources:
     /// description, files, rules.
     pub fn digest(&self) -> Digest {
         if !self.edited {
@@ -94,7 +94,7 @@ impl World {
                 Geometry::Mesh(tree) => tree.mesh.digest().to_string(),
                 other => format!("{other:?}"),
             };
-            // Text can always be written into text.
+            // Writing to a string never fails.
             let _ = write!(text, "{:?}", (geometry, to_world, matrices, center, material, normal_length));
         }
         Digest::of(text.as_bytes())
@@ -115,12 +115,12 @@ impl World {
         self.contents.background
     }
 
-    /// Whether paths find no light around, since the scene says nothing of it.
+    /// Returns true if paths see a black background, because the scene defines none.
     pub fn is_dark(&self) -> bool {
         self.contents.dark
     }
 
-    /// Light that is everywhere.
+    /// Returns the ambient light.
     pub fn ambient(&self) -> Color {
         self.contents.ambient
     }
@@ -145,12 +145,12 @@ impl World {
         self.contents.camera_rules
     }
 
-    /// How an official program finds hits, where its hits are wanted.
+    /// Returns the hit rules of an official program, if its arithmetic is active.
     pub fn hit_rules(&self) -> Option<HitRules> {
         self.contents.hits
     }
 
-    /// Rules of hits and of Whitted's integrator.
+    /// Returns the rules of hits and of Whitted's integrator.
     pub fn shading_rules(&self) -> &ShadingRules {
         &self.contents.shading
     }

@@ -28,7 +28,7 @@ fn is_other_side(shape: &Primitive, world: &World, start: &Surface, ray: &Ray64,
 }
 
 #[test]
-fn no_ray_meets_the_surface_that_it_leaves() {
+fn rays_do_not_hit_the_surface_that_they_leave() {
     let mut random = Random(5);
     let mut counts = [0; 11];
     // Stretch of the transform, distance of the object.
@@ -78,12 +78,12 @@ fn no_ray_meets_the_surface_that_it_leaves() {
             }
         }
     }
-    println!("rays by shape, none of which meets its own surface: {counts:?}");
+    println!("rays by shape, none of which hits its own surface: {counts:?}");
     assert!(counts.iter().all(|&n| n > 100_000), "{counts:?}");
 }
 
 #[test]
-fn rays_start_so_near_that_a_plane_a_thousandth_away_is_met() {
+fn rays_start_close_enough_to_hit_a_plane_a_thousandth_away() {
     let mut random = Random(6);
     for round in 0..20_000 {
         // A thousandth is 16 to 32 roundings of numbers up to 500.
@@ -104,7 +104,7 @@ fn rays_start_so_near_that_a_plane_a_thousandth_away_is_met() {
 }
 
 #[test]
-fn a_mirrored_and_a_sheared_normal_is_that_of_the_moved_surface() {
+fn normals_follow_mirrored_and_sheared_surfaces() {
     let mut random = Random(7);
     for _ in 0..5_000 {
         let affine = random.affine(5.0, 3.0);
@@ -112,8 +112,8 @@ fn a_mirrored_and_a_sheared_normal_is_that_of_the_moved_surface() {
             let world = testing::shapes(&[(shape.clone(), affine)], AccelKind::Bvh);
             let Some((ray, first)) = hit(&world, &shape, &affine, &mut random) else { continue };
             let surface = world.interaction(ray, first).surface;
-            // The same surface in world space: where the distance of the inversely transformed
-            // point is zero.
+            // World-space field of the surface: the distance of the inversely transformed point
+            // from the shape.
             let inverse = affine.inverse();
             let field = |p: DVec3| distance(&shape, inverse.transform_point3(p));
             let p = surface.point();
@@ -138,7 +138,7 @@ fn a_mirrored_and_a_sheared_normal_is_that_of_the_moved_surface() {
 }
 
 #[test]
-fn what_is_no_transform_is_refused() {
+fn invalid_transforms_are_rejected() {
     assert!(Affine::new(DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0))).is_none());
     assert!(Affine::new(DAffine3::from_scale(DVec3::splat(1e300))).is_none());
     assert!(Affine::new(DAffine3::from_translation(DVec3::splat(f64::NAN))).is_none());
@@ -152,7 +152,7 @@ fn what_is_no_transform_is_refused() {
 }
 
 #[test]
-fn a_floor_in_a_coordinate_plane_is_left() {
+fn rays_leave_a_floor_in_a_coordinate_plane() {
     let mut random = Random(9);
     for round in 0..20_000 {
         let size = [1.0, 1000.0][round % 2];

@@ -78,7 +78,7 @@ pub enum Accel {
     },
     /// Brute force.
     None,
-    /// Every object is tested as an official program does.
+    /// Tests every object, as an official program does.
     Course(CourseHits),
 }
 

@@ -16,15 +16,15 @@ pub struct Object {
     pub geometry: Geometry,
     /// Transform from object to world space; `None` for the identity.
     pub to_world: Option<Affine>,
-    /// The transforms around it as an official program multiplies them, the outermost first; empty
-    /// where nobody asks for its arithmetic. That of a flat one has no `to_world`.
+    /// Enclosing transforms as an official program multiplies them, outermost first; empty if its
+    /// arithmetic is not active. With a singular transform, `to_world` is `None`.
     pub matrices: Vec<Matrix>,
-    /// How far its geometry was moved to lie about the origin of object space; [`Object::to_world`]
+    /// Translation that moved the geometry to the origin of object space; [`Object::to_world`]
     /// moves it back.
     pub center: Vec3,
     /// Index of its material; the parts of a solid have their own.
     pub material: u32,
-    /// Length of its normals: not 1 only under [`ShadingRules::raw_normals`].
+    /// Length of its normals; 1 except under [`ShadingRules::raw_normals`].
     pub normal_length: f32,
     /// Span in the scene file.
     pub span: durer_diag::Span,
@@ -150,9 +150,9 @@ impl Object {
         }
     }
 
-    /// Places it anew in the world.
+    /// Moves the object to another place in the world.
     pub fn place_at(&mut self, place: DAffine3) {
-        // What was moved about the origin is moved back first.
+        // First move the geometry back from the origin of object space.
         let centered = place * DAffine3::from_translation(self.center.as_dvec3());
         self.to_world = Affine::new(centered).filter(|affine| !affine.is_identity());
         if !self.matrices.is_empty() {
@@ -160,7 +160,7 @@ impl Object {
         }
     }
 
-    /// A point of object space in world space.
+    /// Transforms a point from object space to world space.
     pub fn world_point(&self, p: Vec3) -> Vec3 {
         self.to_world.as_ref().map_or(p, |to_world| to_world.point(p))
     }

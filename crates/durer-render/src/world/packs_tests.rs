@@ -12,7 +12,7 @@ fn vector(random: &mut Random, size: f32) -> Vec3 {
 /// Traces 10^5 rays through sets of up to 20 of each kind, with duplicates and rays along faces or
 /// edges: t and index are identical bit for bit, also for eight rays at once.
 #[test]
-fn packs_hit_as_shapes_do() {
+fn packs_return_the_hits_of_single_shapes() {
     let mut random = Random(8);
     let (mut hits, mut rays) = (0, 0);
     for _ in 0..rounds(100_000) / 100 {

@@ -4,20 +4,20 @@ use durer_scene::dialect::{DepthPicture, NormalsPicture};
 use durer_scene::math::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// How an official program keeps a secondary ray off the surface that it leaves.
+/// Rule of an official program that keeps a secondary ray off the surface that it leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Epsilon {
     /// Hits count beyond this `t`.
     Least(f32),
-    /// The ray starts this many times its direction along.
+    /// Offset of the ray's start, in multiples of its direction.
     Along(f32),
 }
 
-/// How rays meet surfaces and how Whitted's integrator shades them. Plain values, the same for all
-/// of a world; the default is our own, without the bugs of old programs.
+/// Rules of intersection and of Whitted's shading. Plain values, constant in a world; the default
+/// is Dürer's own, without the bugs of old programs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShadingRules {
-    /// How secondary rays are kept off surfaces. `None`: they start beside the surface, by the
+    /// Rule that keeps secondary rays off surfaces. `None`: they start next to the surface, by the
     /// bound on its error, and every hit counts.
     pub epsilon: Option<Epsilon>,
     /// A hit's position is the rounded point of the ray, without a bound on its error.
@@ -31,17 +31,17 @@ pub struct ShadingRules {
     pub shaded_sides: bool,
     /// A surface seen from behind is black, unless it is shaded on both sides.
     pub black_backs: bool,
-    /// A surface whose normal is no number is black.
+    /// A surface with a NaN normal is black.
     pub spoiled_normals: bool,
-    /// Light falls on normals of unit length, whatever length the shading normal has.
+    /// Lighting uses unit normals, regardless of the length of the shading normal.
     pub unit_light: bool,
     /// Shading normals may not be unit length, so reflected directions are normalised.
     pub raw_normals: bool,
-    /// Such a normal is taken as it is for refraction.
+    /// Refraction uses such a normal without normalising it.
     pub raw_refraction: bool,
     /// Mirrored directions are not normalised.
     pub long_mirrors: bool,
-    /// R0 takes the side of glass that a ray comes from for air.
+    /// R0 assumes that the ray's side of glass is air.
     pub exit_r0: bool,
     /// Only a blocker seen from its front casts a shadow.
     pub shadow_fronts: bool,
@@ -74,10 +74,10 @@ pub struct DisplayRules {
     /// For misses, a picture of normals shows the previous hit's normal, in rows from the bottom.
     #[serde(default)]
     pub stale_normals: bool,
-    /// A depth is kept within the given range before it becomes a grey.
+    /// A depth is clamped to the given range before it becomes a grey.
     #[serde(default)]
     pub clamped_depths: bool,
-    /// What makes lumens of light, by colour, where that is in watts.
+    /// Lumens per watt by colour channel, if light is in watts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lumens: Option<Vec3>,
 }

@@ -84,7 +84,7 @@ impl World {
     pub fn shading(&self, at: &Interaction, eta: f32, lanes: &Lanes) -> Shading<'_> {
         let (dir, surface, inside) = (at.ray.dir(), &at.surface, at.inside());
         let parts = self.parts(at);
-        // The first of a mixture that bends normals counts for all of it.
+        // The first material of a mixture with a normal or bump map determines the normal of all.
         let mut mapped = parts.iter().filter_map(|part| part.phong.principled.as_ref());
         let mapped = mapped.find(|own| own.maps.normal.is_some() || own.maps.bump.is_some());
         let n_shade = mapped.and_then(|own| self.mapped_normal(&own.maps, at)).unwrap_or(surface.n_shade);
@@ -216,7 +216,8 @@ impl World {
         most.1
     }
 
-    /// Whether glass that was hit takes its index for that over what is around it, whatever that is.
+    /// Returns true if a hit glass uses its index of refraction relative to air, regardless of
+    /// surrounding media.
     pub fn ignores_surroundings(&self, at: &Interaction) -> bool {
         let own = |phong: &Phong| {
             let principled = phong.principled.as_ref();
@@ -225,7 +226,7 @@ impl World {
         self.parts(at).iter().any(|part| own(part.phong))
     }
 
-    /// The share of a surface that is there.
+    /// Returns the opacity of a surface.
     pub fn opacity(&self, at: &Interaction) -> f32 {
         let own = |phong: &Phong| match (&phong.fibre, &phong.principled) {
             // The fibre's model computes all interior scattering at the entry point.

@@ -121,7 +121,7 @@ fn ray(world: &World, random: &mut Random, size: f32) -> Ray {
 }
 
 #[test]
-fn all_structures_name_the_same_hit() {
+fn all_structures_return_the_same_hit() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("ball.obj"), ball_file(2)).unwrap();
     std::fs::write(folder.path().join("cube.obj"), CUBE).unwrap();
@@ -162,7 +162,7 @@ fn all_structures_name_the_same_hit() {
 }
 
 #[test]
-fn a_ray_that_is_no_ray_hits_no_world() {
+fn invalid_ray_hits_nothing() {
     let text = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }\n\
         Group { Plane { normal 1 2 3 offset 0 } Sphere { center 0 0 0 radius 1 }
         Transform { Scale 1 2 3 Plane { normal 1 1 0 offset 1 } } }";
@@ -194,7 +194,7 @@ fn a_ray_that_is_no_ray_hits_no_world() {
 }
 
 #[test]
-fn transforms_apply_from_the_last_written_to_the_first_and_keep_t() {
+fn transforms_apply_last_to_first_and_preserve_t() {
     let text = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }\n\
         Group { Transform { Translate 10 0 0 ZRotate 90 Scale 2 1 1
         Transform { Translate 1 0 0 Sphere { center 0 0 0 radius 1 } } } }";
@@ -210,7 +210,7 @@ fn transforms_apply_from_the_last_written_to_the_first_and_keep_t() {
 }
 
 #[test]
-fn a_changed_world_has_the_identity_of_what_it_holds() {
+fn edited_world_has_the_digest_of_its_contents() {
     let world = testing::read(
         "OrthographicCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 size 5 } Materials { PhongMaterial {} }
         Group { MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }",
@@ -238,7 +238,7 @@ fn a_changed_world_has_the_identity_of_what_it_holds() {
 /// Simple shapes, solids and meshes, some of them rotated or distant, with batches of coherent and
 /// random rays, valid or not: the same results as one by one, and as brute force.
 #[test]
-fn rays_that_are_asked_about_together_have_their_own_answers() {
+fn batches_of_rays_match_single_rays() {
     let folder = tempfile::tempdir().unwrap();
     let mut random = Random(31);
     let ball = include_str!("../../../../scenes/meshes/ball80-smooth.obj");

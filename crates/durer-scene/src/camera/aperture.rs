@@ -1,26 +1,26 @@
-//! The opening of a lens: a disc, or a regular polygon where its blades are straight.
+//! Aperture of a lens: a disc, or a regular polygon if the lens has straight blades.
 //!
-//! The unit square goes to the disc by concentric squares and circles, which keeps areas and
-//! neighbourhoods (Shirley, Chiu, *A Low Distortion Map Between Disk and Square*, Journal of
-//! Graphics Tools 2(3), 1997). A sector of the disc goes to the triangle of a blade with its share
-//! of the angle along the blade and its share of the radius.
+//! Shirley and Chiu's concentric map takes the unit square to the disc and preserves relative areas
+//! and neighbourhoods (*A Low Distortion Map Between Disk and Square*, Journal of Graphics Tools
+//! 2(3), 1997). A sector of the disc then maps to the triangle of a blade: the fraction of the
+//! angle becomes the position along the blade, and the radius scales the triangle.
 
 use crate::math::{Vec2, fp};
 use glam::DVec2;
 use std::f64::consts::{FRAC_PI_4, TAU};
 
-/// The most blades that a lens may have.
+/// Maximum number of blades of a lens.
 pub const MAX_BLADES: u32 = 64;
 
-/// A point of an opening of radius 1 around 0, evenly over its area: a disc for 0 blades, else a
-/// polygon whose first corner lies to the right, turned counter-clockwise by an angle in degrees.
-/// (0.5, 0.5) goes to its middle.
+/// Samples an aperture of radius 1 around 0 uniformly by area: a disc for 0 blades, else a polygon
+/// with its first corner on the right, turned counter-clockwise by `turn` degrees. (0.5, 0.5) maps
+/// to the centre.
 pub fn sample(lens: Vec2, blades: u32, turn: f32) -> DVec2 {
     let square = 2.0 * lens.as_dvec2() - 1.0;
     if square == DVec2::ZERO {
         return DVec2::ZERO;
     }
-    // Radius and angle of the point on its circle.
+    // Polar coordinates of the point on its circle.
     let (radius, angle) = match square.x.abs() > square.y.abs() {
         true => (square.x, FRAC_PI_4 * (square.y / square.x)),
         false => (square.y, 2.0 * FRAC_PI_4 - FRAC_PI_4 * (square.x / square.y)),
@@ -33,7 +33,7 @@ pub fn sample(lens: Vec2, blades: u32, turn: f32) -> DVec2 {
     if blades == 0 {
         return radius * direction(angle);
     }
-    // A negative radius is a positive one on the other side.
+    // A negative radius is a positive radius in the opposite direction.
     let angle = if radius < 0.0 { angle + 0.5 * TAU } else { angle };
     let share = angle.rem_euclid(TAU) / TAU * f64::from(blades);
     let along = share - share.floor();
@@ -42,11 +42,11 @@ pub fn sample(lens: Vec2, blades: u32, turn: f32) -> DVec2 {
     radius.abs() * (first + along * (second - first))
 }
 
-/// Checks a number of blades.
+/// Checks the number of blades.
 ///
 /// # Errors
 ///
-/// A sentence, for 1, 2 and more than [`MAX_BLADES`].
+/// A message for 1, 2 and more than [`MAX_BLADES`].
 pub fn validate(blades: u32) -> Result<(), String> {
     let wrong = (1..=2).contains(&blades) || blades > MAX_BLADES;
     match wrong {

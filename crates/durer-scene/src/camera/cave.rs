@@ -1,11 +1,11 @@
-//! The CAVE: screens around a viewer, each showing what he would see through it.
+//! The CAVE: screens around a viewer, each a window into the scene.
 //!
-//! A wall is given by three corners a (lower left), b (lower right) and c (upper left) as it is
-//! seen from inside. The ray through the part (s, t) of its sides runs from the eye to a + s (b -
-//! a) + t (c - a): a frustum with its apex anywhere, off the wall's middle or not. So two walls
-//! that share an edge show the same things at it, whatever the eye: rays are the same at the same
-//! points of the room. The walls lie side by side in one picture, in true proportion, on one
-//! ground. The solid angle of an area at r from the eye on a wall with normal n is |n·r| / |r|³.
+//! A wall is given by three corners a (lower left), b (lower right) and c (upper left), as seen
+//! from inside. The ray through the fractions (s, t) of its sides runs from the eye to a + s (b -
+//! a) + t (c - a), a frustum whose apex may lie off the wall's axis. Rays through the same point of
+//! space agree, so two walls that share an edge match there for any eye. The walls lie side by side
+//! in one picture, at the same scale, on a common base line. The solid angle of an area at r from
+//! the eye on a wall with normal n is |n·r| / |r|³.
 //!
 //! Source: Cruz-Neira, Sandin, DeFanti, *Surround-Screen Projection-Based Virtual Reality: The
 //! Design and Implementation of the CAVE*, SIGGRAPH 1993; Kooima, *Generalized Perspective
@@ -20,20 +20,20 @@ use crate::math::{Ray, Vec2, Vec3};
 use glam::{DMat3, DVec2, DVec3};
 
 described! {
-    /// Several walls around a viewer, as one picture; for one eye or a pair.
+    /// Several walls around a viewer, as one picture, for one eye or a pair.
     CaveCamera ["CaveCamera" in set::DURER] {
-        /// The viewer's eye, or the middle between both: anywhere in the room.
+        /// Position of the viewer's eye, or the midpoint of both eyes.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// Where the viewer's head is turned, which tells his right from his left; of any length.
+        /// Direction that the viewer's head faces, which fixes left and right; of any length.
         direction: Vec3 = Vec3::NEG_Z, optional, Rule::NonZero, ["direction" in set::DURER];
-        /// What is up for the viewer's head; need not be perpendicular.
+        /// Up direction of the viewer's head; need not be perpendicular.
         up: Vec3 = Vec3::Y, optional, Rule::NonZero, ["up" in set::DURER];
-        /// Three corners for each wall, as seen from inside: lower left, lower right, upper left.
-        /// From left to right.
+        /// Three corners per wall, as seen from inside: lower left, lower right, upper left. Walls
+        /// go from left to right.
         walls: Vec<[f32; 9]> = front_wall(), required, Rule::Rows(1, 64), ["walls" in set::DURER];
-        /// Which eye's picture, or how both are laid out.
+        /// Eye to render, or layout of both eyes.
         eyes: Eyes = Eyes::Middle, optional, Rule::Any, ["eyes" in set::DURER];
-        /// Distance between the eyes.
+        /// Distance between the eyes, in world units.
         separation: f32 = 0.065, optional, Rule::NonNegative, ["separation" in set::DURER];
     }
 }
@@ -42,7 +42,7 @@ fn front_wall() -> Vec<[f32; 9]> {
     vec![[-1.0, -1.0, -1.0, 1.0, -1.0, -1.0, -1.0, 1.0, -1.0]]
 }
 
-/// A wall: its lower left corner and the sides from it, and where that corner lies on the sheet.
+/// Wall: its lower left corner, its sides, and the position of that corner on the sheet.
 #[derive(Clone, Copy)]
 struct Wall {
     corner: DVec3,
@@ -56,7 +56,7 @@ impl Wall {
         DVec2::new(self.across.length(), self.upwards.length())
     }
 
-    /// The point of the room for a place on the sheet.
+    /// Returns the world-space point of a position on the sheet.
     fn point(&self, place: DVec2) -> DVec3 {
         let share = (place - DVec2::new(self.left, 0.0)) / self.size();
         self.corner + share.x * self.across + share.y * self.upwards
@@ -82,17 +82,17 @@ impl CaveCamera {
         })
     }
 
-    /// One eye's sheet: all walls in a row.
+    /// Size of one eye's sheet: all walls in a row.
     fn one(&self) -> DVec2 {
         self.walls().fold(DVec2::ZERO, |one, wall| DVec2::new(one.x + wall.size().x, one.y.max(wall.size().y)))
     }
 
-    /// An eye in the room.
+    /// World-space position of an eye.
     fn eye(&self, frame: &CameraBasis, side: f64) -> DVec3 {
         frame.eye.as_dvec3() + 0.5 * side * f64::from(self.separation) * frame.right.as_dvec3()
     }
 
-    /// The eye, the wall and its point that a sample sees.
+    /// Returns the eye, the wall and the point of the wall for a sample.
     fn seen(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<(DVec3, Wall, DVec3)> {
         let (point, pixel) = (sample.point.as_dvec2(), sample.pixel.as_dvec2());
         let (one, sheet) = (self.one(), self.eyes.sheet(self.one()));
@@ -127,7 +127,7 @@ impl Projection for CaveCamera {
             }
             for view in self.eyes.views(self.one()) {
                 if (self.eye(&frame, view.side) - wall.corner).dot(wall.normal()).abs() < 1e-6 * size.max_element() {
-                    return Err(format!("an eye lies in the plane of wall {}, and sees nothing of it", i + 1));
+                    return Err(format!("an eye lies in the plane of wall {}; move `center` or the wall", i + 1));
                 }
             }
         }
@@ -144,7 +144,7 @@ impl Projection for CaveCamera {
         for view in self.eyes.views(one) {
             let eye = self.eye(frame, view.side);
             for wall in self.walls() {
-                // corner + s across + t upwards - eye = k (world - eye): s, t and k at once.
+                // Solve corner + s across + t upwards - eye = k (world - eye) for s, t and k.
                 let to_world = world.as_dvec3() - eye;
                 let solved = DMat3::from_cols(wall.across, wall.upwards, -to_world).inverse() * (eye - wall.corner);
                 let place = DVec2::new(wall.left, 0.0) + solved.truncate() * wall.size();

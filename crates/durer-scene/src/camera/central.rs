@@ -1,4 +1,4 @@
-//! Cameras whose rays all run through one eye: maps between a picture and directions.
+//! Cameras whose rays all pass through one eye: maps between the picture and directions.
 
 use super::{CameraBasis, CameraSample, Pose, Projection};
 use crate::math::{Ray, Vec2, Vec3};
@@ -20,13 +20,13 @@ pub trait Central {
         Ok(())
     }
 
-    /// The direction, of any length, that a point of the picture sees for a pixel.
+    /// Returns the direction, of any length, that a pixel sees through a point of the picture.
     fn direction(&self, point: DVec2, pixel: DVec2) -> Option<DVec3>;
 
     /// Calls `found` with every point of the picture that sees a unit direction.
     fn image(&self, direction: DVec3, found: &mut dyn FnMut(DVec2));
 
-    /// The solid angle that a unit of the picture's area sees, in steradians.
+    /// Solid angle per unit area of the picture, in steradians.
     fn solid_angle(&self, point: DVec2, pixel: DVec2) -> f64;
 }
 

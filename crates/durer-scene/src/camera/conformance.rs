@@ -1,15 +1,15 @@
-//! What every camera of the list must hold, for its default and for random ones made by walking its
-//! description.
+//! Tests of properties that every [`Camera`] must have: each default camera and random ones
+//! generated from its description.
 
 use super::*;
 use crate::describe::{DescribedList, Field, Kind, Rule, Value};
 use crate::math::random::Random;
 
-/// Random cameras of each kind, and points for each: 10^5 together.
+/// Number of random cameras per kind; with `POINTS` samples each, 10^5 samples per kind.
 const CAMERAS: usize = 20;
 const POINTS: usize = 5_000;
 
-/// A value within a field's rule, of a size that cameras in use have.
+/// Random value that satisfies a field's rule, of a realistic size.
 fn value(field: &Field, random: &mut Random) -> Value {
     let mut rows = |count: usize, width: usize| {
         Value::Rows((0..count).map(|_| (0..width).map(|_| random.between(-2.0, 2.0)).collect()).collect())
@@ -25,7 +25,7 @@ fn value(field: &Field, random: &mut Random) -> Value {
         (_, Rule::UpTo(high)) => Value::Float(high * random.between(0.1, 1.0)),
         (_, Rule::Positive) => Value::Float(random.between(0.3, 3.0)),
         (_, Rule::NonNegative) => Value::Float(random.between(0.0, 0.3)),
-        // Twice of what bad lenses have.
+        // Twice the distortion of bad lenses.
         _ if ["p1", "p2"].contains(&field.name) => Value::Float(random.between(-0.01, 0.01)),
         (kind, rule) => {
             assert_eq!((kind, rule), (Kind::Float, Rule::Any), "{}", field.name);
@@ -34,7 +34,7 @@ fn value(field: &Field, random: &mut Random) -> Value {
     }
 }
 
-/// A rectangle a little away.
+/// Rectangle at some distance from the eye.
 fn wall(random: &mut Random) -> Vec<f32> {
     let turn = random.rotation().as_mat3();
     let (w, h) = (random.between(0.5, 3.0), random.between(0.5, 3.0));
@@ -50,7 +50,7 @@ fn random_camera(kind: &Camera, random: &mut Random) -> Camera {
             assert_eq!(field.rule.validate(&value), Ok(()), "{}", field.name);
             camera.set(i, value);
         }
-        // One that sees next to nothing would be found out by nothing.
+        // Reject cameras that see almost nothing: they would pass every test.
         let seen = (0..200).filter(|_| looked(&camera, random).1.is_some()).count();
         if camera.validate().is_ok() && seen > 40 {
             return camera;
@@ -62,16 +62,16 @@ fn frame(camera: &Camera) -> CameraBasis {
     CameraBasis::of(camera, CameraRules::default())
 }
 
-/// A sample anywhere in the natural picture, and its ray.
+/// Random sample in the natural picture, and its ray.
 fn looked(camera: &Camera, random: &mut Random) -> (CameraSample, Option<Ray>) {
     let half = camera.proportions().map_or(Vec2::ONE, |sides| sides / sides.max_element());
-    // A little within, so that no rounding leads outside.
+    // Keep off the edge, so that rounding does not leave the picture.
     let point = 0.98 * half * Vec2::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0));
     let sample = CameraSample { lens: Vec2::new(random.unit(), random.unit()), ..CameraSample::at(point) };
     (sample, camera.ray(&frame(camera), &sample))
 }
 
-/// For each kind: its default, then random ones.
+/// Calls `check` with each kind's default camera, then with random ones.
 fn all(seed: u64, mut check: impl FnMut(&Camera, &mut Random)) {
     let mut random = Random(seed);
     for kind in Camera::kinds() {
@@ -83,8 +83,8 @@ fn all(seed: u64, mut check: impl FnMut(&Camera, &mut Random)) {
     }
 }
 
-/// How X = ray.at(t) moves across the ray with the picture's point, by differences of fourth order:
-/// sideways and upwards.
+/// Derivatives of X = ray.at(t) across the ray with respect to the picture's x and y, by
+/// fourth-order differences.
 fn slopes(camera: &Camera, sample: &CameraSample, t: f32, step: f32) -> Option<[glam::DVec3; 2]> {
     let frame = frame(camera);
     let dir = camera.ray(&frame, sample)?.dir.as_dvec3();
@@ -101,29 +101,29 @@ fn slopes(camera: &Camera, sample: &CameraSample, t: f32, step: f32) -> Option<[
     Some([slope(Vec2::X)?, slope(Vec2::Y)?])
 }
 
-/// By how much a unit of the picture moves the world at least and at most: singular values of the
-/// 3x2 matrix of slopes.
+/// Smallest and largest stretch from the picture to the world: the singular values of the 3x2
+/// matrix of slopes.
 fn stretch([a, b]: [glam::DVec3; 2]) -> (f64, f64) {
     let (aa, bb, ab) = (a.dot(a), b.dot(b), a.dot(b));
     let (mean, apart) = (0.5 * (aa + bb), (0.25 * (aa - bb) * (aa - bb) + ab * ab).sqrt());
     ((mean - apart).max(0.0).sqrt(), (mean + apart).sqrt())
 }
 
-/// The rounding of a world point that was reckoned from an eye in single precision.
+/// Rounding error of a world-space point computed from an eye in single precision.
 fn rounding(ray: &Ray, t: f32) -> f64 {
     4.0 * f64::from(f32::EPSILON) * f64::from(ray.origin.length() + t.abs() + 1.0)
 }
 
 #[test]
-fn points_come_back_from_the_world() {
+fn projection_inverts_rays() {
     let (mut checked, mut skipped, mut hopeless) = (0, 0, 0);
     all(1, |camera, random| {
         let (enough, before) = (checked + POINTS, (checked, skipped));
         let mut tried = 0;
         while checked < enough {
             tried += 1;
-            // A random camera may have hardly an inverse anywhere: a long way driven, and a view so
-            // narrow that nothing moves in it.
+            // Give up on cameras that are almost nowhere invertible: a very long path, or a field
+            // of view so narrow that nothing moves in it.
             if skipped - before.1 > POINTS || tried > 100 * POINTS {
                 (checked, skipped) = before;
                 hopeless += 1;
@@ -132,8 +132,8 @@ fn points_come_back_from_the_world() {
             let (sample, Some(ray)) = looked(camera, random) else { continue };
             assert!((ray.dir.length() - 1.0).abs() < 1e-6, "{camera:?}");
             let t = random.between(0.5, 20.0);
-            // The error of the world point, as it is seen in the picture. Where it is large, there
-            // is hardly an inverse.
+            // Error of the world-space point, projected to the picture. If it is large, the
+            // projection is ill-conditioned.
             let Some((least, _)) = slopes(camera, &sample, t, 1.0 / 1024.0).map(stretch) else {
                 skipped += 1;
                 continue;
@@ -151,12 +151,12 @@ fn points_come_back_from_the_world() {
             checked += 1;
         }
     });
-    assert!(skipped * 20 < checked, "{skipped} beside {checked} were not checked");
-    assert!(hopeless * 50 <= Camera::kinds().len() * CAMERAS, "{hopeless} cameras were not checked at all");
+    assert!(skipped * 20 < checked, "{skipped} samples were skipped, {checked} were checked");
+    assert!(hopeless * 50 <= Camera::kinds().len() * CAMERAS, "{hopeless} cameras were skipped");
 }
 
 #[test]
-fn rays_pass_the_points_that_were_projected() {
+fn rays_pass_through_projected_points() {
     let mut checked = 0;
     all(2, |camera, random| {
         let frame = frame(camera);
@@ -167,7 +167,7 @@ fn rays_pass_the_points_that_were_projected() {
             camera.project(&frame, world, lens, &mut |point| found.push(point));
             for point in found {
                 let sample = CameraSample { lens, ..CameraSample::at(point) };
-                // On the very rim a rounding may lead outside.
+                // At the very rim, rounding may leave the picture.
                 let inwards = CameraSample { pixel: point * (1.0 - 1e-5), point: point * (1.0 - 1e-6), ..sample };
                 let sample = if camera.ray(&frame, &sample).is_some() { sample } else { inwards };
                 let ray = camera.ray(&frame, &sample).unwrap_or_else(|| panic!("{camera:?} {sample:?}"));
@@ -176,7 +176,7 @@ fn rays_pass_the_points_that_were_projected() {
                 let off = f64::from(ray.at(t).distance(world));
                 let moved = 1e-6 + f64::from(point.distance(sample.point));
                 assert!(off <= rounding(&ray, t) + moved * most, "{off}: {camera:?} {sample:?} {world}");
-                assert!(t >= 0.0 || ray.t_min < 0.0, "{camera:?} sees {world} behind itself");
+                assert!(t >= 0.0 || ray.t_min < 0.0, "{camera:?} sees {world}, which is behind it");
                 checked += 1;
             }
         }
@@ -185,14 +185,14 @@ fn rays_pass_the_points_that_were_projected() {
 }
 
 #[test]
-fn footprints_are_areas() {
+fn footprints_match_areas_by_differences() {
     let (mut checked, mut skipped) = (0, 0);
     all(3, |camera, random| {
         for _ in 0..POINTS / 10 {
             let (sample, Some(ray)) = looked(camera, random) else { continue };
             let t = random.between(0.5, 20.0);
             let rounded = rounding(&ray, t);
-            // The area, and its error by rounding.
+            // Area, and its rounding error.
             let area = |step: f32| {
                 let [a, b] = slopes(camera, &sample, t, step)?;
                 Some((a.cross(b).length(), rounded / f64::from(step) * (a.length() + b.length())))
@@ -202,8 +202,8 @@ fn footprints_are_areas() {
                 skipped += 1;
                 continue;
             };
-            // Where the steps differ, at a joint of a path say, differences do not tell the slope
-            // well.
+            // If the step sizes disagree, at a joint of a path for example, differences do not
+            // approximate the slope.
             let apart = (fine - coarse).abs().max((fine - coarsest).abs());
             let stated = f64::from(camera.footprint(&frame(camera), &sample, t));
             let tolerance = 0.001 * fine + error + apart;
@@ -215,11 +215,11 @@ fn footprints_are_areas() {
             checked += 1;
         }
     });
-    assert!(skipped * 5 < checked, "{skipped} of {checked} were not checked");
+    assert!(skipped * 5 < checked, "{skipped} samples were skipped, {checked} were checked");
 }
 
 #[test]
-fn rays_side_by_side_are_those_one_by_one() {
+fn batched_rays_match_single_rays() {
     all(8, |camera, random| {
         for rules in [Aim::Own, Aim::ScreenPoint, Aim::Of2012, Aim::Of2016, Aim::Of2020]
             .map(|aim| CameraRules { aim, ..CameraRules::default() })

@@ -1,10 +1,10 @@
-//! All directions on the six faces of a cube, as one picture.
+//! Cube map: every direction on the six faces of a cube, as one picture.
 //!
-//! `cross` has four faces in a row, left, front, right, back, with up above and down below the
-//! front: every fold is an edge of the cube. `strip` has them in one row: right, left, up, down,
-//! back, front, in the order +x, -x, +y, -y, +z, -z for a camera that looks along -z. Each face is
-//! a square view of 90 degrees, upright as in the cross. The solid angle per area of a face from -1
-//! to 1 is 1 / |direction|³.
+//! `cross` has four faces in a row (left, front, right, back), with up above and down below the
+//! front, so every fold is an edge of the cube. `strip` has the faces in one row: right, left, up,
+//! down, back, front, which is +x, -x, +y, -y, +z, -z for a camera that looks along -z. Each face
+//! is a square view of 90 degrees, upright as in the cross. The solid angle per area of a face from
+//! -1 to 1 is 1 / |direction|³.
 //!
 //! Source: Greene, *Environment Mapping and Other Applications of World Projections*, CG&A 6(11),
 //! 1986.
@@ -18,26 +18,26 @@ use crate::math::{Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
 described_words! {
-    /// How the faces of a cube lie in a picture.
+    /// Layout of the faces of a cube in a picture.
     Layout { Cross = "cross", Strip = "strip" }
 }
 
 described! {
-    /// A camera that sees all around, on the six faces of a cube.
+    /// A camera that sees all directions, on the six faces of a cube.
     CubeMapCamera ["CubeMapCamera" in set::DURER] {
         /// The eye.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// The middle of the front face; of any length.
+        /// Direction of the centre of the front face; of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// What is up in the front face; need not be perpendicular.
+        /// Up direction of the front face; need not be perpendicular.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
-        /// How the faces lie in the picture.
+        /// Layout of the faces in the picture.
         layout: Layout = Layout::Cross, optional, Rule::Any, ["layout" in set::DURER];
     }
 }
 
-/// A face: the directions of its middle, its right and its up, in the camera's space; and its
-/// column and row, counted from the lower left corner, in the cross and in the strip.
+/// Face: the directions of its centre, its right and its up, in camera space; and its column and
+/// row in the cross and in the strip, counted from the lower left corner.
 struct Face {
     axes: [DVec3; 3],
     cross: [f64; 2],
@@ -54,7 +54,7 @@ const FACES: [Face; 6] = [
 ];
 
 impl CubeMapCamera {
-    /// In faces.
+    /// Sheet in units of faces.
     fn sheet(&self) -> Sheet {
         Sheet(match self.layout {
             Layout::Cross => DVec2::new(4.0, 3.0),
@@ -88,7 +88,7 @@ impl Central for CubeMapCamera {
     }
 
     fn image(&self, direction: DVec3, found: &mut dyn FnMut(DVec2)) {
-        // The middle that it is nearest to.
+        // The face whose centre is nearest to the direction.
         let nearest = |best: &'static Face, face: &'static Face| match direction.dot(face.axes[0])
             > direction.dot(best.axes[0])
         {
@@ -102,7 +102,7 @@ impl Central for CubeMapCamera {
 
     fn solid_angle(&self, point: DVec2, pixel: DVec2) -> f64 {
         let Some(direction) = self.direction(point, pixel) else { return 0.0 };
-        // A face is 2 wide, and 1 on the sheet.
+        // A face is 2 wide in camera space and 1 wide on the sheet.
         let unit = 2.0 * self.sheet().unit();
         unit * unit / (direction.length_squared() * direction.length())
     }

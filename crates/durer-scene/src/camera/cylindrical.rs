@@ -1,8 +1,8 @@
-//! The panorama: a picture on a cylinder around the eye. Upright lines stay straight and upright.
+//! Panorama: a picture on a cylinder around the eye. Vertical lines stay straight and vertical.
 //!
-//! direction = sin λ right + cos λ forward + h up, with the longitude λ across and the height h on
-//! a cylinder of radius 1 upwards. The solid angle of dλ dh is dλ dh / (1 + h²)^(3/2). For one eye
-//! of a pair the ray starts on the circle on which the eyes turn (`eyes.rs`).
+//! direction = sin λ right + cos λ forward + h up, where x is the longitude λ and y is the height h
+//! on a cylinder of radius 1. The solid angle of dλ dh is dλ dh / (1 + h²)^(3/2). For one eye of a
+//! pair the ray starts on the viewing circle (`eyes.rs`).
 //!
 //! Source: Chen, *QuickTime VR: An Image-Based Approach to Virtual Environment Navigation*,
 //! SIGGRAPH 1995.
@@ -19,25 +19,25 @@ use glam::{DVec2, DVec3};
 described! {
     /// A camera that sees a panorama on a cylinder, for one eye or a pair.
     CylindricalCamera ["CylindricalCamera" in set::DURER] {
-        /// The eye, or the middle of the circle on which both turn.
+        /// Position of the eye, or the centre of the circle on which both eyes turn.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// What is in the middle of the picture; of any length.
+        /// Direction of the centre of the picture; of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// The cylinder's axis; need not be perpendicular.
+        /// Axis of the cylinder; need not be perpendicular.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
         /// Field of view from left to right, in degrees.
         angle: f32 = 360.0, optional, Rule::UpTo(360.0), ["angle" in set::DURER];
         /// Field of view from bottom to top, in degrees.
         vertical_angle: f32 = 90.0, optional, Rule::Between(0.0, 180.0), ["verticalAngle" in set::DURER];
-        /// Which eye's picture, or how both are laid out.
+        /// Eye to render, or layout of both eyes.
         eyes: Eyes = Eyes::Middle, optional, Rule::Any, ["eyes" in set::DURER];
-        /// Distance between the eyes.
+        /// Distance between the eyes, in world units.
         separation: f32 = 0.065, optional, Rule::NonNegative, ["separation" in set::DURER];
     }
 }
 
 impl CylindricalCamera {
-    /// One eye's sheet: the unrolled cylinder of radius 1.
+    /// Size of one eye's sheet: the unrolled cylinder of radius 1.
     fn one(&self) -> DVec2 {
         DVec2::new(f64::from(self.angle).to_radians(), 2.0 * half_width(self.vertical_angle))
     }

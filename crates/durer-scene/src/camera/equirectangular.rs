@@ -1,9 +1,8 @@
-//! The spherical picture: longitude runs across, latitude upwards, both evenly.
+//! Equirectangular picture: x is the longitude, y is the latitude, both linear.
 //!
 //! direction = cos φ (sin λ right + cos λ forward) + sin φ up; the whole sphere is twice as wide as
 //! high. The solid angle of dλ dφ is cos φ dλ dφ. For one eye of a pair the ray starts on the
-//! circle on which the eyes turn (`eyes.rs`) and is tangent to it, which changes nothing of the
-//! area across the ray.
+//! viewing circle (`eyes.rs`) and is tangent to it, which does not change the area across the ray.
 //!
 //! Source: Snyder, *Map Projections: A Working Manual*, USGS Professional Paper 1395, 1987, chapter
 //! 12.
@@ -17,30 +16,31 @@ use crate::math::{Ray, Vec2, Vec3, fp};
 use glam::{DVec2, DVec3};
 
 described! {
-    /// A camera that sees all around: longitude and latitude as a rectangle, for one eye or a pair.
+    /// A camera that sees all directions: longitude and latitude as a rectangle, for one eye or a
+    /// pair.
     EquirectangularCamera ["EquirectangularCamera" in set::DURER] {
-        /// The eye, or the middle of the circle on which both turn.
+        /// Position of the eye, or the centre of the circle on which both eyes turn.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// What is in the middle of the picture; of any length.
+        /// Direction of the centre of the picture; of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// The north pole; need not be perpendicular.
+        /// Direction of the north pole; need not be perpendicular.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
         /// Field of view from left to right, in degrees.
         angle: f32 = 360.0, optional, Rule::UpTo(360.0), ["angle" in set::DURER];
         /// Field of view from bottom to top, in degrees.
         vertical_angle: f32 = 180.0, optional, Rule::UpTo(180.0), ["verticalAngle" in set::DURER];
-        /// Which eye's picture, or how both are laid out.
+        /// Eye to render, or layout of both eyes.
         eyes: Eyes = Eyes::Middle, optional, Rule::Any, ["eyes" in set::DURER];
-        /// Distance between the eyes.
+        /// Distance between the eyes, in world units.
         separation: f32 = 0.065, optional, Rule::NonNegative, ["separation" in set::DURER];
-        /// Which side of the picture is right: `left` makes a mirror image, as in coordinates of
-        /// the left hand.
+        /// Side of the picture that is right: `left` makes a mirror image, as in left-handed
+        /// coordinates.
         handedness: Handedness = Handedness::Right, optional, Rule::Any, ["handedness" in set::DURER];
     }
 }
 
 impl EquirectangularCamera {
-    /// One eye's sheet, in radians of longitude and latitude.
+    /// Size of one eye's sheet, in radians of longitude and latitude.
     fn one(&self) -> DVec2 {
         DVec2::new(f64::from(self.angle), f64::from(self.vertical_angle)) * 1f64.to_radians()
     }
@@ -56,7 +56,7 @@ impl Projection for EquirectangularCamera {
     }
 
     fn proportions(&self) -> Option<Vec2> {
-        // In degrees, so that common pictures have whole numbers.
+        // In degrees, so that common pictures have integer sizes.
         Some(self.eyes.sheet(DVec2::new(f64::from(self.angle), f64::from(self.vertical_angle))).0.as_vec2())
     }
 

@@ -1,6 +1,6 @@
-//! One eye or a pair, and how the pair's two pictures lie in one.
+//! One eye or a stereo pair, and the layout of the pair in one picture.
 //!
-//! Stereo around the viewer: each eye sees along tangents of the circle on which the eyes turn with
+//! Omnidirectional stereo: each eye looks along tangents of the circle on which the eyes turn with
 //! the head. Sources: Ishiguro, Yamamoto, Tsuji, *Omni-Directional Stereo*, PAMI 14(2), 1992;
 //! Peleg, Ben-Ezra, Pritch, *Omnistereo: Panoramic Stereo Imaging*, PAMI 23(3), 2001.
 
@@ -10,21 +10,21 @@ use crate::math::fp;
 use glam::{DVec2, DVec3};
 
 described_words! {
-    /// Whose picture is wanted.
+    /// Eye to render, or layout of a stereo pair.
     Eyes { Middle = "middle", Left = "left", Right = "right", SideBySide = "sideBySide", TopBottom = "topBottom" }
 }
 
-/// One eye's picture in the whole one.
+/// One eye's picture within the whole picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// -1 for the left eye, 1 for the right, 0 for the middle between them.
     pub side: f64,
-    /// Where its sheet's lower left corner lies on the whole sheet.
+    /// Position of the lower left corner of its sheet on the whole sheet.
     pub corner: DVec2,
 }
 
 impl Eyes {
-    /// The sheet that holds the pictures of all eyes, each on a sheet of its own of this size.
+    /// Sheet that holds the pictures of all eyes, each of size `one`.
     pub fn sheet(self, one: DVec2) -> Sheet {
         Sheet(match self {
             Eyes::SideBySide => DVec2::new(2.0 * one.x, one.y),
@@ -33,7 +33,7 @@ impl Eyes {
         })
     }
 
-    /// The views, whose sheets are of this size: the left eye's to the left or on top.
+    /// Views of size `one`: the left eye's is on the left or on top.
     pub fn views(self, one: DVec2) -> impl Iterator<Item = View> {
         let view = |side, x, y| View { side, corner: one * DVec2::new(x, y) };
         let (first, second) = match self {
@@ -46,8 +46,8 @@ impl Eyes {
         std::iter::once(first).chain(second)
     }
 
-    /// The view that a pixel belongs to, and the place of a point in that view's sheet; `None`
-    /// beside all of them.
+    /// Returns the view that contains a pixel, and the position of a point on that view's sheet;
+    /// `None` outside all views.
     pub fn view(self, one: DVec2, point: DVec2, pixel: DVec2) -> Option<(View, DVec2)> {
         let sheet = self.sheet(one);
         let at = sheet.place(pixel);
@@ -55,45 +55,45 @@ impl Eyes {
         Some((view, sheet.place(point) - view.corner))
     }
 
-    /// The point of the whole picture for a place in a view's sheet.
+    /// Returns the point of the whole picture for a position on a view's sheet.
     pub fn point(self, one: DVec2, view: View, place: DVec2) -> DVec2 {
         self.sheet(one).point(place + view.corner)
     }
 }
 
-/// The circle on which eyes turn: an eye looks along its tangents.
+/// Viewing circle: an eye looks along its tangents.
 ///
 /// At the heading a (0 ahead, growing to the right) the head looks along h = (sin a, 0, cos a), and
 /// an eye at the offset r to the right is at r (cos a, 0, -sin a).
 #[derive(Clone, Copy, Debug)]
 pub struct EyeCircle {
-    /// Signed: negative for the left eye.
+    /// Signed radius: negative for the left eye.
     pub radius: f64,
 }
 
 impl EyeCircle {
-    /// Eye and level direction at a heading in radians.
+    /// Returns the eye's position and its horizontal direction at a heading in radians.
     pub fn tangent(self, heading: f64) -> (DVec3, DVec3) {
         let (sin, cos) = fp::sin_cos_f64(heading);
         (self.radius * DVec3::new(cos, 0.0, -sin), DVec3::new(sin, 0.0, cos))
     }
 
-    /// The heading at which a point is seen, from -pi to pi, and its level distance from the eye
-    /// there: none inside the circle, nor straight above or below its middle.
+    /// Returns the heading at which a point is seen, from -pi to pi, and its horizontal distance
+    /// from the eye there; `None` inside the circle and on its axis.
     pub fn heading(self, point: DVec3) -> Option<(f64, f64)> {
         let square = point.x * point.x + point.z * point.z - self.radius * self.radius;
         if square <= 0.0 {
             return None;
         }
         let distance = square.sqrt();
-        // From the middle of the circle the point is seen this much farther to the right than from
-        // the eye.
+        // Seen from the circle's centre, the point lies this much farther to the right than seen
+        // from the eye.
         let heading = fp::atan2_f64(point.x, point.z) - fp::atan2_f64(self.radius, distance);
         Some((wrapped(heading), distance))
     }
 }
 
-/// An angle in radians, brought to the range from -pi to pi.
+/// Wraps an angle in radians to the range from -pi to pi.
 fn wrapped(angle: f64) -> f64 {
     use std::f64::consts::{PI, TAU};
     match angle {

@@ -1,4 +1,4 @@
-//! The fisheye: a disc that sees a cone of directions around the axis, up to all of them.
+//! Fisheye: a disc that sees a cone of directions around the axis, up to the whole sphere.
 //!
 //! A direction at the angle θ from the axis lies at the radius r = f(θ) / f(angle / 2) of the disc,
 //! where
@@ -6,7 +6,8 @@
 //! - `equidistant`: f = θ: equal angles are equal lengths along the radius;
 //! - `equisolid`: f = 2 sin(θ/2): equal solid angles are equal areas;
 //! - `stereographic`: f = 2 tan(θ/2): small circles stay circles;
-//! - `orthographic`: f = sin θ: the hemisphere's shadow, areas as they light a level surface.
+//! - `orthographic`: f = sin θ: parallel projection of the hemisphere; equal areas of a uniform sky
+//!   light a horizontal surface equally.
 //!
 //! The solid angle per area is sin θ F² / (f f'), with F = f(angle / 2).
 //!
@@ -22,7 +23,7 @@ use crate::math::{Vec2, Vec3, fp};
 use glam::{DVec2, DVec3};
 
 described_words! {
-    /// How the angle from the axis becomes a radius.
+    /// Map from the angle off the axis to the radius.
     FisheyeProjection {
         Equidistant = "equidistant", Equisolid = "equisolid", Stereographic = "stereographic", Orthographic = "orthographic"
     }
@@ -33,20 +34,20 @@ described! {
     FisheyeCamera ["FisheyeCamera" in set::DURER] {
         /// The eye.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// Where it looks; of any length.
+        /// View direction, of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// What is up in the picture; need not be perpendicular.
+        /// Up direction of the picture; need not be perpendicular.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
         /// Field of view across the disc, in degrees: at most 180 for `orthographic`, less than 360
         /// for `stereographic`.
         angle: f32 = 180.0, optional, Rule::UpTo(360.0), ["angle" in set::DURER];
-        /// How the angle from the axis becomes a radius.
+        /// Map from the angle off the axis to the radius.
         projection: FisheyeProjection = FisheyeProjection::Equidistant, optional, Rule::Any, ["projection" in set::DURER];
     }
 }
 
 impl FisheyeProjection {
-    /// The radius for an angle from the axis, and how fast it grows.
+    /// Returns the radius for an angle from the axis, and its derivative.
     pub fn radius(self, theta: f64) -> (f64, f64) {
         let (sin, cos) = fp::sin_cos_f64(theta);
         let (half_sin, half_cos) = fp::sin_cos_f64(0.5 * theta);
@@ -58,7 +59,7 @@ impl FisheyeProjection {
         }
     }
 
-    /// The angle from the axis for a radius.
+    /// Returns the angle from the axis for a radius.
     pub fn theta(self, radius: f64) -> f64 {
         match self {
             FisheyeProjection::Equidistant => radius,
@@ -68,8 +69,8 @@ impl FisheyeProjection {
         }
     }
 
-    /// The direction that a point of the unit disc sees, where the rim sees the angle `limit` from
-    /// the axis.
+    /// Returns the direction that a point of the unit disc sees if the rim is at the angle `limit`
+    /// from the axis.
     pub fn direction(self, point: DVec2, limit: f64) -> Option<DVec3> {
         let radius = point.length();
         if radius > 1.0 {
@@ -80,22 +81,22 @@ impl FisheyeProjection {
         Some((sin * around).extend(cos))
     }
 
-    /// The point of the unit disc that sees a unit direction.
+    /// Returns the point of the unit disc that sees a unit direction.
     pub fn point(self, direction: DVec3, limit: f64) -> Option<DVec2> {
         let across = direction.truncate();
         let (sin, theta) = (across.length(), fp::atan2_f64(across.length(), direction.z));
         let radius = self.radius(theta).0 / self.radius(limit).0;
-        // Straight behind, any point of the rim will do.
+        // Any point of the rim sees straight backwards.
         let around = if sin > 0.0 { across / sin } else { DVec2::X };
         (theta <= limit).then(|| radius * around)
     }
 
-    /// The solid angle per area of the unit disc.
+    /// Solid angle per unit area of the unit disc, in steradians.
     pub fn solid_angle(self, point: DVec2, limit: f64) -> f64 {
         let rim = self.radius(limit).0;
         let theta = self.theta(point.length() * rim);
         let (radius, growth) = self.radius(theta);
-        // Both sin θ / f and f' go to 1 in the middle.
+        // Both sin θ / f and f' tend to 1 at the centre.
         let share = if radius > 0.0 { fp::sin_cos_f64(theta).0 / radius } else { 1.0 };
         share * rim * rim / growth
     }
@@ -122,7 +123,7 @@ impl Central for FisheyeCamera {
                 Err("an orthographic fisheye sees at most 180 degrees".into())
             }
             FisheyeProjection::Stereographic if self.angle > 359.0 => {
-                Err("a stereographic fisheye sees at most 359 degrees: the last one is infinitely far out".into())
+                Err("a stereographic fisheye sees at most 359 degrees: at 360 the radius is infinite".into())
             }
             _ => Ok(()),
         }

@@ -1,5 +1,5 @@
-//! Cameras: from a place in the picture to a ray, and from a point of the world back to the
-//! picture. One file each; the list is [`Camera`].
+//! Cameras: map picture points to rays and world-space points back to the picture. One file each;
+//! the list is [`Camera`].
 
 mod aperture;
 mod central;
@@ -100,41 +100,41 @@ described_list! {
     }
 }
 
-/// Where in the picture and in the lens a ray is wanted.
+/// Sample of a camera: a position in the picture and on the lens.
 ///
 /// (-1, -1) is the lower left corner of the square that the camera covers, (1, 1) the upper right.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraSample {
-    /// The point of the picture.
+    /// Point of the picture.
     pub point: Vec2,
-    /// The centre of the pixel that the sample is for. A filter may reach beyond the pixel, and
-    /// beyond the part of the picture (a face of a cube, a wall, an eye) that the pixel belongs
-    /// to: what it finds there continues that part.
+    /// Centre of the pixel that the sample contributes to. A filter may reach beyond the pixel and
+    /// beyond its part of the picture (a face of a cube, a wall, an eye): points outside continue
+    /// that part.
     pub pixel: Vec2,
-    /// The point of the lens, in [0,1)^2; (0.5, 0.5) is its middle.
+    /// Point of the lens, in [0,1)^2; (0.5, 0.5) is the centre.
     pub lens: Vec2,
 }
 
 impl CameraSample {
-    /// A point of the picture that is its own pixel's centre, through the middle of the lens.
+    /// Sample at a pixel's centre, through the centre of the lens.
     pub fn at(point: Vec2) -> Self {
         CameraSample { point, pixel: point, lens: Vec2::splat(0.5) }
     }
 }
 
-/// Several of them side by side.
+/// `N` camera samples in structure-of-arrays layout.
 #[derive(Clone, Copy, Debug)]
 pub struct CameraSamples<const N: usize> {
-    /// The points of the picture: x of all, then y.
+    /// Points of the picture: all x, then all y.
     pub points: [[f32; N]; 2],
-    /// The centres of their pixels.
+    /// Centres of the pixels.
     pub pixels: [Vec2; N],
-    /// The points of the lens, as those of the picture.
+    /// Points of the lens: all x, then all y.
     pub lenses: [[f32; N]; 2],
 }
 
 impl<const N: usize> CameraSamples<N> {
-    /// One of them.
+    /// Returns sample `i`.
     pub fn sample(&self, i: usize) -> CameraSample {
         let [point, lens] = [self.points, self.lenses].map(|[x, y]| Vec2::new(x[i], y[i]));
         CameraSample { point, pixel: self.pixels[i], lens }
@@ -147,43 +147,42 @@ impl From<CameraSample> for CameraSamples<1> {
     }
 }
 
-/// What every camera can do.
+/// Operations of every camera.
 pub trait Projection {
-    /// Where it stands.
+    /// Position and orientation.
     fn pose(&self) -> Pose;
 
-    /// The natural width and height of its picture, in any unit; `None` where any shape will do,
-    /// and the larger side spans the square. A natural picture lies in the middle of the
-    /// square, which its larger side spans.
+    /// Natural width and height of the picture, in any unit; `None` for any shape. A natural
+    /// picture is centred in the square, and its larger side spans the square.
     fn proportions(&self) -> Option<Vec2> {
         None
     }
 
-    /// Half the width of what is seen at distance 1; 1 where rays need no such number.
+    /// Half the width of the view at distance 1; 1 if rays do not need it.
     fn half_width(&self) -> f64 {
         1.0
     }
 
-    /// Whether rays through one point of the picture differ by the point of the lens.
+    /// True if rays through one point of the picture depend on the point of the lens.
     fn has_aperture(&self) -> bool {
         false
     }
 
-    /// Checks its fields together. Each by itself has its rule in the statement.
+    /// Checks combinations of fields. The rules in the description check each field alone.
     ///
     /// # Errors
     ///
-    /// A sentence that says why there is no such camera.
+    /// A message that says why the camera is invalid.
     fn validate(&self) -> Result<(), String> {
         Ok(())
     }
 
-    /// The ray of a sample; `None` where the camera sees nothing. The direction has length 1, so
-    /// that `t` is a distance.
+    /// Returns the ray of a sample; `None` if the camera sees nothing there. The direction has unit
+    /// length, so `t` is a distance.
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray>;
 
-    /// Gives the rays of several samples, one after the other, as [`Projection::ray`] has them: for
-    /// `take` to put each where it belongs, since what is copied at once is waited for.
+    /// Calls `take` with the index and the ray of each sample, in order. See [`Projection::ray`]. A
+    /// callback lets the caller store each ray in place: copying whole packets stalls.
     fn rays<const N: usize>(
         &self,
         frame: &CameraBasis,
@@ -193,17 +192,17 @@ pub trait Projection {
         (0..N).for_each(|i| take(i, self.ray(frame, &samples.sample(i))));
     }
 
-    /// Calls `found` with every point of the picture at which a point of the world is seen through
-    /// a point of the lens: one, none, or several, as for a pair of eyes. What hides it is not
-    /// asked. Where the picture may have any shape, points may lie beyond the square.
+    /// Calls `found` with every point of the picture that sees a world-space point through a point
+    /// of the lens: none, one, or several, as for a pair of eyes. Ignores occlusion. If the picture
+    /// may have any shape, points may lie outside the square.
     fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2));
 
-    /// The area across the ray at distance `t` that a unit of the picture's area covers, the point
-    /// of the lens held fast.
+    /// Area across the ray at distance `t` per unit area of the picture, for a fixed point of the
+    /// lens.
     ///
-    /// This is the Jacobian |(dX/dx × dX/dy) · dir| of X = origin + t dir by the picture's point.
-    /// Where all rays meet in one eye it is t² times the solid angle per area of the picture;
-    /// where they are parallel it is constant. Undefined where there is no ray.
+    /// This is the Jacobian |(dX/dx × dX/dy) · dir| of X = origin + t dir with respect to the
+    /// picture's point. If all rays meet in one eye, it is t² times the solid angle per area of the
+    /// picture; for parallel rays it is constant. Undefined without a ray.
     fn footprint(&self, frame: &CameraBasis, sample: &CameraSample, t: f32) -> f32;
 }
 

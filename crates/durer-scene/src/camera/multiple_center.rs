@@ -1,14 +1,13 @@
-//! The multiple-centre-of-projection image: every column of the picture has an eye of its own on a
-//! path.
+//! Multiple-centre-of-projection image: every column of the picture has its own eye on a path.
 //!
-//! Eyes e(u) and the points c(u) that they look at run along Catmull-Rom splines through the rows
-//! of `path`, at an even pace from row to row. With w = c - e, right = norm(w x up) and v = right x
-//! norm(w), a column is the fan direction = norm(w) + h v, |h| <= tan(angle / 2). A picture around
-//! a thing shows all of its sides at once.
+//! Eyes e(u) and their targets c(u) move along Catmull-Rom splines through the rows of `path`, with
+//! equal steps in u from row to row. With w = c - e, right = norm(w x up) and v = right x norm(w),
+//! a column is the fan direction = norm(w) + h v, |h| <= tan(angle / 2). A picture around an object
+//! shows all of its sides at once.
 //!
-//! A point X is seen in the columns whose plane it lies in: (w(u) x up)·(X - e(u)) = 0, a
-//! polynomial of degree 6 in each piece of the spline, all of whose roots are found (`roots.rs`).
-//! It may be seen several times.
+//! A point X is seen in the columns whose plane contains it: (w(u) x up)·(X - e(u)) = 0, a
+//! polynomial of degree 6 in each piece of the spline. `roots.rs` finds all of its roots, so a
+//! point may be seen several times.
 //!
 //! The area across a ray at distance t is t / (1 + h²) |dX/du·right| per du dh, where
 //! dX/du·right = e'·right + t (w'·right / |w| + h v'·right) / sqrt(1 + h²) and v'·right = -v·(w' x
@@ -29,16 +28,16 @@ use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
 described! {
-    /// A camera whose columns are seen one after the other from a path.
+    /// A camera whose columns are seen from successive points of a path.
     MultipleCenterCamera ["MultipleCenterCamera" in set::DURER] {
-        /// Places along the path, from the picture's left to its right: the eye, and the point that
-        /// it looks at. Where the last is the first, the path is a smooth loop.
+        /// Rows along the path, from the picture's left to its right: the eye and its target. If
+        /// the last row equals the first, the path is a smooth loop.
         path: Vec<[f32; 6]> = straight(), required, Rule::Rows(2, 1024), ["path" in set::DURER];
-        /// What is up in every column; need not be perpendicular.
+        /// Up direction of every column; need not be perpendicular.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
         /// Field of view from bottom to top, in degrees.
         angle: f32 = 60.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
-        /// Width of the picture over its height.
+        /// Ratio of the picture's width to its height.
         aspect: f32 = 2.0, optional, Rule::Positive, ["aspect" in set::DURER];
     }
 }
@@ -47,7 +46,7 @@ fn straight() -> Vec<[f32; 6]> {
     vec![[-1.0, 0.0, 0.0, -1.0, 0.0, -1.0], [1.0, 0.0, 0.0, 1.0, 0.0, -1.0]]
 }
 
-/// A cubic piece of a path, by Bézier's control points.
+/// Cubic piece of a path, as Bézier control points.
 type Piece = [DVec3; 4];
 
 fn at(piece: &Piece, s: f64) -> DVec3 {
@@ -60,7 +59,7 @@ fn derivative(piece: &Piece, s: f64) -> DVec3 {
     ((b - a) * (r * r) + (c - b) * (2.0 * r * s) + (d - c) * (s * s)) * 3.0
 }
 
-/// A column: its eye, its axes, and what they change by along the picture (by u from 0 to 1).
+/// Column: its eye, its axes, and their derivatives with respect to u from 0 to 1.
 struct Column {
     eye: DVec3,
     right: DVec3,
@@ -83,7 +82,7 @@ impl MultipleCenterCamera {
         self.path.len() - 1
     }
 
-    /// A piece of the path of the eyes (0) or of what they look at (3).
+    /// Returns a piece of the path of the eyes (`column` 0) or of the targets (`column` 3).
     fn piece(&self, index: usize, column: usize) -> Piece {
         let last = self.pieces();
         let place = |i: usize| Vec3::from_slice(&self.path[i][column..column + 3]).as_dvec3();
@@ -99,7 +98,7 @@ impl MultipleCenterCamera {
         [a, a + tangent(index) / 3.0, d - tangent(index + 1) / 3.0, d]
     }
 
-    /// The column at a part of the path.
+    /// Returns the column at the fraction `u` of the path.
     fn column(&self, u: f64) -> Column {
         let count = self.pieces() as f64;
         let index = (u * count).floor().clamp(0.0, count - 1.0);
@@ -121,7 +120,7 @@ impl MultipleCenterCamera {
         }
     }
 
-    /// The column and the height in its fan for a sample.
+    /// Returns the column of a sample and the height in its fan.
     fn seen(&self, sample: &CameraSample) -> Option<(Column, f64)> {
         let sheet = self.sheet();
         let place = sheet.place(sample.point.as_dvec2());
@@ -131,7 +130,7 @@ impl MultipleCenterCamera {
 }
 
 impl Projection for MultipleCenterCamera {
-    /// It stands where the middle column does.
+    /// Pose of the middle column.
     fn pose(&self) -> Pose {
         let Column { eye, forward, .. } = self.column(0.5);
         Pose { center: eye.as_vec3(), direction: forward.as_vec3(), up: self.up }
@@ -145,7 +144,7 @@ impl Projection for MultipleCenterCamera {
         if self.path.len() < 2 {
             return Err("`path` must have at least 2 rows".into());
         }
-        // Between its rows a path may go wrong too.
+        // Check between the rows as well: the spline may degenerate there.
         let steps = 16 * self.pieces();
         (0..=steps).try_for_each(|step| {
             let column = self.column(step as f64 / steps as f64);
@@ -153,7 +152,7 @@ impl Projection for MultipleCenterCamera {
             let wrong =
                 !column.right.is_finite() || column.forward.cross(self.up.as_dvec3().normalize()).length() < 1e-6;
             match wrong {
-                true => Err(format!("at row {row} of `path` the eye looks nowhere, or along `up`")),
+                true => Err(format!("at row {row} of `path` the eye equals its target, or looks along `up`")),
                 false => Ok(()),
             }
         })

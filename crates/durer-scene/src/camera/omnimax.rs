@@ -1,15 +1,14 @@
-//! A picture for a dome: a fisheye projector throws it on the dome, and someone looks at it who
-//! sits elsewhere.
+//! Dome picture: a fisheye projector throws it on the dome, for a viewer at another position.
 //!
-//! The point of the picture leaves the projector P in a direction d (an equidistant fisheye along
-//! the dome's pole) and meets the dome, a part of a unit sphere, at D = P + s d. The viewer V sees
-//! it in the direction D - V: what is rendered there is what lies in that direction in the scene,
-//! so that from V nothing looks bent. The dome's pole is the scene's `up`, tilted forwards by
-//! `tilt`; in the picture the front is at the bottom, as dome masters have it.
+//! A point of the picture leaves the projector P in a direction d (an equidistant fisheye along the
+//! dome's pole) and meets the dome, a part of a unit sphere, at D = P + s d. The viewer V sees it
+//! in the direction D - V, so the picture shows the scene in that direction and looks undistorted
+//! from V. The dome's pole is the scene's `up`, tilted forwards by `tilt`; the front is at the
+//! bottom of the picture, as in dome masters.
 //!
 //! The solid angle per area of the picture is that of the projector's fisheye, times s² / (D·d) for
-//! the dome's area in it, times (D·e) / v² for what the viewer sees of that, e his direction and v
-//! his distance.
+//! the dome's area in it, times (D·e) / v² for that area as seen by the viewer, with e the viewer's
+//! direction and v its distance.
 //!
 //! Source: Max, *Computer Graphics Distortion for IMAX and OMNIMAX Projection*, Nicograph '83;
 //! Greene, Heckbert, *Creating Raster Omnimax Images from Multiple Perspective Views Using the
@@ -24,38 +23,36 @@ use crate::math::{Vec2, Vec3, fp};
 use glam::{DMat3, DVec2, DVec3};
 
 described! {
-    /// A picture for a tilted dome, with projector and viewer where they are; the corners see
-    /// nothing.
+    /// A picture for a tilted dome with an off-centre projector and viewer; the corners are black.
     OmnimaxCamera ["OmnimaxCamera" in set::DURER] {
-        /// Where the viewer is in the scene.
+        /// Position of the viewer in the scene.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// Where the audience looks: level to the front; of any length.
+        /// Direction that the audience faces, horizontal to the front; of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// What is up for the audience; need not be perpendicular.
+        /// Up direction of the audience; need not be perpendicular.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
-        /// Tilt of the dome to the front, in degrees: 0 has its pole overhead, 90 straight ahead.
+        /// Tilt of the dome to the front, in degrees: 0 puts its pole overhead, 90 straight ahead.
         tilt: f32 = 30.0, optional, Rule::Any, ["tilt" in set::DURER];
-        /// How much of a sphere the dome is, in degrees across: 180 is a hemisphere.
+        /// Angle of the sphere that the dome covers, in degrees: 180 is a hemisphere.
         dome: f32 = 180.0, optional, Rule::UpTo(360.0), ["dome" in set::DURER];
         /// Field of view of the projector, in degrees.
         angle: f32 = 180.0, optional, Rule::UpTo(360.0), ["angle" in set::DURER];
-        /// The projector: to the right of the dome's middle, above and before it, in parts of its
-        /// radius.
+        /// Offset of the projector from the dome's centre: right, up and forwards, in dome radii.
         projector: Vec3 = Vec3::ZERO, optional, Rule::Any, ["projector" in set::DURER];
-        /// The viewer, likewise.
+        /// Offset of the viewer from the dome's centre: right, up and forwards, in dome radii.
         viewer: Vec3 = Vec3::ZERO, optional, Rule::Any, ["viewer" in set::DURER];
     }
 }
 
-/// The distance to the unit sphere from a point within, along a unit direction.
+/// Distance to the unit sphere from a point inside, along a unit direction.
 fn to_sphere(point: DVec3, direction: DVec3) -> f64 {
     let along = point.dot(direction);
     (along * along + 1.0 - point.length_squared()).max(0.0).sqrt() - along
 }
 
 impl OmnimaxCamera {
-    /// The axes of the picture in the audience's space, as columns: right, up (the dome's back) and
-    /// the dome's pole.
+    /// Axes of the picture in the audience's space, as columns: right, up (the dome's back) and the
+    /// dome's pole.
     fn axes(&self) -> DMat3 {
         let (sin, cos) = fp::sin_cos_degrees(f64::from(self.tilt));
         DMat3::from_cols(DVec3::X, DVec3::new(0.0, sin, -cos), DVec3::new(0.0, cos, sin))
@@ -65,13 +62,13 @@ impl OmnimaxCamera {
         0.5 * f64::from(self.angle).to_radians()
     }
 
-    /// Whether a point of the sphere belongs to the dome.
+    /// True if a point of the sphere belongs to the dome.
     fn on_dome(&self, point: DVec3) -> bool {
         let pole = self.axes().z_axis;
         fp::atan2_f64(point.cross(pole).length(), point.dot(pole)) <= 0.5 * f64::from(self.dome).to_radians()
     }
 
-    /// The projector's direction for a point of the picture, and where it meets the dome.
+    /// Returns the projector's direction for a point of the picture, and where it meets the dome.
     fn thrown(&self, point: DVec2) -> Option<(DVec3, DVec3)> {
         let direction = self.axes() * FisheyeProjection::Equidistant.direction(point, self.limit())?;
         let projector = self.projector.as_dvec3();
@@ -93,8 +90,8 @@ impl Central for OmnimaxCamera {
         let outside = |place: Vec3| place.length() >= 0.99;
         match (outside(self.projector), outside(self.viewer)) {
             (false, false) => Ok(()),
-            (true, _) => Err("the projector must be inside the dome: less than 0.99 from its middle".into()),
-            _ => Err("the viewer must be inside the dome: less than 0.99 from its middle".into()),
+            (true, _) => Err("the projector must be inside the dome: less than 0.99 from its centre".into()),
+            _ => Err("the viewer must be inside the dome: less than 0.99 from its centre".into()),
         }
     }
 

@@ -9,21 +9,21 @@ use crate::math::{Ray, Vec2, Vec3};
 use glam::DVec2;
 
 described! {
-    /// A camera that sees without perspective.
+    /// A camera without perspective.
     OrthographicCamera ["OrthographicCamera" in set::OLD | set::DURER] {
-        /// The middle of the picture.
+        /// Centre of the picture.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::ALL];
-        /// Where it looks; of any length.
+        /// View direction, of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::ALL];
-        /// What is up in the picture; need not be perpendicular.
+        /// Up direction of the picture; need not be perpendicular.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::ALL];
         /// Length of the picture's larger side.
         size: f32 = 2.0, required, Rule::Positive, ["size" in set::ALL];
-        /// How far before `center` sight begins, for plans and sections; where nothing is written
-        /// all is seen, also what is behind.
+        /// Distance from `center` to the near plane, for plans and sections; without it the view
+        /// includes objects behind `center`.
         near: Option<f32> = None, optional, Rule::Any, ["near" in set::DURER];
-        /// Which side of the picture is right: `left` makes a mirror image, as in coordinates of
-        /// the left hand.
+        /// Side of the picture that is right: `left` makes a mirror image, as in left-handed
+        /// coordinates.
         handedness: Handedness = Handedness::Right, optional, Rule::Any, ["handedness" in set::DURER];
     }
 }
@@ -33,8 +33,7 @@ impl Projection for OrthographicCamera {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
 
-    /// The ray runs both ways where no `near` says otherwise: things behind `center` are seen as
-    /// well, at negative `t`.
+    /// Without `near` the ray extends both ways: objects behind `center` are seen at negative `t`.
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let (point, half) = (sample.point, 0.5 * self.size);
         let x = self.handedness.sign() as f32 * point.x;
@@ -51,7 +50,7 @@ impl Projection for OrthographicCamera {
         found((DVec2::new(p.x, p.y) / (0.5 * f64::from(self.size))).as_vec2());
     }
 
-    /// The same at all distances.
+    /// Constant for all distances.
     fn footprint(&self, frame: &CameraBasis, _: &CameraSample, _: f32) -> f32 {
         let half = 0.5 * f64::from(self.size);
         (half * half * frame.volume()) as f32

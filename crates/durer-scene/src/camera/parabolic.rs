@@ -1,12 +1,11 @@
-//! A mirror in the shape of a paraboloid under a lens that sees parallel rays: a single viewpoint
-//! with a wide view.
+//! Paraboloidal mirror below a lens that sees parallel rays: a single viewpoint with a wide view.
 //!
-//! The mirror z = (h² - r²) / 2h has its focus at 0 and its axis along z, towards the lens. Every
-//! ray that runs to the focus is reflected along the axis: its direction, at the angle θ from the
-//! axis, is seen at r = h tan(θ/2). The picture lies like a map seen from above; to someone in the
+//! The mirror z = (h² - r²) / 2h has its focus at 0 and its axis along z, towards the lens. It
+//! reflects every ray towards the focus along the axis: a direction at the angle θ from the axis is
+//! seen at r = h tan(θ/2). The picture is oriented like a map seen from above; for a viewer in the
 //! focus who looks up, left and right are exchanged. The rim of the disc sees half the field of
-//! view, r = 1 at θ = angle / 2; the horizon is at r = h. The lens itself, which a real
-//! picture shows in the middle, is left out.
+//! view, r = 1 at θ = angle / 2; the horizon is at r = h. The lens itself, which hides the centre
+//! of a real picture, is left out.
 //!
 //! Source: Nayar, *Catadioptric Omnidirectional Camera*, CVPR 1997; Baker, Nayar, *A Theory of
 //! Single-Viewpoint Catadioptric Image Formation*, IJCV 35(2), 1999.
@@ -20,20 +19,20 @@ use crate::math::{Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
 described! {
-    /// A lens above a parabolic mirror; the corners see nothing.
+    /// A lens above a parabolic mirror; the corners are black.
     ParabolicCamera ["ParabolicCamera" in set::DURER] {
-        /// The mirror's focus: the single viewpoint.
+        /// Focus of the mirror: the single viewpoint.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// The mirror's axis, from its focus to the lens: usually upwards; of any length.
+        /// Axis of the mirror, from its focus to the lens, usually upwards; of any length.
         direction: Vec3 = Vec3::Y, required, Rule::NonZero, ["direction" in set::DURER];
-        /// What is up in the picture; need not be perpendicular.
+        /// Up direction of the picture; need not be perpendicular.
         up: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["up" in set::DURER];
         /// Field of view around the axis, in degrees: 180 to the horizon, more below it.
         angle: f32 = 210.0, optional, Rule::Between(0.0, 360.0), ["angle" in set::DURER];
     }
 }
 
-/// The same picture as a stereographic fisheye's along the axis, mirrored.
+/// The picture is that of a stereographic fisheye along the axis, mirrored.
 const PROJECTION: FisheyeProjection = FisheyeProjection::Stereographic;
 const MIRROR: DVec3 = DVec3::new(-1.0, 1.0, 1.0);
 

@@ -1,9 +1,8 @@
-//! The pinhole camera of the lecture: all rays start at the eye e, with w = forward, u = right, v =
-//! up.
+//! Pinhole camera of the lecture: all rays start at the eye e, with w = forward, u = right, v = up.
 //!
 //! direction = D w + x u + y v, with D = 1 / tan(angle / 2) and x, y from -1 to 1 across the larger
-//! side: in a picture that is not square the other side runs from -a to a, where a < 1 is its part
-//! of the larger one.
+//! side. If the picture is not square, the other side runs from -a to a, where a < 1 is its ratio
+//! to the larger side.
 //!
 //! The solid angle of an area dx dy in the plane at distance D is D |u v w| dx dy / |direction|³.
 
@@ -15,27 +14,27 @@ use crate::math::{Ray, Vec2, Vec3, fp};
 use glam::DVec2;
 
 described! {
-    /// A camera that sees in perspective.
+    /// A perspective camera.
     PerspectiveCamera ["PerspectiveCamera" in set::CLASSIC, "Camera" in set::F23] {
         /// The eye.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::ALL];
-        /// Where it looks; of any length.
+        /// View direction, of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::ALL];
-        /// What is up in the picture; need not be perpendicular.
+        /// Up direction of the picture; need not be perpendicular.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::ALL];
         /// Field of view across the picture's larger side, in degrees.
         angle: f32 = 30.0, required, Rule::Between(0.0, 180.0), ["angle" in set::CLASSIC, "fov" in set::F23];
     }
 }
 
-/// Half the width of a field of view, in degrees, at distance 1.
+/// Half the width at distance 1 of a field of view in degrees.
 pub(super) fn half_width(angle: f32) -> f64 {
     fp::tan_f64(f64::from(angle).to_radians() / 2.0)
 }
 
 impl PerspectiveCamera {
-    /// A camera at `eye` that looks at `target`, with y up where it does not look along y, else -z.
-    /// `angle` is the field of view across the picture's larger side, in degrees from 0 to 180.
+    /// Camera at `eye` that looks at `target`, with +y up, or -z up if it looks along y. `angle` is
+    /// the field of view across the picture's larger side, in degrees from 0 to 180.
     pub fn look_at(eye: Vec3, target: Vec3, angle: f32) -> Self {
         let direction = target - eye;
         let along = direction.normalize_or_zero().cross(Vec3::Y).length() < 1e-6;

@@ -1,10 +1,10 @@
-//! The camera obscura: a hole of some size before a film.
+//! Camera obscura: a hole of finite size in front of a film.
 //!
 //! The film lies at distance f behind the hole, upside down; a point (x, y) of the picture is the
 //! point -w (x, y) of the film, with w = f tan(angle / 2). Light reaches it along straight lines
-//! through all points h of the hole: direction = (h + w (x, y), f). A far point is spread over a
-//! disc as large as the hole, a near one over a larger disc: the picture is sharp nowhere, and with
-//! a small hole almost everywhere. Diffraction is left out.
+//! through all points h of the hole: direction = (h + w (x, y), f). A far point blurs to a disc as
+//! large as the hole, a near point to a larger disc, so a small hole gives an almost sharp picture.
+//! Diffraction is left out.
 //!
 //! Source: Renner, *Pinhole Photography*, 4th edition, 2008, chapter 5, for the geometry.
 
@@ -18,23 +18,23 @@ use glam::{DVec2, DVec3};
 described! {
     /// A camera without a lens, whose hole has a size.
     PinholeCamera ["PinholeCamera" in set::DURER] {
-        /// The middle of the hole.
+        /// Centre of the hole.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// Where it looks; of any length.
+        /// View direction, of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// What is up in the picture; need not be perpendicular.
+        /// Up direction of the picture; need not be perpendicular.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
         /// Field of view across the picture's larger side, in degrees.
         angle: f32 = 30.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
-        /// Diameter of the hole.
+        /// Diameter of the hole, in world units.
         hole: f32 = 0.01, required, Rule::NonNegative, ["hole" in set::DURER];
-        /// Distance from the hole to the film.
+        /// Distance from the hole to the film, in world units.
         film_distance: f32 = 1.0, optional, Rule::Positive, ["filmDistance" in set::DURER];
     }
 }
 
 impl PinholeCamera {
-    /// The point of the hole, the film's distance, and half the film's width, in the camera's
+    /// Returns the point of the hole, the film's distance, and half the film's width, in camera
     /// space.
     fn parts(&self, frame: &CameraBasis, lens: Vec2) -> (DVec2, f64, f64) {
         let film = f64::from(self.film_distance);

@@ -1,4 +1,4 @@
-//! Where a camera stands and how it is turned.
+//! Position and orientation of a camera.
 
 use super::Projection;
 use crate::math::{Ray, Vec3, fp};
@@ -6,18 +6,18 @@ use glam::{DMat3, DVec3};
 use std::f32::consts::PI;
 use std::f64::consts::PI as PI_F64;
 
-/// Where a camera stands and how it is turned, as written.
+/// Position and orientation of a camera, as written in the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Its position.
+    /// Position of the eye, in world space.
     pub center: Vec3,
-    /// Where it looks; of any length.
+    /// View direction, of any length.
     pub direction: Vec3,
-    /// What it holds upwards; of any length.
+    /// Up direction, of any length.
     pub up: Vec3,
 }
 
-/// How the camera's `up` becomes the picture's.
+/// Rule that turns the camera's `up` into the picture's up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum UpRule {
     /// Perpendicular to the view direction, unit length.
@@ -29,19 +29,21 @@ pub enum UpRule {
     Skew,
 }
 
-/// The arithmetic that perspective rays are aimed with.
+/// Arithmetic of perspective rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Aim {
-    /// Our own.
+    /// Dürer's own.
     #[default]
     Own,
-    /// At points of the world on a screen at distance 1, rounded to `f32` there: 2004's.
+    /// Aim at world-space points on a screen at distance 1, rounded to `f32` there: the program of
+    /// 2004.
     ScreenPoint,
-    /// d w + x u + y v in single precision, with axes made of what is written, of any length: 2012's.
+    /// d w + x u + y v in single precision, with axes of any length from the scene: the program of
+    /// 2012.
     Of2012,
-    /// Like [`Aim::Of2012`] with the axes of 2016: `up` as written.
+    /// [`Aim::Of2012`] with the axes of 2016: `up` as written.
     Of2016,
-    /// Like [`Aim::Of2012`] with the axes of 2020: all scaled to length 1 by a reciprocal.
+    /// [`Aim::Of2012`] with the axes of 2020: all scaled to unit length by a reciprocal.
     Of2020,
 }
 
@@ -51,7 +53,7 @@ impl Aim {
         matches!(self, Aim::Of2012 | Aim::Of2016 | Aim::Of2020)
     }
 
-    /// The distance of the screen that spans an angle, in degrees.
+    /// Distance of the screen that spans an angle in degrees.
     pub(super) fn distance(self, angle: f32) -> f32 {
         let tan = |x: f32| fp::tan_f64(f64::from(x)) as f32;
         let radians = (PI_F64 * f64::from(angle) / 180.0) as f32;
@@ -62,7 +64,7 @@ impl Aim {
         }
     }
 
-    /// A vector's direction.
+    /// Normalizes a vector; returns `fallback` if it has no direction.
     pub(super) fn unit_or(self, v: Vec3, fallback: Vec3) -> Vec3 {
         if self != Aim::Of2020 {
             return unit_or(v, fallback);
@@ -72,47 +74,48 @@ impl Aim {
     }
 }
 
-/// Rules of a camera, resolved from a scene's dialect when it is compiled. The default is our own.
+/// Camera rules of a scene's dialect, resolved when the scene is compiled. The default is Dürer's
+/// own.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CameraRules {
-    /// The picture's up.
+    /// Rule for the picture's up.
     pub up: UpRule,
-    /// The arithmetic of perspective rays.
+    /// Arithmetic of perspective rays.
     pub aim: Aim,
-    /// Centres of the first and last column and row lie on the picture's border.
+    /// Places the centres of the first and last column and row on the picture's border.
     pub border_pixels: bool,
-    /// The camera's square is stretched over a picture that is not square.
+    /// Stretches the camera's square over a picture that is not square.
     pub stretch: bool,
 }
 
-/// A camera's axes: where it looks, and the picture's right and up. Unit length and perpendicular,
-/// unless [`CameraRules`] say otherwise.
+/// Axes of a camera: the view direction, and the picture's right and up. Orthonormal, unless
+/// [`CameraRules`] say otherwise.
 ///
-/// Together they are the camera's space: x to the right, y upwards, z forwards.
+/// Together they span camera space: x to the right, y upwards, z forwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraBasis {
-    /// Position of the eye.
+    /// Position of the eye, in world space.
     pub eye: Vec3,
-    /// Where it looks.
+    /// View direction.
     pub forward: Vec3,
-    /// To the right in the picture.
+    /// Right in the picture.
     pub right: Vec3,
-    /// Upwards in the picture.
+    /// Up in the picture.
     pub up: Vec3,
     /// See [`CameraRules::aim`].
     pub aim: Aim,
-    /// The camera's [`Projection::half_width`], worked out once.
+    /// [`Projection::half_width`] of the camera, computed once.
     pub half_width: f64,
 }
 
-/// A vector's direction, each component divided by the length (glam multiplies by its reciprocal,
-/// which rounds once more).
+/// Normalizes a vector by dividing each component by the length (glam multiplies by the reciprocal,
+/// which rounds once more). Returns `fallback` if the vector is zero or not finite.
 pub(super) fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
     let [[x], [y], [z]] = units_or(&[[v.x], [v.y], [v.z]], fallback);
     Vec3::new(x, y, z)
 }
 
-/// The same of several vectors side by side: their x, y and z.
+/// Normalizes several vectors, given as x, y and z. See [`unit_or`].
 #[inline(always)]
 pub(super) fn units_or<const N: usize>([x, y, z]: &[[f32; N]; 3], fallback: Vec3) -> [[f32; N]; 3] {
     let (mut units, mut all_sound) = ([[0.0; N]; 3], true);
@@ -133,30 +136,30 @@ pub(super) fn units_or<const N: usize>([x, y, z]: &[[f32; N]; 3], fallback: Vec3
     units
 }
 
-/// Whether a direction is finite and not zero; without a branch, so that it is asked of several at once.
+/// True if a direction is finite and not zero. Branch-free, so that it vectorizes.
 #[inline(always)]
 fn is_sound([x, y, z]: [f32; 3]) -> bool {
     (x.is_finite() & y.is_finite() & z.is_finite()) & ((x != 0.0) | (y != 0.0) | (z != 0.0))
 }
 
-/// The same as the program of 2004 has it: multiplied by the reciprocal of the length.
+/// [`unit_or`] of the program of 2004: multiplies by the reciprocal of the length.
 fn scaled_or(v: Vec3, fallback: Vec3) -> Vec3 {
     let unit = v * (1.0 / (v.as_dvec3().length() as f32));
     if unit.is_finite() && unit != Vec3::ZERO { unit } else { unit_or(v, fallback) }
 }
 
 impl CameraBasis {
-    /// The axes of a camera, and what all its rays need of its angle.
+    /// Axes of a camera, with the half width that its rays need.
     pub fn of(camera: &impl Projection, rules: CameraRules) -> Self {
         CameraBasis { half_width: camera.half_width(), ..CameraBasis::new(camera.pose(), rules) }
     }
 
-    /// The axes of a pose: right = norm(direction x up), up = right x direction.
+    /// Axes of a pose: right = norm(direction x up), up = right x direction.
     pub(super) fn new(pose: Pose, CameraRules { up, aim, .. }: CameraRules) -> Self {
         let screen_point = aim == Aim::ScreenPoint;
         let unit = |v, fallback| if screen_point { scaled_or(v, fallback) } else { aim.unit_or(v, fallback) };
         let forward = unit(pose.direction, Vec3::NEG_Z);
-        // What `up` is crossed with: in some years the direction of any length.
+        // Operands of the cross product: some years use the direction of any length.
         let (along, over) = match aim {
             Aim::Of2012 | Aim::Of2016 => (pose.direction, pose.up),
             Aim::Of2020 => (forward, aim.unit_or(pose.up, Vec3::Y)),
@@ -175,35 +178,34 @@ impl CameraBasis {
         CameraBasis { eye: pose.center, forward, right, up, aim, half_width: 1.0 }
     }
 
-    /// The axes as columns, in double precision: from the camera's space to the world's.
+    /// Axes as columns, in double precision: the matrix from camera space to world space.
     fn axes(&self) -> DMat3 {
         DMat3::from_cols(self.right.as_dvec3(), self.up.as_dvec3(), self.forward.as_dvec3())
     }
 
-    /// A point of the world in the camera's space.
+    /// Transforms a point from world space to camera space.
     pub(super) fn camera_from_world(&self, point: Vec3) -> DVec3 {
         self.turned(point.as_dvec3() - self.eye.as_dvec3())
     }
 
-    /// A vector of the world in the camera's space.
+    /// Transforms a vector from world space to camera space.
     pub(super) fn turned(&self, vector: DVec3) -> DVec3 {
         self.axes().inverse() * vector
     }
 
-    /// The ray from a point along a direction of any length, both in the camera's space.
+    /// Ray from a point along a direction of any length, both in camera space.
     pub(super) fn ray(&self, origin: DVec3, dir: DVec3) -> Ray {
         let origin = self.eye.as_dvec3() + self.axes() * origin;
         world_ray(origin, self.axes() * dir)
     }
 
-    /// How much of the volume is left in a camera's space with skew axes: 1 where they are
-    /// perpendicular.
+    /// Volume of the unit cube in a camera space with skew axes: 1 if they are orthonormal.
     pub(super) fn volume(&self) -> f64 {
         self.axes().determinant().abs()
     }
 }
 
-/// The ray from a point along a direction of any length, rounded once.
+/// Ray from a world-space point along a direction of any length, rounded once.
 pub(super) fn world_ray(origin: DVec3, dir: DVec3) -> Ray {
     Ray::new(origin.as_vec3(), dir.normalize_or(DVec3::NEG_Z).as_vec3())
 }

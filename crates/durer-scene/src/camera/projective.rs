@@ -1,19 +1,19 @@
-//! Any projective camera, as computer vision writes it: a 3x4 matrix in homogeneous coordinates,
-//! and lens distortion.
+//! General projective camera of computer vision: a 3x4 matrix in homogeneous coordinates, and lens
+//! distortion.
 //!
-//! P = K [R | t] takes a point of the world to a pixel: (x, y, 1) ~ P (X, Y, Z, 1), x to the right
-//! and y downwards, with the centre of the upper left pixel at (0, 0). P may be given at any scale.
-//! Its left part M = K R is taken apart into an upper triangular K and a rotation R; the eye is
-//! -M⁻¹ p4. Between R and K the lens distorts the point (x, y) at depth 1, with s = x² + y², by
-//! Brown's and Conrady's model in OpenCV's form:
+//! P = K [R | t] maps a world-space point to a pixel: (x, y, 1) ~ P (X, Y, Z, 1), x to the right
+//! and y downwards, with the centre of the upper left pixel at (0, 0). The scale of P is arbitrary.
+//! Its left part M = K R is decomposed into an upper triangular K and a rotation R; the eye is -M⁻¹
+//! p4. Between R and K the lens distorts the point (x, y) at depth 1, with s = x² + y², by the
+//! Brown-Conrady model in OpenCV's form:
 //!
 //! ```text
 //! x' = x (1 + k1 s + k2 s² + k3 s³) + 2 p1 x y + p2 (s + 2 x²)
 //! y' = y (1 + k1 s + k2 s² + k3 s³) + p1 (s + 2 y²) + 2 p2 x y
 //! ```
 //!
-//! Rays need the inverse, by Newton's method. Where the distortion folds back on itself, nothing is
-//! seen: there the model has no meaning.
+//! Rays need the inverse, by Newton's method. The camera sees nothing where the distortion folds
+//! back on itself: the model has no meaning there.
 //!
 //! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 //! sections 6.1, 6.2 and A4.1; Brown, *Decentering Distortion of Lenses*, Photogrammetric
@@ -28,39 +28,39 @@ use crate::math::{Ray, Vec2, Vec3};
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
 described! {
-    /// A camera recovered from a photograph: a projective matrix and the lens's distortion.
+    /// A camera recovered from a photograph: a projection matrix and lens distortion.
     ProjectiveCamera ["ProjectiveCamera" in set::DURER] {
-        /// The 3x4 matrix, row by row: from homogeneous points of the world to pixels, y downwards;
+        /// The 3x4 matrix, row by row, from homogeneous world-space points to pixels, y downwards;
         /// at any scale.
         matrix: Vec<[f32; 4]> = plain_matrix(), required, Rule::Rows(3, 3), ["matrix" in set::DURER];
         /// Width of the photograph in pixels.
         width: f32 = 512.0, required, Rule::Positive, ["width" in set::DURER];
         /// Height of the photograph in pixels.
         height: f32 = 512.0, required, Rule::Positive, ["height" in set::DURER];
-        /// Radial distortion by the square of the radius.
+        /// Radial distortion coefficient of r².
         k1: f32 = 0.0, optional, Rule::Any, ["k1" in set::DURER];
-        /// Radial distortion by its fourth power.
+        /// Radial distortion coefficient of r⁴.
         k2: f32 = 0.0, optional, Rule::Any, ["k2" in set::DURER];
-        /// Tangential distortion, upwards.
+        /// Tangential distortion, vertical.
         p1: f32 = 0.0, optional, Rule::Any, ["p1" in set::DURER];
-        /// Tangential distortion, sideways.
+        /// Tangential distortion, horizontal.
         p2: f32 = 0.0, optional, Rule::Any, ["p2" in set::DURER];
-        /// Radial distortion by the sixth power.
+        /// Radial distortion coefficient of r⁶.
         k3: f32 = 0.0, optional, Rule::Any, ["k3" in set::DURER];
     }
 }
 
-/// A camera at the origin that looks along -z.
+/// Matrix of a camera at the origin that looks along -z.
 fn plain_matrix() -> Vec<[f32; 4]> {
     vec![[512.0, 0.0, -255.5, 0.0], [0.0, -512.0, -255.5, 0.0], [0.0, 0.0, -1.0, 0.0]]
 }
 
-/// The matrix taken apart.
+/// Decomposed matrix.
 struct Parts {
     eye: DVec3,
-    /// Rows: the camera's right, down and forward in the world.
+    /// Rows: the camera's right, down and forward, in world space.
     rotation: DMat3,
-    /// Upper triangular, 1 in the last corner.
+    /// Upper triangular intrinsic matrix, 1 in the last corner.
     intrinsic: DMat3,
 }
 
@@ -69,17 +69,17 @@ impl ProjectiveCamera {
         Sheet(DVec2::new(f64::from(self.width), f64::from(self.height)))
     }
 
-    /// The left three columns of the matrix, by rows, and the fourth.
+    /// Left three columns of the matrix, by rows, and the fourth column.
     fn rows(&self) -> ([DVec3; 3], DVec3) {
         let row = |i: usize| self.matrix[i].map(f64::from);
         let left = [0, 1, 2].map(|i| DVec3::from_slice(&row(i)[..3]));
         (left, DVec3::new(row(0)[3], row(1)[3], row(2)[3]))
     }
 
-    /// K, R and the eye: Gram and Schmidt's rule on the rows of M, from the last upwards.
+    /// Returns K, R and the eye: Gram-Schmidt on the rows of M, from the last to the first.
     fn parts(&self) -> Parts {
         let ([a, b, c], last) = self.rows();
-        // Depth is positive before the camera where M keeps right-handed things right-handed.
+        // Depth is positive in front of the camera if M preserves handedness.
         let sign = if a.dot(b.cross(c)) < 0.0 { -1.0 } else { 1.0 };
         let [a, b, c] = [a, b, c].map(|row| sign * row);
         let forward = c.normalize();
@@ -95,18 +95,17 @@ impl ProjectiveCamera {
         Parts { eye, rotation: DMat3::from_cols(right, down, forward).transpose(), intrinsic }
     }
 
-    /// The factor 1 + k1 s + k2 s² + k3 s³ and its derivative by s.
+    /// Returns the factor 1 + k1 s + k2 s² + k3 s³ and its derivative by s.
     fn radial(&self, s: f64) -> (f64, f64) {
         let [k1, k2, k3] = [self.k1, self.k2, self.k3].map(f64::from);
         (1.0 + s * (k1 + s * (k2 + s * k3)), k1 + s * (2.0 * k2 + s * 3.0 * k3))
     }
 
-    /// Whether the radius still grows with the distorted radius, all the way from the middle to a
-    /// point.
+    /// True if the distorted radius grows with the radius all the way from the centre to a point.
     fn unfolded(&self, point: DVec2) -> bool {
         let end = point.length_squared();
-        // d/dr of r (1 + k1 r² + ...), as a function of s = r²; its extremes are at the roots of
-        // its derivative.
+        // d/dr of r (1 + k1 r² + ...), as a function of s = r²; its extrema are at the roots of its
+        // derivative.
         let growth = |s: f64| {
             let (factor, slope) = self.radial(s);
             factor + 2.0 * s * slope
@@ -117,7 +116,7 @@ impl ProjectiveCamera {
         extremes.into_iter().filter(|s| *s > 0.0 && *s < end).chain([end]).all(|s| growth(s) > 0.0)
     }
 
-    /// The distorted point and its derivatives.
+    /// Returns the distorted point and its Jacobian.
     fn distorted(&self, point: DVec2) -> (DVec2, DMat2) {
         let (s, [p1, p2]) = (point.length_squared(), [self.p1, self.p2].map(f64::from));
         let ((factor, slope), DVec2 { x, y }) = (self.radial(s), point);
@@ -131,15 +130,14 @@ impl ProjectiveCamera {
         (factor * point + tangential, jacobian)
     }
 
-    /// The point that is distorted to this one, if there is one this side of the fold.
+    /// Returns the point that distorts to `wanted`, if there is one before the fold.
     fn undistorted(&self, wanted: DVec2) -> Option<DVec2> {
-        // Mostly the first guess will do; where it does not, the point is followed outwards from
-        // the middle.
+        // The first guess usually converges; otherwise follow the point outwards from the centre.
         let followed = || (1..=16).try_fold(DVec2::ZERO, |point, i| self.solved(point, wanted * (f64::from(i) / 16.0)));
         self.solved(wanted, wanted).or_else(followed)
     }
 
-    /// Newton's method from a guess.
+    /// Solves by Newton's method from a guess.
     fn solved(&self, mut point: DVec2, wanted: DVec2) -> Option<DVec2> {
         for _ in 0..20 {
             let (there, jacobian) = self.distorted(point);
@@ -154,7 +152,7 @@ impl ProjectiveCamera {
         (solved && jacobian.determinant() > 0.0 && self.unfolded(point)).then_some(point)
     }
 
-    /// The point at depth 1 that a sample sees.
+    /// Returns the point at depth 1 that a sample sees.
     fn seen(&self, parts: &Parts, sample: &CameraSample) -> Option<DVec2> {
         let sheet = self.sheet();
         if !sheet.contains(sheet.place(sample.pixel.as_dvec2())) {
@@ -183,10 +181,10 @@ impl Projection for ProjectiveCamera {
         }
         let ([a, b, c], _) = self.rows();
         let volume = a.dot(b.cross(c)).abs();
-        // Compared with rows of these lengths at right angles.
+        // Relative to orthogonal rows of these lengths.
         let singular = volume <= 1e-9 * a.length() * b.length() * c.length() || !self.pose().center.is_finite();
         match singular {
-            true => Err("the left three columns of `matrix` are singular: such a camera has no eye".into()),
+            true => Err("the left three columns of `matrix` are singular, so the camera has no eye".into()),
             false => Ok(()),
         }
     }

@@ -1,9 +1,9 @@
-//! The push-broom: a line of pixels that moves straight on while it records, as satellites and
-//! scanners do.
+//! Push-broom: a line of pixels that moves in a straight line while it records, as in satellites
+//! and scanners.
 //!
-//! The column at the part u of the way is a fan of rays from e(u) = start + u (end - start):
-//! direction = forward + h up, |h| <= tan(angle / 2). Along the way there is no perspective, across
-//! it there is. The area across a ray grows in proportion to its length: t |m·right| / |direction|²
+//! The column at the fraction u of the way is a fan of rays from e(u) = start + u (end - start):
+//! direction = forward + h up, |h| <= tan(angle / 2). The picture has perspective across the way,
+//! but not along it. The area across a ray grows linearly with distance: t |m·right| / |direction|²
 //! per du dh, m = end - start.
 //!
 //! Source: Gupta, Hartley, *Linear Pushbroom Cameras*, PAMI 19(9), 1997.
@@ -17,19 +17,19 @@ use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
 described! {
-    /// A camera whose columns are seen one after the other from a straight way.
+    /// A camera whose columns are seen from successive points of a line.
     PushBroomCamera ["PushBroomCamera" in set::DURER] {
-        /// Where the first column is seen from, at the picture's left.
+        /// Eye of the first column, at the picture's left.
         start: Vec3 = Vec3::NEG_X, required, Rule::Any, ["start" in set::DURER];
-        /// Where the last column is seen from, at the picture's right.
+        /// Eye of the last column, at the picture's right.
         end: Vec3 = Vec3::X, required, Rule::Any, ["end" in set::DURER];
-        /// Where all columns look; of any length.
+        /// View direction of all columns; of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// What is up in the picture; need not be perpendicular.
+        /// Up direction of the picture; need not be perpendicular.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
         /// Field of view from bottom to top, in degrees.
         angle: f32 = 60.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
-        /// Width of the picture over its height.
+        /// Ratio of the picture's width to its height.
         aspect: f32 = 2.0, optional, Rule::Positive, ["aspect" in set::DURER];
     }
 }
@@ -43,7 +43,7 @@ impl PushBroomCamera {
         self.end.as_dvec3() - self.start.as_dvec3()
     }
 
-    /// The part of the way and the height in the fan for a sample.
+    /// Returns the fraction of the way and the height in the fan for a sample.
     fn column(&self, sample: &CameraSample) -> Option<(f64, f64)> {
         let sheet = self.sheet();
         let place = sheet.place(sample.point.as_dvec2());
@@ -53,7 +53,7 @@ impl PushBroomCamera {
 }
 
 impl Projection for PushBroomCamera {
-    /// It stands half way.
+    /// Pose half way.
     fn pose(&self) -> Pose {
         let center = self.start.as_dvec3() + 0.5 * self.way();
         Pose { center: center.as_vec3(), direction: self.direction, up: self.up }
@@ -66,7 +66,7 @@ impl Projection for PushBroomCamera {
     fn validate(&self) -> Result<(), String> {
         let frame = CameraBasis::new(self.pose(), CameraRules::default());
         let sideways = self.way().dot(frame.right.as_dvec3()).abs();
-        // Also where the way has no length.
+        // False for a way of length 0 too.
         let moves = sideways > 1e-6 * self.way().length();
         match moves {
             true => Ok(()),
@@ -84,7 +84,7 @@ impl Projection for PushBroomCamera {
 
     fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
         let (from_start, way) = (frame.turned(world.as_dvec3() - self.start.as_dvec3()), frame.turned(self.way()));
-        // The column whose plane the point lies in.
+        // The column whose plane contains the point.
         let u = from_start.x / way.x;
         let seen = from_start - u * way;
         let height = seen.y / seen.z / half_width(self.angle);

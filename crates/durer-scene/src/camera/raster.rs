@@ -1,14 +1,14 @@
-//! From pixels to the square that a camera covers.
+//! Map from pixels to the square that a camera covers.
 
 use super::CameraRules;
 use crate::math::Vec2;
 
-/// A picture's pixels, and how they lie in the square from (-1, -1) to (1, 1).
+/// Pixel grid of a picture, and its position in the square from (-1, -1) to (1, 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Raster {
-    /// Pixels across.
+    /// Width, in pixels.
     pub width: u32,
-    /// Pixels down.
+    /// Height, in pixels.
     pub height: u32,
     border_pixels: bool,
     stretch: bool,
@@ -17,10 +17,9 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// A picture of a size. Its larger side spans the square, unless the rules say otherwise.
+    /// Raster of a given size. Its larger side spans the square, unless the rules say otherwise.
     ///
-    /// Where the camera's picture has proportions of its own, it fills this one as far as it can,
-    /// undistorted and whole.
+    /// If the camera has natural proportions, its picture fits inside, undistorted.
     pub fn new(width: u32, height: u32, proportions: Option<Vec2>, rules: CameraRules) -> Self {
         Raster {
             width,
@@ -31,35 +30,36 @@ impl Raster {
         }
     }
 
-    /// The size of a picture where nobody asks for one: a plain one, or one of about as many pixels
-    /// in the camera's proportions. A unit of these becomes whole pixels where it can, so that
-    /// faces and walls end between pixels.
+    /// Default size of a picture: `plain`, or about as many pixels in the camera's proportions. If
+    /// possible, a unit of the proportions is a whole number of pixels, so that faces and walls end
+    /// between pixels.
     pub fn natural_size(proportions: Option<Vec2>, plain: (u32, u32)) -> (u32, u32) {
         let Some(sides) = proportions else { return plain };
         let scale = (plain.0 as f32 * plain.1 as f32 / (sides.x * sides.y)).sqrt();
         let scale = if scale >= 1.0 { scale.round() } else { scale };
-        // The smaller side first: the larger one follows it as closely as pixels can.
+        // Round the smaller side first; the larger side then follows as closely as possible.
         let small = (sides.min_element() * scale).round().max(1.0);
         let side = |length: f32| (small * (length / sides.min_element())).round() as u32;
         (side(sides.x), side(sides.y))
     }
 
-    /// How many columns and rows stay empty because the picture has not the camera's proportions.
+    /// Number of empty columns and rows because the picture does not have the camera's proportions.
     pub fn empty(&self) -> (u32, u32) {
         let Some(half) = self.natural else { return (0, 0) };
         let size = Vec2::new(self.width as f32, self.height as f32);
-        // Less than a pixel is a rounding of the size.
+        // Less than a pixel is due to rounding of the size.
         let empty = (size - half * (size / half).min_element()).floor();
         (empty.x as u32, empty.y as u32)
     }
 
-    /// The area of the square that a pixel covers.
+    /// Area of a pixel in the square.
     pub fn pixel_area(&self) -> f32 {
         let side = |to: Vec2| (self.point(to) - self.point(Vec2::ZERO)).length();
         side(Vec2::X) * side(Vec2::Y)
     }
 
-    /// The point of the square for a place in the picture, in pixels from its upper left corner.
+    /// Returns the point of the square for a position in pixels from the picture's upper left
+    /// corner.
     ///
     /// Pixel (i, j) has its centre at (i + 0.5, j + 0.5), j counted downwards.
     pub fn point(&self, place: Vec2) -> Vec2 {
@@ -67,21 +67,21 @@ impl Raster {
         Vec2::new(x, y)
     }
 
-    /// The same of several places side by side: x of all, then y.
+    /// Points of several positions: all x, then all y. See [`Raster::point`].
     #[inline(always)]
     pub fn points<const N: usize>(&self, places: [[f32; N]; 2]) -> [[f32; N]; 2] {
-        // Where pixel centres lie on the border, the first and last centre span the side, not the
-        // edges.
+        // With pixel centres on the border, the side runs from the first centre to the last, not
+        // from edge to edge.
         let inset = if self.border_pixels { 1.0 } else { 0.0 };
         let size = Vec2::new(self.width as f32, self.height as f32) - inset;
-        // A single pixel lies in the middle.
+        // A single pixel lies at the centre.
         let span = match self.natural {
             Some(half) => Vec2::splat((size / half).min_element()),
             None if self.stretch => size,
             None => Vec2::splat(size.max_element()),
         };
         let span = span.max(Vec2::ONE);
-        // From the lower left corner of the square, in parts of its side.
+        // Fractions of the square's side, from its lower left corner.
         let (mut upwards, mut points) = (places, [[0.0; N]; 2]);
         for i in 0..N {
             upwards[1][i] = self.height as f32 - places[1][i];

@@ -1,22 +1,22 @@
-//! How wide a part of the picture is where rays meet things.
+//! Width of a ray cone, for texture filtering.
 
 use super::{Camera, CameraBasis, CameraSample, Projection};
 use crate::math::Vec2;
 
-/// The cone around a camera ray that stands for a part of the picture.
+/// Cone around a camera ray that stands for a part of the picture.
 ///
-/// One for the whole picture, that of its middle. Source: Amanatides, *Ray Tracing with Cones*,
-/// SIGGRAPH 1984.
+/// One cone, of the picture's centre, serves the whole picture. Source: Amanatides, *Ray Tracing
+/// with Cones*, SIGGRAPH 1984.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayCone {
-    /// Its width at the camera.
+    /// Width at the camera, in world units.
     width: f32,
-    /// How much wider it becomes on a way of length 1.
+    /// Increase of the width per unit of distance.
     spread: f32,
 }
 
 impl RayCone {
-    /// That of an area of a camera's picture; `None` where the middle of the picture sees nothing.
+    /// Cone of an area of a camera's picture; `None` if the centre of the picture sees nothing.
     pub fn new(camera: &Camera, basis: &CameraBasis, area: f32) -> Option<Self> {
         let middle = CameraSample::at(Vec2::ZERO);
         camera.ray(basis, &middle)?;
@@ -25,7 +25,7 @@ impl RayCone {
         (cone.width.is_finite() && cone.spread.is_finite()).then_some(cone)
     }
 
-    /// Its width at a distance.
+    /// Returns the width at a distance, in world units.
     pub fn width_at(&self, distance: f32) -> f32 {
         self.width + distance * self.spread
     }
@@ -37,7 +37,7 @@ mod tests {
     use crate::camera::{CameraRules, OrthographicCamera, PerspectiveCamera};
 
     #[test]
-    fn cones_widen_in_perspective_and_nowhere_else() {
+    fn ray_cones_widen_only_in_perspective() {
         let cone = |camera: Camera, side: f32| {
             let basis = CameraBasis::of(&camera, CameraRules::default());
             RayCone::new(&camera, &basis, side * side).unwrap()

@@ -1,10 +1,10 @@
-//! Two perspective cameras side by side: a pair of pictures for two eyes.
+//! Two perspective cameras side by side: a stereo pair.
 //!
-//! `offAxis` shears both views so that they share one window at the distance of convergence: what
-//! lies there appears on the screen, nearer things before it, and no vertical parallax arises.
-//! `toeIn` turns both cameras to one point there, as cross-eyed cameras on a rig are; their
-//! pictures differ in height towards the corners. `parallel` turns and shears nothing: all things
-//! appear before the screen.
+//! `offAxis` shears both views so that they share one window at the convergence distance: objects
+//! there appear on the screen, nearer objects in front of it, without vertical parallax.
+//! `toeIn` turns both cameras to one point there, as a toed-in camera rig does; the heights of
+//! their pictures differ towards the corners. `parallel` neither turns nor shears: all objects
+//! appear in front of the screen.
 //!
 //! Source: Hodges, McAllister, *Stereo and Alternating-Pair Techniques for Display of
 //! Computer-Generated Images*, IEEE CG&A 5(9), 1985; Bourke, *Calculating Stereo Pairs*, 1999.
@@ -18,37 +18,36 @@ use crate::math::{Ray, Vec2, Vec3};
 use glam::{DMat3, DVec2, DVec3};
 
 described_words! {
-    /// How two perspective views converge.
+    /// Convergence method of two perspective views.
     StereoMethod { OffAxis = "offAxis", ToeIn = "toeIn", Parallel = "parallel" }
 }
 
 described! {
     /// Two perspective views for two eyes, or one of them.
     StereoCamera ["StereoCamera" in set::DURER] {
-        /// The middle between the eyes.
+        /// Midpoint between the eyes.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// Where the viewer looks; of any length.
+        /// View direction, of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// What is up in the picture; need not be perpendicular.
+        /// Up direction of the picture; need not be perpendicular.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
         /// Field of view across the larger side of one eye's picture, in degrees.
         angle: f32 = 30.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
-        /// Distance between the eyes.
+        /// Distance between the eyes, in world units.
         separation: f32 = 0.065, required, Rule::NonNegative, ["separation" in set::DURER];
-        /// Distance at which both eyes see a thing at the same place of the picture; without
-        /// meaning for `parallel`.
+        /// Distance at which both eyes see an object at the same position in the picture; ignored
+        /// by `parallel`.
         convergence: f32 = 1.0, optional, Rule::Positive, ["convergence" in set::DURER];
-        /// How the views converge.
+        /// Convergence method of the views.
         method: StereoMethod = StereoMethod::OffAxis, optional, Rule::Any, ["method" in set::DURER];
-        /// Which eye's picture, or how both are laid out.
+        /// Eye to render, or layout of both eyes.
         eyes: Eyes = Eyes::SideBySide, optional, Rule::Any, ["eyes" in set::DURER];
-        /// Width of one eye's picture over its height.
+        /// Ratio of the width to the height of one eye's picture.
         aspect: f32 = 1.0, optional, Rule::Positive, ["aspect" in set::DURER];
     }
 }
 
-/// One eye in the middle's space: where it is, its axes as columns, and by how much its window is
-/// moved.
+/// Eye in the space of the midpoint: position, axes as columns, and the shift of its window.
 struct Eye {
     at: DVec3,
     axes: DMat3,
@@ -65,7 +64,7 @@ impl StereoCamera {
         let eye = Eye { at: DVec3::new(x, 0.0, 0.0), axes: DMat3::IDENTITY, shear: DVec2::ZERO };
         match self.method {
             StereoMethod::Parallel => eye,
-            // The window at the distance of convergence is the middle's.
+            // At the convergence distance, both eyes share the window of the midpoint.
             StereoMethod::OffAxis => Eye { shear: DVec2::new(-x / convergence, 0.0), ..eye },
             StereoMethod::ToeIn => {
                 let forward = DVec3::new(-x, 0.0, convergence).normalize();
@@ -75,12 +74,12 @@ impl StereoCamera {
         }
     }
 
-    /// The units of the window at distance 1 that a unit of one eye's sheet is.
+    /// Window units at distance 1 per unit of one eye's sheet.
     fn scale(&self, frame: &CameraBasis) -> f64 {
         frame.half_width / (0.5 * self.one().max_element())
     }
 
-    /// The eye, and the direction from it in its own axes.
+    /// Returns the eye of a sample, and the direction from it in the eye's axes.
     fn line(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<(Eye, DVec3)> {
         let (view, place) = self.eyes.view(self.one(), sample.point.as_dvec2(), sample.pixel.as_dvec2())?;
         let eye = self.eye(view.side);

@@ -1,4 +1,4 @@
-//! Rays of cameras through known places of pictures.
+//! Rays of cameras through known points of pictures.
 
 use super::*;
 
@@ -22,7 +22,7 @@ fn pixel_centres_lie_inside_the_square_and_edges_on_its_border() {
 }
 
 #[test]
-fn the_larger_side_spans_the_square_unless_the_picture_is_stretched() {
+fn larger_side_spans_the_square_unless_stretched() {
     for (width, height, corner) in [(8, 4, Vec2::new(1.0, 0.5)), (4, 8, Vec2::new(0.5, 1.0)), (5, 5, Vec2::ONE)] {
         let end = Vec2::new(width as f32, height as f32);
         assert_eq!(Raster::new(width, height, None, OURS).point(end), corner * Vec2::new(1.0, -1.0));
@@ -34,7 +34,7 @@ fn the_larger_side_spans_the_square_unless_the_picture_is_stretched() {
 }
 
 #[test]
-fn a_natural_picture_lies_whole_and_undistorted_in_any_other() {
+fn natural_picture_fits_undistorted_into_any_picture() {
     for (width, height, corner) in [(8, 4, [1.0, 0.5]), (8, 8, [1.0, 1.0]), (8, 2, [2.0, 0.5]), (2, 8, [1.0, 4.0])] {
         let end = Vec2::new(width as f32, 0.0);
         for stretch in [false, true] {
@@ -45,12 +45,12 @@ fn a_natural_picture_lies_whole_and_undistorted_in_any_other() {
 }
 
 #[test]
-fn sizes_follow_proportions_and_misfits_are_counted() {
+fn sizes_follow_proportions_and_empty_pixels_are_counted() {
     let size = |w, h| Raster::natural_size(Some(Vec2::new(w, h)), (512, 512));
     assert_eq!(Raster::natural_size(None, (512, 512)), (512, 512));
     assert_eq!([size(4.0, 3.0), size(6.0, 1.0), size(360.0, 180.0)], [(592, 444), (1254, 209), (720, 360)]);
     assert_eq!([size(1.0, 1.0), size(4000.0, 1000.0), size(1e4, 1.0)], [(512, 512), (1024, 256), (50000, 5)]);
-    // What is proposed has nothing empty, however few pixels there are.
+    // The proposed size has no empty columns or rows, for any number of pixels.
     for (pixels, w, h) in [(8, 360.0, 180.0), (40, 360.0, 180.0), (33, 6.25, 2.0), (51, 1.0, 7.3)] {
         let sides = Some(Vec2::new(w, h));
         let (width, height) = Raster::natural_size(sides, (pixels, pixels));
@@ -62,7 +62,7 @@ fn sizes_follow_proportions_and_misfits_are_counted() {
 }
 
 #[test]
-fn border_pixels_have_their_centres_on_the_border() {
+fn border_pixels_have_centres_on_the_border() {
     let last = Vec2::new(6.5, 4.5);
     let square = Raster::new(7, 5, None, CameraRules { border_pixels: true, ..OURS });
     assert!((square.point(Vec2::splat(0.5)) - Vec2::new(-1.0, 4.0 / 6.0)).length() < 1e-6);
@@ -70,7 +70,7 @@ fn border_pixels_have_their_centres_on_the_border() {
     let stretched = Raster::new(7, 5, None, CameraRules { border_pixels: true, stretch: true, ..OURS });
     assert_eq!(stretched.point(Vec2::splat(0.5)), Vec2::new(-1.0, 1.0));
     assert_eq!(stretched.point(last), Vec2::new(1.0, -1.0));
-    // A picture of one pixel, or one row, has its centre in the middle.
+    // A picture of one pixel, or of one row, has its centre at 0.
     assert_eq!(
         Raster::new(1, 1, None, CameraRules { border_pixels: true, ..OURS }).point(Vec2::splat(0.5)),
         Vec2::ZERO
@@ -82,7 +82,7 @@ fn border_pixels_have_their_centres_on_the_border() {
 }
 
 #[test]
-fn a_frame_is_right_handed_unless_up_is_used_as_written() {
+fn basis_is_right_handed_unless_up_is_raw() {
     let pose = Pose { center: Vec3::X, direction: Vec3::NEG_Z * 3.0, up: Vec3::new(0.0, 2.0, -2.0) };
     let frame = CameraBasis::new(pose, OURS);
     assert_eq!((frame.eye, frame.forward), (Vec3::X, Vec3::NEG_Z));
@@ -90,14 +90,14 @@ fn a_frame_is_right_handed_unless_up_is_used_as_written() {
     close(frame.up, Vec3::Y);
     assert_eq!(CameraBasis::new(pose, CameraRules { up: UpRule::Raw, ..OURS }).up, pose.up);
     close(CameraBasis::new(pose, CameraRules { up: UpRule::Skew, ..OURS }).up, pose.up.normalize());
-    // Looking along `up`, the axes are arbitrary but perpendicular.
+    // For a view along `up`, the axes are arbitrary but perpendicular.
     let frame = CameraBasis::new(Pose { up: Vec3::Z, ..pose }, OURS);
     assert!(frame.right.is_normalized() && frame.up.is_normalized());
     assert!(frame.right.dot(frame.up).abs() + frame.right.dot(frame.forward).abs() < 1e-6);
 }
 
 #[test]
-fn the_pinhole_sees_its_angle_across_the_square() {
+fn perspective_camera_sees_its_angle_across_the_square() {
     let camera = PerspectiveCamera { center: Vec3::Y, angle: 90.0, ..PerspectiveCamera::default() };
     let frame = CameraBasis::of(&camera, OURS);
     let ray = |x, y| camera.ray(&frame, &CameraSample::at(Vec2::new(x, y))).unwrap();
@@ -115,7 +115,7 @@ fn the_pinhole_sees_its_angle_across_the_square() {
 }
 
 #[test]
-fn parallel_rays_start_on_the_picture_and_run_both_ways() {
+fn orthographic_rays_start_on_the_picture_and_extend_both_ways() {
     let camera = OrthographicCamera {
         center: Vec3::new(1.0, 2.0, 3.0),
         direction: Vec3::X * 2.0,

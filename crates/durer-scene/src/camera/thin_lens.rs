@@ -1,14 +1,13 @@
-//! The thin lens: what lies at one distance is sharp, the rest is blurred.
+//! Thin lens: sharp at one distance, blurred elsewhere.
 //!
-//! All light that leaves a point of the plane of focus and passes the lens meets in one point of
-//! the picture. So the ray through a point l of the lens goes to the point where the ray through
-//! its middle meets the plane at the focus distance F:
-//! direction = (F tan(angle / 2) (x + s, y + r) - l, F). A point at distance z is blurred to the
-//! shape of the opening; in a picture of width 2 its diameter is
-//! aperture |F - z| / (F z tan(angle / 2)).
+//! All light from a point of the focus plane that passes the lens meets in one point of the
+//! picture. So the ray through a point l of the lens goes to the point where the ray through the
+//! lens's centre meets the plane at the focus distance F: direction = (F tan(angle / 2) (x + s, y +
+//! r) - l, F). A point at distance z is blurred to the shape of the aperture; in a picture of width
+//! 2 its diameter is aperture |F - z| / (F z tan(angle / 2)).
 //!
 //! The shift (s, r) moves the film in its plane, as view cameras do: the camera stays level and
-//! sees more above than below, and upright lines stay parallel.
+//! sees more above than below, and vertical lines stay parallel.
 //!
 //! Source: Cook, Porter, Carpenter, *Distributed Ray Tracing*, SIGGRAPH 1984; Potmesil,
 //! Chakravarty, *A Lens and Aperture Camera Model for Synthetic Image Generation*, SIGGRAPH 1981,
@@ -24,32 +23,32 @@ use glam::{DVec2, DVec3};
 described! {
     /// A camera with a lens: depth of field, and a film that can be shifted.
     ThinLensCamera ["ThinLensCamera" in set::DURER] {
-        /// The middle of the lens.
+        /// Centre of the lens.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// Where it looks: along the lens's axis; of any length.
+        /// View direction, along the lens's axis; of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// What is up in the picture; need not be perpendicular.
+        /// Up direction of the picture; need not be perpendicular.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
-        /// Field of view across the picture's larger side, in degrees, where nothing is shifted.
+        /// Field of view across the picture's larger side, in degrees, for an unshifted film.
         angle: f32 = 30.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
-        /// Diameter of the opening: focal length over f-number. 0 makes everything sharp.
+        /// Diameter of the aperture: focal length divided by f-number. 0 makes everything sharp.
         aperture: f32 = 0.0, optional, Rule::NonNegative, ["aperture" in set::DURER];
-        /// Distance of the plane that is sharp, along the axis.
+        /// Distance of the focus plane along the axis, in world units.
         focus_distance: f32 = 1.0, optional, Rule::Positive, ["focusDistance" in set::DURER];
-        /// Straight blades around the opening; 0 makes it round.
+        /// Number of straight blades of the aperture; 0 makes it round.
         blades: u32 = 0, optional, Rule::AtMost(aperture::MAX_BLADES), ["blades" in set::DURER];
-        /// Turn of the opening about the axis, in degrees.
+        /// Rotation of the aperture about the axis, in degrees.
         blade_angle: f32 = 0.0, optional, Rule::Any, ["bladeAngle" in set::DURER];
-        /// What is seen moves to the right by this part of half the larger side.
+        /// Shift of the view to the right, relative to half the larger side.
         shift_right: f32 = 0.0, optional, Rule::Any, ["shiftRight" in set::DURER];
-        /// What is seen moves upwards by this part of half the larger side.
+        /// Shift of the view upwards, relative to half the larger side.
         shift_up: f32 = 0.0, optional, Rule::Any, ["shiftUp" in set::DURER];
-        /// Distance along the axis before which nothing is seen.
+        /// Distance along the axis of the near clipping plane.
         near: f32 = 0.0, optional, Rule::NonNegative, ["near" in set::DURER];
-        /// Distance along the axis beyond which nothing is seen.
+        /// Distance along the axis of the far clipping plane; without it the view is unlimited.
         far: Option<f32> = None, optional, Rule::Positive, ["far" in set::DURER];
-        /// Which side of the picture is right: `left` makes a mirror image, as in coordinates of
-        /// the left hand.
+        /// Side of the picture that is right: `left` makes a mirror image, as in left-handed
+        /// coordinates.
         handedness: Handedness = Handedness::Right, optional, Rule::Any, ["handedness" in set::DURER];
     }
 }
@@ -59,14 +58,14 @@ impl ThinLensCamera {
         DVec2::new(f64::from(self.shift_right), f64::from(self.shift_up))
     }
 
-    /// The point of the lens, the distance of focus, and half the width of what is seen there.
+    /// Returns the point of the lens, the focus distance, and half the width of the view there.
     fn parts(&self, frame: &CameraBasis, lens: Vec2) -> (DVec2, f64, f64) {
         let focus = f64::from(self.focus_distance);
         let opening = aperture::sample(lens, self.blades, self.blade_angle);
         (0.5 * f64::from(self.aperture) * opening, focus, focus * frame.half_width)
     }
 
-    /// Origin and direction in the camera's space.
+    /// Origin and direction in camera space.
     fn line(&self, frame: &CameraBasis, sample: &CameraSample) -> (DVec3, DVec3) {
         let (lens, focus, width) = self.parts(frame, sample.lens);
         let target = width * (sample.point.as_dvec2() + self.shift());
@@ -94,7 +93,7 @@ impl Projection for ThinLensCamera {
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let (origin, dir) = self.line(frame, sample);
         let ray = frame.ray(self.handedness.turned(origin), self.handedness.turned(dir));
-        // The ray's direction is as long as the focus is far along the axis.
+        // Convert distances along the axis to distances along the ray.
         let along = ray.dir.dot(frame.forward);
         let t_max = self.far.map_or(ray.t_max, |far| far / along);
         Some(Ray { t_min: ray.t_min.max(self.near / along), t_max, ..ray })

@@ -1,7 +1,7 @@
 use super::*;
 
 #[test]
-fn every_row_of_the_table_is_the_one_of_its_dialect() {
+fn table_rows_match_their_dialects() {
     let names = ["f03", "f04", "f12a4", "f12a5", "f16", "f23", "durer"];
     for (i, (dialect, name)) in Dialect::ALL.into_iter().zip(names).enumerate() {
         assert_eq!(dialect as u8, 1 << i);
@@ -15,7 +15,7 @@ fn every_row_of_the_table_is_the_one_of_its_dialect() {
 }
 
 #[test]
-fn every_compatibility_has_its_own_name_and_bit() {
+fn compatibilities_have_unique_names_and_bits() {
     for (i, (compat, name, doc)) in Compat::ALL.iter().enumerate() {
         assert_eq!(Compat::from_name(name), Some(*compat));
         assert_eq!(compat.bit(), 1 << i);

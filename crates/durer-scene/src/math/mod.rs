@@ -9,7 +9,7 @@ pub use durer_bvh::internal::random;
 pub use durer_bvh::math::{Aabb, Affine, Line, Ray, Ray64, Side, UNIT_ROUNDOFF, Vec2, Vec3, fp, gamma};
 pub use durer_image::{Color, LUMINANCE, LUMINANCE_F64};
 
-/// Mirrors `direction` on a surface with unit normal `normal`.
+/// Reflects `direction` about the unit vector `normal`.
 pub fn reflect(direction: Vec3, normal: Vec3) -> Vec3 {
     direction - 2.0 * direction.dot(normal) * normal
 }

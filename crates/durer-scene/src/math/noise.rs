@@ -32,7 +32,7 @@ pub fn perlin(p: Vec3) -> f32 {
     let f = p - floor;
     let fade = |t: f32| t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
     let (u, v, w) = (fade(f.x), fade(f.y), fade(f.z));
-    // Gradient at a corner of the cell, times the offset from it.
+    // Dot product of the gradient at a corner of the cell with the offset from it.
     let corner = |dx: i32, dy: i32, dz: i32| {
         let hash = permute(permute(permute(x + dx) + y + dy) + z + dz);
         gradient(hash, f - Vec3::new(dx as f32, dy as f32, dz as f32))
@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn permutation_is_a_permutation() {
+    fn table_is_a_permutation() {
         let mut sorted = PERMUTATION;
         sorted.sort_unstable();
         assert!(sorted.iter().enumerate().all(|(i, &p)| i == usize::from(p)));

@@ -1,7 +1,7 @@
 //! Real roots of polynomials, in double precision.
 
-/// Roots of a t^2 + 2 b t + c where the sign changes, in ascending order: two or none. A double
-/// root does not count.
+/// Roots of a t^2 + 2 b t + c at sign changes, in ascending order: two or none. A double root does
+/// not count.
 ///
 /// `a` must not be 0. Computing one root as c / q avoids cancellation. Source: Press et al.,
 /// *Numerical Recipes*, section 5.6.
@@ -88,7 +88,7 @@ mod tests {
     use crate::math::random::Random;
 
     #[test]
-    fn polynomials_are_zero_where_they_were_made_so() {
+    fn quartic_finds_the_roots_of_products() {
         let mut random = Random(1);
         for _ in 0..100_000 {
             let mut made: [f64; 4] = std::array::from_fn(|_| f64::from(random.between(-1.0, 1.0)));
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn quadratics_keep_their_digits() {
+    fn quadratic_avoids_cancellation() {
         let (x, y) = quadratic(1.0, -0.5e8, 1.0).unwrap();
         assert!((x - 1e-8).abs() < 1e-22 && (y - 1e8).abs() < 1e-7, "{x} {y}");
         assert_eq!(quadratic(1.0, -1.0, 1.0), None);

@@ -1,7 +1,7 @@
 use super::testing::{chi_squared, chi_squared_quantile};
 use super::*;
 
-/// Two-sided significance 2e-4: neither uneven nor too even to be independent.
+/// Two-sided significance 2e-4: rejects uneven points and points too even to be independent.
 fn assert_uniform(what: &str, points: impl Iterator<Item = Vec2>) {
     let mut cells = [0_u32; 256];
     for p in points {
@@ -37,7 +37,7 @@ fn positions_are_uniform() {
 }
 
 #[test]
-fn pairs_of_one_pixel_are_independent_of_pairs_of_its_neighbour_and_of_other_dimensions() {
+fn pairs_are_independent_across_pixels_and_dimensions() {
     let first = |i| sample_2d(3, i, 0, 2, 0);
     assert_uniform("neighbours", (0..N).map(|i| Vec2::new(first(i).x, first(i + 1).x)));
     assert_uniform("dimensions", (0..N).map(|i| Vec2::new(first(i).y, sample_2d(3, i, 0, 2, 1).y)));
@@ -72,7 +72,7 @@ fn grid_samplers_fill_their_grid() {
 }
 
 #[test]
-fn every_prefix_of_a_power_of_two_is_stratified_in_every_elementary_interval() {
+fn power_of_two_prefixes_are_stratified_in_elementary_intervals() {
     for (x, dimension) in (0..20).flat_map(|x| [(x, 0), (x, 3)]) {
         for k in 0..=10_u32 {
             let n = 1_u32 << k;
@@ -121,7 +121,7 @@ fn sobol_is_more_even_than_random() {
 }
 
 #[test]
-fn discrepancies_are_what_they_should_be() {
+fn discrepancies_match_theory() {
     let mean = |sampler: Sampler, n: u32| {
         let points = |y| -> Vec<_> { (0..n).map(|s| sampler.pixel_position(1, 2, y, s, n)).collect() };
         (0..10).map(|y| star_discrepancy(&points(y))).sum::<f64>() / 10.0
@@ -143,7 +143,7 @@ fn discrepancies_are_what_they_should_be() {
 }
 
 #[test]
-fn fast_second_coordinate_is_sobols() {
+fn fast_second_coordinate_matches_sobol() {
     // Direction numbers of the polynomial x + 1: v[i] = v[i-1] ^ v[i-1] / 2.
     let slow = |index: u32| {
         let directions = std::iter::successors(Some(1_u32 << 31), |v| Some(v ^ v >> 1));
@@ -153,7 +153,7 @@ fn fast_second_coordinate_is_sobols() {
 }
 
 #[test]
-fn same_arguments_same_bits() {
+fn numbers_are_reproducible_bit_for_bit() {
     // Pinned: a change of these numbers changes every picture.
     let bits = |p: Vec2| (p.x.to_bits(), p.y.to_bits());
     for (_, sampler) in Sampler::NAMES {
@@ -169,7 +169,7 @@ fn same_arguments_same_bits() {
 }
 
 #[test]
-fn points_side_by_side_are_those_one_by_one() {
+fn batched_points_match_single_points() {
     for first in [0, 5, u32::MAX - 20] {
         let samples = std::array::from_fn::<u32, 8, _>(|i| first + 2 * i as u32);
         let sequences = std::array::from_fn::<_, 8, _>(|i| SampleId::new(3, (i as u32, 9), 0).sequence(i as u32 / 4));
@@ -182,7 +182,7 @@ fn points_side_by_side_are_those_one_by_one() {
 }
 
 #[test]
-fn pairs_side_by_side_are_those_one_by_one() {
+fn batched_pairs_match_single_pairs() {
     for sample in [0, 7, 1000, u32::MAX] {
         let id = SampleId::new(11, (3, sample), sample).at(12);
         assert_eq!(id.pairs(), [0, 1, 2, 3].map(|dimension| id.pair(dimension)), "{sample}");

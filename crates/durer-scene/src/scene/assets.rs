@@ -38,61 +38,61 @@ pub struct Picture {
 }
 
 described_words! {
-    /// What is between texels.
+    /// Filter between texels.
     Texels { Linear = "linear", Nearest = "nearest" }
 }
 
 described_words! {
-    /// What is shown where many texels are seen at once: some of them, whose mean over a pixel's
-    /// samples is right, or a smaller version of the picture, which has less noise and is a little
-    /// blurred.
+    /// Filter for minified pictures: `texels` takes point samples, which average correctly over a
+    /// pixel's samples; `mipmaps` takes a smaller version of the picture, with less noise and
+    /// slight blur.
     Minified { Texels = "texels", Mipmaps = "mipmaps" }
 }
 
 described! {
-    /// A picture with a name, and how it lies on surfaces. What takes a picture in a
-    /// `PrincipledMaterial` takes that name.
+    /// A named picture and its mapping onto surfaces. The picture fields of a `PrincipledMaterial`
+    /// take that name.
     NamedTexture ["Texture" in set::DURER] {
-        /// Its name.
+        /// Name of the texture.
         name: FileName = FileName::default(), required, Rule::Any, ["name" in set::DURER];
-        /// The picture's file.
+        /// File of the picture.
         picture: FileName = FileName::default(), required, Rule::Any, ["picture" in set::DURER];
-        /// What is beyond its left and right border: `repeat`, `mirror` or `clamp`.
+        /// Continuation beyond the left and right border: `repeat`, `mirror` or `clamp`.
         wrap_u: Wrap = Wrap::Repeat, optional, Rule::Any, ["wrapU" in set::DURER];
-        /// What is beyond its upper and lower border.
+        /// Continuation beyond the upper and lower border: `repeat`, `mirror` or `clamp`.
         wrap_v: Wrap = Wrap::Repeat, optional, Rule::Any, ["wrapV" in set::DURER];
-        /// Whether the four texels around a point are mixed (`linear`), or the `nearest` counts
-        /// alone.
+        /// Filter between texels: `linear` mixes the four texels around a point, `nearest` takes
+        /// one.
         texels: Texels = Texels::Linear, optional, Rule::Any, ["texels" in set::DURER];
-        /// What is shown where a sample sees many texels at once, under paths: some of them
-        /// (`texels`), or a smaller version of the picture (`mipmaps`).
+        /// Filter if a sample covers many texels, in the path tracer: `texels` samples the full
+        /// picture, `mipmaps` a smaller version of it.
         minified: Minified = Minified::Texels, optional, Rule::Any, ["minified" in set::DURER];
-        /// The set of a mesh's texture coordinates: 0, or 1 for the second.
+        /// Set of a mesh's texture coordinates: 0, or 1 for the second.
         uv_set: u32 = 0, optional, Rule::AtMost(1), ["uvSet" in set::DURER];
-        /// From the surface's coordinates to the picture's, both with v downwards from the upper
-        /// border: two rows of a matrix.
+        /// Map from surface to picture coordinates, both with v downwards from the upper border:
+        /// two rows of a matrix.
         uv_transform: Vec<[f32; 3]> = Mapping::default().transform.to_vec(), optional, Rule::Rows(2, 2), ["uvTransform" in set::DURER];
-        /// Opacity is 1 where the picture's alpha is at least this, and else 0; where nothing is
-        /// written, as the alpha says.
+        /// Threshold of alpha: opacity is 1 at or above it and 0 below; without it opacity is
+        /// alpha.
         alpha_cutoff: Option<f32> = None, optional, Rule::Any, ["alphaCutoff" in set::DURER];
-        /// How far the normals of a normal map lean, times.
+        /// Factor on the slope of the normals of a normal map.
         normal_scale: f32 = 1.0, optional, Rule::Any, ["normalScale" in set::DURER];
-        /// What counts where a number is wanted: `r`, `g`, `b`, `a`, or the `angle` of the
-        /// direction in red and green; where nothing is written, red, or of opacity what there is.
+        /// Channel for a scalar field: `r`, `g`, `b`, `a`, or the `angle` of the direction in red
+        /// and green; by default red, and for opacity alpha if there is one.
         channel: Option<Channel> = None, optional, Rule::Any, ["channel" in set::DURER];
-        /// What a texel's 0 and 1 stand for, where the picture changes a number.
+        /// Values of texels 0 and 1 if the picture modulates a scalar field.
         texel_range: Vec<[f32; 2]> = vec![[0.0, 1.0]], optional, Rule::Rows(1, 1), ["texelRange" in set::DURER];
     }
 }
 
 impl NamedTexture {
-    /// Statement of a named picture; `None` if its bytes are not in a file.
+    /// Description of a named picture; `None` if its bytes are not in a file.
     pub fn of(name: &str, picture: &Picture) -> Option<Self> {
         let PictureBytes::File(file) = &picture.bytes else { return None };
         Some(NamedTexture::with_mapping(name, file, picture.mapping))
     }
 
-    /// Statement of a picture's name, file and mapping.
+    /// Description of a picture by name, file and mapping.
     pub(super) fn with_mapping(name: &str, file: &str, mapping: Mapping) -> Self {
         let named = |path: &str| FileName { path: path.to_string(), ..FileName::default() };
         let Mapping { wrap: [wrap_u, wrap_v], nearest, mipmaps, second, transform, cutoff, strength, channel, range } =
@@ -113,7 +113,7 @@ impl NamedTexture {
         }
     }
 
-    /// The picture of the statement.
+    /// Returns the picture of the description.
     pub fn picture(&self) -> Picture {
         let usual = Mapping::default();
         let mapping = Mapping {
@@ -162,7 +162,7 @@ impl Assets {
         !(meshes.is_empty() && profiles.is_empty() && densities.is_empty()) || pictures.values().any(loose)
     }
 
-    /// Statements of the pictures that are in files.
+    /// Descriptions of the pictures that are in files.
     pub fn textures(&self) -> impl Iterator<Item = NamedTexture> {
         self.pictures.iter().filter_map(|(name, picture)| NamedTexture::of(name, picture))
     }

@@ -1,4 +1,4 @@
-//! Builder of scenes in code, which names things by handles instead of strings.
+//! Builder of scenes in code, which names objects by handles instead of strings.
 
 use super::{Background, Group, Material, MatrixOp, Node, Object, Scene, Spanned};
 use crate::camera::Camera;
@@ -120,7 +120,7 @@ impl Placed {
     }
 
     /// Appends a rotation by degrees about an axis of any length through the origin:
-    /// counter-clockwise, seen from where the axis points.
+    /// counter-clockwise, seen from the tip of the axis.
     pub fn rotate(&mut self, axis: Vec3, degrees: f32) -> &mut Self {
         self.transform(MatrixOp::Rotate(axis, degrees))
     }
@@ -215,13 +215,13 @@ impl SceneBuilder {
         if scene.camera.is_none() {
             found.push(Diagnostic::error("the scene has no camera").code("no-camera"));
         }
-        // A handle of another builder may name a mesh that this one lacks.
+        // A handle of another builder may name a mesh that this builder does not have.
         let meshes = self.objects.iter().filter_map(|placed| match &placed.node {
             Node::Mesh(mesh) => Some(&mesh.obj_file.path),
             _ => None,
         });
         if meshes.into_iter().any(|name| !scene.assets.meshes.contains_key(name)) {
-            found.push(Diagnostic::error("an object is a mesh of another builder").code("bad-value"));
+            found.push(Diagnostic::error("an object uses a mesh of another builder").code("bad-value"));
         }
         if found.has_errors() { Err(found) } else { Ok(scene) }
     }
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn handles_of_another_builder_are_refused() {
+    fn handles_of_another_builder_are_rejected() {
         let mut other = Scene::builder();
         let mesh = other.mesh(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]);
         let material = other.material(PhongMaterial::default());
@@ -265,6 +265,6 @@ mod tests {
         scene.add(mesh).material(material);
         let found: Vec<_> = scene.build().unwrap_err().iter().map(|d| d.message.clone()).collect();
         let unknown = "an object has material 0, but the scene has 0, counted from 0";
-        assert_eq!(found, [unknown, "the scene has no camera", "an object is a mesh of another builder"]);
+        assert_eq!(found, [unknown, "the scene has no camera", "an object uses a mesh of another builder"]);
     }
 }

@@ -1,4 +1,4 @@
-//! The matrices of a transform, as written.
+//! Matrices of a transform, as written.
 
 use crate::math::{Vec3, fp};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
@@ -7,38 +7,38 @@ use serde::{Deserialize, Serialize};
 /// One matrix of a transform. Rotations are right-handed, in degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum MatrixOp {
-    /// Moves.
+    /// Translation.
     Translate(Vec3),
-    /// Stretches along the axes.
+    /// Scaling along the axes.
     Scale(Vec3),
-    /// Stretches evenly.
+    /// Uniform scaling.
     UniformScale(f32),
-    /// Turns about x.
+    /// Rotation about x.
     XRotate(f32),
-    /// Turns about y.
+    /// Rotation about y.
     YRotate(f32),
-    /// Turns about z.
+    /// Rotation about z.
     ZRotate(f32),
-    /// Turns about an axis of any length.
+    /// Rotation about an axis of any length.
     Rotate(Vec3, f32),
-    /// Any affine matrix, row by row.
+    /// Affine matrix, row by row.
     Matrix([f32; 16]),
 }
 
-/// Rules of products of matrices, resolved from a scene's dialect. The default is our own.
+/// Rules of matrix products, resolved from a scene's dialect. The default is Dürer's own.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MatrixRules {
     /// A `Matrix` is multiplied on the left of everything before it.
     pub matrix_on_left: bool,
-    /// The product of one transform loses its shear: it is taken apart into translation, rotation
+    /// The product of one transform loses its shear: it is decomposed into translation, rotation
     /// and scale.
     pub dropped_shear: bool,
-    /// A transform whose determinant is all but 0 is passed over.
+    /// A transform whose determinant is almost 0 is ignored.
     pub dropped_tiny: bool,
 }
 
 impl MatrixOp {
-    /// One of each, by its word.
+    /// One operation of each kind, with its keyword.
     pub const KINDS: [(&'static str, MatrixOp); 8] = [
         ("Translate", MatrixOp::Translate(Vec3::ZERO)),
         ("Scale", MatrixOp::Scale(Vec3::ONE)),
@@ -50,12 +50,12 @@ impl MatrixOp {
         ("Matrix", MatrixOp::Matrix([1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.])),
     ];
 
-    /// Their words.
+    /// Keywords of the operations.
     pub fn words() -> [&'static str; 8] {
         MatrixOp::KINDS.map(|row| row.0)
     }
 
-    /// The matrix.
+    /// Returns the matrix.
     pub fn matrix(&self) -> DAffine3 {
         match *self {
             MatrixOp::Translate(v) => DAffine3::from_translation(v.as_dvec3()),
@@ -83,7 +83,7 @@ impl MatrixOp {
     }
 
     /// True if the product of the matrices of one transform counts as flat: its determinant is
-    /// within the rounding of 1 in single precision.
+    /// within the rounding error of 1 in single precision.
     pub fn is_tiny(ops: &[MatrixOp], rules: MatrixRules) -> bool {
         is_tiny(MatrixOp::product(ops, MatrixRules { dropped_shear: false, dropped_tiny: false, ..rules }))
     }
@@ -93,14 +93,14 @@ fn is_tiny(map: DAffine3) -> bool {
     map.matrix3.determinant().abs() < f64::from(f32::EPSILON)
 }
 
-/// A map whose axes are made perpendicular, one after the other: what is left of it as translation,
-/// rotation and scale.
+/// Makes the axes of a map perpendicular, one after the other, which leaves translation, rotation
+/// and scale.
 ///
 /// Source: Spencer W. Thomas, *Decomposing a Matrix into Simple Transformations*, Graphics Gems II
 /// (1991), VII.1.
 fn without_shear(map: DAffine3) -> DAffine3 {
     let DMat3 { x_axis: x, y_axis, z_axis } = map.matrix3;
-    // An axis without length has no direction to take away.
+    // An axis of length 0 has no direction to remove.
     let along = |v: DVec3, axis: DVec3| v.project_onto_normalized(axis.normalize_or_zero());
     let y = y_axis - along(y_axis, x);
     let z = z_axis - along(z_axis, x) - along(z_axis, y);

@@ -1,4 +1,4 @@
-//! The scene as its author wrote it: plain data with names, degrees, nested groups and file paths.
+//! Scene as its author wrote it: plain data with names, degrees, nested groups and file paths.
 //!
 //! Nothing here is computed, cached or looked up; `compile` turns it into a world.
 
@@ -33,55 +33,53 @@ pub use validate::MAX_NESTING;
 pub use staging::{Axis, Staging, Studio, View};
 
 described! {
-    /// What a ray sees that hits nothing, and the light that is everywhere.
+    /// Background colour of rays that hit nothing, and ambient light.
     Background ["Background" in set::ALL] {
-        /// Colour of rays that hit nothing. A scene of ours without a `Background` is black around under
-        /// `path`, where light is only what a scene says.
+        /// Colour of rays that hit nothing; by default 0.5, or black under `path` in a scene of
+        /// Dürer's own dialect without a `Background`.
         color: Vec3 = Vec3::splat(0.5), optional, Rule::Any, ["color" in set::ALL];
-        /// Light that reaches every surface.
+        /// Ambient light on every surface.
         ambient_light: Vec3 = Vec3::ZERO, optional, Rule::Any,
             ["ambientLight" in set::CLASSIC, "ambient_light" in set::F23];
         /// Folder with six pictures (left, right, up, down, front, back) that replace the colour.
         cube_map: Option<FileName> = None, optional, Rule::Any,
             ["cubeMap" in set::F12A5 | set::F16 | set::DURER, "cube_map" in set::F23];
-        /// A picture of all directions that replaces the colour and lights the scene, best of high
-        /// dynamic range (`.exr`, `.hdr`); its middle is seen towards -z. Whitted's light does not
-        /// come from it.
+        /// Picture of all directions that replaces the colour and lights the scene, preferably with
+        /// high dynamic range (`.exr`, `.hdr`); its centre is at -z. Whitted's method ignores its
+        /// light.
         environment: Option<FileName> = None, optional, Rule::Any, ["environment" in set::DURER];
-        /// The way to the sun, of any length, with y upwards: a clear sky and the sun light the
-        /// scene, in cd/m^2. Such pictures need `--exposure`, -13 say.
+        /// Direction to the sun, of any length, with y up: a clear sky and the sun light the scene,
+        /// in cd/m^2. Such pictures need `--exposure`, for example -13.
         sun: Option<Vec3> = None, optional, Rule::NonZero, ["sun" in set::DURER];
-        /// The same by angles: how high the sun stands, in degrees above the horizon.
+        /// Altitude of the sun, in degrees above the horizon; an alternative to `sun`.
         sun_altitude: Option<f32> = None, optional, Rule::From(-90.0, 90.0), ["sunAltitude" in set::DURER];
-        /// And where, in degrees from north (-z) over east (x): 180 is south.
+        /// Azimuth of the sun, in degrees from north (-z) over east (x): 180 is south.
         sun_azimuth: Option<f32> = None, optional, Rule::Any, ["sunAzimuth" in set::DURER];
-        /// The same by place, date and time: degrees north of the equator.
+        /// Latitude, in degrees north of the equator; with date and time an alternative to `sun`.
         latitude: Option<f32> = None, optional, Rule::From(-90.0, 90.0), ["latitude" in set::DURER];
-        /// Degrees east of Greenwich.
+        /// Longitude, in degrees east of Greenwich.
         longitude: Option<f32> = None, optional, Rule::From(-360.0, 360.0), ["longitude" in set::DURER];
         /// Year, month and day.
         date: Option<Vec3> = None, optional, Rule::Counts(9999), ["date" in set::DURER];
-        /// Hours, minutes and seconds of a clock there.
+        /// Hours, minutes and seconds of the local clock.
         time: Option<Vec3> = None, optional, Rule::Any, ["time" in set::DURER];
-        /// Hours that this clock is before that of Greenwich, summer time included; 0 where nothing
-        /// is written.
+        /// Hours that the local clock is ahead of UTC, summer time included; default 0.
         time_zone: Option<f32> = None, optional, Rule::From(-14.0, 14.0), ["timeZone" in set::DURER];
-        /// How hazy the air is: from 2 (clear) over 3 (a usual day, where nothing is written) to
-        /// 10.
+        /// Turbidity of the air, from 2 (clear) over 3 (average) to 10 (hazy); default 3.
         turbidity: Option<f32> = None, optional, Rule::Positive, ["turbidity" in set::DURER];
-        /// Number of a standard sky of the CIE, 1 to 16 (1 overcast, 5 even, 12 clear, 16 the
-        /// traditional overcast sky): it lights the scene, in cd/m^2, without the sun itself, whose
-        /// place `sun` says for all but 1, 3, 5 and 16.
+        /// Number of a CIE standard sky, 1 to 16 (1 overcast, 5 uniform, 12 clear, 16 traditional
+        /// overcast): it lights the scene, in cd/m^2, without the sun itself, whose position `sun`
+        /// sets for all but 1, 3, 5 and 16.
         cie_sky: Option<u32> = None, optional, Rule::Numbered(OVERCAST), ["cieSky" in set::DURER];
-        /// How bright that sky is at the zenith, in cd/m^2; 10000 where nothing is written.
+        /// Luminance of that sky at the zenith, in cd/m^2; default 10000.
         zenith_luminance: Option<f32> = None, optional, Rule::Positive, ["zenithLuminance" in set::DURER];
-        /// What share of the light of sun and sky the ground below the horizon gives back. Where
-        /// nothing is written it is 0.2 below a standard sky, and below a clear one with `sun` a
-        /// fifth of the zenith's light.
+        /// Fraction of the light of sun and sky that the ground below the horizon reflects; default
+        /// 0.2 below a standard sky; below a clear sky with `sun` the default is a fifth of the
+        /// zenith's light.
         ground_reflectance: Option<f32> = None, optional, Rule::Share, ["groundReflectance" in set::DURER];
-        /// How far the environment is turned about y, in degrees.
+        /// Rotation of the environment about y, in degrees.
         environment_rotation: Option<f32> = None, optional, Rule::Any, ["environmentRotation" in set::DURER];
-        /// What multiplies the environment.
+        /// Factor on the environment.
         environment_scale: Option<Vec3> = None, optional, Rule::Any, ["environmentScale" in set::DURER];
     }
 }
@@ -96,8 +94,8 @@ impl Background {
     ///
     /// # Errors
     ///
-    /// A sentence, if the position of the sun is given twice, incompletely, or by an invalid date
-    /// or time.
+    /// A message, if the position of the sun is given twice, incompletely, or by an invalid date or
+    /// time.
     pub fn way_to_sun(&self) -> Result<Option<Vec3>, String> {
         let angles = [("sunAltitude", self.sun_altitude.is_some()), ("sunAzimuth", self.sun_azimuth.is_some())];
         let clock = [
@@ -112,13 +110,13 @@ impl Background {
         if let [first, second, ..] =
             [given(&direct), given(&angles), given(&clock)].into_iter().flatten().collect::<Vec<_>>()[..]
         {
-            return Err(format!("the sun's place is said twice, by `{first}` and by `{second}`"));
+            return Err(format!("the sun's position is given twice, by `{first}` and by `{second}`"));
         }
         // A clock without a time zone is in UTC.
         let missing = |words: &[(&'static str, bool)]| match given(words) {
             Some(word) => match words.iter().find(|(word, given)| !given && *word != "timeZone") {
                 Some((lacking, _)) => {
-                    Err(format!("the sun's place is said in part: beside `{word}` there is no `{lacking}`"))
+                    Err(format!("the sun's position is incomplete: `{word}` needs `{lacking}`"))
                 }
                 None => Ok(()),
             },
@@ -137,13 +135,13 @@ impl Background {
         let [hour, minute, second] = time.to_array().map(f64::from);
         let sixty = 0.0..60.0;
         if !(0.0..=24.0).contains(&hour) || !sixty.contains(&minute) || !sixty.contains(&second) {
-            return Err("there is no such `time`: it is hours, minutes and seconds, as 14 30 0".into());
+            return Err("`time` does not exist: write hours, minutes and seconds, as 14 30 0".into());
         }
         let date = date.to_array().map(|part| part as i32);
         let hours = hour + minute / 60.0 + second / 3600.0;
         let moment = Moment { date, hours, zone: f64::from(self.time_zone.unwrap_or(0.0)) };
         if !moment.exists() {
-            return Err("there is no such `date`: it is year, month and day, as 2026 6 21".into());
+            return Err("`date` does not exist: write year, month and day, as 2026 6 21".into());
         }
         Ok(Some(almanac::way(almanac::sun([latitude, longitude].map(f64::from), &moment))))
     }
@@ -283,7 +281,7 @@ pub enum Material {
 /// A list of objects.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Group {
-    /// In file order.
+    /// Objects in file order.
     pub objects: Vec<Object>,
 }
 
@@ -314,7 +312,7 @@ impl Object {
 /// Kinds of objects.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Node {
-    /// Several objects.
+    /// Group of objects.
     Group(Group),
     /// An object transformed by M = M1 M2 ...
     Transform(Vec<MatrixOp>, Box<Object>),
@@ -360,13 +358,13 @@ impl Operation {
     pub fn doc(self) -> &'static str {
         match self {
             Operation::Union => {
-                "All that is in some part. Where no other operation is around it, the parts stay as they are, \
-                 with the surfaces that they have inside each other."
+                "Union of the parts. Unless it is nested in another operation, the parts keep their surfaces inside \
+                 each other."
             }
-            Operation::Merge => "All that is in some part, as one solid: surfaces inside other parts are gone.",
-            Operation::Intersection => "What is in every part.",
-            Operation::Difference => "What is in the first part and in no other.",
-            Operation::Xor => "What is in an odd number of parts: of two, in one alone.",
+            Operation::Merge => "Union of the parts as one solid, without the surfaces inside other parts.",
+            Operation::Intersection => "Intersection of all parts.",
+            Operation::Difference => "The first part without the others.",
+            Operation::Xor => "Points inside an odd number of parts.",
         }
     }
 

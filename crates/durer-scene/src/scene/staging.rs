@@ -85,11 +85,11 @@ pub struct Staging {
 
 /// Axes of a model as a viewer in front of it sees them.
 pub struct Sides {
-    /// To the viewer's right.
+    /// Direction to the viewer's right.
     pub right: DVec3,
-    /// Upwards.
+    /// Direction upwards.
     pub up: DVec3,
-    /// From the model towards the viewer.
+    /// Direction from the model towards the viewer.
     pub front: DVec3,
 }
 
@@ -308,7 +308,7 @@ fn give_material(scene: &mut Scene) {
 struct Seen {
     /// Half the picture's width and height at distance 1.
     slopes: [f64; 2],
-    /// For both picture axes: the maximum of p - slope z and the minimum of p + slope z.
+    /// Maximum of p - slope z and minimum of p + slope z, for both picture axes.
     reach: [[f64; 2]; 2],
     low: [f64; 3],
     high: [f64; 3],

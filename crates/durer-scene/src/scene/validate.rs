@@ -1,8 +1,7 @@
-//! Validation of a scene: every value of every field against its rule, and the fields of a thing
-//! together.
+//! Validation of a scene: every field against its rule, and the fields of an object together.
 //!
-//! Readers check what they read and report it at its place in the file. This is for scenes built in
-//! code, and for formats whose readers take a value as it comes.
+//! Readers check their input and report errors with spans. This check is for scenes built in code,
+//! and for formats whose readers do not check values.
 
 use super::{Background, Group, Material, MatrixOp, NamedTexture, Node, Object, Scene, Spanned};
 use crate::camera::Projection;
@@ -15,25 +14,25 @@ use crate::shape::Shape;
 use crate::texture::CieSky;
 use durer_diag::{Diagnostic, Diagnostics, Span};
 
-/// Levels of objects inside each other that a scene may have. The scene language allows 200, each of
-/// which is at most three here.
+/// Maximum nesting of objects. The scene language allows 200 levels, each of which is at most three
+/// here.
 pub const MAX_NESTING: usize = 640;
 
-/// Levels of materials made of other materials, and leaves that one such material may have.
+/// Maximum nesting of materials made of other materials, and maximum number of leaves of one.
 const MAX_MATERIAL_NESTING: u32 = 64;
 const MAX_MATERIAL_PARTS: u64 = 4096;
 
 impl Scene {
-    /// Checks all values: each field against its rule, that numbers are finite, fields that go
-    /// together, numbers of materials, and nesting. Errors only; compiling a scene asks this first.
+    /// Checks all values: each field against its rule, that numbers are finite, combinations of
+    /// fields, numbers of materials, and nesting. Reports errors only. The compiler calls it first.
     ///
     /// An object read from a file may have the number of a material that does not exist: readers
-    /// warn of it, and the object is drawn in plain grey, as by the course's programs.
+    /// warn, and the object is drawn in plain grey, as by the course's programs.
     pub fn validate(&self) -> Diagnostics {
         self.validate_as(0)
     }
 
-    /// Checks as [`Scene::validate`], but under [`Compat::AnyValues`] lets values pass that official
+    /// Checks as [`Scene::validate`], but under [`Compat::AnyValues`] accepts values that official
     /// programs draw.
     pub fn validate_as(&self, compat: CompatSet) -> Diagnostics {
         let any = compat & Compat::AnyValues.bit() != 0;
@@ -62,28 +61,28 @@ impl Scene {
 }
 
 impl Background {
-    /// Checks its fields together.
+    /// Checks combinations of fields.
     ///
     /// # Errors
     ///
-    /// A sentence, if the sun's place is given twice, in part or by a time that does not exist, or a
-    /// standard sky lacks the sun that it depends on.
+    /// A message, if the sun's position is given twice, incompletely or by a time that does not
+    /// exist, or if a standard sky lacks the sun that it depends on.
     pub fn validate(&self) -> Result<(), String> {
         let sun = self.way_to_sun()?;
         let lacks_sun = self.environment.is_none() && self.cie_sky.is_some_and(CieSky::wants_sun) && sun.is_none();
         match lacks_sun {
-            true => Err("this `cieSky` is brightest about the sun, and no `sun` says where that is".into()),
+            true => Err("this `cieSky` depends on the sun, but the background has no `sun`".into()),
             false => Ok(()),
         }
     }
 }
 
 impl Fog {
-    /// Checks its fields together.
+    /// Checks combinations of fields.
     ///
     /// # Errors
     ///
-    /// A sentence, if only one corner of its box is given, or the box is empty.
+    /// A message, if only one corner of its box is given, or the box is empty.
     pub fn validate(&self) -> Result<(), String> {
         match (self.min, self.max) {
             (Some(min), Some(max)) if !min.cmplt(max).all() => {
@@ -95,12 +94,12 @@ impl Fog {
     }
 }
 
-/// Collects what is wrong.
+/// Collector of errors.
 struct Validator {
     diagnostics: Diagnostics,
-    /// How many materials the scene has.
+    /// Number of materials of the scene.
     materials: usize,
-    /// True if values pass that official programs draw.
+    /// True to accept values that official programs draw.
     any: bool,
 }
 
@@ -109,13 +108,13 @@ impl Validator {
         self.report(Diagnostic::error(message), span);
     }
 
-    /// Reports an error, at its place if it has one: scenes built in code have none.
+    /// Reports an error, with its span if it has one: scenes built in code have none.
     fn report(&mut self, error: Diagnostic, span: Span) {
         let error = error.code("bad-value");
         self.diagnostics.push(if span.is_place() { error.at(span) } else { error });
     }
 
-    /// Checks the fields of a thing one by one and, if all are valid, together.
+    /// Checks the fields of an object one by one and, if all are valid, in combination.
     fn thing<T: DescribedList>(&mut self, thing: &T, span: Span, together: impl FnOnce(&T) -> Result<(), String>) {
         let name = thing.keyword(Dialect::Durer);
         let mut is_valid = true;
@@ -132,7 +131,7 @@ impl Validator {
         if is_valid && let Err(message) = together(thing) {
             let error = Diagnostic::error(message);
             let lacks_sun = error.message.contains("`cieSky`");
-            let help = "write `sun x y z`, the way to it with y upwards; 1, 3, 5 and 16 need none";
+            let help = "write `sun x y z`, the direction to the sun with y up; skies 1, 3, 5 and 16 need none";
             self.report(if lacks_sun { error.help(help) } else { error }, span);
         }
     }
@@ -155,10 +154,10 @@ impl Validator {
         }
     }
 
-    /// Refuses materials that are made of themselves or later ones, nested too deeply, or of too
-    /// many parts.
+    /// Rejects materials that are made of themselves or of later ones, nested too deeply, or made
+    /// of too many parts.
     fn nested_materials(&mut self, scene: &Scene) {
-        // How deep each material is nested, and of how many parts it is made at most.
+        // Nesting depth and maximum number of parts of each material.
         let mut sizes: Vec<(u32, u64)> = Vec::with_capacity(scene.materials.len());
         for material in &scene.materials {
             let Material::Solid(solid, _) = &material.value else {
@@ -167,12 +166,12 @@ impl Validator {
             };
             let parts = solid.materials().map(|i| sizes.get(i as usize).copied());
             let [Some(first), Some(second)] = parts else {
-                return self.error("a solid material is made of earlier ones", material.span);
+                return self.error("a solid material must be made of earlier materials", material.span);
             };
             let (nesting, parts) = (1 + first.0.max(second.0), first.1 + second.1);
             if nesting > MAX_MATERIAL_NESTING || parts > MAX_MATERIAL_PARTS {
-                let message = format!("this material is made of others {nesting} deep and {parts} in all");
-                let help = format!("at most {MAX_MATERIAL_NESTING} deep and {MAX_MATERIAL_PARTS} in all are allowed");
+                let message = format!("this material has {nesting} levels and {parts} parts");
+                let help = format!("use at most {MAX_MATERIAL_NESTING} levels and {MAX_MATERIAL_PARTS} parts");
                 return self.report(Diagnostic::error(message).help(help), material.span);
             }
             sizes.push((nesting, parts));
@@ -213,7 +212,8 @@ impl Validator {
     }
 
     fn matrices(&mut self, ops: &[MatrixOp], span: Span) {
-        // The matrix of a rotation about an axis that is NaN is one about y.
+        // A rotation about a NaN axis has a finite matrix, that of a rotation about y; check the
+        // axis too.
         let is_finite = |op: &MatrixOp| match op {
             MatrixOp::Rotate(axis, _) => axis.is_finite() && op.matrix().is_finite(),
             _ => op.matrix().is_finite(),
@@ -236,7 +236,7 @@ impl Validator {
     }
 }
 
-/// A short value for a message, with a blank before it; nothing for rows.
+/// Formats a short value for a message, with a leading blank; empty for rows.
 fn shown(value: &Value) -> String {
     match value {
         Value::Float(x) => format!(" {x}"),

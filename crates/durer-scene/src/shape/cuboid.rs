@@ -11,9 +11,9 @@ use glam::DVec3;
 described! {
     /// A box whose faces are parallel to the coordinate planes.
     Cuboid ["Box" in set::DURER] {
-        /// Corner of least coordinates.
+        /// Corner with the smallest coordinates.
         min: Vec3 = Vec3::splat(-1.0), required, Rule::Any, ["min" in set::DURER];
-        /// Corner of greatest coordinates.
+        /// Corner with the largest coordinates.
         max: Vec3 = Vec3::ONE, required, Rule::Any, ["max" in set::DURER];
     }
 }

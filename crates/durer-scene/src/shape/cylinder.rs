@@ -11,13 +11,13 @@ use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
 use glam::{DVec2, DVec3};
 
 described! {
-    /// A cylinder with caps, round about the line between two points.
+    /// A cylinder with caps, around the line between two points.
     Cylinder ["Cylinder" in set::DURER] {
-        /// Middle of the cap at one end.
+        /// Centre of the cap at one end.
         base: Vec3 = Vec3::ZERO, required, Rule::Any, ["base" in set::DURER];
-        /// Middle of the cap at the other end.
+        /// Centre of the cap at the other end.
         top: Vec3 = Vec3::Y, required, Rule::Any, ["top" in set::DURER];
-        /// Its radius.
+        /// Radius, in world units.
         radius: f32 = 1.0, required, Rule::Positive, ["radius" in set::DURER];
     }
 }

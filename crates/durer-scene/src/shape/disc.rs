@@ -9,15 +9,15 @@ use crate::math::{Aabb, Line, Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
 described! {
-    /// A flat disc.
+    /// A flat disc, optionally with a hole.
     Disc ["Disc" in set::DURER] {
-        /// Its middle.
+        /// Centre of the disc.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// Points to its front; of any length.
+        /// Direction of the front; of any length.
         normal: Vec3 = Vec3::Y, required, Rule::NonZero, ["normal" in set::DURER];
-        /// Its radius.
+        /// Radius, in world units.
         radius: f32 = 1.0, required, Rule::Positive, ["radius" in set::DURER];
-        /// Radius of the hole in its middle.
+        /// Radius of the hole at the centre.
         inner_radius: f32 = 0.0, optional, Rule::NonNegative, ["innerRadius" in set::DURER];
     }
 }

@@ -8,11 +8,11 @@ use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
 use glam::DVec3;
 
 described! {
-    /// A ball stretched along the coordinate axes.
+    /// A sphere stretched along the coordinate axes.
     Ellipsoid ["Ellipsoid" in set::DURER] {
-        /// Its middle.
+        /// Centre of the ellipsoid.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// Half its extent along x, y and z.
+        /// Semi-axes along x, y and z.
         radii: Vec3 = Vec3::ONE, required, Rule::Any, ["radii" in set::DURER];
     }
 }
@@ -43,7 +43,7 @@ impl Shape for Ellipsoid {
     fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
         let (center, radii) = (self.center.as_dvec3(), self.radii.as_dvec3());
         let unit = ((point - center) / radii).normalize_or(DVec3::Z);
-        // Longitude and latitude as on a sphere.
+        // Longitude and latitude, as on a sphere.
         let v = fp::asin((unit.y as f32).clamp(-1.0, 1.0)) / std::f32::consts::PI + 0.5;
         let uv = Vec2::new(turn(-unit.z, unit.x), v);
         let (least, largest) = (radii.min_element(), radii.max_element());

@@ -1,4 +1,4 @@
-//! The height field: a picture as a terrain, in a closed mesh.
+//! Height field: a picture as a terrain, in a closed mesh.
 
 use super::MeshData;
 use super::mesh_data::Triangles;
@@ -10,17 +10,17 @@ use durer_bvh::{BuildQuality, HeightGrid, TriangleBvh};
 use std::sync::Arc;
 
 described! {
-    /// A block whose top is a landscape: a picture's greys are heights, its lower edge is towards
-    /// z.
+    /// A block whose top is a terrain: the grey values of a picture are heights, and its lower edge
+    /// is towards +z.
     HeightField ["HeightField" in set::DURER] {
-        /// Path of the picture. Black is lowest, and white, or 1 in pictures of floating point, is
+        /// Path of the picture. Black is lowest; white, or 1 in floating-point pictures, is
         /// highest.
         picture: FileName = FileName::default(), required, Rule::Any, ["picture" in set::DURER];
-        /// Corner of the landscape's box of least coordinates: where heights are 0.
+        /// Corner of the terrain's box with the smallest coordinates; heights there are 0.
         min: Vec3 = Vec3::splat(-1.0), required, Rule::Any, ["min" in set::DURER];
-        /// Corner of the landscape's box of greatest coordinates: where heights are 1.
+        /// Corner of the terrain's box with the largest coordinates; heights there are 1.
         max: Vec3 = Vec3::ONE, required, Rule::Any, ["max" in set::DURER];
-        /// How far the block goes on below `min`.
+        /// Depth of the block below `min`.
         depth: f32 = 1.0, optional, Rule::Positive, ["depth" in set::DURER];
     }
 }

@@ -14,7 +14,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 described! {
-    /// A triangle mesh in a file of its own.
+    /// A triangle mesh in a separate file.
     TriangleMesh ["TriangleMesh" in set::CLASSIC, "mesh" in set::F23] {
         /// Path of the mesh file: `.obj`, `.ply` or `.stl`.
         obj_file: FileName = FileName::default(), required, Rule::Any, ["obj_file" in set::ALL];
@@ -99,7 +99,7 @@ impl Mesh {
         }
     }
 
-    /// Returns the mesh with normals computed by `rule`, whatever its normals are.
+    /// Returns the mesh with normals computed by `rule`, replacing its normals.
     pub fn with_normals(&self, rule: MeshNormals) -> Mesh {
         let mesh = match &self.form {
             Form::Lists(data) => Mesh::new(data.clone(), rule, false),

@@ -129,15 +129,15 @@ impl MeshData {
     ///
     /// # Errors
     ///
-    /// A sentence, if an index is out of range, a position is not finite, or the lengths of lists
-    /// by triangle or by position differ.
+    /// A message, if an index is out of range, a position is not finite, or the lengths of lists by
+    /// triangle or by position differ.
     pub fn validate(&self) -> Result<(), String> {
         let below = |triangles: &[[u32; 3]], count: usize| {
             triangles.iter().flatten().all(|&i| (i as usize) < count || i == NO_INDEX)
         };
         let (triangles, positions) = (self.triangles.len(), self.positions.len());
         if self.triangles.iter().flatten().any(|&i| i as usize >= positions) {
-            return Err(format!("an index is too large: there are {positions} positions, counted from 0"));
+            return Err(format!("an index is out of range: the mesh has {positions} positions, counted from 0"));
         }
         if !self.positions.iter().all(|p| p.is_finite()) {
             return Err("positions must be finite".into());
@@ -152,7 +152,7 @@ impl MeshData {
                 return Err(format!("`{name}` has {} entries for {triangles} triangles", list.len()));
             }
             if !below(list, count) {
-                return Err(format!("an index of `{name}` is too large: there are {count}, counted from 0"));
+                return Err(format!("an index of `{name}` is out of range: there are {count}, counted from 0"));
             }
         }
         let by_position =

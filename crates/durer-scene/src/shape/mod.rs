@@ -1,4 +1,4 @@
-//! Shapes: what a ray can hit. One file each; the list is [`Primitive`].
+//! Shapes that a ray can hit. One file each; the list is [`Primitive`].
 
 mod chord;
 pub mod cone;
@@ -50,7 +50,7 @@ pub use voxels::VoxelGrid;
 
 macro_rules! delegate {
     ($($variant:ident),+) => {
-        // A method omitted here would silently use its default for every shape.
+        // Without this lint, an omitted method would silently use its default for every shape.
         #[deny(clippy::missing_trait_methods)]
         impl Shape for Primitive {
             fn bounds(&self) -> Option<Aabb> {
@@ -113,7 +113,7 @@ macro_rules! delegate {
 }
 
 described_list! {
-    /// A shape that is given in the scene file itself.
+    /// A shape defined in the scene file itself.
     Primitive: Shape => delegate {
         Sphere(sphere::Sphere),
         Plane(plane::Plane),
@@ -317,11 +317,11 @@ pub trait Shape {
     where
         Self: Sized;
 
-    /// Checks the fields together. The statement has the constraint of each field.
+    /// Checks combinations of fields. The description has the constraint of each field.
     ///
     /// # Errors
     ///
-    /// A sentence that names the fields.
+    /// A message that names the fields.
     fn validate(&self) -> Result<(), String>;
 
     /// Edit that flips a flat shape; `None` for shapes that are not flat.

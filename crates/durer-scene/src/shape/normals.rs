@@ -1,4 +1,4 @@
-//! Normals at the corners of a mesh that brings none.
+//! Computed normals at the corners of a mesh without normals.
 
 use super::height_field::Terrain;
 use super::mesh_data::{MeshData, NO_INDEX, Triangles};
@@ -9,29 +9,29 @@ use rayon::prelude::*;
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// At most so many faces of a vertex are compared with each other.
+/// Maximum number of faces of a vertex that are compared with each other.
 const MANY: usize = 64;
-/// So many vertices are looked at by one thread, at least.
+/// Minimum number of vertices per thread.
 const AT_ONCE: usize = 256;
-/// And so many in parallel: not all, which would take much memory for a while.
+/// Number of vertices processed in parallel; all at once would need much memory.
 const TOGETHER: usize = 64 * AT_ONCE;
 
-/// Normals of the corners of triangles.
+/// Normals at the corners of triangles.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Normals {
-    /// Normals, not necessarily of length 1; may be empty.
+    /// Normals, not necessarily of unit length; may be empty.
     pub values: Vec<Vec3>,
-    /// Which of them corners have.
+    /// Map from corners to normals.
     pub corners: Corners,
 }
 
-/// Which normals the corners of triangles have.
+/// Map from the corners of triangles to normals.
 #[derive(Clone, Debug)]
 pub(super) enum Corners {
-    /// Three a triangle, or [`NO_INDEX`]; empty where no triangle has any.
+    /// Three indices per triangle, or [`NO_INDEX`]; empty if no triangle has any.
     Listed(Vec<[u32; 3]>),
-    /// The first one of each vertex, and for each corner how far behind that its own is: in a third
-    /// of the memory, and slower.
+    /// Index of the first normal of each vertex, and each corner's offset from it: a third of the
+    /// memory, but slower.
     ByVertex(Vec<u32>, Vec<[u8; 3]>),
 }
 
@@ -42,7 +42,7 @@ impl Default for Corners {
 }
 
 impl Normals {
-    /// Bytes in memory.
+    /// Size in memory, in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.values)
             + match &self.corners {
@@ -51,7 +51,7 @@ impl Normals {
             }
     }
 
-    /// Three a triangle of a mesh.
+    /// Returns three normal indices per triangle of a mesh.
     pub fn listed(&self, mesh: &impl Triangles) -> Cow<'_, [[u32; 3]]> {
         match &self.corners {
             Corners::Listed(triangles) => Cow::Borrowed(triangles),
@@ -59,7 +59,7 @@ impl Normals {
         }
     }
 
-    /// Those of a triangle, where any are listed.
+    /// Returns the normal indices of a triangle, or [`NO_INDEX`] if none are listed.
     #[inline]
     fn at_corners(&self, mesh: &impl Triangles, triangle: usize) -> [u32; 3] {
         match &self.corners {
@@ -71,7 +71,7 @@ impl Normals {
         }
     }
 
-    /// The normals at the corners of a triangle, if it has any.
+    /// Returns the normals at the corners of a triangle, if it has any.
     #[inline]
     pub fn of_triangle(&self, mesh: &impl Triangles, triangle: usize) -> Option<[Vec3; 3]> {
         let [a, b, c] = self.at_corners(mesh, triangle);
@@ -79,8 +79,8 @@ impl Normals {
     }
 }
 
-/// The normals of all triangles, with those that a rule makes for such as have none, or for all
-/// unless `file_normals`; `None` where the mesh's own are all that there is.
+/// Normals of all triangles, computed by a rule for triangles without normals, or for all unless
+/// `file_normals`; `None` if the mesh needs only its own normals.
 pub(super) fn made(data: &MeshData, rule: MeshNormals, file_normals: bool) -> Option<Normals> {
     let own: (&[Vec3], &[[u32; 3]]) = match file_normals {
         true => (&data.normals, &data.triangle_normals),
@@ -104,35 +104,36 @@ pub(super) fn made(data: &MeshData, rule: MeshNormals, file_normals: bool) -> Op
     Some(made)
 }
 
-/// The normals of a landscape. Of each vertex there are few, for few triangles meet there, or all
+/// Normals of a terrain. Each vertex has few normals, because few triangles meet there or all lie
 /// in one plane.
 pub(super) fn of_terrain(terrain: &Terrain, rule: MeshNormals) -> Option<Normals> {
     by_rule(terrain, &[], rule, true)
 }
 
-/// The normals that a rule makes for all triangles, if they are not flat. Where `vertices` are not
-/// empty, triangles that share them are smooth beside each other. Creases are told by
-/// vertex where that is wanted.
+/// Normals that a rule computes for all triangles; `None` if they are flat. If `vertices` is not
+/// empty, triangles that share its entries are smooth along common edges. With `by_vertex`, creases
+/// are stored by vertex.
 fn by_rule(mesh: &impl Triangles, vertices: &[[u32; 3]], rule: MeshNormals, by_vertex: bool) -> Option<Normals> {
     match rule {
         MeshNormals::SmoothAbove(count) if mesh.vertices() <= count => None,
         MeshNormals::SmoothByArea | MeshNormals::SmoothAbove(_) => Some(smooth(mesh, vertices, |cross| cross)),
         MeshNormals::SmoothByFace => Some(smooth(mesh, vertices, DVec3::normalize_or_zero)),
         MeshNormals::SpoiledByFace => Some(spoiled(mesh, vertices)),
-        // Triangles that share no vertex have no neighbours to be smooth with.
+        // Triangles without shared vertices have no neighbours to smooth with.
         MeshNormals::Crease(_) if !shares_vertices(mesh) => None,
         MeshNormals::Crease(degrees) => Some(creased(mesh, degrees, by_vertex)),
         MeshNormals::Flat => None,
     }
 }
 
-/// Twice the area of a triangle times its normal. Tiny areas are beyond single precision.
+/// Twice the area of a triangle times its normal, in double precision: tiny areas underflow in
+/// single precision.
 fn cross(mesh: &impl Triangles, triangle: usize) -> DVec3 {
     let [a, b, c] = mesh.corners(triangle).map(|p| p.as_dvec3());
     (b - a).cross(c - a)
 }
 
-/// One normal a vertex: the sum over its faces, each weighted by a function of its cross product.
+/// One normal per vertex: the sum over its faces, each weighted by a function of its cross product.
 fn smooth(mesh: &impl Triangles, vertices: &[[u32; 3]], weigh: impl Fn(DVec3) -> DVec3) -> Normals {
     let triangles = match vertices.is_empty() {
         true => (0..mesh.len()).map(|i| mesh.triangle(i)).collect(),
@@ -150,7 +151,7 @@ fn smooth(mesh: &impl Triangles, vertices: &[[u32; 3]], weigh: impl Fn(DVec3) ->
     Normals { values, corners: Corners::Listed(triangles) }
 }
 
-/// Normals by faces of equal weight; NaN at the vertices of a face without area.
+/// Normals from faces with equal weights; NaN at the vertices of a degenerate face.
 fn spoiled(mesh: &impl Triangles, vertices: &[[u32; 3]]) -> Normals {
     let mut normals = smooth(mesh, vertices, DVec3::normalize_or_zero);
     let Corners::Listed(triangles) = &normals.corners else { unreachable!("rules list") };
@@ -162,15 +163,15 @@ fn spoiled(mesh: &impl Triangles, vertices: &[[u32; 3]]) -> Normals {
     normals
 }
 
-/// Whether some vertex belongs to two triangles.
+/// True if some vertex belongs to two triangles.
 fn shares_vertices(mesh: &impl Triangles) -> bool {
     let mut seen = vec![false; mesh.vertices()];
     let mut is_second = |vertex: u32| std::mem::replace(&mut seen[vertex as usize], true);
     (0..mesh.len()).any(|i| mesh.triangle(i).into_iter().any(&mut is_second))
 }
 
-/// One normal a corner: the sum, by angle, over the faces around its vertex that are not beyond a
-/// crease. Those of one vertex are mostly the same, and kept once.
+/// One normal per corner: the sum, weighted by angle, over the faces around its vertex that are not
+/// beyond a crease. Corners of one vertex mostly have equal normals, which are stored once.
 ///
 /// Source of the weights: Thürmer and Wüthrich, *Computing Vertex Normals from Polygonal Facets*,
 /// JGT 3(1), 1998.
@@ -185,7 +186,8 @@ fn creased(mesh: &impl Triangles, degrees: f32, by_vertex: bool) -> Normals {
         let (e, f) = (edge(k + 1), edge(k + 2));
         fp::atan2(e.cross(f).length(), e.dot(f))
     };
-    // The normals of some vertices, the first of each, and for each corner there which it has.
+    // Normals of some vertices, the index of the first for each vertex, and the offset of each
+    // corner.
     let some = |vertices: Range<usize>| {
         let (mut values, mut firsts, mut numbers): (Vec<Vec3>, Vec<u32>, Vec<[u32; 2]>) = Default::default();
         let (mut corners, mut faces): (Vec<u32>, Vec<(Vec3, f32)>) = Default::default();
@@ -193,7 +195,7 @@ fn creased(mesh: &impl Triangles, degrees: f32, by_vertex: bool) -> Normals {
             corners.clear();
             around.offer(mesh, vertex as u32, |corner| corners.push(corner));
             faces.clear();
-            // A vertex with very many faces stays faceted, lest the time be quadratic.
+            // A vertex with very many faces stays faceted, to avoid quadratic time.
             let is_faceted = corners.len() > MANY;
             if !is_faceted {
                 faces.extend(corners.iter().map(|&corner| (face(corner), angle(corner))));
@@ -245,10 +247,10 @@ fn creased(mesh: &impl Triangles, degrees: f32, by_vertex: bool) -> Normals {
     Normals { values, corners: of_corners }
 }
 
-/// The corners at each vertex, as one flat list, of triangles that are not
-/// [found without](Triangles::ordered): corner k of triangle i as 3 i + k.
+/// Corners at each vertex, as one flat list, of triangles that [`Triangles::ordered`] does not
+/// cover: corner k of triangle i is 3 i + k.
 struct Around {
-    /// Where those of each vertex begin, and where the last one's end.
+    /// Start of each vertex's corners, then the end of the last.
     starts: Vec<u32>,
     corners: Vec<u32>,
 }
@@ -271,13 +273,13 @@ impl Around {
                 *next += 1;
             }
         }
-        // Each start has moved on to the next one's.
+        // Each start has advanced to the next vertex's start.
         starts.rotate_right(1);
         starts[0] = 0;
         Around { starts, corners }
     }
 
-    /// All corners at a vertex, in the order of the triangles.
+    /// Offers all corners at a vertex, in the order of the triangles.
     fn offer(&self, mesh: &impl Triangles, vertex: u32, mut offer: impl FnMut(u32)) {
         mesh.ordered_around(vertex, &mut offer);
         let [start, end] = [0, 1].map(|next| self.starts[vertex as usize + next] as usize);

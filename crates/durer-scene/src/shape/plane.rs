@@ -8,12 +8,12 @@ use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;
 
 described! {
-    /// A plane without end: all points p with normal · p = offset. As a part of a solid, all that
-    /// is behind it.
+    /// An infinite plane: all points p with normal · p = offset. As a part of a solid, the half
+    /// space behind it.
     Plane ["Plane" in set::CLASSIC, "plane" in set::F23] {
-        /// Points to its front; of any length.
+        /// Direction of the front; of any length.
         normal: Vec3 = Vec3::Y, required, Rule::NonZero, ["normal" in set::ALL];
-        /// Distance from the origin along the normal, where that has length 1.
+        /// Distance from the origin along the normal, for a unit normal.
         offset: f32 = 0.0, required, Rule::Any, ["offset" in set::ALL];
     }
 }

@@ -1,4 +1,4 @@
-//! The general quadric: the zeros of a polynomial of degree two in x, y and z.
+//! General quadric: the zeros of a polynomial of degree two in x, y and z.
 
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, padded, turn};
 use crate::describe::{Rule, described};
@@ -8,16 +8,16 @@ use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
 use glam::{DMat3, DVec3};
 
 described! {
-    /// Where A x² + B y² + C z² + D xy + E xz + F yz + G x + H y + I z + J is zero; inside, it is
-    /// less.
+    /// The zeros of A x² + B y² + C z² + D xy + E xz + F yz + G x + H y + I z + J; inside, the
+    /// polynomial is negative.
     Quadric ["Quadric" in set::DURER] {
-        /// A, B and C.
+        /// Coefficients A, B and C.
         squares: Vec3 = Vec3::ONE, required, Rule::Any, ["squares" in set::DURER];
-        /// D, E and F.
+        /// Coefficients D, E and F.
         products: Vec3 = Vec3::ZERO, optional, Rule::Any, ["products" in set::DURER];
-        /// G, H and I.
+        /// Coefficients G, H and I.
         linear: Vec3 = Vec3::ZERO, optional, Rule::Any, ["linear" in set::DURER];
-        /// J.
+        /// Coefficient J.
         constant: f32 = -1.0, required, Rule::Any, ["constant" in set::DURER];
     }
 }
@@ -110,7 +110,7 @@ impl Shape for Quadric {
     fn validate(&self) -> Result<(), String> {
         let nothing = [self.squares, self.products, self.linear].iter().all(|v| *v == Vec3::ZERO);
         match nothing {
-            true => Err("a `Quadric` needs a number beside its `constant` that is not 0".into()),
+            true => Err("a `Quadric` needs a coefficient other than its `constant` that is not 0".into()),
             false => Ok(()),
         }
     }

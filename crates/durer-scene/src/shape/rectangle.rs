@@ -8,14 +8,14 @@ use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;
 
 described! {
-    /// A rectangle; with edges that are not at right angles, a parallelogram. Its front is where
-    /// `edge0` turns counter-clockwise to `edge1`.
+    /// A rectangle; a parallelogram if its edges are not perpendicular. From the front, `edge0`
+    /// turns counter-clockwise to `edge1`.
     Rectangle ["Rectangle" in set::DURER] {
-        /// A corner.
+        /// Position of a corner.
         corner: Vec3 = Vec3::ZERO, required, Rule::Any, ["corner" in set::DURER];
-        /// From there to the next corner.
+        /// Edge from the corner to the next one.
         edge0: Vec3 = Vec3::X, required, Rule::NonZero, ["edge0" in set::DURER];
-        /// From there to the corner before.
+        /// Edge from the corner to the previous one.
         edge1: Vec3 = Vec3::Y, required, Rule::NonZero, ["edge1" in set::DURER];
     }
 }

@@ -8,11 +8,11 @@ use crate::math::{Aabb, Line, Ray, Vec2, Vec3, fp, gamma};
 use glam::DVec3;
 
 described! {
-    /// A ball.
+    /// A sphere.
     Sphere ["Sphere" in set::CLASSIC, "sphere" in set::F23] {
-        /// Its middle.
+        /// Centre of the sphere.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::CLASSIC];
-        /// Its radius.
+        /// Radius, in world units.
         radius: f32 = 1.0, required, Rule::Positive, ["radius" in set::ALL];
     }
 }

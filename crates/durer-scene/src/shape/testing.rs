@@ -34,7 +34,7 @@ pub fn samples(random: &mut Random, size: f32, distance: f32) -> Vec<Primitive> 
         Disc { center, normal, radius: size, inner_radius: 0.9 * inner }.into(),
         Rectangle { corner: center, edge0: e, edge1: f }.into(),
     ];
-    assert_eq!(shapes.len(), Primitive::kinds().len(), "a shape of the list is not tested");
+    assert_eq!(shapes.len(), Primitive::kinds().len(), "`samples` must have one of each shape of the list");
     shapes
 }
 

@@ -50,7 +50,7 @@ fn crossings(shape: &Primitive, o: DVec3, d: DVec3) -> Vec<(f64, bool)> {
 }
 
 #[test]
-fn the_first_crossing_in_the_open_interval_is_found() {
+fn first_crossing_in_the_open_interval_is_found() {
     let mut random = Random(1);
     let mut found = [0; 11];
     for round in 0..40_000 {
@@ -87,7 +87,7 @@ fn the_first_crossing_in_the_open_interval_is_found() {
                 assert!(grazing || all.iter().any(|c| near(c.0, t)), "{shape:?} {ray:?} {crossing:?} {all:?}");
                 found[kind] += 1;
             }
-            // A certain crossing inside the interval must neither be missed nor passed over.
+            // A certain crossing inside the interval must neither be missed nor skipped.
             for &(t, _) in all.iter().filter(|c| c.1) {
                 let clear = |end: f32| !near(t, f64::from(end));
                 if clear(t_min) && clear(t_max) && ray.contains(t as f32) {
@@ -101,7 +101,7 @@ fn the_first_crossing_in_the_open_interval_is_found() {
 }
 
 #[test]
-fn a_crossing_at_either_end_of_the_interval_does_not_count() {
+fn crossing_at_an_end_of_the_interval_does_not_count() {
     let mut random = Random(2);
     for _ in 0..3_000 {
         for shape in samples(&mut random, 1.0, 2.0) {
@@ -116,7 +116,7 @@ fn a_crossing_at_either_end_of_the_interval_does_not_count() {
 }
 
 #[test]
-fn the_surface_is_on_the_shape_within_its_error_and_in_its_bounds() {
+fn surface_is_on_the_shape_within_its_error_and_bounds() {
     let mut random = Random(3);
     for round in 0..30_000 {
         let size = libm::powf(10.0, (round % 13) as f32 - 6.0);
@@ -164,7 +164,7 @@ fn the_surface_is_on_the_shape_within_its_error_and_in_its_bounds() {
 }
 
 #[test]
-fn a_ray_that_is_no_ray_hits_nothing() {
+fn invalid_ray_hits_nothing() {
     let mut random = Random(4);
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
     for _ in 0..300 {

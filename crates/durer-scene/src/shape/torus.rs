@@ -1,4 +1,4 @@
-//! The torus: all points at one distance from a circle.
+//! Torus: all points at a fixed distance from a circle.
 
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, disc_reach, padded, tessellate, turn};
 use crate::bsdf::Frame;
@@ -9,13 +9,13 @@ use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
 use glam::DVec3;
 
 described! {
-    /// A ring: all points within one distance from a circle.
+    /// A ring: all points within a distance of a circle.
     Torus ["Torus" in set::DURER] {
-        /// Middle of the circle.
+        /// Centre of the circle.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// Direction across the circle's plane, of any length.
+        /// Normal of the circle's plane; of any length.
         axis: Vec3 = Vec3::Y, optional, Rule::NonZero, ["axis" in set::DURER];
-        /// Radius of the circle.
+        /// Radius of the circle, in world units.
         major_radius: f32 = 1.0, required, Rule::Positive, ["majorRadius" in set::DURER];
         /// Distance from the circle: half the ring's thickness.
         minor_radius: f32 = 0.25, required, Rule::Positive, ["minorRadius" in set::DURER];

@@ -9,13 +9,13 @@ use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;
 
 described! {
-    /// A triangle; its front is where its corners go round counter-clockwise.
+    /// A triangle; from the front its corners run counter-clockwise.
     Triangle ["Triangle" in set::CLASSIC, "triangle" in set::F23] {
-        /// First corner.
+        /// Position of the first corner.
         vertex0: Vec3 = Vec3::ZERO, required, Rule::Any, ["vertex0" in set::ALL];
-        /// Second corner.
+        /// Position of the second corner.
         vertex1: Vec3 = Vec3::X, required, Rule::Any, ["vertex1" in set::ALL];
-        /// Third corner.
+        /// Position of the third corner.
         vertex2: Vec3 = Vec3::Y, required, Rule::Any, ["vertex2" in set::ALL];
     }
 }
@@ -141,7 +141,7 @@ fn inset([a, b, c]: [Vec3; 3], barycentric: Vec3, error: Vec3) -> Option<Vec3> {
     Some(moved / moved.element_sum())
 }
 
-/// Unit normal of (b - a) x (c - a); +y for a triangle without area.
+/// Unit normal of (b - a) x (c - a); +y for a degenerate triangle.
 #[inline(always)]
 pub fn face_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
     let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());

@@ -1,5 +1,5 @@
-//! A box of equal cells, some of them filled, as the course of 2003 displays its grid's
-//! rasterization of a sphere.
+//! Box of equal cells, some of them filled, as the course of 2003 displays its grid's rasterization
+//! of a sphere.
 
 use super::{MeshData, Sphere};
 use crate::describe::{Rule, described};
@@ -7,14 +7,14 @@ use crate::dialect::set;
 use crate::math::Vec3;
 
 described! {
-    /// A box cut into cells. Each `rasterizeSphere { center radius }` in it fills the cells whose
-    /// middles lie in that ball.
+    /// A box divided into cells. Each `rasterizeSphere { center radius }` in it fills the cells
+    /// whose centres lie in that sphere.
     VoxelGrid ["Grid" in set::F03 | set::DURER] {
-        /// The corner of least coordinates.
+        /// Corner with the smallest coordinates.
         min: Vec3 = Vec3::splat(-1.0), required, Rule::Any, ["min" in set::F03 | set::DURER];
-        /// The corner of greatest coordinates.
+        /// Corner with the largest coordinates.
         max: Vec3 = Vec3::ONE, required, Rule::Any, ["max" in set::F03 | set::DURER];
-        /// How many cells there are along x, y and z.
+        /// Number of cells along x, y and z, each from 1 to 256.
         num_cells: Vec3 = Vec3::ONE, required, Rule::Counts(256), ["numCells" in set::F03 | set::DURER];
     }
 }
@@ -32,7 +32,7 @@ impl VoxelGrid {
         }
     }
 
-    /// The outer faces of the cells that the balls fill, two triangles each, counter-clockwise seen
+    /// Outer faces of the cells that the spheres fill, two triangles each, counter-clockwise seen
     /// from outside.
     pub fn mesh(&self, balls: &[Sphere]) -> MeshData {
         let cells = self.num_cells.to_array().map(|n| n as u32);
@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_ball_of_cells_is_closed_and_has_the_volume_of_its_cells() {
+    fn sphere_of_cells_is_closed_and_has_their_volume() {
         let grid =
             VoxelGrid { min: Vec3::splat(-1.5), max: Vec3::new(1.5, 1.5, 3.0), num_cells: Vec3::new(3.0, 6.0, 9.0) };
         let balls =

@@ -93,7 +93,7 @@ fn what_is_wrong_in_a_mesh_is_told_there_and_in_the_scene() {
     let root = house(&mesh("bad.obj"));
     fs::write(root.path().join("scene/bad.obj"), "v 0 0 0\nv 1 0 zero\nf 1 2 9\n").unwrap();
     let (_, found) = made(&root, &LoadOptions::default());
-    assert!(found[0].starts_with("scene/scene.txt:5:25 error: the mesh `bad.obj` cannot be used"), "{found:?}");
+    assert!(found[0].starts_with("scene/scene.txt:5:25 error: cannot use the mesh `bad.obj`"), "{found:?}");
     assert!(found[1].starts_with("bad.obj:2:7 error: "), "{found:?}");
 }
 
@@ -125,7 +125,7 @@ fn what_the_picture_may_lack_is_warned_of() {
         (
             text(LIGHT, &format!("Group {{\n{} }}", ball.repeat(100))),
             vec![
-                "scene/scene.txt:5:1 warning: this object has no material, and is drawn in plain grey; so are 99 others (write `MaterialIndex 0` before it)",
+                "scene/scene.txt:5:1 warning: this object has no material and is drawn in plain grey; 99 other objects have none either (write `MaterialIndex 0` before it)",
             ],
         ),
         (
@@ -153,7 +153,7 @@ fn a_flattening_transform_is_told_at_its_object() {
     let found =
         findings("Transform { Matrix4f { 1 1 0 0 1 1 0 0 0 0 1 0 0 0 0 1 }\n Sphere { center 0 0 0 radius 1 } }");
     let expected =
-        "scene/scene.txt:6:2 error: the transforms around this object flatten space, or leave the range of numbers";
+        "scene/scene.txt:6:2 error: the transforms around this object are singular, or their numbers overflow";
     assert_eq!(found, [expected]);
 }
 

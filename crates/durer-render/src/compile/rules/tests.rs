@@ -14,7 +14,7 @@ fn arriving(dialect: Dialect, attenuation: Option<Vec3>, falloff: Option<f32>) -
 }
 
 #[test]
-fn point_lights_fade_as_their_dialect_says() {
+fn point_lights_attenuate_by_their_dialect() {
     let a = Some(Vec3::new(0.5, 0.25, 0.75));
     for dialect in [Dialect::F03, Dialect::F04, Dialect::Durer] {
         assert_eq!(arriving(dialect, a, None), 0.25);

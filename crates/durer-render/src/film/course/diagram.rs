@@ -1,5 +1,4 @@
-//! The diagrams of the 2004 course: where samples lie in their pixels, and how a filter weights its
-//! surroundings.
+//! Diagrams of the 2004 course: positions of samples in their pixels, and weights of a filter.
 //!
 //! Both enlarge each pixel to `zoom` times `zoom` pixels.
 
@@ -9,14 +8,14 @@ use durer_scene::math::{Color, Vec2, Vec3};
 #[cfg(test)]
 mod tests;
 
-/// A picture made by this file, row 0 at the top.
+/// Picture of a diagram, row 0 at the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagram {
-    /// Columns.
+    /// Number of columns.
     pub width: u32,
-    /// Rows.
+    /// Number of rows.
     pub height: u32,
-    /// Colours between 0 and 1, to be written as trunc(255 c).
+    /// Colours from 0 to 1, to be written as trunc(255 c).
     pub pixels: Vec<Color>,
 }
 
@@ -27,11 +26,11 @@ impl Diagram {
     }
 }
 
-/// One dot in the sample's colour for each sample, on a chessboard of black and dark grey pixels,
-/// the bottom left one grey.
+/// Draws one dot in the sample's colour for each sample, on a chessboard of black and dark grey
+/// pixels, the bottom left one grey.
 ///
-/// `-render_samples`: `width * zoom` columns. A `zoom` of 0 is taken as 1; the caller bounds the
-/// size.
+/// The course's `-render_samples`: `width * zoom` columns. A `zoom` of 0 counts as 1; the caller
+/// limits the size.
 pub fn samples(samples: &StoredSamples, zoom: u32) -> Diagram {
     let zoom = zoom.max(1);
     let (width, height) = samples.size();
@@ -41,7 +40,7 @@ pub fn samples(samples: &StoredSamples, zoom: u32) -> Diagram {
     });
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
         for sample in samples.pixel(x, y) {
-            // The course counts rows upwards, so a dot between two rows goes to the upper one.
+            // The course counts rows upwards, so a dot between two rows belongs to the upper one.
             let across = (sample.position.x * zoom as f32) as u32;
             let up = ((1.0 - sample.position.y) * zoom as f32) as u32;
             let (column, row) = (x * zoom + across.min(zoom - 1), y * zoom + (zoom - 1 - up.min(zoom - 1)));
@@ -52,22 +51,21 @@ pub fn samples(samples: &StoredSamples, zoom: u32) -> Diagram {
     diagram
 }
 
-/// A filter's weights in grey over the pixels of its support around the middle pixel; the others
-/// are dark blue, and blue lines part the pixels.
+/// Draws a filter's weights in grey over the pixels of its support around the middle pixel. Other
+/// pixels are dark blue, and blue lines separate the pixels.
 ///
-/// `-render_filter`: `width * zoom + 1` columns. A `zoom` of 0 is taken as 1; the caller bounds the
-/// size.
+/// The course's `-render_filter`: `width * zoom + 1` columns. A `zoom` of 0 counts as 1; the caller
+/// limits the size.
 pub fn filter(width: u32, height: u32, zoom: u32, filter: CourseFilter) -> Diagram {
     weights(width, height, zoom, filter.support(), |offset| filter.weight(offset))
 }
 
-/// As `filter`, for any function of the offset (right and down, in pixels) whose greatest value is
-/// 1.
+/// Draws any function of the offset (right and down, in pixels) with maximum 1. See [`filter`].
 pub fn weights(width: u32, height: u32, zoom: u32, support: u32, weight: impl Fn(Vec2) -> f32) -> Diagram {
     let zoom = zoom.max(1);
-    // The middle pixel, counted from the left and from the bottom.
+    // Middle pixel, counted from the left and from the bottom.
     let (middle_x, middle_y) = (width / 2, height / 2);
-    // Twice the offset in diagram pixels is whole, so that a rounding comes only with the division.
+    // Twice the offset in diagram pixels is an integer, so only the division rounds.
     let offset = |at: u32, middle: u32| {
         let doubled = 2 * i64::from(at) - i64::from(zoom) * (2 * i64::from(middle) + 1);
         doubled as f32 / (2 * zoom) as f32

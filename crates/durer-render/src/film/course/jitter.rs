@@ -1,4 +1,4 @@
-//! Fall 2012, assignment 5: three by three jittered sub-pixels, blurred, averaged.
+//! Fall 2012, assignment 5: three by three jittered sub-pixels, blurred and averaged.
 
 use durer_scene::math::{Color, Vec2, Vec3};
 use durer_scene::sampler::random_2d;
@@ -6,47 +6,47 @@ use durer_scene::sampler::random_2d;
 #[cfg(test)]
 mod tests;
 
-/// Position of a sub-pixel's sample in the picture three times as wide and high that `-jitter`
-/// renders, in its sub-pixels: a uniform number between -1/2 and 1/2 is added to each integer
+/// Position of a sub-pixel's sample, in sub-pixels of the enlarged picture (three times as wide and
+/// high) that `-jitter` renders: a uniform number between -1/2 and 1/2 is added to each integer
 /// coordinate.
 pub fn jittered_position(seed: u64, x: u32, y: u32) -> Vec2 {
     Vec2::new(x as f32, y as f32) + (random_2d(seed, x, y, 0, 0) - 0.5)
 }
 
-/// The five weights of `-filter`, from two left to two right. As published they sum to 1.0011;
-/// official pictures have the brightness of weights that sum to 1.
+/// Five weights of `-filter`, from two left to two right. The published weights sum to 1.0011; the
+/// brightness of official pictures needs a sum of 1.
 const BLUR: [f32; 5] = [0.1201 / SUM, 0.2339 / SUM, 0.2931 / SUM, 0.2339 / SUM, 0.1201 / SUM];
 const SUM: f32 = 1.0011;
 
-/// Blurs a picture with five taps along rows, then along columns. Beyond an edge its last pixel is
-/// repeated.
+/// Blurs a picture with five taps along rows, then along columns. Border pixels are repeated beyond
+/// the edges.
 ///
-/// Panics where there are not `width * height` pixels.
+/// Panics if there are not `width * height` pixels.
 pub fn blur(pixels: &[Color], width: u32, height: u32) -> Vec<Color> {
     let (w, h) = (width as usize, height as usize);
-    assert_eq!(pixels.len(), w * h, "a picture has as many pixels as its size says");
-    // `at` is the place of a tap before clamping, two pixels to the right of where it lies.
+    assert_eq!(pixels.len(), w * h, "the size must be that of the pixels");
+    // `at` is the tap's position plus 2, before clamping.
     let tap = |at: usize, length: usize| at.saturating_sub(2).min(length - 1);
     let along_rows = by_pixels(w, h, |x, y| (0..5).map(|k| BLUR[k] * pixels[y * w + tap(x + k, w)]).sum());
     by_pixels(w, h, |x, y| (0..5).map(|k| BLUR[k] * along_rows[tap(y + k, h) * w + x]).sum())
 }
 
-/// Averages three by three pixels into one. Size of the result: a third of `width` and `height`,
+/// Averages blocks of three by three pixels. The result has a third of `width` and `height`,
 /// rounded down.
 pub fn average_3x3(pixels: &[Color], width: u32, height: u32) -> Vec<Color> {
     let w = width as usize;
-    assert_eq!(pixels.len(), w * height as usize, "a picture has as many pixels as its size says");
+    assert_eq!(pixels.len(), w * height as usize, "the size must be that of the pixels");
     by_pixels(w / 3, height as usize / 3, |x, y| {
         (0..9).map(|i| pixels[(3 * y + i / 3) * w + 3 * x + i % 3]).sum::<Vec3>() / 9.0
     })
 }
 
-/// What `-jitter -filter` makes of the picture three times as wide and high.
+/// Applies `-jitter -filter` to a picture three times as wide and high.
 pub fn blur_and_average(pixels: &[Color], width: u32, height: u32) -> Vec<Color> {
     average_3x3(&blur(pixels, width, height), width, height)
 }
 
-/// A picture from a function of column and row.
+/// Picture of a function of column and row.
 fn by_pixels(width: usize, height: usize, color: impl Fn(usize, usize) -> Color) -> Vec<Color> {
     (0..width * height).map(|i| color(i % width, i / width)).collect()
 }

@@ -1,6 +1,7 @@
-//! Films, filters and diagrams of the course's assignments, kept as they are.
+//! Films, filters and diagrams of the course's assignments, unchanged.
 //!
-//! They are plain functions of samples and pixels. A job names them, and asks no dialect.
+//! They are plain functions of samples and pixels. A job selects them; they do not depend on the
+//! dialect.
 
 pub mod diagram;
 mod jitter;

@@ -1,8 +1,8 @@
-//! The film of Fall 2004, assignment 7: stored samples, weighted by their offset from the centre of
-//! the pixel they are for, also from neighbouring pixels.
+//! Film of Fall 2004, assignment 7: stored samples, weighted by their offset from the centre of the
+//! target pixel, also from neighbouring pixels.
 //!
-//! Each pixel is summed in one fixed order, so it does not depend on the part of the picture that it
-//! is made with.
+//! Each pixel is summed in a fixed order, so it does not depend on which part of the picture is
+//! rendered.
 
 use durer_scene::math::{Color, Vec2, fp};
 use glam::DVec3;
@@ -12,34 +12,35 @@ use std::convert::Infallible;
 #[cfg(test)]
 mod tests;
 
-/// One sample of the 2004 film.
+/// Sample of the 2004 film.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoredSample {
     /// Position in its pixel, in [0,1)^2, right and down.
     pub position: Vec2,
-    /// What was seen there.
+    /// Colour of the sample.
     pub color: Color,
 }
 
-/// All samples of a picture, the same number in each pixel.
+/// Samples of a picture, with an equal number in each pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StoredSamples {
     width: u32,
     height: u32,
     per_pixel: u32,
-    /// The samples of each row's pixels, one after the other.
+    /// Samples of each row, pixel by pixel.
     rows: Vec<Vec<StoredSample>>,
 }
 
 impl StoredSamples {
-    /// Takes every sample: `sample(x, y, number)`, rows from the top. At least one a pixel.
+    /// Takes every sample by `sample(x, y, number)`, rows from the top. Takes at least one per
+    /// pixel.
     pub fn take(width: u32, height: u32, per_pixel: u32, sample: impl Fn(u32, u32, u32) -> StoredSample) -> Self {
         let sample = |x, y, number| Ok::<_, Infallible>(sample(x, y, number));
         let Ok(all) = StoredSamples::try_take(width, height, per_pixel, sample);
         all
     }
 
-    /// The same where a sample may be refused, which ends the taking.
+    /// Takes samples until one fails. See [`StoredSamples::take`].
     pub fn try_take<E>(
         width: u32,
         height: u32,
@@ -53,32 +54,33 @@ impl StoredSamples {
         Ok(StoredSamples { width, height, per_pixel, rows: rows? })
     }
 
-    /// Columns and rows.
+    /// Returns the numbers of columns and rows.
     pub fn size(&self) -> (u32, u32) {
         (self.width, self.height)
     }
 
-    /// The samples of a pixel. Panics outside the picture.
+    /// Returns the samples of a pixel. Panics outside the picture.
     pub fn pixel(&self, x: u32, y: u32) -> &[StoredSample] {
-        assert!(x < self.width && y < self.height, "the pixel lies in the picture");
+        assert!(x < self.width && y < self.height, "the pixel must be in the picture");
         let n = self.per_pixel as usize;
         &self.rows[y as usize][x as usize * n..][..n]
     }
 
-    /// The picture, row 0 at the top: for each pixel the weighted mean of the samples of all pixels
-    /// within the filter's support, inside the picture.
+    /// Returns the picture, row 0 at the top: each pixel is the weighted mean of the samples of all
+    /// pixels within the filter's support, inside the picture.
     ///
-    /// Where all weights are zero (a filter narrower than the gaps between samples) it is the mean
-    /// of its own samples.
+    /// If all weights are zero (a filter narrower than the gaps between samples), a pixel is the
+    /// mean of the samples within it.
     pub fn reconstruct(&self, filter: CourseFilter) -> Vec<Color> {
         let Ok(pixels) = self.try_reconstruct(filter, (0, 0), self.size(), || Ok::<_, Infallible>(()));
         pixels
     }
 
-    /// A part of it, from a column and row on, asking every now and then whether to go on.
+    /// Returns a part of the picture from a column and row on; regularly checks with `go_on` if it
+    /// should continue.
     ///
-    /// It is as in the whole picture where the samples reach as far around the part as the filter,
-    /// or to the picture's edge.
+    /// The part equals that of the whole picture if the samples extend around it by the filter's
+    /// support, or to the picture's edge.
     pub fn try_reconstruct<E>(
         &self,
         filter: CourseFilter,
@@ -100,7 +102,7 @@ impl StoredSamples {
         (sum / f64::from(self.per_pixel)).as_vec3()
     }
 
-    /// Weighted mean around a pixel, or nothing where no sample counts.
+    /// Returns the weighted mean around a pixel; `None` if no sample has a weight.
     fn filtered<E>(
         &self,
         filter: CourseFilter,
@@ -124,20 +126,21 @@ impl StoredSamples {
     }
 }
 
-/// A filter of the 2004 course. Lengths in pixels; weights are not normalised, the greatest is 1.
+/// Filter of the 2004 course. Lengths are in pixels; weights are not normalised, their maximum is
+/// 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum CourseFilter {
-    /// 1 where both distances are at most the radius.
+    /// 1 if both distances are at most the radius.
     Box {
         /// Half the width.
         radius: f32,
     },
     /// A cone: 1 at the centre, 0 at the radius.
     Tent {
-        /// Radius of the cone's foot.
+        /// Radius of the cone's base.
         radius: f32,
     },
-    /// exp(-d^2 / (2 sigma^2)), not cut at 2 sigma but with the pixels of the support.
+    /// exp(-d^2 / (2 sigma^2)), limited by the pixels of the support instead of cut at 2 sigma.
     Gaussian {
         /// Standard deviation.
         sigma: f32,
@@ -145,11 +148,11 @@ pub enum CourseFilter {
 }
 
 impl CourseFilter {
-    /// The weight of a sample at an offset from the centre of the pixel.
+    /// Returns the weight of a sample at an offset from the centre of the pixel.
     pub fn weight(self, offset: Vec2) -> f32 {
         match self {
             CourseFilter::Box { radius } => f32::from(offset.abs().max_element() <= radius),
-            // A radius of 0 has no samples but those on the centre.
+            // A radius of 0 keeps only samples at the centre.
             CourseFilter::Tent { radius } => (1.0 - offset.length() / radius.max(f32::MIN_POSITIVE)).max(0.0),
             CourseFilter::Gaussian { sigma } => {
                 fp::exp(-offset.length_squared() / (2.0 * sigma * sigma).max(f32::MIN_POSITIVE))
@@ -157,20 +160,20 @@ impl CourseFilter {
         }
     }
 
-    /// The weight in a pixel of a sample at a position in another.
+    /// Returns the weight in pixel (x, y) of a sample at a position in another pixel.
     pub fn weight_between(self, (column, row): (u32, u32), position: Vec2, (x, y): (u32, u32)) -> f32 {
         // From the centre of the pixel to the corner of the other.
         let corner = Vec2::new(column as f32 - x as f32, row as f32 - y as f32) - 0.5;
         self.weight(corner + position)
     }
 
-    /// How many pixels to each side of the pixel are looked at.
+    /// Returns the number of pixels of the support on each side of the pixel.
     pub fn support(self) -> u32 {
         let reach = match self {
             CourseFilter::Box { radius } | CourseFilter::Tent { radius } => radius,
             CourseFilter::Gaussian { sigma } => 2.0 * sigma,
         };
-        // Negative numbers give 0.
+        // Negative numbers become 0.
         (reach - 0.5).ceil() as u32
     }
 }

@@ -29,7 +29,7 @@ fn samples() -> impl Strategy<Value = Vec<Sample>> {
 
 proptest! {
     #[test]
-    fn packed_films_are_the_same(samples in samples()) {
+    fn packing_preserves_films(samples in samples()) {
         // All samples, typical ones, and one in each pixel.
         let usual = samples.iter().copied().filter(|s| s.3.is_finite() && s.2 % 4 != 3);
         let usual: Vec<Sample> = usual.map(|s| Sample(s.0, s.1, s.2, s.3.clamp(Vec3::splat(-7.0), Vec3::splat(7.0)), 1.0)).collect();
@@ -53,7 +53,7 @@ proptest! {
     }
 
     #[test]
-    fn order_and_grouping_change_nothing(
+    fn order_and_grouping_do_not_matter(
         (given, shuffled) in samples().prop_flat_map(|s| (Just(s.clone()), Just(s).prop_shuffle())),
         cuts in prop::collection::vec(0.0..1.0_f64, 0..5),
     ) {
@@ -77,7 +77,7 @@ proptest! {
     }
 
     #[test]
-    fn one_colour_stays_that_colour(c in [1e-3_f32..1e6, 1e-3_f32..1e6, 1e-3_f32..1e6], weights in prop::collection::vec(0.1_f32..4.0, 1..50)) {
+    fn constant_colour_is_preserved(c in [1e-3_f32..1e6, 1e-3_f32..1e6, 1e-3_f32..1e6], weights in prop::collection::vec(0.1_f32..4.0, 1..50)) {
         let mut film = Film::new(1, 1);
         weights.iter().zip(0..).for_each(|(&w, s)| film.add(0, 0, s, Vec3::from(c), w));
         prop_assert_eq!(film.resolve(0, 0), Vec3::from(c));
@@ -85,7 +85,7 @@ proptest! {
 }
 
 #[test]
-fn what_is_not_seen_is_transparent_black_by_its_weight() {
+fn misses_are_transparent_black_by_their_weight() {
     let mut film = Film::new(3, 1);
     film.add(0, 0, 0, Vec3::ONE, 0.5);
     film.add_if_seen(0, 0, 1, None, 1.5);
@@ -100,7 +100,7 @@ fn what_is_not_seen_is_transparent_black_by_its_weight() {
 }
 
 #[test]
-fn windows_merge_into_their_places_only() {
+fn films_merge_only_inside_the_window() {
     let mut whole = Film::new(5, 4);
     let mut part = Film::window(2, 1, 3, 2);
     part.add(4, 2, 0, Vec3::ONE, 1.0);
@@ -114,7 +114,7 @@ fn windows_merge_into_their_places_only() {
 }
 
 #[test]
-fn rejected_samples_are_counted_and_the_first_ones_named() {
+fn rejected_samples_are_counted_and_the_first_are_listed() {
     let mut film = Film::new(2, 2);
     for s in (0..40).rev() {
         film.add(1, 0, s, Vec3::new(0.0, f32::NAN, 0.0), 1.0);
@@ -130,7 +130,7 @@ fn rejected_samples_are_counted_and_the_first_ones_named() {
 }
 
 #[test]
-fn the_variance_of_anything_finite_is_finite_and_of_equal_samples_nothing() {
+fn variance_is_finite_for_finite_samples_and_zero_for_equal_ones() {
     for size in [0.0, 1.0, 1e3, 1e6, 1e12, 1e18, 1e30, f32::MAX] {
         let mut film = Film::new(2, 1);
         for s in 0..9 {
@@ -146,20 +146,20 @@ fn the_variance_of_anything_finite_is_finite_and_of_equal_samples_nothing() {
         let mut bytes = Vec::new();
         film.write(&mut bytes);
         assert_eq!(Film::new(2, 1).read(&mut Bytes(&bytes), 9), Some(film));
-        assert_eq!(Film::new(2, 1).read(&mut Bytes(&bytes), 8), None, "more samples than there can be");
+        assert_eq!(Film::new(2, 1).read(&mut Bytes(&bytes), 8), None, "more samples than possible");
     }
 }
 
 proptest! {
     #[test]
-    fn rounding_is_that_of_the_standard(small in -1e7_f64..1e7, shift in 0..28_u32) {
+    fn rounding_matches_the_standard_library(small in -1e7_f64..1e7, shift in 0..28_u32) {
         for x in [small, small.floor() + 0.5, (small * (1_u64 << shift) as f64).round() + 0.5, -0.5, 0.5, 1.5] {
             prop_assert_eq!(whole_number(x), x.round_ties_even() as i64, "{}", x);
         }
     }
 
     #[test]
-    fn small_samples_add_the_same_numbers(r in -2.6_f32..2.6, g in -2.6_f32..2.6, b in -2.6_f32..2.6, weight in -1.0_f32..=1.0) {
+    fn small_samples_give_equal_sums(r in -2.6_f32..2.6, g in -2.6_f32..2.6, b in -2.6_f32..2.6, weight in -1.0_f32..=1.0) {
         for scale in [1.0, 1e-3, 1e-6, 0.0] {
             let color = scale * Vec3::new(r, g, b);
             let (mut fast, mut slow, mut small) = (Pixel::default(), Pixel::default(), Small::default());

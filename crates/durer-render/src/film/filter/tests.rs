@@ -54,7 +54,7 @@ fn offsets_follow_the_filter() {
 }
 
 #[test]
-fn offsets_are_off_by_less_than_a_thousandth_of_the_radius() {
+fn offsets_are_accurate_to_a_thousandth_of_the_radius() {
     const STEPS: usize = 1 << 16;
     for filter in sizes() {
         let sampler = filter.sampler();
@@ -88,7 +88,7 @@ fn weights_have_mean_one_and_the_sign_of_the_filter() {
 }
 
 #[test]
-fn profiles_are_right() {
+fn profiles_match_known_values() {
     for filter in sizes() {
         let r = filter.radius();
         assert!(filter.weight(0.0, 0.0) > 0.7 && filter.weight(1.001 * r, 0.0) == 0.0);
@@ -108,7 +108,7 @@ fn profiles_are_right() {
 }
 
 #[test]
-fn warps_are_exact_where_they_can_be() {
+fn warps_match_closed_forms() {
     let boxed = Filter::Box { radius: 0.5 }.sampler();
     let tent = Filter::Tent { radius: 1.0 }.sampler();
     for i in 0..1000 {
@@ -125,7 +125,7 @@ fn warps_are_exact_where_they_can_be() {
 }
 
 #[test]
-fn offsets_side_by_side_are_those_one_by_one() {
+fn batched_offsets_match_single_offsets() {
     for filter in sizes() {
         let sampler = filter.sampler();
         let positions: [Vec2; 8] = std::array::from_fn(|i| random_2d(1, 0, 0, i as u32, 0) * (i % 7) as f32 / 6.0);

@@ -1,4 +1,4 @@
-//! Lamps that rays come upon by chance alone, for honest errors of what is measured.
+//! Bound on the light of emitters that light sampling misses, for honest error estimates.
 
 use super::{Direct, Path};
 use crate::world::emitters::emitter_of;
@@ -8,11 +8,10 @@ use durer_scene::math::Color;
 use std::f32::consts::PI;
 
 impl Path<'_> {
-    /// The most that one sample of the irradiance at a point may bring of light that few samples find:
-    /// of surfaces that shine by a picture or are there in part, of solids, and of shapes without
-    /// end; where something mirrors or refracts and no photons are sent, of all surfaces that
-    /// shine; where points of lights alone are chosen, of the dimmest part of the surroundings.
-    /// `brightness` weighs colours.
+    /// Maximum contribution of one irradiance sample from light that few samples find: emitters
+    /// with a picture or partial opacity, solids, and infinite shapes; all emissive surfaces if
+    /// something mirrors or refracts and no photons are sent; and the dimmest part of the
+    /// environment with light sampling alone. `brightness` weights colours.
     pub fn most_by_chance(&self, brightness: impl Fn(Color) -> f32) -> f32 {
         let shows = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
         let mut phongs = self.world.materials().iter().filter_map(|material| match material {
@@ -32,7 +31,7 @@ impl Path<'_> {
             }
             Direct::Both | Direct::Bsdf => 0.0,
         };
-        // A direction is chosen by its cosine: what it finds counts pi times.
+        // Directions are sampled by their cosine, so a hit counts pi times.
         sky.max(PI * brightest)
     }
 

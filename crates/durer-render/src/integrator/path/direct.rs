@@ -1,8 +1,8 @@
 //! Light sampling: a point on a light, its MIS weight, and the shadow ray.
 //!
 //! Lights are found by sampling points on them and by the directions that BSDFs sample; the power
-//! heuristic weighs what both can find. Source: Veach, *Robust Monte Carlo Methods for Light
-//! Transport Simulation*, 1997, chapter 9.
+//! heuristic weights the lights that both can find. Source: Veach, *Robust Monte Carlo Methods for
+//! Light Transport Simulation*, 1997, chapter 9.
 
 use super::Path;
 use super::radiance::{Contribution, Output};
@@ -154,7 +154,7 @@ impl Path<'_> {
         }
         let media = vertex.kind.media_behind(light.wi).unwrap_or(&state.media);
         let mut ray = vertex.kind.shadow_ray(light);
-        // What is nearer than rounding can tell, as a point of the same sphere, is not seen.
+        // Rounding hides surfaces closer than this, such as another point of the same sphere.
         if ray.rounded.t_max <= ray.rounded.t_min {
             return (Spectrum::ZERO, 0);
         }
@@ -167,7 +167,7 @@ impl Path<'_> {
             }
             None => Spectrum::ONE,
         };
-        // Directions hit both sides of a light, so light samples of such lights must find both too.
+        // A direction can hit both sides of a light, so light samples must reach both sides too.
         let hides_backs = self.world.hides_backs() && light.pdf == 0.0;
         if !self.world.has_cutouts() && !self.world.has_interfaces() && !self.world.has_sheets() {
             match self.world.occluded(&ray, tally) {
@@ -177,7 +177,7 @@ impl Path<'_> {
             }
         }
         let mut media = media.clone();
-        // After 64 layers, the light counts as blocked.
+        // After 64 layers, the light counts as occluded.
         for _ in 0..64 {
             let Some(hit) = self.world.closest(&ray, tally) else {
                 return (left * pass(&media, &ray, ray.rounded.t_max), sheets);

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 described! {
-    /// path tracing: all light
+    /// path tracing: global illumination
     Transport ["path" in set::DURER] {
         /// Maximum brightness of a contribution (one light seen from one path vertex) after more
         /// than one scattering; removes fireflies, and some light with them [default: no limit]

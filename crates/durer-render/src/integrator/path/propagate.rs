@@ -1,4 +1,4 @@
-//! Flight of a ray to the next vertex: through media, and past surfaces that change nothing.
+//! Flight of a ray to the next vertex: through media, and past surfaces that have no effect.
 
 use super::Path;
 use super::state::{PathState, SampleContext};

@@ -52,7 +52,7 @@ fn by_ways(world: &World, ray: Ray, settings: Settings, color: ColorMode) -> [[(
 /// Asserts a radiance within three standard errors plus one part in a thousand.
 fn assert_light(name: &str, world: &World, ray: Ray, bounces: u32, expected: f64) {
     let (mean, error) = light(world, ray, bounces, 1 << 15);
-    assert!((mean - expected).abs() <= 3.0 * error + 0.001 * expected, "{name}: {mean} ± {error}, not {expected}");
+    assert!((mean - expected).abs() <= 3.0 * error + 0.001 * expected, "{name}: {mean} ± {error}, expected {expected}");
 }
 
 fn scene(materials: &str, lights: &str, group: &str) -> World {
@@ -82,7 +82,7 @@ fn shown(irradiance: f64) -> f64 {
 }
 
 #[test]
-fn a_closed_furnace_has_the_sum_of_a_geometric_series() {
+fn closed_furnace_sums_a_geometric_series() {
     // L = Le (1 - rho^n) / (1 - rho) with n scatterings and the emission itself counted.
     for form in ["Sphere { center 0 0 0 radius 2 }", "Box { min -2 -2 -2 max 2 2 2 }"] {
         let material = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 emissionLuminance 0.5 walls thin }";
@@ -95,9 +95,9 @@ fn a_closed_furnace_has_the_sum_of_a_geometric_series() {
     }
 }
 
-/// Distant objects keep their precision: here an area light alone, and the floor as well.
+/// Distant objects keep their precision, whether only the area light is distant or the floor too.
 #[test]
-fn far_from_the_origin_lamps_light_a_floor_as_they_do_near_it() {
+fn distant_area_lights_are_as_accurate_as_near_ones() {
     let words = |p: Vec3| format!("{} {} {}", p.x, p.y, p.z);
     let seen = |at: Vec3| {
         let [p, low, high] = [2.0, 1.75, 2.25].map(|height| at + height * Vec3::Y);
@@ -126,13 +126,13 @@ fn far_from_the_origin_lamps_light_a_floor_as_they_do_near_it() {
     let near = seen(Vec3::ZERO);
     for distance in [1e2, 1e3, 1e4, 1e5] {
         for ((far, lamp), (near, _)) in seen(distance * Vec3::new(1.0, -0.75, 0.5)).into_iter().zip(&near) {
-            assert!(*near > 0.05 && (far - near).abs() < 1e-3 * near, "{lamp} gives {far}, not {near}");
+            assert!(*near > 0.05 && (far - near).abs() < 1e-3 * near, "{lamp}: {far}, expected {near}");
         }
     }
 }
 
 #[test]
-fn suns_are_seen_straight_and_over_mirrors_and_light_as_much() {
+fn suns_are_visible_directly_and_in_mirrors_and_light_the_floor() {
     // Irradiance pi c on a facing surface, from a disc of radiance L: pi c = 2 pi (1 - cos) L.
     let half: f64 = 2.0;
     let radiance = 0.5 / (1.0 - durer_scene::math::fp::sin_cos_degrees(half).1);
@@ -162,14 +162,14 @@ fn suns_are_seen_straight_and_over_mirrors_and_light_as_much() {
         // Light bounces between floor and pane.
         let bounces = if name.contains("below") { 0 } else { 3 };
         let (mean, error) = light(&world, ray, bounces, 4096);
-        assert!((mean - expected).abs() <= 4.0 * error + 2e-3 * expected, "{name}: {mean} ± {error}, not {expected}");
+        assert!((mean - expected).abs() <= 4.0 * error + 2e-3 * expected, "{name}: {mean} ± {error}, expected {expected}");
     }
 }
 
 #[test]
-fn lights_with_extent_shine_by_their_view_factors() {
+fn area_lights_emit_by_their_view_factors() {
     use std::f64::consts::PI;
-    // A sphere of radiance L and radius r at distance d over the point: E = pi L (r/d)^2.
+    // A sphere of radiance L and radius r at distance d above the point: E = pi L (r/d)^2.
     let sphere = over_floor("", "Sphere { center 0 3 0 radius 0.5 }");
     assert_light("sphere", &sphere, to_origin(), 0, shown(PI * 3.0 * (0.5 / 3.0) * (0.5 / 3.0)));
     // A disc that faces down, on axis: E = pi L r^2 / (r^2 + d^2).
@@ -200,7 +200,7 @@ fn lights_with_extent_shine_by_their_view_factors() {
 }
 
 #[test]
-fn what_is_there_in_part_shines_in_part() {
+fn partially_opaque_emitters_emit_in_part() {
     // A sphere of radius r at height h gives pi L (r / h)^2.
     let whole = std::f64::consts::PI * 3.0 * 0.25 * 0.25;
     for (opacity, share) in [("1", 1.0), ("0.5", 0.5), ("0.25", 0.25)] {
@@ -212,7 +212,7 @@ fn what_is_there_in_part_shines_in_part() {
 }
 
 #[test]
-fn what_is_found_by_chance_and_what_is_connected_with_agree() {
+fn bsdf_sampling_alone_agrees_with_light_sampling() {
     // An ellipsoid cannot be sampled as a light: only BSDF sampling finds it. With equal radii it
     // is the sphere, which can be sampled.
     let one = over_floor("", "Sphere { center -0.8 1.6 0 radius 0.8 }");
@@ -220,7 +220,7 @@ fn what_is_found_by_chance_and_what_is_connected_with_agree() {
     let other = over_floor("", cut);
     let ((a, ea), (b, eb)) = (light(&one, to_origin(), 2, 1 << 15), light(&other, to_origin(), 2, 1 << 15));
     assert!((a - b).abs() < 4.0 * (ea * ea + eb * eb).sqrt(), "{a} ± {ea}, {b} ± {eb}");
-    assert!(ea < 0.5 * eb, "connecting has less noise: {ea} {eb}");
+    assert!(ea < 0.5 * eb, "light sampling must have less noise: {ea} {eb}");
     // A cylinder can be sampled; the same shape cut out of a longer one cannot.
     let one = over_floor("", "Cylinder { base -0.4 1.2 0.3 top 0.3 2 0 radius 0.4 }");
     let cut =
@@ -228,11 +228,11 @@ fn what_is_found_by_chance_and_what_is_connected_with_agree() {
     let other = over_floor("", cut);
     let ((a, ea), (b, eb)) = (light(&one, to_origin(), 2, 1 << 15), light(&other, to_origin(), 2, 1 << 15));
     assert!((a - b).abs() < 4.0 * (ea * ea + eb * eb).sqrt(), "{a} ± {ea}, {b} ± {eb}");
-    assert!(ea < 0.7 * eb, "connecting has less noise: {ea} {eb}");
+    assert!(ea < 0.7 * eb, "light sampling must have less noise: {ea} {eb}");
 }
 
 #[test]
-fn points_of_lights_and_directions_alone_have_the_mean_of_both() {
+fn light_sampling_and_bsdf_sampling_alone_have_the_mean_of_both() {
     // A glossy floor under a sphere, a triangle and a uniform sky, with a point light and a mirror
     // nearby: the mean does not depend on the strategy. 18 z-tests of pairs of means; 3.6 standard
     // errors are exceeded by chance once in 3000.
@@ -262,7 +262,7 @@ fn points_of_lights_and_directions_alone_have_the_mean_of_both() {
 }
 
 #[test]
-fn several_directions_under_surroundings_have_the_mean_of_one() {
+fn several_directions_to_an_environment_have_the_mean_of_one() {
     // Rough metal, glass and lacquer under a sky with a small bright patch, a point light, an area
     // light, and a wall: all strategies have the same mean, by z-tests as above (48: 4 standard
     // errors are exceeded by chance once in 300 runs).
@@ -317,7 +317,7 @@ fn several_directions_under_surroundings_have_the_mean_of_one() {
 }
 
 #[test]
-fn an_integrating_sphere_has_the_same_indirect_light_everywhere() {
+fn integrating_sphere_has_uniform_indirect_light() {
     // A point light of intensity I anywhere in a sphere of area S and albedo rho: E = I cos / d^2 +
     // 4 pi I / S rho / (1 - rho). A light of colour c gives an irradiance of pi c at distance 1.
     let world = scene(
@@ -336,7 +336,7 @@ fn an_integrating_sphere_has_the_same_indirect_light_everywhere() {
 }
 
 #[test]
-fn bodies_that_absorb_nothing_vanish_in_even_light() {
+fn objects_without_absorption_vanish_in_a_uniform_environment() {
     for material in [
         "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 }",
         "PrincipledMaterial { transmissionWeight 1 specularRoughness 0.6 }",
@@ -363,7 +363,7 @@ fn bodies_that_absorb_nothing_vanish_in_even_light() {
 }
 
 #[test]
-fn an_absorbing_slab_dims_by_beer_and_fresnel() {
+fn absorbing_slab_follows_beer_and_fresnel() {
     // At normal incidence: T = (1 - F)^2 a / (1 - F^2 a^2) with a = exp(-sigma s); behind it is a
     // radiance of 1.
     let (f, a) = (0.04_f64, 0.3_f64);
@@ -379,7 +379,7 @@ fn an_absorbing_slab_dims_by_beer_and_fresnel() {
 }
 
 #[test]
-fn under_point_lights_the_first_scattering_of_matte_things_is_whitteds() {
+fn single_scattering_of_point_lights_off_matte_surfaces_is_whitteds() {
     let world = scene(
         "PhongMaterial { diffuseColor 0.8 0.5 0.3 }",
         "PointLight { position 3 4 5 color 1 1 1 attenuation 0 0 0.05 } DirectionalLight { direction -1 -2 -3 color 0.3 0.3 0.3 }",
@@ -393,7 +393,7 @@ fn under_point_lights_the_first_scattering_of_matte_things_is_whitteds() {
 }
 
 #[test]
-fn many_lights_give_what_their_sum_gives() {
+fn many_lights_equal_their_sum() {
     // 40 spheres on a spiral without mutual occlusion: E = pi L r^2 cos / d^2 for spheres entirely
     // above the horizon.
     let mut all = String::new();
@@ -409,7 +409,7 @@ fn many_lights_give_what_their_sum_gives() {
 }
 
 #[test]
-fn half_a_screen_casts_half_a_shadow() {
+fn partially_opaque_screen_casts_a_partial_shadow() {
     let world = scene(
         &format!("{MATTE} PrincipledMaterial {{ baseColor 0 0 0 opacity 0.25 }}"),
         "PointLight { position 0 4 0 color 1 1 1 attenuation 0 0 1 }",
@@ -419,10 +419,10 @@ fn half_a_screen_casts_half_a_shadow() {
 }
 
 #[test]
-fn cameras_and_lights_without_extent_look_through_hidden_backs() {
+fn cameras_and_delta_lights_see_through_hidden_backs() {
     let lit = shown(std::f64::consts::PI / 16.0);
     let (up, down) = ("edge0 0 0 1 edge1 1 0 0", "edge0 1 0 0 edge1 0 0 1");
-    // In front of the floor as seen from the camera, and as seen from the light.
+    // In front of the floor, facing the camera or facing the light.
     for (corner, sides, expected) in
         [("0.5 1 -0.5", down, lit), ("0.5 1 -0.5", up, 0.0), ("-0.5 3 -0.5", down, lit), ("-0.5 3 -0.5", up, 0.0)]
     {

@@ -113,7 +113,7 @@ fn leaks(world: &World, at: Vec3, count: usize) -> usize {
 }
 
 #[test]
-fn no_light_comes_into_a_closed_room_however_far_it_is_from_the_origin() {
+fn closed_rooms_stay_dark_at_any_distance_from_the_origin() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("near.obj"), room_file(Vec3::ZERO)).unwrap();
     std::fs::write(folder.path().join("ball.obj"), ball_file(Vec3::ZERO)).unwrap();
@@ -184,7 +184,7 @@ fn no_light_comes_into_a_closed_room_however_far_it_is_from_the_origin() {
 }
 
 #[test]
-fn shadow_rays_of_bent_surfaces_end_at_the_light() {
+fn shadow_rays_of_curved_surfaces_end_at_the_light() {
     let mut surface =
         Surface::new(glam::DVec3::new(0.1, 0.2, 0.3), glam::DVec3::Y, 1e-7, durer_scene::math::Vec2::ZERO);
     surface.shadow_offsets = [Vec3::new(0.01, 0.05, -0.02), Vec3::ZERO];

@@ -24,7 +24,7 @@ impl Whitted<'_> {
     pub(super) fn shadow_ray(&self, surface: &Surface, light: usize, seen: &Illumination) -> Ray64 {
         let epsilon = self.world.shading_rules().epsilon;
         if epsilon.is_none() {
-            // What stands exactly at the light does not block it.
+            // Objects exactly at the light do not block it.
             return to_light(surface, seen.to_light, seen.distance * (1.0 - gamma(16)), None);
         }
         let way = self.world.course_way(light, surface.position);

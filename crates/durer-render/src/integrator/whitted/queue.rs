@@ -93,8 +93,9 @@ impl Queue {
         (segment.camera, segment.parent) = (camera, CAMERA);
     }
 
-    /// Adds a segment, to be traced next. It is filled in place: a copy of one costs as much as a hit. The
-    /// caller sets what is not set here, but for the sums, which [`super::secondary`] begins.
+    /// Adds a segment, to be traced next. Fills it in place, since copying a segment costs as much
+    /// as a hit. The caller sets the remaining fields except the sums, which [`super::secondary`]
+    /// initializes.
     #[inline]
     pub(super) fn push(&mut self, ray: &Ray64, node: NodeId) -> &mut Segment {
         let number = self.free.pop().unwrap_or_else(|| {

@@ -81,19 +81,19 @@ impl Whitted<'_> {
         // Without `shade_back`, a mirror reflects about the unflipped normal; the direction is the
         // same.
         let mirrored = reflect(dir, n);
-        // About a normal that is not of length 1 it is another one.
+        // With a normal that is not unit length, the reflected direction differs.
         let mirrored = if rules.raw_normals && !rules.long_mirrors { mirrored.normalize_or(n_geo) } else { mirrored };
         let n = if rules.raw_normals && !rules.raw_refraction { n.normalize_or(n_geo) } else { n };
         let transmitted = match transparent == Color::ZERO {
             true => None,
-            // About a normal that is not of length 1 it is neither.
+            // With a normal that is not unit length, the transmitted direction differs too.
             false if rules.raw_refraction => refract(dir, n, here / there).map(|through| through.normalize_or(dir)),
             false => refract(dir, n, here / there),
         };
         // If one of the two is switched off, the other gets all the light.
         let divides = fresnel && self.settings.reflection && self.settings.refraction;
         let share = divides.then(|| {
-            // Total reflection weighs 1.
+            // Total reflection has weight 1.
             let before = if rules.exit_r0 { 1.0 } else { here };
             transmitted.map_or(1.0, |through| fresnel_share(dir, n, through, (here, there), before))
         });
@@ -124,8 +124,8 @@ impl Whitted<'_> {
         })
     }
 
-    /// Returns the transmission as in the course: one index is carried along, and behind glass
-    /// there is air.
+    /// Returns the transmission as in the course: a ray carries a single index, and there is air
+    /// behind glass.
     fn official_passage(&self, object: u32, blend: Blend, leaving: bool, media: &Media) -> Passage {
         let (known, ior) = (media.ior(), blend.ior);
         let (here, there) = match (leaving, blend.fresnel) {
@@ -138,7 +138,7 @@ impl Whitted<'_> {
     }
 
     /// Returns the throughput of a ray after a weight. The course uses the length of the colour,
-    /// which for grey exceeds the light that is left.
+    /// which for grey exceeds the remaining light.
     pub fn weight_after(&self, before: f32, weight: Color) -> f32 {
         let by_length = self.world.shading_rules().weight_by_length;
         before * if by_length { weight.length() } else { weight.max_element() }

@@ -43,7 +43,7 @@ fn refraction_follows_snells_law_and_ends_at_the_critical_angle() {
                 // The root loses half the digits near the critical angle.
                 assert!(expected < 1.0 + 1e-6 && (t.length() - 1.0).abs() < 1e-3, "{expected} {t}");
                 assert!((t.as_dvec3().cross(n.as_dvec3()).length() - expected).abs() < 2e-6);
-                assert!(t.dot(n) <= 0.0 && t.dot(d.cross(n)).abs() < 1e-6, "it stays in the plane of incidence");
+                assert!(t.dot(n) <= 0.0 && t.dot(d.cross(n)).abs() < 1e-6, "the ray must stay in the plane of incidence");
             }
             None => assert!(expected > 1.0 - 1e-6, "{expected}"),
         }
@@ -66,7 +66,7 @@ fn mirrored_directions_keep_the_angle() {
 }
 
 #[test]
-fn schlicks_share_is_r0_straight_on_and_one_at_grazing() {
+fn schlicks_reflectance_is_r0_at_normal_and_one_at_grazing_incidence() {
     let share = |zero: bool, cosine: f32, here: f32, there: f32| {
         let d = Vec3::new((1.0 - cosine * cosine).sqrt(), -cosine, 0.0);
         let before = if zero { 1.0 } else { here };
@@ -88,7 +88,7 @@ fn schlicks_share_is_r0_straight_on_and_one_at_grazing() {
 }
 
 #[test]
-fn two_facing_mirrors_make_a_geometric_series() {
+fn facing_mirrors_sum_a_geometric_series() {
     // Each wall has radiance 1 from ambient light and reflects one half.
     let hall = "Background { color 0 0 0 ambientLight 1 1 1 }
         Lights { DirectionalLight { direction 0 -1 0 color 0.001 0.001 0.001 } }
@@ -104,7 +104,7 @@ fn two_facing_mirrors_make_a_geometric_series() {
     }
     let off = Settings { reflection: false, ..ALL };
     assert!((seen(hall, off, [0.0; 3], [1.0, 0.0, 0.0]).x - 1.0).abs() < 1e-5);
-    // In our rules a ray's throughput is 1/2 after a bounce, and 1/4 after two.
+    // With Dürer's own rules the throughput is 1/2 after one bounce, and 1/4 after two.
     let cut = Settings { least_weight: 0.3, ..ALL };
     assert!((seen(hall, cut, [0.0; 3], [1.0, 0.0, 0.0]).x - 1.5).abs() < 1e-5);
     // The course uses the length of the colour: sqrt(3) / 2 after one bounce, 3/4 after two.
@@ -117,7 +117,7 @@ fn two_facing_mirrors_make_a_geometric_series() {
 }
 
 #[test]
-fn rays_of_many_levels_need_no_deep_stack() {
+fn deep_recursion_needs_no_deep_stack() {
     // A hall of two perfect mirrors, each of which has radiance 1.
     let hall = "Background { color 0 0 0 ambientLight 1 1 1 }
         Lights { DirectionalLight { direction 0 -1 0 color 0.001 0.001 0.001 } }
@@ -156,7 +156,7 @@ fn shadows_end_at_the_light() {
 }
 
 #[test]
-fn a_ball_of_glass_like_air_is_not_seen() {
+fn sphere_with_the_index_of_air_is_invisible() {
     let text = |glass: &str| {
         format!(
             "Background {{ color 0.2 0.4 0.8 }} Lights {{ DirectionalLight {{ direction 0 -1 0 color 1 1 1 }} }}
@@ -191,7 +191,7 @@ fn a_ball_of_glass_like_air_is_not_seen() {
 }
 
 #[test]
-fn light_and_highlight_follow_the_cosine_of_their_model() {
+fn diffuse_light_and_highlight_follow_their_models() {
     let lit = |words: &str, dir: [f32; 3]| {
         let text = format!(
             "Background {{ color 0 0 0 ambientLight 0 0 0 }}
@@ -213,7 +213,7 @@ fn light_and_highlight_follow_the_cosine_of_their_model() {
 }
 
 #[test]
-fn coloured_glass_casts_coloured_shadows_if_asked() {
+fn coloured_glass_casts_coloured_shadows_if_enabled() {
     let text = "Lights { PointLight { position 0 5 0 color 1 1 1 } }
         Materials { Material { diffuseColor 1 1 1 } Material { transparentColor 0.5 1 0 } }
         Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 3 0 radius 1 } }";
@@ -224,7 +224,7 @@ fn coloured_glass_casts_coloured_shadows_if_asked() {
 }
 
 #[test]
-fn a_coarse_smooth_ball_has_no_shadow_on_itself_where_its_normals_face_the_light() {
+fn coarse_smooth_sphere_casts_no_shadow_on_points_that_face_the_light() {
     let text = |file: &str, wall: &str| {
         format!(
             "{CAMERA} Lights {{ DirectionalLight {{ direction 0 -1 0.2 color 1 1 1 }} }} Group {{ {wall}
@@ -268,7 +268,7 @@ fn a_coarse_smooth_ball_has_no_shadow_on_itself_where_its_normals_face_the_light
 }
 
 #[test]
-fn black_backs_are_black_only_where_that_is_asked_for() {
+fn backs_are_black_only_with_the_quirk_black_backs() {
     let text = format!(
         "{CAMERA} Background {{ color 0 0 0 ambientLight 0.5 0.5 0.5 }}
         Lights {{ DirectionalLight {{ direction 0 1 0 color 1 1 1 }} }} Materials {{ Material {{ diffuseColor 1 1 1 }} }}
@@ -294,7 +294,7 @@ fn adds_up(node: &TraceNode) {
 }
 
 #[test]
-fn an_account_adds_up_to_the_light_that_is_found_without_it() {
+fn traced_terms_sum_to_the_radiance_without_a_trace() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let mut random = Random(11);
     let mut kinds = std::collections::BTreeMap::new();

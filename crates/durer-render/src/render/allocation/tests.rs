@@ -16,7 +16,8 @@ fn all(world: &World, job: &Job) -> PartialRender {
     Way::PLAIN.make(world, job, &AtomicBool::new(false)).unwrap()
 }
 
-/// A sphere lit by an area light out of view, found by BSDF sampling only, before a uniform sky.
+/// A sphere lit by an area light out of view, found by BSDF sampling only, in front of a uniform
+/// sky.
 const UNEVEN: &str = "PerspectiveCamera { center 0 0 4 direction 0 0 -1 up 0 1 0 angle 60 }
 Lights { numLights 0 }
 Background { color 0.5 0.6 0.7 }
@@ -26,16 +27,16 @@ Group { numObjects 2
   MaterialIndex 0 Sphere { center -0.8 0 0 radius 0.9 }
   MaterialIndex 1 Sphere { center -2.2 0.5 3 radius 0.4 } }";
 
-/// BSDF sampling alone, which rarely hits the light.
+/// Returns a job with BSDF sampling only, which rarely hits the light.
 fn uneven(adaptive: bool, seed: u64) -> Job {
-    let Method::Path(paths) = Method::PATH else { unreachable!("it is a path tracer") };
+    let Method::Path(paths) = Method::PATH else { unreachable!("`PATH` is a path tracer") };
     let method = Method::Path(Transport { direct: Direct::Bsdf, ..paths });
     let sampling = Sampling::Filtered { samples: 32, filter: Filter::Box { radius: 0.5 } };
     Job { width: 40, height: 32, sampling, adaptive, seed, method, ..Job::default() }
 }
 
 #[test]
-fn samples_divided_by_noise_are_as_many_and_have_less_error() {
+fn adaptive_sampling_keeps_the_count_and_reduces_the_error() {
     let world = testing::read(UNEVEN);
     let made = |adaptive, seed| {
         let aovs = vec![Aov::from_name("sample-count").unwrap()];
@@ -66,7 +67,7 @@ fn samples_divided_by_noise_are_as_many_and_have_less_error() {
 /// Compares the means of many pictures: samples that influenced their own pixel's count would
 /// darken it.
 #[test]
-fn samples_divided_by_noise_have_no_bias() {
+fn adaptive_sampling_has_no_bias() {
     let world = testing::read(UNEVEN);
     let mean = |adaptive, seed| {
         let image =
@@ -85,7 +86,7 @@ fn samples_divided_by_noise_have_no_bias() {
 }
 
 #[test]
-fn divided_samples_go_on_from_anywhere() {
+fn adaptive_renders_resume_from_any_point() {
     let world = testing::read(UNEVEN);
     let job = uneven(true, 3);
     let plain = all(&world, &job);
@@ -117,13 +118,13 @@ fn divided_samples_go_on_from_anywhere() {
         changed.extend(Digest::of(&changed).0);
         if let Ok(read) = PartialRender::read(&changed) {
             let _ = (read.pictures().unwrap(), read.work(), read.is_finished());
-            assert!(read.write() == changed, "{at}: written in another way");
+            assert!(read.write() == changed, "{at}: written differently");
         }
     }
 }
 
 #[test]
-fn what_cannot_be_divided_by_noise_is_refused() {
+fn unsuitable_jobs_for_adaptive_sampling_are_rejected() {
     let world = testing::read(UNEVEN);
     let filtered = |samples| Sampling::Filtered { samples, filter: Filter::default() };
     let job = Job { sampling: filtered(16), ..uneven(true, 0) };
@@ -135,24 +136,24 @@ fn what_cannot_be_divided_by_noise_is_refused() {
         (Job { sampling: Sampling::Center, ..job.clone() }, "at least 16"),
         (Job { noise: Some(0.1), ..job.clone() }, "either"),
         (Job { method: Method::Photons(Default::default()), ..job.clone() }, "photons"),
-        (Job { sampling: kept(Sampler::Jittered, None), ..job.clone() }, "as many for all"),
+        (Job { sampling: kept(Sampler::Jittered, None), ..job.clone() }, "cannot be adaptive"),
         (
             Job { sampling: kept(Sampler::Random, Some(CourseFilter::Tent { radius: 1.0 })), ..job.clone() },
-            "as many for all",
+            "cannot be adaptive",
         ),
-        (Job { sampling: Sampling::Course2012 { jitter: true, blur: true }, ..job.clone() }, "as many for all"),
+        (Job { sampling: Sampling::Course2012 { jitter: true, blur: true }, ..job.clone() }, "cannot be adaptive"),
     ];
     for (job, why) in refused {
         assert!(new(&job, Shard::WHOLE).unwrap_err().contains(why), "{why}");
     }
     for by in [ShardBy::Tiles, ShardBy::Samples] {
-        assert!(new(&job, Shard { index: 1, count: 2, by }).unwrap_err().contains("not split"));
+        assert!(new(&job, Shard { index: 1, count: 2, by }).unwrap_err().contains("cannot be split"));
     }
     assert!(matches!(Bands::new(&job, u64::MAX), Err(RenderError::Bands(_))));
 }
 
 #[test]
-fn samples_are_divided_by_the_deviation() {
+fn samples_follow_the_standard_deviation() {
     // None below the pilot, the rest by the deviation.
     assert_eq!(divided(&[0.0, 1.0, 3.0, 0.0], 64), [16, 56, 168, 16]);
     assert_eq!(divided(&[1.0; 5], 100), [100; 5]);
@@ -170,7 +171,7 @@ fn samples_are_divided_by_the_deviation() {
 }
 
 #[test]
-fn what_a_pixel_has_grows_to_what_it_gets() {
+fn sample_count_grows_to_its_target() {
     for (samples, target) in [(64, 16), (64, 1000), (16, 8), (100, 77)] {
         let counts: Vec<u32> = (0..=samples).map(|end| count(samples, target, end)).collect();
         assert!(counts.is_sorted());
@@ -180,7 +181,7 @@ fn what_a_pixel_has_grows_to_what_it_gets() {
 }
 
 #[test]
-fn pixels_of_the_other_colour_tell_the_variance() {
+fn pixels_of_the_other_colour_estimate_the_variance() {
     let (width, height) = (15, 17);
     let mut variances = vec![0.0; width * height];
     for at in 0..variances.len() {

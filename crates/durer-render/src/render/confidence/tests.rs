@@ -8,7 +8,7 @@ use crate::render::explain::explain;
 use crate::render::{Sampling, Shard};
 
 #[test]
-fn students_quantiles_are_those_of_the_tables() {
+fn students_quantiles_match_tables() {
     for (freedom, quantile) in [(2.0, 2.920), (3.0, 2.353), (5.0, 2.015), (10.0, 1.812), (30.0, 1.697), (1e9, 1.645)] {
         assert!((student(freedom) / quantile - 1.0).abs() < 0.003, "{freedom}: {}", student(freedom));
     }
@@ -38,7 +38,7 @@ fn photons(count: u32, radius: f32) -> Method {
 }
 
 #[test]
-fn the_truth_lies_within_the_bounds_as_often_as_they_say() {
+fn bounds_contain_the_truth_at_their_confidence() {
     // Below a light at height h the floor's irradiance is E (1 + x^2 / h^2)^(-3/2), attenuated by
     // (1 - F) / (1 + F): its second derivatives sum to -6 E / h^2. Epanechnikov's kernel has a
     // second moment of r^2 / 6 along each axis, so the bias is -E r^2 / (2 h^2).
@@ -59,7 +59,7 @@ fn the_truth_lies_within_the_bounds_as_often_as_they_say() {
     let squares = bounds.iter().map(|bound| (bound.bias - mean) * (bound.bias - mean)).sum::<f64>();
     let error = (squares / (n * (n - 1.0))).sqrt();
     // The fourth-order term is 5 % of the bias here.
-    assert!((mean - bias).abs() < 3.0 * error + 0.05 * bias.abs(), "bias {mean} ± {error}, not {bias}");
+    assert!((mean - bias).abs() < 3.0 * error + 0.05 * bias.abs(), "bias {mean} ± {error}, expected {bias}");
     let share = |holds: &dyn Fn(&ErrorBound) -> bool| bounds.iter().filter(|bound| holds(bound)).count() as f64 / n;
     let deviation = (CONFIDENCE * (1.0 - CONFIDENCE) / n).sqrt();
     let within = share(&|bound| bound.interval().0 <= truth && truth <= bound.interval().1);
@@ -69,7 +69,7 @@ fn the_truth_lies_within_the_bounds_as_often_as_they_say() {
 }
 
 #[test]
-fn pictures_and_explanations_tell_the_same_error_on_any_number_of_threads() {
+fn pictures_and_explanations_have_equal_errors_on_any_number_of_threads() {
     let world = read(
         "PerspectiveCamera { center 0 2 6 direction 0 -0.3 -1 up 0 1 0 angle 30 } Background { color 0.1 0.1 0.1 }
          Lights { PointLight { position 0.5 4 0 color 9 9 9 falloff 1 } }
@@ -95,7 +95,7 @@ fn pictures_and_explanations_tell_the_same_error_on_any_number_of_threads() {
             biased += u32::from(error.bias != 0.0);
         }
         assert_eq!(biased > 0, method != Method::PATH);
-        // Without a colour picture, it takes its own samples.
+        // Without a colour picture, the error takes its own samples.
         let alone = PartialRender::new(&world, &Job { color: false, ..job.clone() }, Shard::WHOLE).unwrap();
         assert_eq!(alone.error(&world, None).unwrap()[0], values);
     }

@@ -69,10 +69,10 @@ fn difference(explanation: &Explanation, stored: Color) -> Option<String> {
     let bits = |color: Color| color.to_array().map(f32::to_bits);
     let (color, coverage) = explanation.sum();
     if bits(color) != bits(stored) {
-        return Some(format!("the terms sum to {color}, and the picture has {stored}"));
+        return Some(format!("the terms sum to {color}, but the picture has {stored}"));
     }
     if bits(color) != bits(explanation.color) || coverage != explanation.coverage {
-        return Some(format!("the terms sum to {color}, and the explanation says {}", explanation.color));
+        return Some(format!("the terms sum to {color}, but the explanation has {}", explanation.color));
     }
     let trees = explanation.samples.iter().filter_map(|sample| sample.light.as_ref().map(|light| &light.root));
     let odd = trees.filter_map(uneven).next()?;

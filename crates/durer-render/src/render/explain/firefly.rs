@@ -8,7 +8,7 @@ use crate::integrator::trace::TermKind;
 use crate::integrator::{TraceNode, Tree};
 
 impl Explanation {
-    /// Returns the sample that adds most light, and its contribution to the pixel's luminance;
+    /// Returns the sample that adds the most light, and its contribution to the pixel's luminance;
     /// `None` for a black pixel.
     pub fn brightest(&self) -> Option<(usize, f64)> {
         let all: f64 = self.samples.iter().map(|s| f64::from(s.weight)).sum();
@@ -36,7 +36,7 @@ impl Explanation {
         let mut said = vec![format!("sample {number} alone is {:.0} % of the pixel", 100.0 * share)];
         said.extend(self.samples[number].light.iter().flat_map(cause));
         said.push(
-            "more samples make such pixels rarer and no darker; `--clamp 10` cuts them off, and some light with them"
+            "more samples make such pixels rarer, not darker; `--clamp 10` limits them, and removes some light"
                 .into(),
         );
         said
@@ -63,23 +63,23 @@ fn cause(light: &Tree) -> Vec<String> {
     let seldom = chosen.iter().filter(|bounce| bounce.pdf > 0.0).min_by(|a, b| a.pdf.total_cmp(&b.pdf));
     let told = |what: &str| match chosen.is_empty() {
         true => format!("{what} is seen directly"),
-        false => format!("{what} was met by chance after {way}"),
+        false => format!("BSDF sampling hit {what} after {way}"),
     };
     let mut said = Vec::new();
     match &node.what {
         TermKind::Emission { .. } | TermKind::Sky if single && seldom.is_some() => {
-            let what = if matches!(node.what, TermKind::Sky) { "the sky" } else { "a lamp" };
+            let what = if matches!(node.what, TermKind::Sky) { "the sky" } else { "an emitter" };
             said.push(told(what));
             said.push(
-                "lamps are not connected with through mirrors and glass, so such light is found seldom and counts much: \
-                 `--integrator photons` finds it from the lamp's side"
+                "light sampling cannot see through mirrors and glass, so such light is found rarely and counts much: \
+                 `--integrator photons` finds it from the light's side"
                     .into(),
             );
         }
         TermKind::Emission { mis } => {
-            said.push(told("a lamp"));
+            said.push(told("an emitter"));
             said.push(format!(
-                "its weight beside being connected with is {}: connections find that light more seldom still",
+                "its MIS weight is {}: light sampling finds this light even less often",
                 number(*mis)
             ));
         }
@@ -87,20 +87,20 @@ fn cause(light: &Tree) -> Vec<String> {
         TermKind::Direct { choice, pdf, mis, .. } => {
             let way = if chosen.is_empty() { "at the first hit".into() } else { format!("after {way}") };
             said.push(format!(
-                "a lamp was connected with {way}, chosen with probability {} and density {} /sr (MIS weight {})",
+                "light sampling found a light {way}, with probability {} and density {} /sr (MIS weight {})",
                 number(*choice),
                 number(*pdf),
                 number(*mis)
             ));
             if *choice < 0.1 {
-                said.push("the tree of lamps thought little of it: that probability divides its light".into());
+                said.push("the light tree estimated it as dim: its light is divided by that probability".into());
             }
         }
         _ => {}
     }
     if let Some(seldom) = seldom.filter(|seldom| seldom.pdf < 0.05) {
         said.push(format!(
-            "the direction chosen by {} had a density of only {} /sr, which divides all light from there",
+            "the direction sampled by {} has a density of only {} /sr: all light from there is divided by it",
             seldom.lobe,
             number(seldom.pdf)
         ));

@@ -8,7 +8,7 @@ use durer_scene::spectrum::ColorMode;
 use std::path::Path;
 
 #[test]
-fn explanations_sum_to_the_pixels_of_all_our_scenes() {
+fn explanations_sum_to_the_pixels_of_all_scenes() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let mut scenes: Vec<_> = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     scenes.retain(|path| path.extension().is_some_and(|extension| extension == "txt"));
@@ -39,8 +39,8 @@ fn explanations_sum_to_the_pixels_of_all_our_scenes() {
 }
 
 #[test]
-fn the_brightest_sample_below_glass_is_said_to_be_a_caustic() {
-    // A small light over a sphere of glass: paths find the light below it by chance.
+fn brightest_sample_below_glass_is_explained_as_a_caustic() {
+    // A small light above a glass sphere: paths find its light below the sphere by chance.
     let world = testing::read(
         "PerspectiveCamera { center 0 3 5 direction 0 -0.6 -1 up 0 1 0 angle 30 } Background { color 0 0 0 }\n\
          Materials { PrincipledMaterial { baseColor 0.8 0.8 0.8 specularWeight 0 }\n\

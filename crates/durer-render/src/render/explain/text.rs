@@ -12,7 +12,7 @@ use durer_scene::math::{Color, LUMINANCE, Vec3, reflect};
 use durer_scene::scene::Scene;
 use durer_scene::spectrum::{Lanes, Spectrum};
 
-/// Names of objects, materials and lights, and where they are written.
+/// Names of objects, materials and lights, and their lines in the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Names<'a> {
     /// The files that were read.
@@ -194,17 +194,17 @@ impl Explanation {
         let curve = telling.transfer.name();
         say(0, format!("pixel {},{} = {}, in eight bits {r} {g} {b} ({curve})", self.x, self.y, rgb(self.color)));
         if self.coverage < 1.0 {
-            say(1, format!("the camera sees something at {:.1} % of it", 100.0 * self.coverage));
+            say(1, format!("coverage {:.1} %", 100.0 * self.coverage));
         }
         let all = self.samples.len();
         if all > 1 {
             let sum: f64 = self.samples.iter().map(|s| f64::from(s.weight)).sum();
             let of = match &self.mean {
                 Mean::Own => String::new(),
-                Mean::Around => ", also those of pixels around".into(),
+                Mean::Around => ", including samples of neighbouring pixels".into(),
                 Mean::SubPixels(_) => ": sub-pixels, blurred and averaged as in 2012".into(),
             };
-            say(1, format!("the mean of {all} samples by weight{of}; the weights sum to {}", sum as f32));
+            say(1, format!("weighted mean of {all} samples{of}; the weights sum to {}", sum as f32));
         }
         if let Some(error) = &self.error {
             let ErrorBound { luminance, bias, standard_error, bound } = *error;
@@ -212,12 +212,12 @@ impl Explanation {
                 [luminance, bias, standard_error, bound].map(|value| number(value as f32));
             let parts = match error.bias {
                 0.0 => format!("standard error {standard_error}"),
-                _ => format!("bias of photons {bias}, standard error {standard_error}"),
+                _ => format!("photon bias {bias}, standard error {standard_error}"),
             };
-            say(1, format!("luminance {luminance}, with 90 % confidence at most {bound} from the truth: {parts}"));
+            say(1, format!("luminance {luminance}, error at most {bound} with 90 % confidence: {parts}"));
         }
         if let Some(stale) = self.stale_texels {
-            say(1, format!("and {} by the quirk `stale-texels`", rgb(stale)));
+            say(1, format!("plus {} by the quirk `stale-texels`", rgb(stale)));
         }
         let nothing = |i: usize| i != wanted && self.samples[i].weight == 0.0 && self.mean != Mean::Own;
         for (i, sample) in self.samples.iter().enumerate().filter(|(i, _)| !nothing(*i)) {
@@ -226,7 +226,7 @@ impl Explanation {
         match (0..all).filter(|&i| nothing(i)).count() {
             0 => {}
             left => {
-                let text = format!("{left} samples more have no weight here");
+                let text = format!("{left} more samples have no weight here");
                 lines.push(TextLine::plain(1, text));
             }
         }
@@ -269,7 +269,7 @@ pub fn ray_text(light: &Tree, names: &Names, telling: &Telling) -> Vec<TextLine>
 fn tree_lines(tree: &Tree, names: &Names, depth: usize, telling: &Telling, lines: &mut Vec<TextLine>) {
     if let Lanes::Waves(waves) = &tree.lanes {
         let told = |numbers: Spectrum| numbers.to_array().map(number).join(", ");
-        let text = format!("light at {} nm; the eye makes of it", told(waves.nm));
+        let text = format!("light at {} nm; converted to RGB", told(waves.nm));
         lines.push(TextLine::plain(depth, text));
         for (name, observer) in ["red", "green", "blue"].into_iter().zip(waves.observer()) {
             lines.push(TextLine::plain(depth + 1, format!("{name}: ({}) · light", told(*observer))));
@@ -314,13 +314,13 @@ fn node_lines(
                     (below.n, below.material) = (hit.n, Some(hit.material));
                     more.extend(struck_lines(hit, names));
                 }
-                None => more.push("it hits nothing".into()),
+                None => more.push("no hit".into()),
             }
             match from {
                 "camera ray" => format!("{from}: {value}"),
                 _ => {
                     format!(
-                        "{from}, which counts for {} of the pixel: {} · {value}",
+                        "{from}, weight {} in the pixel: {} · {value}",
                         number(*weight),
                         split(node, from, &at, names)
                     )
@@ -329,14 +329,14 @@ fn node_lines(
         }
         TermKind::Photons { radius, photons } => {
             more.push(format!("{photons} photons at most {} away", number(*radius)));
-            format!("light that mirrors and glass throw here: {value}")
+            format!("caustics: {value}")
         }
         TermKind::OneWavelength { nm } => {
-            format!("colours are spread: {} nm alone goes on, and counts for all four: {factor} · {value}", number(*nm))
+            format!("dispersion: only {} nm continues, and counts for all four: {factor} · {value}", number(*nm))
         }
         TermKind::Sky if node.throughput.is_some() => format!("background: {value}"),
         TermKind::Sky => "background".into(),
-        TermKind::Emission { mis } => format!("light of its own: {value}{}", weight_text(*mis)),
+        TermKind::Emission { mis } => format!("emission: {value}{}", weight_text(*mis)),
         TermKind::Direct { light, to_light, distance, choice, pdf, bsdf, mis, shadow } => {
             more.push(format!("L = {}, {} away", vector(*to_light), number(*distance)));
             more.push(format!(
@@ -382,17 +382,17 @@ fn node_lines(
                 }
             };
             if let Some(share) = fresnel {
-                text += &format!("; Fresnel's law mirrors {}", number(*share));
+                text += &format!("; Fresnel reflectance {}", number(*share));
             }
             if *total {
-                text += "; all is mirrored: beyond the critical angle nothing gets through";
+                text += "; total internal reflection, beyond the critical angle";
             }
             text
         }
         TermKind::Cut { weight } => {
-            format!("a ray that counts for {} only is not traced (--min-throughput)", number(*weight))
+            format!("a ray with throughput {} is not traced (--min-throughput)", number(*weight))
         }
-        TermKind::Spent => "mirrored and transmitted light is left out: no more levels are wanted (--bounces)".into(),
+        TermKind::Spent => "mirrored and transmitted light is left out: the maximum depth is reached (--bounces)".into(),
     };
     let of_whole = |node: &TraceNode, gain| {
         let added = node.added().unwrap_or_else(|| gain * node.contribution());
@@ -422,9 +422,9 @@ fn bounce_line(bounce: &Bounce) -> String {
     let Bounce { lobe, probability, pdf, survival, directions } = bounce;
     let density = if *pdf > 0.0 { format!(", density {} /sr", number(*pdf)) } else { String::new() };
     let survived =
-        if *survival < 1.0 { format!("; went on with probability {}", number(*survival)) } else { String::new() };
+        if *survival < 1.0 { format!("; survived with probability {}", number(*survival)) } else { String::new() };
     let shared =
-        if *directions > 1 { format!("; one of {directions} directions that share alike") } else { String::new() };
+        if *directions > 1 { format!("; one of {directions} directions with equal weights") } else { String::new() };
     format!("chosen by {lobe} (probability {}){density}{survived}{shared}", number(*probability))
 }
 
@@ -462,17 +462,17 @@ fn struck_lines(hit: &HitRecord, names: &Names) -> Vec<String> {
         lines.push(format!("uv ({}, {})", number(uv.x), number(uv.y)));
     }
     if let Some(local) = &hit.local {
-        lines.push(format!("in the object's own space: {}", ray_line(local)));
+        lines.push(format!("in object space: {}", ray_line(local)));
     }
     let mut normal = format!("N = {}", vector(hit.n));
     if hit.n_geo != hit.n {
-        normal += &format!("; the true surface's is {}", vector(hit.n_geo));
+        normal += &format!("; geometric normal {}", vector(hit.n_geo));
     }
     if hit.from_behind {
         normal += if hit.black {
-            "; seen from behind, which is left black"
+            "; seen from behind, left black"
         } else if hit.n != hit.n_shade {
-            "; seen from behind, so it was turned"
+            "; seen from behind, so it is flipped"
         } else {
             "; seen from behind"
         };
@@ -486,19 +486,19 @@ fn shadow_line(shadow: &Shadow, names: &Names) -> String {
     let Some((object, t)) = shadow.blocker else { return "the shadow ray is free".into() };
     let (object, t) = (names.short_object(object), number(t));
     match shadow.share {
-        share if share.is(0.0) => format!("in the shadow of {object}, {t} away"),
+        share if share.is(0.0) => format!("occluded by {object}, {t} away"),
         share if share.is(1.0) && names.world.shading_rules().shadow_fronts => {
             format!(
-                "{object} stands {t} away, but does not block it: its back is turned to the ray (quirk `shadow-fronts`)"
+                "{object} is {t} away, but does not block it: the ray hits its back (quirk `shadow-fronts`)"
             )
         }
-        share if share.is(1.0) => format!("{object} stands {t} away, but does not block it: it lets all light through"),
-        share => format!("through {object}, {t} away, comes {}", numbers(share)),
+        share if share.is(1.0) => format!("{object} is {t} away, but does not block it: it transmits all light"),
+        share => format!("{object}, {t} away, transmits {}", numbers(share)),
     }
 }
 
 fn share_text(share: f32) -> String {
-    if share == 1.0 { String::new() } else { format!(" of a part of {}", number(share)) }
+    if share == 1.0 { String::new() } else { format!(", material weight {}", number(share)) }
 }
 
 fn ray_line(ray: &RayRecord) -> String {

@@ -30,7 +30,7 @@ fn job(width: u32, samples: u32, method: Method) -> Job {
 }
 
 #[test]
-fn no_sample_allocates() {
+fn samples_do_not_allocate() {
     let folder = tempfile::tempdir().unwrap();
     let ball = include_str!("../../../../../scenes/meshes/ball80-smooth.obj");
     std::fs::write(folder.path().join("ball.obj"), ball).unwrap();
@@ -56,7 +56,7 @@ fn no_sample_allocates() {
 }
 
 #[test]
-fn a_tile_is_locked_twice_a_pass() {
+fn tile_locks_twice_per_pass() {
     let world = testing::read(TEXT);
     let locks = |width: u32| {
         let part = PartialRender::new(&world, &job(width, 1, Method::WHITTED), Shard::WHOLE).unwrap();

@@ -1,21 +1,21 @@
-//! Matrices of 4 x 4 numbers in single precision, as the course's programs multiply, invert and
-//! take them apart.
+//! Single-precision 4 x 4 matrices with the products, inverses and decompositions of the course's
+//! programs.
 
 use super::Vectors;
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::{MatrixOp, MatrixRules};
 use glam::DAffine3;
 
-/// A matrix of 4 x 4 numbers, as columns.
+/// A 4 x 4 matrix, stored by columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matrix([[f32; 4]; 4]);
 
 impl Matrix {
-    /// Leaves everything where it is.
+    /// Identity matrix.
     pub const IDENTITY: Matrix =
         Matrix([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]);
 
-    /// Product of the matrices of one transform.
+    /// Returns the product of the matrices of one transform.
     pub fn of(ops: &[MatrixOp], rules: MatrixRules, vectors: Vectors) -> Self {
         let product = ops.iter().fold(Matrix::IDENTITY, |product, op| {
             let own = Matrix::from(op);
@@ -31,7 +31,7 @@ impl Matrix {
         }
     }
 
-    /// The product with a matrix that applies before this one.
+    /// Returns the product with a matrix that applies before this one.
     pub fn times(&self, other: &Matrix, vectors: Vectors) -> Matrix {
         let entry = |row: usize, column: usize| {
             let [a, b, c, d] = [0, 1, 2, 3].map(|i| self.0[i][row] * other.0[column][i]);
@@ -40,7 +40,7 @@ impl Matrix {
         Matrix([0, 1, 2, 3].map(|column| [0, 1, 2, 3].map(|row| entry(row, column))))
     }
 
-    /// A point's image.
+    /// Transforms a point.
     pub fn point(&self, p: Vec3, vectors: Vectors) -> Vec3 {
         let row = |row: usize| {
             let [x, y, z, w] = self.0.map(|column| column[row]);
@@ -52,7 +52,7 @@ impl Matrix {
         Vec3::new(row(0), row(1), row(2))
     }
 
-    /// A vector's image in the course's own arithmetic.
+    /// Transforms a vector in the course's own arithmetic.
     pub fn vector(&self, v: Vec3) -> Vec3 {
         let row = |row: usize| {
             let [x, y, z] = [0, 1, 2].map(|column| self.0[column][row] * v[column]);
@@ -61,14 +61,14 @@ impl Matrix {
         Vec3::new(row(0), row(1), row(2))
     }
 
-    /// True if it and its inverse are finite.
+    /// True if the matrix and its inverse are finite.
     pub fn is_regular(&self) -> bool {
         let inverse = self.inverse(Vectors::Vecmath);
         [self, &inverse].iter().all(|matrix| matrix.0.iter().flatten().all(|x| x.is_finite()))
     }
 
-    /// The inverse: cofactors times the reciprocal of the determinant. That of a flat matrix is made
-    /// of what is no number.
+    /// Returns the inverse: cofactors times the reciprocal of the determinant. For a singular
+    /// matrix its entries are infinite or NaN.
     pub fn inverse(&self, vectors: Vectors) -> Matrix {
         match vectors {
             Vectors::Vecmath => self.inverse_by_minors(),
@@ -76,8 +76,8 @@ impl Matrix {
         }
     }
 
-    /// Cofactors as determinants of three by three, each from its upper left corner on and around
-    /// the matrix.
+    /// Inverts by cofactors as 3 x 3 determinants, each starting after its own row and column and
+    /// wrapping around the matrix.
     fn inverse_by_minors(&self) -> Matrix {
         let m = |row: usize, column: usize| self.0[column][row];
         let cofactor = |row: usize, column: usize| {
@@ -90,14 +90,14 @@ impl Matrix {
         };
         let [a, b, c, d] = [0, 1, 2, 3].map(|column| m(0, column) * cofactor(0, column));
         let reciprocal = 1.0 / (a + b + c + d);
-        // The inverse has cofactors across.
+        // The inverse has transposed cofactors.
         Matrix([0, 1, 2, 3].map(|column| [0, 1, 2, 3].map(|row| cofactor(column, row) * reciprocal)))
     }
 
-    /// Inverse by the products of pairs that glm shares between cofactors.
+    /// Inverts by the products of pairs that glm shares between cofactors.
     fn inverse_by_factors(&self) -> Matrix {
         let m = &self.0;
-        // Determinants of two by two, of columns i and j and rows p and q.
+        // 2 x 2 determinants of columns i and j, rows p and q.
         let pair = |i: usize, j: usize, p: usize, q: usize| m[i][p] * m[j][q] - m[j][p] * m[i][q];
         let columns = [(2, 3), (1, 3), (1, 2)];
         let factor = |p: usize, q: usize| {
@@ -124,7 +124,7 @@ impl Matrix {
         Matrix(cofactors.map(|column| column.map(|x| x * reciprocal)))
     }
 
-    /// Translation, rotation and scale without the shear: glm's `decompose`, put together again.
+    /// Removes the shear: glm's `decompose` into translation, rotation and scale, recomposed.
     ///
     /// Source: Spencer W. Thomas, *Decomposing a Matrix into Simple Transformations*, Graphics Gems
     /// II (1991), VII.1.
@@ -162,7 +162,7 @@ impl Matrix {
     }
 }
 
-/// The rotation onto three axes, as x, y, z and w.
+/// Returns the quaternion of the rotation onto three axes, as x, y, z and w.
 fn quaternion(axes: [Vec3; 3]) -> [f32; 4] {
     let trace = axes[0].x + axes[1].y + axes[2].z;
     let mut q = [0.0; 4];
@@ -209,7 +209,7 @@ impl From<&MatrixOp> for Matrix {
 }
 
 impl From<DAffine3> for Matrix {
-    /// Rounded once.
+    /// Rounds once.
     fn from(map: DAffine3) -> Self {
         let column = |v: glam::DVec3, w: f32| [v.x as f32, v.y as f32, v.z as f32, w];
         let m = map.matrix3;

@@ -1,6 +1,6 @@
-//! Hits as the course's programs of 2012 to 2023 find them: thing after thing, in single precision,
-//! operation by operation. What is far away, seen at a grazing angle or as large as the ground
-//! depends on the last bit of these.
+//! Hits as in the course's programs of 2012 to 2023: object by object, in single precision,
+//! operation by operation. Pictures of objects that are distant, seen at a grazing angle or as
+//! large as the ground depend on the last bit.
 //!
 //! Sources: the starter code of the assignments, whose spheres, groups, cameras and octree the
 //! official programs share; pictures of these programs for the rest.
@@ -20,18 +20,18 @@ use shapes::{Crossing, Limits};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Library of vectors that the arithmetic follows.
+/// Vector library whose arithmetic is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vectors {
-    /// The course's own, of 2012 to 2019.
+    /// The course's own library, 2012 to 2019.
     Vecmath,
-    /// glm, since 2020.
+    /// The library glm, since 2020.
     Glm,
 }
 
 impl Vectors {
-    /// A sum that begins with a term: the course's own begins with 0, so that it is never -0. By the
-    /// sign of a zero a ray goes through an octree, or past it.
+    /// Starts a sum with a term. The course's own library starts with 0, so the sum is never -0;
+    /// the sign of a zero decides if a ray passes through an octree cell.
     fn sum_from(self, first: f32) -> f32 {
         match self {
             Vectors::Vecmath => 0.0 + first,
@@ -39,7 +39,7 @@ impl Vectors {
         }
     }
 
-    /// A vector of length 1, or of no numbers.
+    /// Normalizes a vector; NaN for a zero vector.
     pub fn unit(self, v: Vec3) -> Vec3 {
         match self {
             Vectors::Vecmath => v / v.length(),
@@ -48,53 +48,54 @@ impl Vectors {
     }
 }
 
-/// How an official program finds hits, resolved from a scene's dialect when it is compiled.
+/// Hit rules of an official program, resolved from a scene's dialect when it is compiled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HitRules {
-    /// The arithmetic of rays in transforms and of directions to lights. Under glm, every object
-    /// moves rays, also under the identity: as a difference of two points.
+    /// Arithmetic of rays in transforms and of directions to lights. With glm every object
+    /// transforms rays, even by the identity: as the difference of two points.
     pub vectors: Vectors,
-    /// Triangles are solved for by the inverse of a matrix. Otherwise by plane and areas.
+    /// True to intersect triangles by the inverse of a matrix, false by plane and areas.
     pub triangle_matrix: bool,
-    /// A triangle wins over earlier things that are hit at the same place.
+    /// True if a triangle wins over earlier objects that are hit at the same distance.
     pub tied_triangles: bool,
-    /// A plane is hit at the very start of a ray too.
+    /// True if a plane is also hit at the very start of a ray.
     pub closed_planes: bool,
-    /// A sphere whose crossings cannot be told is hit at 10000, as in the starter of 2016.
+    /// True if a sphere is hit at 10000 when its crossings are NaN or one is exactly at the ray's
+    /// start, as in the starter code of 2016.
     pub far_spheres: bool,
-    /// Meshes are walked by an octree that loses the far half of cells.
+    /// True to traverse meshes by an octree that loses the far half of cells.
     pub octree: bool,
 }
 
-/// All objects of a world, as an official program meets them.
+/// Objects of a world, in the form of an official program.
 #[derive(Clone, Debug)]
 pub struct CourseHits {
     rules: HitRules,
     things: Vec<Thing>,
 }
 
-/// One of them.
+/// An object.
 #[derive(Clone, Debug)]
 struct Thing {
-    /// Inverses of the transforms around it, from the outermost to the innermost.
+    /// Inverses of the enclosing transforms, outermost first.
     inverses: Vec<Matrix>,
-    /// How a mesh is walked.
+    /// Traversal of a mesh.
     walk: Option<Arc<Walk>>,
 }
 
-/// Order in which triangles of a mesh are tested.
+/// Traversal order of the triangles of a mesh.
 #[derive(Debug)]
 enum Walk {
-    /// All that a ray may meet; the order does not matter.
+    /// BVH of all triangles; their order does not matter.
     Boxes(Bvh),
-    /// Those of the cells that the starter's octree visits.
+    /// Triangles of the cells that the starter code's octree visits.
     Octree(Octree),
 }
 
 impl CourseHits {
     /// Prepares the objects of a world.
     pub(crate) fn new(rules: HitRules, objects: &[Object]) -> Self {
-        // Objects share meshes.
+        // Objects may share meshes.
         let mut walks: HashMap<*const MeshTree, Arc<Walk>> = HashMap::new();
         let things = objects.iter().map(|object| {
             let walk = match &object.geometry {
@@ -110,7 +111,7 @@ impl CourseHits {
         CourseHits { rules, things: things.collect() }
     }
 
-    /// The first hit in a ray's interval.
+    /// Finds the first hit in a ray's interval.
     pub(crate) fn closest<T: TraversalCounter>(&self, objects: &[Object], ray: &Ray64, counter: &mut T) -> Option<Hit> {
         let mut best: Option<Hit> = None;
         for (number, (thing, object)) in (0..).zip(self.things.iter().zip(objects)) {
@@ -139,7 +140,7 @@ impl CourseHits {
                         offer(Some(crossing), part);
                     }
                 }
-                // The course has no such shapes.
+                // The course does not have these shapes.
                 Geometry::Primitive(_) | Geometry::Solid(_) => {
                     let found = object.closest(number, ray, false, counter);
                     let found = found.filter(|(crossing, _)| limits.takes(crossing.t, false));
@@ -152,7 +153,7 @@ impl CourseHits {
         best
     }
 
-    /// A ray in the space of a thing.
+    /// Transforms a ray to the space of an object.
     fn local(&self, thing: &Thing, ray: &Ray) -> Ray {
         let mut local = *ray;
         match self.rules.vectors {
@@ -171,7 +172,7 @@ impl CourseHits {
         local
     }
 
-    /// Bytes in memory.
+    /// Returns the size in bytes.
     pub fn memory_usage(&self) -> usize {
         let walk = |thing: &Thing| match thing.walk.as_deref() {
             Some(Walk::Boxes(bvh)) => bvh.memory_usage(),
@@ -183,7 +184,7 @@ impl CourseHits {
 }
 
 impl Thing {
-    /// The first hit of a mesh, and its triangle.
+    /// Finds the first hit of a mesh, and its triangle.
     fn mesh<T: TraversalCounter>(
         &self,
         tree: &MeshTree,
@@ -206,7 +207,7 @@ impl Thing {
                 let Some(crossing) = shapes::triangle(tree.mesh.corners(part), ray, limits, rules) else {
                     return t_max;
                 };
-                // As if all were tested in the order of the file.
+                // The result is as if all triangles were tested in the order of the file.
                 let wins = best.is_none_or(|(hit, known)| {
                     crossing.t < hit.t || crossing.t == hit.t && (part > known) == rules.tied_triangles
                 });
@@ -227,7 +228,7 @@ impl Walk {
         if rules.octree {
             return Walk::Octree(Octree::new(boxes.collect()));
         }
-        // The triangle's own arithmetic may meet it a little beside its box.
+        // In this arithmetic, a ray may hit a triangle slightly outside its box.
         let whole = tree.bvh.bounds();
         let pad = 1e-5 * (whole.min.abs().max(whole.max.abs()) + whole.size());
         let padded: Vec<Aabb> = boxes.map(|b| Aabb { min: b.min - pad, max: b.max + pad }).collect();
@@ -236,8 +237,8 @@ impl Walk {
 }
 
 impl World {
-    /// The direction to a light and the way there, as the official program has them; `None` where
-    /// the world has an arithmetic of its own, or the light is none of the course's.
+    /// Returns the direction and distance to a light as in the official program; `None` with
+    /// Dürer's own arithmetic, or for lights that the course does not have.
     pub fn course_way(&self, light: usize, point: Vec3) -> Option<(Vec3, f32)> {
         let vectors = self.hit_rules()?.vectors;
         match &self.lights()[light] {

@@ -1,9 +1,9 @@
-//! The octree of the course's starter code, which loses hits.
+//! Octree of the course's starter code, which loses hits.
 //!
-//! A ray goes through the eight children of a cell by the `t` at which it crosses the cell's planes
-//! and middle planes. Where a component of its direction is exactly 0 these are infinite, their
-//! mean is NaN, and a comparison with NaN is false: the children behind a middle plane of that axis
-//! are never visited.
+//! A ray visits the eight children of a cell by the `t` at which it crosses the cell's planes and
+//! middle planes. If a component of its direction is exactly 0, these are infinite, their mean is
+//! NaN, and comparisons with NaN are false: the children behind the middle plane of that axis are
+//! never visited.
 //!
 //! Source: Revelles, Ureña, Lastra, *An Efficient Parametric Algorithm for Octree Traversal*, WSCG
 //! 2000; the constants are the starter code's.
@@ -11,16 +11,16 @@
 use durer_scene::math::{Aabb, Ray, Vec3};
 use std::ops::Range;
 
-/// A cell of more triangles is divided.
+/// Number of triangles above which a cell is divided.
 const MOST: usize = 7;
-/// Cells of this level are divided still.
+/// Deepest level whose cells are divided.
 const LAST_LEVEL: u32 = 8;
-/// No more is divided where cells hold so many triangles in all, beside so many times those of the
-/// mesh: large triangles that cross each other would fill memory.
+/// Division stops if all cells together hold `PLENTY` triangles plus `TIMES` those of the mesh:
+/// large intersecting triangles would fill the memory.
 const PLENTY: usize = 1 << 20;
 const TIMES: usize = 64;
 
-/// A tree of cells over the boxes of triangles.
+/// Tree of cells over the boxes of triangles.
 #[derive(Debug)]
 pub(super) struct Octree {
     bounds: Aabb,
@@ -31,14 +31,14 @@ pub(super) struct Octree {
 
 #[derive(Clone, Debug)]
 enum Cell {
-    /// The first of eight cells: the bits 4, 2 and 1 of a child's place say that it lies in the
-    /// upper half along x, y and z.
+    /// Index of the first of eight children: the bits 4, 2 and 1 of a child's offset mark the upper
+    /// half along x, y and z.
     Divided(u32),
-    /// A range of triangles.
+    /// Range of triangles.
     Whole(Range<u32>),
 }
 
-/// The `t` at which a ray enters and leaves a cell along each axis.
+/// `t` at which a ray enters and leaves a cell along each axis.
 #[derive(Clone, Copy)]
 struct Span {
     enter: [f32; 3],
@@ -54,7 +54,7 @@ impl Octree {
         octree
     }
 
-    /// Bytes in memory.
+    /// Returns the size in bytes.
     pub fn memory_usage(&self) -> usize {
         size_of_val(&*self.cells) + size_of_val(&*self.triangles)
     }
@@ -83,9 +83,10 @@ impl Octree {
         }
     }
 
-    /// Offers the triangles of the cells that a ray visits, in that order; some more than once.
+    /// Offers the triangles of the cells that a ray visits, in order of visits; some more than
+    /// once.
     pub fn walk(&self, ray: &Ray, offer: &mut impl FnMut(u32)) {
-        // A ray that runs backwards along an axis is mirrored, and so are the children.
+        // Mirror the axes along which the ray runs backwards, and the children with them.
         let (mut origin, mut dir, mut mirrored) = (ray.origin, ray.dir, 0);
         for axis in 0..3 {
             if dir[axis] < 0.0 {
@@ -96,7 +97,7 @@ impl Octree {
         }
         let at = |planes: Vec3| [0, 1, 2].map(|axis| (planes[axis] - origin[axis]) * (1.0 / dir[axis]));
         let span = Span { enter: at(self.bounds.min), leave: at(self.bounds.max) };
-        // The comparisons of C++: with NaN, the first stays.
+        // Comparisons as in C++: with NaN, the first operand stays.
         let larger = |a: f32, b: f32| if a < b { b } else { a };
         let smaller = |a: f32, b: f32| if b < a { b } else { a };
         let [x, y, z] = span.enter;
@@ -125,7 +126,7 @@ impl Octree {
                 leave: [0, 1, 2].map(|axis| if is_upper[axis] { leave[axis] } else { middle[axis] }),
             };
             self.visit(children + (child ^ mirrored), mirrored, own, offer);
-            // Out through the plane that comes first, and no child is behind an outer one.
+            // Leave through the nearest exit plane; nothing lies behind an outer plane.
             let axis = first_plane(own.leave);
             if is_upper[axis] {
                 return;
@@ -135,10 +136,10 @@ impl Octree {
     }
 }
 
-/// The child that a ray enters first.
+/// Returns the child that a ray enters first.
 fn first_child([x, y, z]: [f32; 3], middle: [f32; 3]) -> usize {
-    // The axis of the plane that is crossed last on the way in.
-    // NaN compares as false, as in the official programs.
+    // Axis of the entry plane that is crossed last. NaN compares as false, as in the official
+    // programs.
     let (axis, t) = match (x > y, x > z, y > z) {
         (true, true, _) => (0, x),
         (false, _, true) => (1, y),
@@ -147,7 +148,7 @@ fn first_child([x, y, z]: [f32; 3], middle: [f32; 3]) -> usize {
     (0..3).filter(|&other| other != axis && middle[other] < t).map(|other| 4 >> other).sum()
 }
 
-/// The axis of the plane that a ray leaves through.
+/// Returns the axis of the plane through which a ray leaves.
 fn first_plane([x, y, z]: [f32; 3]) -> usize {
     match (x < y, x < z, y < z) {
         (true, true, _) => 0,

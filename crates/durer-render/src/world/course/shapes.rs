@@ -4,28 +4,28 @@ use super::HitRules;
 use durer_scene::math::{Ray, Vec2, Vec3};
 use durer_scene::shape::{Plane, Sphere};
 
-/// A ray's crossing with a thing.
+/// Crossing of a ray with an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Crossing {
     /// Position along the ray.
     pub t: f32,
-    /// The second and third barycentric coordinate on a triangle.
+    /// Second and third barycentric coordinate on a triangle.
     pub uv: Vec2,
 }
 
 /// Interval in which hits count.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
-    /// Hits lie beyond this.
+    /// Minimum `t`, excluded.
     pub t_min: f32,
-    /// Hits lie before this.
+    /// Maximum `t`.
     pub t_max: f32,
-    /// The nearest hit so far.
+    /// Nearest hit so far.
     pub best: Option<f32>,
 }
 
 impl Limits {
-    /// True if a hit counts; with `ties` also at the place of the best. False for NaN.
+    /// True if a hit counts; with `ties` also at the distance of the best hit. False for NaN.
     pub fn takes(&self, t: f32, ties: bool) -> bool {
         t > self.t_min && self.is_nearer(t, ties)
     }
@@ -35,7 +35,7 @@ impl Limits {
     }
 }
 
-/// |o + t d - c|^2 = r^2 by the usual formula, with all its cancellation.
+/// Solves |o + t d - c|^2 = r^2 by the quadratic formula, without protection from cancellation.
 pub(super) fn sphere(sphere: &Sphere, ray: &Ray, limits: Limits, far: bool) -> Option<Crossing> {
     let Ray { dir, t_min, .. } = *ray;
     let origin = ray.origin - sphere.center;
@@ -54,14 +54,14 @@ pub(super) fn sphere(sphere: &Sphere, ray: &Ray, limits: Limits, far: bool) -> O
     let t = match () {
         () if near > t_min => near,
         () if later > t_min && (near < t_min || !far) => later,
-        // One crossing is exactly where the ray starts, or none is a number.
+        // A crossing is exactly at the ray's start, or the crossings are NaN.
         () if far => 10_000.0,
         () => return None,
     };
     limits.takes(t, false).then_some(Crossing { t, uv: Vec2::ZERO })
 }
 
-/// n·(o + t d) = offset, with n as written.
+/// Solves n·(o + t d) = offset, with n as written.
 pub(super) fn plane(plane: &Plane, ray: &Ray, limits: Limits, closed: bool) -> Option<Crossing> {
     let n = plane.normal;
     let t = (plane.offset - n.dot(ray.origin)) / n.dot(ray.dir);
@@ -69,18 +69,18 @@ pub(super) fn plane(plane: &Plane, ray: &Ray, limits: Limits, closed: bool) -> O
     (begins && limits.is_nearer(t, false)).then_some(Crossing { t, uv: Vec2::ZERO })
 }
 
-/// A triangle, whichever side is seen.
+/// Intersects a triangle, from either side.
 pub(super) fn triangle(corners: [Vec3; 3], ray: &Ray, limits: Limits, rules: HitRules) -> Option<Crossing> {
     let (t, uv) = if rules.triangle_matrix { by_matrix(corners, ray)? } else { by_areas(corners, ray)? };
     limits.takes(t, rules.tied_triangles).then_some(Crossing { t, uv })
 }
 
-/// The solution of a - o = beta (a - b) + gamma (a - c) + t d, by the inverse of the matrix of the
-/// three columns.
+/// Solves a - o = beta (a - b) + gamma (a - c) + t d, by the inverse of the matrix of the three
+/// columns.
 fn by_matrix([a, b, c]: [Vec3; 3], ray: &Ray) -> Option<(f32, Vec2)> {
     let [x, y, z] = [a - b, a - c, ray.dir];
     let to = a - ray.origin;
-    // Rows of the matrix of cofactors are rows of the inverse times the determinant.
+    // Rows of the cofactor matrix are rows of the inverse times the determinant.
     let minor = |p: f32, q: f32, r: f32, s: f32| p * s - q * r;
     let cofactors = [
         [minor(y.y, z.y, y.z, z.z), -minor(y.x, z.x, y.z, z.z), minor(y.x, z.x, y.y, z.y)],
@@ -94,7 +94,7 @@ fn by_matrix([a, b, c]: [Vec3; 3], ray: &Ray) -> Option<(f32, Vec2)> {
     (beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0).then_some((t, Vec2::new(beta, gamma)))
 }
 
-/// The crossing with the plane, and the areas of the three triangles around that point.
+/// Returns the crossing with the plane, and the areas of the three triangles around that point.
 fn by_areas([a, b, c]: [Vec3; 3], ray: &Ray) -> Option<(f32, Vec2)> {
     let n = (b - a).cross(c - a);
     let t = n.dot(a - ray.origin) / n.dot(ray.dir);

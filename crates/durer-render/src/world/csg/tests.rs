@@ -111,7 +111,7 @@ fn goes_out(world: &World, ray: impl Into<Ray64>, hit: &Hit) -> bool {
 }
 
 #[test]
-fn solids_have_the_points_that_their_words_say() {
+fn solids_contain_the_points_of_their_operations() {
     // Distance to a surface below which single precision may err.
     const DISTANCE: f64 = 1e-4;
     let wanted = std::env::var("DURER_SOLID_POINTS").ok().and_then(|n| n.parse().ok()).unwrap_or(20_000);
@@ -154,7 +154,7 @@ fn solids_have_the_points_that_their_words_say() {
             }
         }
     }
-    println!("{points} points, {inside} inside, none wrong; {near} nearer than {DISTANCE} to a surface left out");
+    println!("{points} points, {inside} inside, none wrong; skipped {near} closer than {DISTANCE} to a surface");
     assert!(inside > points / 10 && near < points / 10, "{points} {inside} {near}");
 }
 
@@ -179,7 +179,7 @@ fn volume(solid: &scene::Object, random: &mut Random, rays: usize) -> (f64, f64)
 }
 
 #[test]
-fn volumes_are_those_of_closed_forms() {
+fn volumes_match_closed_forms() {
     use std::f64::consts::PI;
     let mut random = Random(22);
     let rod = |axis: Vec3, radius: f32| shape(Cylinder { base: -1.8 * axis, top: 1.8 * axis, radius });
@@ -192,8 +192,8 @@ fn volumes_are_those_of_closed_forms() {
     let half = shape(Plane { normal: Vec3::X, offset: 0.5 });
     use Operation::*;
     for (name, solid, expected) in [
-        ("two rods crossing: Archimedes, Steinmetz", join(Intersection, &[&x, &y]), 16.0 / 3.0),
-        ("three of them", join(Intersection, &[&x, &y, &z]), 8.0 * (2.0 - 2f64.sqrt())),
+        ("two crossing rods (Archimedes, Steinmetz)", join(Intersection, &[&x, &y]), 16.0 / 3.0),
+        ("three crossing rods", join(Intersection, &[&x, &y, &z]), 8.0 * (2.0 - 2f64.sqrt())),
         ("a cube without its ball", join(Difference, &[&cube, &unit]), 8.0 - 4.0 * PI / 3.0),
         ("a lens of two balls", join(Intersection, &[&unit, &ball([1.0, 0.0, 0.0], 1.0)]), 2.0 * cap(0.5)),
         ("two balls", join(Merge, &[&unit, &ball([1.0, 0.0, 0.0], 1.0)]), 8.0 * PI / 3.0 - 2.0 * cap(0.5)),
@@ -212,7 +212,7 @@ fn volumes_are_those_of_closed_forms() {
         ),
     ] {
         let (found, error) = volume(&solid, &mut random, 40_000);
-        assert!((found - expected).abs() < 3.0 * error, "{name}: {found} +- {error}, not {expected}");
+        assert!((found - expected).abs() < 3.0 * error, "{name}: {found} +- {error}, expected {expected}");
         assert!(error < 0.02 * expected, "{name}: {error}");
     }
 }
@@ -235,7 +235,7 @@ fn assert_same(a: &scene::Object, b: &scene::Object, random: &mut Random) -> usi
 }
 
 #[test]
-fn laws_of_sets_hold_to_the_bit() {
+fn set_identities_hold_bit_for_bit() {
     use Operation::*;
     let mut random = Random(23);
     let mut part = || loop {
@@ -277,7 +277,7 @@ fn laws_of_sets_hold_to_the_bit() {
 }
 
 #[test]
-fn faces_that_coincide_leave_no_skin() {
+fn coincident_faces_leave_no_skin() {
     use Operation::*;
     let mut random = Random(25);
     let long = cuboid([0.0; 3], [0.3, 0.1, 0.1]);
@@ -328,7 +328,7 @@ fn faces_that_coincide_leave_no_skin() {
 }
 
 #[test]
-fn each_surface_has_the_material_of_its_part() {
+fn surfaces_have_the_material_of_their_part() {
     let text = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }\n\
         Materials { Material { } Material { } Material { } } Group {
         Difference { MaterialIndex 1 Box { min -1 -1 -1 max 1 1 1 }
@@ -352,7 +352,7 @@ fn each_surface_has_the_material_of_its_part() {
 }
 
 #[test]
-fn a_lens_of_two_balls_focuses_where_the_lensmaker_says() {
+fn lens_of_two_spheres_focuses_by_the_lensmakers_equation() {
     // 1/f = (n - 1) (2/R - (n - 1) d / (n R^2)), measured from behind the lens by f (1 - (n - 1) d
     // / (n R)).
     let (n, radius, offset) = (1.5f64, 2.2f64, 1.9f64);
@@ -397,7 +397,7 @@ fn a_union_keeps_inner_surfaces_and_a_merge_does_not() {
 }
 
 #[test]
-fn parts_apart_from_each_other_are_things_of_their_own() {
+fn disjoint_parts_become_separate_objects() {
     use Operation::*;
     let balls: Vec<scene::Object> = (0..1000).map(|i| ball([3.0 * i as f32, 0.0, 0.0], 1.0)).collect();
     let list: Vec<&scene::Object> = balls.iter().collect();
@@ -421,7 +421,7 @@ fn parts_apart_from_each_other_are_things_of_their_own() {
 }
 
 #[test]
-fn a_chain_of_many_parts_is_seen_as_all_of_them_are() {
+fn cluster_of_many_parts_matches_its_parts() {
     // One cluster with its own tree, from outside and inside.
     let mut random = Random(26);
     let balls: Vec<scene::Object> =
@@ -456,7 +456,7 @@ fn a_chain_of_many_parts_is_seen_as_all_of_them_are() {
 
 /// Compares a tree over subtracted parts, clipped to the bounds of the whole, with all parts.
 #[test]
-fn parts_matter_in_the_box_of_the_whole_alone() {
+fn parts_are_clipped_to_the_bounds_of_the_whole() {
     let (mut random, mut hits) = (Random(28), 0);
     let operand = |shape| Solid::Operand(Arc::new(world(&shape).objects()[0].clone()));
     for _ in 0..20 {
@@ -479,7 +479,7 @@ fn parts_matter_in_the_box_of_the_whole_alone() {
 }
 
 #[test]
-fn rays_that_leave_a_solid_do_not_meet_it_there() {
+fn rays_that_leave_a_solid_do_not_hit_it_at_their_start() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("cube.obj"), CUBE).unwrap();
     let mut random = Random(27);
@@ -515,10 +515,9 @@ fn rays_that_leave_a_solid_do_not_meet_it_there() {
     assert!(count > 10_000, "{count}");
 }
 
-/// As many crossings coincide as there are parts: each is visited a few times, not once for each
-/// other.
+/// Coincident crossings, as many as parts: each is visited a few times, not once for each other.
 #[test]
-fn coincident_parts_do_not_cost_the_square_of_their_number() {
+fn coincident_parts_take_linear_time() {
     let count = 30_000;
     for (operation, there) in [(Operation::Merge, true), (Operation::Xor, false), (Operation::Intersection, true)] {
         let parts = vec![ball([0.0; 3], 1.0); count];

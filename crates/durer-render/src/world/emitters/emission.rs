@@ -15,7 +15,7 @@ use std::f32::consts::PI;
 pub struct Target {
     /// Centre.
     pub center: Vec3,
-    /// Its radius.
+    /// Radius.
     pub radius: f32,
     /// Index of the object.
     pub object: u32,

@@ -22,7 +22,7 @@ const MANY: usize = 10_000;
 /// An emissive part of an object that can be sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AreaLight {
-    /// Its shape.
+    /// Shape of the part.
     pub form: EmitterShape,
     /// Unit normal; zero for curved shapes.
     pub normal: Vec3,
@@ -541,7 +541,7 @@ mod tests {
     use durer_scene::sampler::sample_2d;
 
     #[test]
-    fn each_kind_of_light_is_chosen_as_often_as_it_says_also_where_it_brings_nothing() {
+    fn each_kind_of_light_is_chosen_with_its_stated_probability() {
         let world = read(
             "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }
             Background { sun 0.3 0.8 0.2 turbidity 3 }
@@ -583,7 +583,7 @@ mod tests {
             }
             // Sobol points are nearly uniform.
             for (found, said) in found.iter().zip(said) {
-                assert!((*found as f32 / count as f32 - said).abs() < 2e-3, "{n}: {found} of {count}, not {said}");
+                assert!((*found as f32 / count as f32 - said).abs() < 2e-3, "{n}: {found} of {count}, expected {said}");
             }
         }
     }

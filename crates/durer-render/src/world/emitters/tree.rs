@@ -192,7 +192,7 @@ fn shares(mut importances: Eight) -> Eight {
     importances
 }
 
-/// Not for NaN, so that it is one instruction.
+/// Maximum of two numbers that are not NaN, in one instruction.
 #[inline(always)]
 fn largest(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }

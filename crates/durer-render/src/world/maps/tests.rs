@@ -59,7 +59,7 @@ fn parameters(world: &World) -> Parameters {
 const BALL: &str = "Sphere { center 0 0 0 radius 1 }";
 
 #[test]
-fn every_picture_changes_its_parameter() {
+fn every_texture_changes_its_parameter() {
     let grey = |_, _| [100, 150, 200];
     let folder = folder("grey", &[("grey.ppm", 2, &grey)]);
     // One sphere for each, so that tables are built once.
@@ -139,7 +139,7 @@ fn number_of(name: &str) -> usize {
 }
 
 #[test]
-fn a_direction_in_red_and_green_is_an_angle() {
+fn direction_in_red_and_green_gives_an_angle() {
     let up = |_, _| [128, 255, 0];
     let folder = folder("angle", &[("up.ppm", 1, &up)]);
     let text = "specularAnisotropy 0.5 specularRotation 0.1 specularRotationTexture up.ppm:angle";
@@ -165,7 +165,7 @@ fn normal(world: &World, origin: Vec3, dir: Vec3) -> [Vec3; 2] {
 }
 
 #[test]
-fn a_ramp_of_heights_tilts_a_wall() {
+fn bump_ramp_tilts_the_normals_of_a_wall() {
     // From black on the left to white on the right, and from black at the bottom to white at the
     // top.
     let (right, up) = (|x, _| [x as u8; 3], |_, y| [255 - y as u8; 3]);
@@ -185,7 +185,7 @@ fn a_ramp_of_heights_tilts_a_wall() {
 }
 
 #[test]
-fn a_ramp_of_heights_around_a_ball() {
+fn bump_ramp_tilts_the_normals_of_a_sphere() {
     // Brighter eastwards: by 1 around the whole sphere, so the slope along a circle of latitude is
     // h / (2 pi r cos latitude).
     let folder = folder("ball", &[("east.ppm", 256, &|x, _| [x as u8; 3])]);
@@ -211,7 +211,7 @@ fn a_ramp_of_heights_around_a_ball() {
 }
 
 #[test]
-fn flat_pictures_bend_nothing_on_any_shape() {
+fn flat_maps_keep_the_normals_of_every_shape() {
     let folder = folder("flat", &[("flat.ppm", 4, &|_, _| [128, 128, 255]), ("grey.ppm", 4, &|_, _| [77; 3])]);
     for shape in [
         "Sphere { center 0 0 0 radius 1 }",

@@ -2,7 +2,7 @@ use super::*;
 use durer_scene::math::random::Random;
 
 #[test]
-fn bent_normals_let_mirrors_show_what_is_outside_and_change_steadily() {
+fn bent_normals_reflect_outwards_and_change_continuously() {
     let mut random = Random(11);
     let mut number = || random.below(2_000_001) as f32 * 1e-6 - 1.0;
     let (mut kept, mut bent_ones) = (0, 0);
@@ -38,7 +38,7 @@ fn bent_normals_let_mirrors_show_what_is_outside_and_change_steadily() {
 }
 
 #[test]
-fn the_true_normal_is_never_bent() {
+fn geometric_normal_is_never_bent() {
     for z in [1e-7, 1e-3, 0.5, 1.0_f32] {
         let wo = Vec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z);
         assert_eq!(bent(Vec3::Z, Vec3::Z, wo), Vec3::Z);

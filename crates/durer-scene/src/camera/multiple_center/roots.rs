@@ -1,8 +1,8 @@
-//! All roots of a polynomial between 0 and 1, from its coefficients in Bernstein's form.
+//! Roots of a polynomial between 0 and 1, from its Bernstein coefficients.
 //!
-//! A polynomial has at most as many roots in an interval as its coefficients there change sign, and
-//! one where they do once. Halving the interval by de Casteljau's rule separates the roots; each is
-//! then closed in on by false position.
+//! A polynomial has at most as many roots in an interval as its coefficients there have sign
+//! changes, and exactly one for one sign change. Halving the interval by de Casteljau's rule
+//! separates the roots; false position then refines each.
 //!
 //! Source: Lane, Riesenfeld, *Bounds on a Polynomial*, BIT 21, 1981; Farin, *Curves and Surfaces
 //! for CAGD*, chapter 4.
@@ -12,10 +12,10 @@ use glam::DVec3;
 /// Coefficients of a polynomial of degree 6.
 pub type Sextic = [f64; 7];
 
-/// Roots nearer to each other than this are told once.
+/// Roots closer to each other than this are reported once.
 const NARROWEST: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// The scalar product of two cubics with vectors as coefficients.
+/// Dot product of two cubics with vector coefficients.
 pub fn dot(a: &[DVec3; 4], b: &[DVec3; 4]) -> Sextic {
     const THREE: [f64; 4] = [1.0, 3.0, 3.0, 1.0];
     const SIX: [f64; 7] = [1.0, 6.0, 15.0, 20.0, 15.0, 6.0, 1.0];
@@ -28,7 +28,7 @@ pub fn dot(a: &[DVec3; 4], b: &[DVec3; 4]) -> Sextic {
     product
 }
 
-/// Calls `found` with each root, in order. A polynomial that is 0 everywhere has none.
+/// Calls `found` with each root, in ascending order. The zero polynomial has none.
 pub fn each(polynomial: Sextic, found: &mut dyn FnMut(f64)) {
     if polynomial.iter().any(|c| *c != 0.0) {
         search(&polynomial, 0.0, 1.0, found);
@@ -36,7 +36,7 @@ pub fn each(polynomial: Sextic, found: &mut dyn FnMut(f64)) {
 }
 
 fn search(c: &Sextic, start: f64, width: f64, found: &mut dyn FnMut(f64)) {
-    // Zero counts as positive, so that a root on a border belongs to one side of it.
+    // Zero counts as positive, so a root on a border belongs to one side only.
     let changes = c.windows(2).filter(|pair| (pair[0] < 0.0) != (pair[1] < 0.0)).count();
     let ends_differ = (c[0] < 0.0) != (c[6] < 0.0);
     match changes {
@@ -55,7 +55,7 @@ fn search(c: &Sextic, start: f64, width: f64, found: &mut dyn FnMut(f64)) {
     }
 }
 
-/// The coefficients on both sides of a point.
+/// Splits the coefficients at a point (de Casteljau).
 fn split(c: &Sextic, at: f64) -> (Sextic, Sextic) {
     let (mut left, mut right) = ([0.0; 7], *c);
     for (i, first) in left.iter_mut().enumerate() {
@@ -67,7 +67,8 @@ fn split(c: &Sextic, at: f64) -> (Sextic, Sextic) {
     (left, right)
 }
 
-/// The only root, by false position with Illinois' rule: an end that stays twice counts half.
+/// Returns the only root, by false position with the Illinois rule: an end that stays twice counts
+/// half.
 fn close_in(c: &Sextic) -> f64 {
     let value = |at: f64| split(c, at).1[0];
     let ((mut a, mut at_a), (mut b, mut at_b)) = ((0.0, c[0]), (1.0, c[6]));
@@ -92,7 +93,7 @@ mod tests {
     use super::*;
     use crate::math::random::Random;
 
-    /// The polynomial with these roots, in Bernstein's form: products of (s - root).
+    /// Polynomial with the given roots, in Bernstein form: a product of (s - root).
     fn with_roots(roots: &[f64; 6]) -> Sextic {
         let mut c = vec![1.0];
         for root in roots {
@@ -109,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn all_roots_between_0_and_1_are_found_and_no_others() {
+    fn finds_exactly_the_roots_between_0_and_1() {
         let mut random = Random(1);
         for _ in 0..20_000 {
             let mut roots: [f64; 6] = std::array::from_fn(|_| f64::from(random.between(-1.5, 2.5)));
@@ -128,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn a_polynomial_without_roots_has_none_and_zero_has_none() {
+    fn polynomial_without_roots_and_zero_polynomial_give_none() {
         let mut found = 0;
         each([0.0; 7], &mut |_| found += 1);
         each([1.0, -0.1, 1.0, 1.0, 1.0, -0.1, 1.0], &mut |_| found += 1);

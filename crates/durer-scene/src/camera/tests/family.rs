@@ -1,4 +1,4 @@
-//! Cameras that see far around, at places whose answer can be written down.
+//! Wide-angle cameras, compared with closed-form directions and solid angles.
 
 use super::super::cave::CaveCamera;
 use super::super::cube_map::{CubeMapCamera, Layout};
@@ -12,17 +12,17 @@ use super::super::push_broom::PushBroomCamera;
 use super::*;
 use std::f64::consts::PI;
 
-/// The ray of a camera in our own dialect.
+/// Ray of a camera in Dürer's own dialect.
 pub fn ray(camera: &impl Projection, sample: CameraSample) -> Option<Ray> {
     camera.ray(&CameraBasis::of(camera, OURS), &sample)
 }
 
-/// What a point of the picture sees, x to the right, y up, -z ahead where nothing else is said.
+/// Direction that a point of the picture sees: by default x is right, y up and -z ahead.
 fn dir(camera: &impl Projection, x: f32, y: f32) -> Vec3 {
     ray(camera, CameraSample::at(Vec2::new(x, y))).unwrap().dir
 }
 
-/// The solid angle of a whole picture, by the middle of each of 480 x 480 cells.
+/// Solid angle of a whole picture, by the midpoint rule with 480 x 480 cells.
 fn solid_angle(camera: &impl Projection) -> f64 {
     const CELLS: u32 = 480;
     let frame = CameraBasis::of(camera, OURS);
@@ -38,7 +38,7 @@ fn pictures_cover_the_solid_angles_of_their_fields_of_view() {
     let cap = |degrees: f64| 2.0 * PI * (1.0 - libm::cos((0.5 * degrees).to_radians()));
     let check = |camera: Camera, expected: f64| {
         let found = solid_angle(&camera);
-        // Cells on a rim are counted whole or not at all.
+        // A cell on the rim counts fully or not at all.
         assert!((found / expected - 1.0).abs() < 0.004, "{found} for {expected}: {camera:?}");
     };
     for (projection, angle) in [
@@ -53,8 +53,7 @@ fn pictures_cover_the_solid_angles_of_their_fields_of_view() {
     }
     check(ParabolicCamera::default().into(), cap(210.0));
     let viewer = Vec3::new(0.2, -0.1, 0.3);
-    // From a dome's middle a hemisphere is seen, wherever the projector is, if it throws light on
-    // all of it.
+    // The centre of a dome sees a hemisphere for any projector that illuminates the whole dome.
     let dome = OmnimaxCamera { angle: 300.0, projector: viewer, ..OmnimaxCamera::default() };
     check(dome.into(), cap(180.0));
     check(EquirectangularCamera::default().into(), 4.0 * PI);
@@ -65,7 +64,7 @@ fn pictures_cover_the_solid_angles_of_their_fields_of_view() {
     for layout in [Layout::Cross, Layout::Strip] {
         check(CubeMapCamera { layout, ..CubeMapCamera::default() }.into(), 4.0 * PI);
     }
-    // Six walls around an eye off the middle are everything as well.
+    // Six walls around an off-centre eye cover the whole sphere too.
     let walls = vec![
         [-1.0, -1.0, -1.0, 1.0, -1.0, -1.0, -1.0, 1.0, -1.0],
         [1.0, -1.0, -1.0, 1.0, -1.0, 1.0, 1.0, 1.0, -1.0],
@@ -78,13 +77,13 @@ fn pictures_cover_the_solid_angles_of_their_fields_of_view() {
 }
 
 #[test]
-fn directions_in_the_pictures_lie_where_the_maps_say() {
+fn directions_match_the_map_projections() {
     let fisheye = FisheyeCamera::default();
     close(dir(&fisheye, 0.0, 0.0), Vec3::NEG_Z);
     close(dir(&fisheye, 1.0, 0.0), Vec3::X);
     close(dir(&fisheye, 0.0, -0.5), Vec3::new(0.0, -1.0, -1.0).normalize());
     assert_eq!(ray(&fisheye, CameraSample::at(Vec2::new(0.8, 0.7))), None);
-    // Everything that is level lies on the circle r = h; what is above the mirror is in the middle.
+    // All horizontal directions lie on the circle r = h; the direction up is at the centre.
     let mirror = ParabolicCamera::default();
     let horizon = (libm::tan(PI / 4.0) / libm::tan(105f64.to_radians() / 2.0)) as f32;
     close(dir(&mirror, 0.0, 0.0), Vec3::Y);
@@ -120,17 +119,17 @@ fn directions_in_the_pictures_lie_where_the_maps_say() {
 }
 
 #[test]
-fn a_filter_that_reaches_over_a_seam_continues_the_face() {
+fn filter_across_a_seam_continues_the_face() {
     let cross = CubeMapCamera::default();
-    // A pixel of the up face, at its right edge in the picture: to the right of it there is
-    // nothing, or another face.
+    // A pixel of the up face at its right edge, where the picture continues with black or with
+    // another face.
     let edge = Vec2::new(0.0, 0.5);
     let beyond = CameraSample { point: edge + Vec2::new(0.01, 0.0), ..CameraSample::at(edge - Vec2::new(0.01, 0.0)) };
     let on_face = ray(&cross, CameraSample { point: edge, ..beyond }).unwrap().dir;
     let further = ray(&cross, beyond).unwrap().dir;
     assert!(on_face.distance(further) < 0.04 && further.x > further.y, "{on_face} {further}");
-    // Over the left border of the sphere it goes on where the right one ends; over the pole it
-    // comes down again.
+    // Past the left border, the sphere continues at the right border; past the pole, it continues
+    // downwards on the other side.
     let sphere = EquirectangularCamera::default();
     let left = CameraSample { point: Vec2::new(-1.01, 0.1), ..CameraSample::at(Vec2::new(-0.99, 0.1)) };
     close(ray(&sphere, left).unwrap().dir, dir(&sphere, 0.99, 0.1));
@@ -139,8 +138,8 @@ fn a_filter_that_reaches_over_a_seam_continues_the_face() {
 }
 
 #[test]
-fn walls_that_share_an_edge_show_the_same_along_it() {
-    // Left, front and right, 2 wide and 1.5 high each; eyes that turn and are not in the middle.
+fn walls_agree_along_their_common_edge() {
+    // Left, front and right walls, 2 wide and 1.5 high each; off-centre eyes that are turned.
     let walls = vec![
         [-1.0, 0.0, 1.0, -1.0, 0.0, -1.0, -1.0, 1.5, 1.0],
         [-1.0, 0.0, -1.0, 1.0, 0.0, -1.0, -1.0, 1.5, -1.0],
@@ -156,7 +155,7 @@ fn walls_that_share_an_edge_show_the_same_along_it() {
     };
     assert_eq!(camera.proportions(), Some(Vec2::new(6.0, 3.0)));
     // 600 x 300 pixels: the border between the last column of one wall and the first of the next,
-    // seen for both.
+    // sampled for both.
     let raster = Raster::new(600, 300, camera.proportions(), OURS);
     for (column, eye_row) in [(200.0, 0.0), (200.0, 150.0), (400.0, 0.0), (400.0, 150.0)] {
         for row in [0.5, 70.5, 149.5] {
@@ -166,7 +165,7 @@ fn walls_that_share_an_edge_show_the_same_along_it() {
             let (before, after) = (seen(column - 0.5), seen(column + 0.5));
             assert_eq!(before.origin, after.origin);
             close(before.dir, after.dir);
-            // And it is the ray to that edge of the room.
+            // It is also the ray to that edge in world space.
             let x = if column == 200.0 { -1.0 } else { 1.0 };
             let edge = Vec3::new(x, 1.5 * (1.0 - row / 150.0), -1.0);
             close(before.dir, (edge - before.origin).normalize());
@@ -176,7 +175,7 @@ fn walls_that_share_an_edge_show_the_same_along_it() {
     let origin = |y: f32| ray(&camera, CameraSample::at(Vec2::new(0.0, y))).unwrap().origin;
     let (left, right) = (origin(0.25), origin(-0.25));
     assert!((left.distance(right) - 0.2).abs() < 1e-6 && (right - left).dot(Vec3::new(1.0, 0.0, 0.5)) > 0.0);
-    // An eye that sees a wall from its edge, walls without extent or right angle are refused.
+    // Rejects an eye in the plane of a wall, and walls without extent or without a right angle.
     let refused = |camera: CaveCamera| assert!(camera.validate().is_err(), "{camera:?}");
     refused(CaveCamera { center: Vec3::new(5.0, 0.0, -1.0), eyes: Eyes::Middle, ..camera.clone() });
     refused(CaveCamera { walls: vec![[0.0; 9]], ..camera.clone() });
@@ -184,7 +183,7 @@ fn walls_that_share_an_edge_show_the_same_along_it() {
 }
 
 #[test]
-fn a_path_along_a_straight_line_is_a_push_broom() {
+fn straight_path_equals_a_push_broom() {
     let way = Vec3::new(3.0, 0.5, -0.5);
     let push = PushBroomCamera { start: -way, end: way, angle: 50.0, aspect: 3.0, ..PushBroomCamera::default() };
     let row = |u: f32| {
@@ -201,7 +200,7 @@ fn a_path_along_a_straight_line_is_a_push_broom() {
 }
 
 #[test]
-fn a_closed_path_is_smooth_where_it_closes_and_sees_all_sides() {
+fn closed_path_is_smooth_and_sees_all_sides() {
     let row = |k: i32| {
         let angle = f64::from(k).to_radians() * 30.0;
         [4.0 * libm::sin(angle) as f32, 0.0, 4.0 * libm::cos(angle) as f32, 0.0, 0.0, 0.0]
@@ -212,10 +211,10 @@ fn a_closed_path_is_smooth_where_it_closes_and_sees_all_sides() {
     let frame = CameraBasis::of(&camera, OURS);
     let at = |x: f32| CameraSample::at(Vec2::new(x, 0.0));
     close(ray(&camera, at(1.0)).unwrap().origin, ray(&camera, at(-1.0)).unwrap().origin);
-    // The footprint holds the path's slope.
+    // The footprint depends on the path's derivative.
     let slope = |x: f32| camera.footprint(&frame, &at(x), 3.0);
     assert!((slope(1.0) - slope(-1.0)).abs() < 1e-4 * slope(1.0), "{} {}", slope(1.0), slope(-1.0));
-    // A point beside the middle is seen from before and from behind.
+    // A point beside the centre is seen from the front and from the back.
     let mut found = Vec::new();
     camera.project(&frame, Vec3::new(0.5, 0.1, 0.0), Vec2::ZERO, &mut |point| found.push(point));
     assert_eq!(found.len(), 2, "{found:?}");

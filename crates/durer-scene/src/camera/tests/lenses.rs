@@ -1,4 +1,4 @@
-//! Lenses, holes, pairs of eyes and distorted photographs.
+//! Lenses, pinholes, stereo pairs and distorted photographs.
 
 use super::super::aperture;
 use super::super::pinhole::PinholeCamera;
@@ -11,12 +11,12 @@ use crate::math::random::Random;
 use glam::DVec2;
 
 #[test]
-fn points_fill_the_opening_evenly() {
+fn aperture_samples_are_uniform() {
     let mut random = Random(1);
     for blades in [0, 3, 4, 6, 9] {
         const COUNT: usize = 200_000;
-        // Mean and mean square radius of a disc of radius 1, or of a regular polygon around it: (2
-        // + cos 2π/n) / 6.
+        // Mean square radius of a disc of radius 1, or of a regular polygon in it: (2 + cos 2π/n) /
+        // 6. The mean is 0.
         let expected = match blades {
             0 => 0.5,
             n => (2.0 + libm::cos(std::f64::consts::TAU / f64::from(n))) / 6.0,
@@ -29,7 +29,7 @@ fn points_fill_the_opening_evenly() {
             squares += point.length_squared();
         }
         let n = COUNT as f64;
-        // Five standard errors, with room: no coordinate and no square exceeds 1.
+        // Five standard errors; no coordinate and no square exceeds 1.
         let error = 5.0 / n.sqrt();
         assert!((sum / n).length() < error && (squares / n - expected).abs() < error, "{blades}: {sum} {squares}");
         assert_eq!(aperture::sample(Vec2::splat(0.5), blades, 20.0), DVec2::ZERO);
@@ -39,7 +39,7 @@ fn points_fill_the_opening_evenly() {
 }
 
 #[test]
-fn all_rays_of_a_point_meet_in_the_plane_of_focus_and_nowhere_else() {
+fn rays_of_a_picture_point_meet_only_in_the_focus_plane() {
     let camera = ThinLensCamera {
         center: Vec3::Y,
         angle: 90.0,
@@ -56,19 +56,19 @@ fn all_rays_of_a_point_meet_in_the_plane_of_focus_and_nowhere_else() {
         let ray = ray(&camera, sample).unwrap();
         let at_depth = |depth: f32| ray.at((depth - ray.origin.z) / ray.dir.z);
         assert!(at_depth(-4.0).distance(Vec3::new(2.0, 1.0, -4.0)) < 1e-5);
-        // Twice as far, the circle of confusion is as wide as the lens.
+        // At twice the focus distance, the circle of confusion is as wide as the lens.
         let off = at_depth(-8.0) - Vec3::new(4.0, 1.0, -8.0);
         assert!(off.length() <= 0.25 + 1e-5 && off.distance(-(ray.origin - Vec3::Y)) < 1e-5);
         assert!(ray.origin.distance(Vec3::Y) <= 0.25);
     }
-    // Without an opening and a shift it is the plain camera.
+    // Without aperture and shift it equals the perspective camera.
     let (plain, lens) = (PerspectiveCamera::default(), ThinLensCamera::default());
     let sample = CameraSample { lens: Vec2::new(0.1, 0.9), ..CameraSample::at(point) };
     close(ray(&plain, sample).unwrap().dir, ray(&lens, sample).unwrap().dir);
 }
 
 #[test]
-fn a_hole_blurs_far_points_to_its_own_size_and_near_ones_more() {
+fn pinhole_blurs_near_points_more_than_far_ones() {
     let camera = PinholeCamera { angle: 90.0, hole: 0.2, film_distance: 0.5, ..PinholeCamera::default() };
     let frame = CameraBasis::of(&camera, OURS);
     let (mut random, mut far, mut near) = (Random(3), 0f32, 0f32);
@@ -83,7 +83,7 @@ fn a_hole_blurs_far_points_to_its_own_size_and_near_ones_more() {
 }
 
 #[test]
-fn pairs_of_eyes_agree_where_their_views_converge() {
+fn stereo_views_agree_at_the_convergence_distance() {
     let camera = StereoCamera { angle: 60.0, separation: 0.3, convergence: 5.0, ..StereoCamera::default() };
     assert_eq!(camera.proportions(), Some(Vec2::new(2.0, 1.0)));
     let frame = CameraBasis::of(&camera, OURS);
@@ -92,24 +92,24 @@ fn pairs_of_eyes_agree_where_their_views_converge() {
         camera.project(&frame, point, Vec2::ZERO, &mut |p| found.push(p));
         assert_eq!(found.len(), 2, "{found:?}");
         assert!(found[0].x < 0.0 && found[1].x > 0.0, "the left eye's picture is on the left");
-        // The right eye's place in its picture less the left one's.
+        // Difference between the point's positions in the two pictures.
         (found[1] - found[0] - Vec2::X) * 2.0
     };
     for point in [Vec3::new(1.0, 0.7, -5.0), Vec3::new(-1.5, 0.2, -5.0)] {
         assert!(pair(&camera, point).length() < 1e-6);
-        // Cameras that are turned see the same only in the middle: heights differ elsewhere.
+        // Toed-in cameras agree only at the centre: heights differ elsewhere.
         let turned = StereoCamera { method: StereoMethod::ToeIn, ..camera.clone() };
         assert!(pair(&turned, Vec3::NEG_Z * 5.0).length() < 1e-6);
         assert!(pair(&turned, point).y.abs() > 1e-4);
     }
-    // Nearer things move to the left for the right eye, farther ones to the right; without
-    // convergence all move left.
+    // For the right eye, nearer objects move to the left and farther ones to the right; without
+    // convergence all move to the left.
     assert!(pair(&camera, Vec3::NEG_Z * 2.5).x < -0.05 && pair(&camera, Vec3::NEG_Z * 50.0).x > 0.05);
     let parallel = StereoCamera { method: StereoMethod::Parallel, ..camera };
     assert!(pair(&parallel, Vec3::NEG_Z * 50.0).x < -0.005);
 }
 
-/// The matrix of a camera at (1, 2, 3) that looks along -z, for pictures of 200 x 100.
+/// Matrix of a camera at (1, 2, 3) that looks along -z, for pictures of 200 x 100.
 fn photograph() -> ProjectiveCamera {
     let (f, cx, cy) = (150.0, 99.5, 49.5);
     let rows = [[f, 0.0, -cx], [0.0, -f, -cy], [0.0, 0.0, -1.0]];
@@ -118,7 +118,7 @@ fn photograph() -> ProjectiveCamera {
 }
 
 #[test]
-fn a_matrix_of_a_plain_camera_is_that_camera_at_any_scale() {
+fn projection_matrix_gives_the_camera_at_any_scale() {
     let angle = (2.0 * libm::atan(100.0 / 150.0)).to_degrees() as f32;
     let plain = PerspectiveCamera { center: Vec3::new(1.0, 2.0, 3.0), angle, ..PerspectiveCamera::default() };
     for scale in [1.0, -2.0, 1e-3] {
@@ -134,12 +134,12 @@ fn a_matrix_of_a_plain_camera_is_that_camera_at_any_scale() {
 }
 
 #[test]
-fn lenses_distort_as_the_formula_says_and_see_nothing_behind_a_fold() {
+fn distortion_matches_the_formula_and_ends_at_the_fold() {
     let frame = CameraBasis::of(&photograph(), OURS);
     let seen = |camera: &ProjectiveCamera, x: f32, y: f32| {
         let mut found = None;
         camera.project(&frame, Vec3::new(1.0 + x, 2.0 - y, 2.0), Vec2::ZERO, &mut |point| found = Some(point));
-        // Pixels, y downwards.
+        // Pixel coordinates, y downwards.
         found.map(|point| Vec2::new(100.0 + 100.0 * point.x - 0.5, 50.0 - 100.0 * point.y - 0.5))
     };
     let camera = ProjectiveCamera { k1: -0.2, k2: 0.05, p1: 0.01, p2: -0.02, k3: 0.1, ..photograph() };
@@ -152,8 +152,8 @@ fn lenses_distort_as_the_formula_says_and_see_nothing_behind_a_fold() {
     );
     let found = seen(&camera, x, y).unwrap();
     assert!(found.distance(150.0 * expected + Vec2::new(99.5, 49.5)) < 1e-3, "{found} {expected}");
-    // r - r³ grows only up to r = 1/sqrt 3, where it is 0.385: farther out there is nothing, in
-    // either direction.
+    // r - r³ grows only up to r = 1/sqrt 3, where it is 0.385: beyond that neither `project` nor
+    // `ray` finds a point.
     let folded = ProjectiveCamera { k1: -1.0, ..photograph() };
     assert!(seen(&folded, 0.55, 0.0).is_some() && seen(&folded, 0.6, 0.0).is_none());
     let at = |pixels: f32| ray(&folded, CameraSample::at(Vec2::new(pixels / 100.0, 0.0)));

@@ -6,7 +6,7 @@ const LEFT: MatrixRules = MatrixRules { matrix_on_left: true, dropped_shear: fal
 
 fn image(ops: &[MatrixOp], p: [f64; 3]) -> [f64; 3] {
     let image = MatrixOp::product(ops, MatrixRules::default()).transform_point3(p.into());
-    // Treats zeros of both signs as equal.
+    // Makes zeros of both signs equal.
     image.to_array().map(|x| x + 0.0)
 }
 
@@ -40,7 +40,7 @@ fn the_last_written_matrix_applies_first() {
 }
 
 #[test]
-fn a_matrix_is_given_by_rows_and_stands_on_the_left_where_that_is_asked_for() {
+fn matrix_is_given_by_rows_and_multiplied_on_the_left_if_the_rules_say_so() {
     #[rustfmt::skip]
     let shear = MatrixOp::Matrix([
         1.0, 2.0, 0.0, 5.0,

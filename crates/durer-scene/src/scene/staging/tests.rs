@@ -61,7 +61,7 @@ fn every_view_sees_the_whole_and_fills_the_picture() {
 }
 
 #[test]
-fn what_is_up_in_a_model_is_up_in_its_picture() {
+fn up_in_a_model_is_up_in_its_picture() {
     for (axis, up) in [(Axis::X, Vec3::X), (Axis::Y, Vec3::Y), (Axis::Z, Vec3::Z)] {
         for view in VIEWS.into_iter().filter(|view| *view != View::Top) {
             let staging = Staging { view: Some(view), up: Some(axis), ..Staging::default() };
@@ -73,7 +73,7 @@ fn what_is_up_in_a_model_is_up_in_its_picture() {
 }
 
 #[test]
-fn points_flat_things_and_nothing_at_all_have_cameras_too() {
+fn points_flat_and_empty_models_have_cameras() {
     for corners in [vec![], vec![Vec3::splat(5.0)], vec![Vec3::X, -Vec3::X], vec![Vec3::X, Vec3::Z, -Vec3::X]] {
         for view in VIEWS {
             let staging = Staging { view: Some(view), ..Staging::default() };
@@ -92,14 +92,14 @@ fn points_flat_things_and_nothing_at_all_have_cameras_too() {
 }
 
 #[test]
-fn only_what_is_missing_is_added() {
+fn staging_adds_only_missing_parts() {
     let plain = staged(scene(vec![Vec3::ZERO, Vec3::ONE]), &Staging::default());
     assert_eq!((plain.lights.as_ref().unwrap().len(), plain.materials.len()), (2, 2));
     // The ground touches the lowest point, which is moved to y = -2.
     let Some(Node::Primitive(crate::shape::Primitive::Plane(ground))) =
         plain.root.as_ref().map(|root| &root.objects[1].node)
     else {
-        panic!("there is no ground");
+        panic!("a ground must be added");
     };
     assert_eq!((ground.normal, ground.offset), (Vec3::Y, -2.0));
     let mut own = scene(vec![Vec3::ZERO, Vec3::ONE]);

@@ -37,7 +37,7 @@ fn with_materials(materials: Vec<Material>) -> Scene {
 }
 
 #[test]
-fn a_value_against_its_rule_is_named_with_its_thing_and_field() {
+fn invalid_value_is_reported_with_object_and_field() {
     let sphere = |radius| with_shape(Sphere { radius, ..Sphere::default() });
     assert_eq!(messages(&sphere(1.0)), [""; 0]);
     assert_eq!(messages(&sphere(-1.0)), ["Sphere: radius -1 must be more than 0"]);
@@ -64,12 +64,12 @@ fn a_value_against_its_rule_is_named_with_its_thing_and_field() {
 }
 
 #[test]
-fn fields_are_checked_together_once_each_is_valid() {
+fn fields_are_checked_in_combination_if_each_is_valid() {
     let upside_down = Cuboid { min: Vec3::ONE, max: Vec3::ZERO };
     assert_eq!(messages(&with_shape(upside_down)), ["`min` of a `Box` must be less than its `max` in x, y and z"]);
     let camera = |camera: CaveCamera| messages(&Scene { camera: Some(camera.into()), ..Scene::default() });
     assert_eq!(camera(CaveCamera::default()), [""; 0]);
-    // Its walls are only checked once all numbers are finite.
+    // Walls are checked only if all numbers are finite.
     let walls = vec![[f32::NAN; 9]];
     assert_eq!(camera(CaveCamera { walls, ..CaveCamera::default() }), ["CaveCamera: walls must be finite"]);
     let light = PointLight { candela: Some(1.0), lumens: Some(1.0), ..PointLight::default() };
@@ -92,7 +92,7 @@ fn fields_are_checked_together_once_each_is_valid() {
 }
 
 #[test]
-fn numbers_of_materials_must_exist_but_for_objects_of_files() {
+fn material_indices_must_exist_except_for_objects_of_files() {
     let scene = |span| {
         let mut scene = with_shape(Sphere::default());
         scene.materials.push(bare(PhongMaterial::default().into()));
@@ -106,11 +106,11 @@ fn numbers_of_materials_must_exist_but_for_objects_of_files() {
     let board = |material1, material2| Material::Solid(Checkerboard { material1, material2 }.into(), Vec::new());
     let plain = || Material::from(PhongMaterial::default());
     assert_eq!(messages(&with_materials(vec![plain(), board(0, 0)])), [""; 0]);
-    assert_eq!(messages(&with_materials(vec![plain(), board(0, 1)])), ["a solid material is made of earlier ones"]);
+    assert_eq!(messages(&with_materials(vec![plain(), board(0, 1)])), ["a solid material must be made of earlier materials"]);
 }
 
 #[test]
-fn transforms_are_finite_and_nesting_is_bounded() {
+fn transforms_must_be_finite_and_nesting_bounded() {
     let moved = |op, inner| Node::Transform(vec![op], Box::new(object(inner)));
     let nested = |levels: usize| {
         let innermost = Node::Primitive(Sphere::default().into());
@@ -137,13 +137,13 @@ fn lists_of_meshes_and_mappings_of_pictures_are_checked() {
         messages(&scene)
     };
     assert_eq!(found(triangle()), [""; 0]);
-    let wrong = "mesh `m`: an index is too large: there are 3 positions, counted from 0";
+    let wrong = "mesh `m`: an index is out of range: the mesh has 3 positions, counted from 0";
     assert_eq!(found(MeshData { triangles: vec![[0, 1, 3]], ..triangle() }), [wrong]);
     assert_eq!(found(MeshData { positions: vec![Vec3::NAN; 3], ..triangle() }), ["mesh `m`: positions must be finite"]);
     let uvs = MeshData { triangle_uvs: vec![[0, 1, 2]; 2], ..triangle() };
     assert_eq!(found(uvs), ["mesh `m`: `triangle_uvs` has 2 entries for 1 triangles"]);
     let normals = MeshData { triangle_normals: vec![[0, 0, 0]], ..triangle() };
-    let wrong = "mesh `m`: an index of `triangle_normals` is too large: there are 0, counted from 0";
+    let wrong = "mesh `m`: an index of `triangle_normals` is out of range: there are 0, counted from 0";
     assert_eq!(found(normals), [wrong]);
     let colors = MeshData { colors: vec![[1.0; 4]], ..triangle() };
     assert_eq!(found(colors), ["mesh `m`: `colors` has 1 entries for 3 positions"]);

@@ -205,14 +205,14 @@ mod tests {
     }
 
     #[test]
-    fn a_balls_coordinates_are_ours() {
+    fn ball_has_the_texture_coordinates_of_a_sphere() {
         let data = ball(Vec3::ZERO, 2.0);
         let seen = data.uvs.iter().zip(&data.normals).find(|(_, n)| n.z < -0.99).unwrap();
         assert!((seen.0.x - 0.5).abs() < 0.05);
     }
 
     #[test]
-    fn surfaces_without_primitives_lie_where_they_should() {
+    fn tessellated_surfaces_match_closed_forms() {
         // A sphere between two heights: the points are on it, and the area is 2 pi r h.
         let area = |data: &MeshData| -> f32 {
             let corners = data.triangles.iter().map(|t| t.map(|i| data.positions[i as usize]));
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn a_subdivided_octahedron_tends_to_a_round_body() {
+    fn subdivided_octahedron_becomes_round() {
         let positions = vec![Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
         let triangles = vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
         let control = MeshData { positions, triangles, ..MeshData::default() };

@@ -20,7 +20,7 @@ fn line(shape: &Primitive, random: &mut Random, size: f32) -> Line {
 }
 
 #[test]
-fn all_crossings_are_where_a_line_goes_in_or_out() {
+fn crossings_are_exactly_entries_and_exits() {
     const STEPS: usize = 400;
     let mut random = Random(11);
     let mut found = [0; 11];
@@ -99,7 +99,7 @@ fn inside_is_behind_the_surface() {
 }
 
 #[test]
-fn a_tori_line_along_its_tube_and_one_that_touches_are_told_apart() {
+fn torus_distinguishes_a_line_along_its_tube_from_a_tangent() {
     let torus = Torus { center: Vec3::ZERO, axis: Vec3::Y, major_radius: 2.0, minor_radius: 0.5 };
     let count = |origin: [f64; 3], dir: [f64; 3]| {
         let mut all = Vec::new();

@@ -43,7 +43,7 @@ fn ball(rings: u32) -> MeshData {
 }
 
 #[test]
-fn flat_means_one_normal_a_triangle() {
+fn flat_meshes_have_one_normal_per_triangle() {
     let mesh = Mesh::new(ball(8), MeshNormals::Flat, true);
     for part in 0..mesh.len() as u32 {
         for uv in CORNERS {
@@ -63,7 +63,7 @@ fn corner_of_three() -> MeshData {
 }
 
 #[test]
-fn faces_around_a_vertex_weigh_by_area_or_alike() {
+fn faces_around_a_vertex_are_weighted_by_area_or_equally() {
     // Areas 8, 2, 2 and unit normals +y, -x, -z.
     let by_area = Mesh::new(corner_of_three(), MeshNormals::SmoothByArea, true);
     let by_face = Mesh::new(corner_of_three(), MeshNormals::SmoothByFace, true);
@@ -77,7 +77,7 @@ fn faces_around_a_vertex_weigh_by_area_or_alike() {
 }
 
 #[test]
-fn above_a_number_of_vertices_a_mesh_is_smooth() {
+fn meshes_with_many_vertices_are_smooth() {
     let count = ball(8).positions.len();
     let smooth = |limit: usize| {
         let mesh = Mesh::new(ball(8), MeshNormals::SmoothAbove(limit), true);
@@ -88,7 +88,7 @@ fn above_a_number_of_vertices_a_mesh_is_smooth() {
 }
 
 #[test]
-fn a_crease_keeps_a_cube_flat_and_makes_a_ball_smooth() {
+fn crease_angle_keeps_a_cube_flat_and_a_sphere_smooth() {
     let rule = MeshNormals::Crease(40.0);
     let mesh = Mesh::new(cube(), rule, true);
     for part in 0..12 {
@@ -113,7 +113,7 @@ fn a_crease_keeps_a_cube_flat_and_makes_a_ball_smooth() {
 
 /// Triangles that share no vertex, and one that touches another at a corner.
 #[test]
-fn triangles_that_share_nothing_have_no_normals_of_their_own() {
+fn triangles_without_shared_vertices_have_no_vertex_normals() {
     let apart = |count: u32| {
         let cube = cube();
         let corners: Vec<u32> = cube.triangles[..count as usize].iter().flatten().copied().collect();
@@ -168,7 +168,7 @@ fn loosened_triangles_share_their_vertices() {
 }
 
 #[test]
-fn a_files_normals_and_coordinates_are_interpolated() {
+fn normals_and_coordinates_of_files_are_interpolated() {
     let mut data = MeshData {
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
         uvs: vec![Vec2::ZERO, Vec2::new(2.0, 0.0), Vec2::new(0.0, 3.0)],
@@ -197,7 +197,7 @@ fn a_files_normals_and_coordinates_are_interpolated() {
 }
 
 #[test]
-fn a_triangle_without_area_has_a_unit_normal_and_is_met_by_no_ray() {
+fn degenerate_triangle_has_a_unit_normal_and_is_never_hit() {
     let data = MeshData {
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::X * 2.0],
         triangles: vec![[0, 1, 2], [0, 0, 1]],

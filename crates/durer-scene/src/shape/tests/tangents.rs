@@ -67,13 +67,13 @@ fn agree(mut data: MeshData) -> usize {
         assert_eq!(data.positions[vertex as usize], places[corner]);
         let ours = data.tangents[vertex as usize];
         let far = ours.iter().zip(theirs).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-        assert!(far < 1e-4, "corner {corner}: {ours:?}, and not {theirs:?}");
+        assert!(far < 1e-4, "corner {corner}: {ours:?}, expected {theirs:?}");
     }
     originals.len()
 }
 
 #[test]
-fn tangents_are_those_of_mikktspace() {
+fn tangents_match_mikktspace() {
     let mut random = Random(41);
     let bent: Vec<Vec2> =
         (0..400).map(|_| 0.3 * Vec2::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0))).collect();
@@ -87,7 +87,7 @@ fn tangents_are_those_of_mikktspace() {
 }
 
 #[test]
-fn vertices_that_are_equal_share_a_tangent() {
+fn equal_vertices_share_a_tangent() {
     let mut random = Random(42);
     let together = sheet(5, &mut random, |x, y| Vec2::new(x as f32 + 0.2 * y as f32, y as f32));
     // The same sheet with separate corners for each triangle.
@@ -109,7 +109,7 @@ fn vertices_that_are_equal_share_a_tangent() {
 }
 
 #[test]
-fn hostile_meshes_get_tangents_at_once() {
+fn hostile_meshes_do_not_overflow_the_stack() {
     // Recursive implementations overflow the stack here: all triangles share one vertex.
     const COUNT: u32 = 200_000;
     let mut fan = MeshData::default();

@@ -12,7 +12,7 @@ fn field(min: Vec3, columns: usize, rows: usize, random: &mut Random) -> Terrain
 }
 
 #[test]
-fn a_landscape_is_its_lists() {
+fn terrain_equals_its_mesh_as_lists() {
     let mut random = Random(3);
     let rules = [
         MeshNormals::Flat,
@@ -50,7 +50,7 @@ fn a_landscape_is_its_lists() {
 
 /// The corners around each vertex are found in order.
 #[test]
-fn corners_around_a_crossing_are_known_without_lists() {
+fn corners_around_a_vertex_are_found_in_order() {
     let terrain = field(Vec3::ZERO, 5, 4, &mut Random(4));
     for vertex in 0..terrain.vertices() as u32 {
         let corners = (0..terrain.ordered()).flat_map(|i| terrain.triangle(i)).enumerate();
@@ -62,7 +62,7 @@ fn corners_around_a_crossing_are_known_without_lists() {
 }
 
 #[test]
-fn what_differs_has_another_hash() {
+fn different_terrains_have_different_hashes() {
     let [mut random, mut again] = [Random(5), Random(5)];
     let terrain = field(Vec3::ZERO, 4, 3, &mut random);
     assert_eq!(terrain.digest(), field(Vec3::ZERO, 4, 3, &mut again).digest());
@@ -71,7 +71,7 @@ fn what_differs_has_another_hash() {
 }
 
 #[test]
-fn heights_stay_in_the_range_of_numbers() {
+fn overflowing_heights_are_rejected() {
     let field = HeightField { min: Vec3::ZERO, max: Vec3::splat(1e38), ..HeightField::default() };
     assert!(field.terrain(2, vec![1.0; 4]).is_some());
     assert!(field.terrain(2, vec![1e3; 4]).is_none());

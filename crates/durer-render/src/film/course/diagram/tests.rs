@@ -1,4 +1,4 @@
-//! Comparison with the official pictures. `DURER_CORPUS` names the folder that holds them.
+//! Comparison with the official pictures. `DURER_CORPUS` is the folder that contains them.
 
 use super::*;
 use crate::film::course::StoredSample;
@@ -7,7 +7,7 @@ use durer_scene::sampler::Sampler;
 use glam::{DVec2, DVec3};
 use std::path::PathBuf;
 
-/// Size and 8-bit pixels of an official picture, or nothing where there is none.
+/// Size and 8-bit pixels of an official picture; `None` if it is missing.
 fn official(name: &str) -> Option<(u32, u32, Vec<[u8; 3]>)> {
     let root = std::env::var_os("DURER_CORPUS").map(PathBuf::from);
     let root = root.unwrap_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared")));
@@ -41,7 +41,7 @@ fn assert_few_differ(name: &str, pixels: &[Color], expected: &[[u8; 3]]) {
 }
 
 #[test]
-fn filter_diagrams_are_the_official_ones() {
+fn filter_diagrams_match_the_official_ones() {
     use CourseFilter::{Box, Gaussian, Tent};
     for (name, size, zoom, kernel) in [
         ("filter7_01a_low_res", 12, 15, Box { radius: 0.5 }),
@@ -61,9 +61,10 @@ fn filter_diagrams_are_the_official_ones() {
     }
 }
 
-/// The course's scene of a sphere before a triangle, seen along -z; the point is in world units.
+/// Radiance of the course's scene of a sphere in front of a triangle, seen along -z; the point is
+/// in world units.
 fn sphere_and_triangle(p: Vec2) -> Color {
-    // Ambient light of a half, and half a light from above and the front.
+    // Ambient light of 0.5, and a light of 0.5 from above and the front.
     let shade = |n: Vec3| 0.5 + 0.5 * n.dot(Vec3::new(0.0, 1.0, 1.0).normalize()).max(0.0);
     let d = p - Vec2::ONE;
     if d.length_squared() < 1.0 {
@@ -74,7 +75,7 @@ fn sphere_and_triangle(p: Vec2) -> Color {
     if inside { Vec3::Y * shade(Vec3::Z) } else { Vec3::Z }
 }
 
-/// Samples of that scene, whose picture is five units wide.
+/// Samples of that scene; its picture is five units wide.
 fn course_samples(size: u32, n: u32) -> StoredSamples {
     StoredSamples::take(size, size, n, |x, y, s| {
         let position = Sampler::Uniform.pixel_position(0, x, y, s, n);
@@ -84,7 +85,7 @@ fn course_samples(size: u32, n: u32) -> StoredSamples {
 }
 
 #[test]
-fn sample_diagrams_are_the_official_ones() {
+fn sample_diagrams_match_the_official_ones() {
     for (name, size, zoom, n) in
         [("samples7_01b", 9, 20, 4), ("samples7_01b_low_res", 12, 15, 9), ("samples7_01e", 9, 20, 9)]
     {
@@ -94,7 +95,7 @@ fn sample_diagrams_are_the_official_ones() {
 }
 
 #[test]
-fn filtered_pictures_are_the_official_ones() {
+fn filtered_pictures_match_the_official_ones() {
     let samples = course_samples(12, 9);
     for (name, filter) in [
         ("output7_01d_low_res", CourseFilter::Box { radius: 0.5 }),
@@ -105,17 +106,17 @@ fn filtered_pictures_are_the_official_ones() {
     }
 }
 
-/// The course's scene of a chessboard at height 0.01, with fields of a tenth; the point is in the
-/// picture, -1 to 1.
+/// Radiance of the course's scene of a chessboard at height 0.01, with fields of a tenth; the point
+/// is in the picture, -1 to 1.
 ///
-/// In double precision: towards the horizon single precision picks other fields.
+/// In double precision: towards the horizon single precision selects other fields.
 fn chessboard(p: DVec2) -> Color {
     let forward = DVec3::new(0.338670, -0.392536, -0.855113).normalize();
     let right = forward.cross(DVec3::Y).normalize();
     let dir = forward + fp::tan_f64(25_f64.to_radians()) * (p.x * right + p.y * right.cross(forward));
     let center = DVec3::new(-0.841950, 0.943160, 2.014966);
     let hit = center + (0.01 - center.y) / dir.y * dir;
-    // The official triangles reach 1e-5 of their legs, which are 501 long, beyond their edges.
+    // The official triangles extend 1e-5 of their legs, which are 501 long, beyond their edges.
     let beyond = 0.00501;
     if dir.y >= 0.0 || hit.x < -0.99 - beyond || hit.z > 0.99 + beyond || hit.z < -500.0 || hit.x > 500.0 {
         return Vec3::Y;
@@ -125,11 +126,11 @@ fn chessboard(p: DVec2) -> Color {
 }
 
 #[test]
-fn a_filtered_chessboard_is_the_official_one() {
+fn filtered_chessboard_matches_the_official_one() {
     let samples = StoredSamples::take(180, 180, 16, |x, y, s| {
         let position = Sampler::Uniform.pixel_position(0, x, y, s, 16);
         let in_picture = (DVec2::new(x.into(), y.into()) + position.as_dvec2()) / 90.0 - 1.0;
-        // Colours above 1 are filtered as they are and clamped when the picture is written.
+        // Colours above 1 are filtered unclamped and clamped when the picture is written.
         StoredSample { position, color: chessboard(in_picture * DVec2::new(1.0, -1.0)) }
     });
     let picture = samples.reconstruct(CourseFilter::Tent { radius: 1.5 });
@@ -140,7 +141,7 @@ fn a_filtered_chessboard_is_the_official_one() {
 }
 
 #[test]
-fn degenerate_sizes_are_pictures_too() {
+fn degenerate_sizes_give_pictures() {
     assert_eq!(filter(0, 0, 0, CourseFilter::Tent { radius: 0.0 }).pixels.len(), 1);
     assert!(samples(&course_samples(0, 1), 5).pixels.is_empty());
     // Positions on the edges of a pixel stay in it.

@@ -17,7 +17,7 @@ fn random_samples(n: u32, color: impl Fn(u32, u32, u32) -> Color) -> StoredSampl
 }
 
 #[test]
-fn a_part_is_as_in_the_whole() {
+fn part_equals_that_of_the_whole_picture() {
     let color = |x, y, s| random_2d(2, x, y, s, 1).extend(0.5) * 1e3;
     let samples = random_samples(4, color);
     for filter in FILTERS {
@@ -37,7 +37,7 @@ fn a_part_is_as_in_the_whole() {
 }
 
 #[test]
-fn one_colour_stays_that_colour() {
+fn constant_colour_is_preserved() {
     let color = Vec3::new(0.1, 0.7, 12.3);
     let samples = random_samples(7, |_, _, _| color);
     for filter in FILTERS {
@@ -51,7 +51,7 @@ fn supports_are_the_courses() {
     assert_eq!([0.5, 0.6, 1.5, 1.7, 2.3, -3.0, f32::NAN].map(boxed), [0, 1, 1, 2, 2, 0, 0]);
     let gaussian = |sigma| CourseFilter::Gaussian { sigma }.support();
     assert_eq!([0.25, 0.6, 1.0, 1.7, 2.3].map(gaussian), [0, 1, 2, 3, 5]);
-    // Further than the picture is wide.
+    // The support exceeds the picture's width.
     let samples = random_samples(1, |x, _, _| Vec3::splat(x as f32));
     let picture = samples.reconstruct(CourseFilter::Box { radius: f32::INFINITY });
     assert!(picture.iter().all(|c| (c.x - 11.0).abs() < 1e-5));

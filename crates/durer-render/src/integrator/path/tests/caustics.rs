@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Returns the mean over samples of a ray's radiance by photons, and its standard error.
+/// Returns the mean radiance of a ray over samples with photons, and its standard error.
 pub(super) fn by_photons(world: &World, ray: Ray, (count, radius): (u32, f32), samples: u32) -> (f64, f64) {
     let settings = Settings { bounces: 12, ..Job::default().settings };
     let photons = Some(Arc::new(Photons::new(world, 3, count, Some(radius))));
@@ -18,7 +18,7 @@ pub(super) fn by_photons(world: &World, ray: Ray, (count, radius): (u32, f32), s
 const GLASS: &str = "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 }";
 
 #[test]
-fn light_through_a_slab_is_what_fresnel_leaves() {
+fn slab_transmits_light_by_fresnel() {
     // With all inter-reflections, T = (1 - F) / (1 + F) with F = 0.04. Paths find this light only
     // by way of the floor.
     let world = scene(
@@ -30,13 +30,13 @@ fn light_through_a_slab_is_what_fresnel_leaves() {
     let (mean, error) = by_photons(&world, below, (20_000, 0.3), 24);
     // Some light arrives by way of the surrounding floor.
     let expected = 0.5 * 2.0 * (1.0 - 0.04) / (1.0 + 0.04) + light(&world, below, 12, 1 << 14).0;
-    assert!((mean - expected).abs() < 3.0 * error + 0.003 * expected, "{mean} ± {error}, not {expected}");
+    assert!((mean - expected).abs() < 3.0 * error + 0.003 * expected, "{mean} ± {error}, expected {expected}");
     let (without, _) = light(&world, below, 12, 256);
     assert!(without < 0.1 * expected, "{without}");
 }
 
 #[test]
-fn photons_and_paths_agree_where_both_find_the_light() {
+fn photons_and_paths_agree_if_both_find_the_light() {
     let lamp = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 6 }";
     let world = scene(
         &format!("{MATTE} {GLASS} {lamp}"),
@@ -54,7 +54,7 @@ fn photons_and_paths_agree_where_both_find_the_light() {
 }
 
 #[test]
-fn fog_and_rough_glass_bring_the_same_light_with_photons_and_without() {
+fn fog_and_rough_glass_scatter_equal_light_with_and_without_photons() {
     // All light leaves a glass sphere with a light inside. Photons carry the light that delta lobes
     // send to surfaces; paths account for light that fog or rough glass scatters after that. No
     // light is counted twice or lost.
@@ -87,9 +87,9 @@ fn fog_and_rough_glass_bring_the_same_light_with_photons_and_without() {
 }
 
 #[test]
-fn photons_in_fog_make_beams_as_their_integral_says() {
-    // Light from the zenith through a slab, then down through fog: single scattering along a level
-    // ray to a black surface is (1 - F)^2 E / (4 pi) e^(-s h) a (1 - e^(-s l)).
+fn photon_beams_in_fog_match_their_integral() {
+    // Light from the zenith through a slab, then down through fog: single scattering along a
+    // horizontal ray to a black surface is (1 - F)^2 E / (4 pi) e^(-s h) a (1 - e^(-s l)).
     let fog = "Fog { extinction 1 color 0.8 0.8 0.8 min -1 -2 -1 max 1 0.9 1 }";
     let black = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 }";
     let things = "MaterialIndex 0 Box { min -1.5 1 -1.5 max 1.5 1.2 1.5 }
@@ -109,12 +109,12 @@ fn photons_in_fog_make_beams_as_their_integral_says() {
     let mean = values.iter().sum::<f64>() / f64::from(n);
     let error = (values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>()).sqrt() / f64::from(n);
     let expected = 0.96 * 0.96 * 2.0 / 4.0 * libm::exp(-0.9) * 0.8 * (1.0 - libm::exp(-1.0));
-    assert!((mean - expected).abs() < 3.0 * error + 0.005 * expected, "{mean} ± {error}, not {expected}");
-    assert!(error < 0.04 * expected, "{mean} ± {error}, not {expected}");
+    assert!((mean - expected).abs() < 3.0 * error + 0.005 * expected, "{mean} ± {error}, expected {expected}");
+    assert!(error < 0.04 * expected, "{mean} ± {error}, expected {expected}");
 }
 
 #[test]
-fn photons_and_paths_begin_in_what_is_around_them() {
+fn photons_and_paths_start_in_the_surrounding_medium() {
     // A light, a sphere of glass and the floor below it in a box of fog with an index-matched
     // surface.
     let fog = "PrincipledMaterial { transmissionWeight 1 specularIor 1 specularWeight 0 transmissionDepth 1 transmissionColor 0.6 0.6 0.6 specularRoughness 0 }";
@@ -130,11 +130,11 @@ fn photons_and_paths_begin_in_what_is_around_them() {
     let lamp = Ray::new(Vec3::new(-0.9, 0.5, 0.9), Vec3::Y);
     let (seen, _) = light(&world, lamp, 12, 64);
     let expected = 6.0 * libm::pow(0.6, 2.5);
-    assert!((seen - expected).abs() < 1e-3 * expected, "{seen}, not {expected}");
+    assert!((seen - expected).abs() < 1e-3 * expected, "{seen}, expected {expected}");
 }
 
 #[test]
-fn maps_are_the_same_however_they_are_made() {
+fn photon_maps_do_not_depend_on_how_they_are_built() {
     let world = scene(
         &format!("{MATTE} {GLASS}"),
         "PointLight { position 0.5 4 0 color 9 9 9 falloff 1 }",

@@ -1,4 +1,4 @@
-//! Lamps of every shape, found by their points and by chance.
+//! Emitters of every shape, found by light sampling and by BSDF sampling.
 
 use super::*;
 
@@ -13,20 +13,21 @@ const SHAPES: [&str; 8] = [
     "Disc { center 0 0 0 normal 0 -1 0.2 radius 0.6 innerRadius 0.2 }",
 ];
 
-/// As they are, scaled a little, and stretched, turned, sheared and mirrored.
+/// Transforms: a translation, a slight scaling, and a map that stretches, rotates, shears and
+/// mirrors.
 const MAPS: [&str; 3] = [
     "Translate 0.4 1.5 0.2",
     "Translate 0.4 1.5 0.2 Scale 1.0001 1 1",
     "Translate 0.4 1.5 0.2 ZRotate 40 Scale -1.5 0.6 0.9 XRotate 30",
 ];
 
-/// z-test of means: passed by chance once in 15,000.
+/// z-test of means: a correct result fails once in 15,000.
 fn assert_alike(name: &str, a: (f64, f64), b: (f64, f64)) {
     assert!((a.0 - b.0).abs() <= 4.0 * (a.1 + b.1).sqrt() + 1e-5 * a.0, "{name}: {a:?} {b:?}");
 }
 
 #[test]
-fn every_shape_under_every_map_is_found_by_its_points_as_by_directions() {
+fn light_and_bsdf_sampling_agree_for_every_shape_and_transform() {
     let settings = Settings { bounces: 0, ..Job::default().settings };
     for (shape, map) in SHAPES.iter().flat_map(|shape| MAPS.map(|map| (shape, map))) {
         let lamp = format!("Transform {{ {map} {shape} }}");
@@ -35,14 +36,14 @@ fn every_shape_under_every_map_is_found_by_its_points_as_by_directions() {
         assert!(directions.0 > 0.01, "{lamp}: {directions:?}");
         assert_alike(&lamp, both, directions);
         assert_alike(&lamp, points, directions);
-        assert!(points.1 < directions.1, "{lamp} has less noise by its points: {points:?} {directions:?}");
+        assert!(points.1 < directions.1, "{lamp}: light sampling must have less noise: {points:?} {directions:?}");
     }
 }
 
 #[test]
-fn what_is_inside_of_a_shining_shape_is_lit_by_it() {
-    // A closed furnace of radiance 1 and albedo 0.5 at both sides, whose walls are seen with light
-    // that was scattered once: 1 + 0.5.
+fn emissive_shapes_light_their_inside() {
+    // A closed furnace of radiance 1 and albedo 0.5 on both sides: the walls show their emission
+    // and light scattered once, 1 + 0.5.
     let material = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 emissionLuminance 1 walls thin }";
     let settings = Settings { bounces: 0, ..Job::default().settings };
     for shape in &SHAPES[..6] {
@@ -57,7 +58,7 @@ fn what_is_inside_of_a_shining_shape_is_lit_by_it() {
 }
 
 #[test]
-fn a_lamp_far_off_is_as_bright_as_its_face_is_large() {
+fn irradiance_of_a_distant_emitter_follows_its_area() {
     // L A / d^2: the face of a box of 0.1 x 0.1 at a distance of 6, and a cone's base.
     for (lamp, area) in [
         ("Box { min -0.05 6 -0.05 max 0.05 6.1 0.05 }", 0.01),
@@ -68,14 +69,14 @@ fn a_lamp_far_off_is_as_bright_as_its_face_is_large() {
 }
 
 #[test]
-fn nothing_that_is_convex_lights_its_own_outside() {
+fn convex_emitters_do_not_light_their_own_outside() {
     let material = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 emissionLuminance 0.5 }";
     let settings = Settings { bounces: 0, ..Job::default().settings };
     for shape in &SHAPES[..6] {
         let world = scene(material, "", &format!("MaterialIndex 0 Transform {{ Scale 1.1 0.9 1 {shape} }}"));
         for y in [0.0, 0.11, 0.23] {
             let ray = Ray::new(Vec3::new(0.05, y, 5.0), Vec3::NEG_Z);
-            // Its own light, and nothing more.
+            // Only its emission.
             for way in by_ways(&world, ray, settings, ColorMode::Rgb).map(|way| way[0]) {
                 assert!((way.0 - 0.5).abs() < 1e-6, "{shape}: {way:?}");
             }
@@ -84,7 +85,7 @@ fn nothing_that_is_convex_lights_its_own_outside() {
 }
 
 #[test]
-fn without_a_background_light_is_only_what_a_scene_says() {
+fn without_a_background_only_lights_of_the_scene_emit() {
     let of = |background: &str| {
         read(&format!(
             "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }} {background}
@@ -98,22 +99,22 @@ fn without_a_background_light_is_only_what_a_scene_says() {
         let sum: Vec3 = (0..64).map(one).sum();
         sum.dot(durer_scene::math::LUMINANCE) / 64.0
     };
-    // I / d^2, and pi L of even surroundings beside.
+    // I / d^2, plus pi L of a uniform environment.
     assert!((lux(&of("")) - 250.0).abs() < 1e-3, "{}", lux(&of("")));
     let grey = lux(&of("Background { color 0.5 0.5 0.5 }")) - 250.0;
     assert!((grey - 0.5 * std::f32::consts::PI).abs() < 0.01, "{grey}");
-    // Whitted's pictures are before grey.
+    // Whitted's pictures have a grey background.
     assert_eq!(of("").sky(Vec3::Y), Vec3::splat(0.5));
 }
 
 #[test]
-fn errors_know_of_lamps_that_are_found_by_chance() {
+fn errors_account_for_emitters_that_only_bsdf_sampling_finds() {
     let most = |lamp: &str, direct| {
         let world = over_floor("", lamp);
         let transport = Transport { direct, ..Transport::default() };
         Path::new(&world, Job::default().settings, transport).most_by_chance(|color| color.x)
     };
-    // Pi times the radiance of 3 of what no point can be chosen of.
+    // Pi times the radiance of 3 of an emitter without light sampling.
     let solid = "Intersection { Box { min -1 1 -1 max 1 2 1 } Sphere { center 0 1.5 0 radius 0.6 } }";
     assert!((most(solid, Direct::Both) - 3.0 * std::f32::consts::PI).abs() < 1e-5);
     assert_eq!(most("Box { min -1 1 -1 max 1 2 1 }", Direct::Both), 0.0);

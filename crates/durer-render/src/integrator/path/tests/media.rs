@@ -3,7 +3,7 @@
 use super::*;
 use durer_scene::spectrum::ColorMode;
 
-/// A uniform enclosure of radiance 1 that can be sampled as a light.
+/// Material of a uniform enclosure of radiance 1 that can be sampled as a light.
 const SHELL: &str = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1 walls thin }";
 
 fn inside_shell(material: &str, fog: &str, group: &str) -> World {
@@ -14,7 +14,7 @@ fn inside_shell(material: &str, fog: &str, group: &str) -> World {
 }
 
 #[test]
-fn what_absorbs_nothing_vanishes_in_uniform_light() {
+fn media_without_absorption_vanish_in_uniform_light() {
     let ball = "Sphere { center 0 0 0 radius 1 }";
     let ray = Ray::new(Vec3::new(0.3, 0.4, 5.0), Vec3::new(0.02, -0.01, -1.0));
     let fog = "Fog { extinction 0.6 min -2 -2 -2 max 2 2 2 anisotropy 0.4 }";
@@ -35,9 +35,9 @@ fn what_absorbs_nothing_vanishes_in_uniform_light() {
 }
 
 #[test]
-fn a_beam_is_scattered_once_as_its_integral_says() {
-    // Light from above with irradiance pi c; a level ray at depth d, of length l in the fog: L =
-    // albedo / (4 pi) · pi c · e^(-s d) (1 - e^(-s l)).
+fn single_scattering_of_a_beam_matches_its_integral() {
+    // Light from above with irradiance pi c; a horizontal ray at depth d, of length l in the fog: L
+    // = albedo / (4 pi) · pi c · e^(-s d) (1 - e^(-s l)).
     let (s, albedo, d, l) = (0.7_f64, 0.6, 0.8, 3.0);
     let world = read(
         "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }\nBackground { color 0 0 0 }\n\
@@ -56,7 +56,7 @@ fn a_beam_is_scattered_once_as_its_integral_says() {
 }
 
 #[test]
-fn fog_is_connected_with_through_bodies_without_a_skin() {
+fn light_sampling_passes_index_matched_surfaces() {
     // A box of smoke, once as fog and once as an object with an index-matched surface.
     let lamp = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 5 }";
     let at = |fog: &str, material: &str, group: &str| {
@@ -76,7 +76,7 @@ fn fog_is_connected_with_through_bodies_without_a_skin() {
 }
 
 #[test]
-fn grey_is_grey_in_wavelengths_too_and_colours_are_near() {
+fn spectral_rendering_keeps_grey_and_approximates_colours() {
     let world = over_floor("", "Sphere { center 0 3 0 radius 0.5 }");
     let settings = Settings { bounces: 2, ..Job::default().settings };
     let path = |color| Path::new(&world, settings, Transport { color, ..Transport::default() });
@@ -91,7 +91,7 @@ fn grey_is_grey_in_wavelengths_too_and_colours_are_near() {
 }
 
 #[test]
-fn glass_spreads_colours_by_its_abbe_number() {
+fn glass_disperses_by_its_abbe_number() {
     let material = durer_scene::material::PrincipledMaterial {
         transmission_weight: 1.0,
         transmission_dispersion_scale: 0.5,

@@ -26,7 +26,7 @@ fn below() -> Ray {
 }
 
 #[test]
-fn a_pane_lets_light_through_by_fresnel_and_its_colour() {
+fn pane_transmits_light_by_fresnel_and_its_colour() {
     // With all inter-reflections, T = (1 - F) / (1 + F) with F = 0.04.
     let clear = 0.96 / 1.04;
     for (lamp, distance) in LAMPS {
@@ -46,13 +46,13 @@ fn a_pane_lets_light_through_by_fresnel_and_its_colour() {
         ] {
             let (mean, error) = light(&under(pane, lamp), below(), 0, 256);
             let expected = 0.5 * distance * share;
-            assert!((mean - expected).abs() <= 3.0 * error + 1e-3 * expected, "{pane} {lamp}: {mean}, not {expected}");
+            assert!((mean - expected).abs() <= 3.0 * error + 1e-3 * expected, "{pane} {lamp}: {mean}, expected {expected}");
         }
     }
 }
 
 #[test]
-fn two_panes_let_through_what_one_lets_through_of_the_other() {
+fn transmittances_of_two_panes_multiply() {
     let glass =
         "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 transmissionColor 0.8 0.8 0.8 walls thin }";
     let panes = "MaterialIndex 1 Rectangle { corner -1 1 -1 edge0 2 0 0 edge1 0 0 2 } Rectangle { corner -1 1.5 -1 edge0 0 0 2 edge1 2 0 0 }";
@@ -63,14 +63,14 @@ fn two_panes_let_through_what_one_lets_through_of_the_other() {
 }
 
 #[test]
-fn photons_bring_no_light_through_a_pane_twice() {
+fn photons_do_not_count_light_through_a_pane_twice() {
     let world = under("transmissionWeight 1 specularRoughness 0 walls thin", LAMPS[1].0);
     let (a, _) = light(&world, below(), 12, 256);
     let (b, error) = by_photons(&world, below(), (20_000, 0.3), 24);
     assert!((a - b).abs() < 3.5 * error + 0.005 * a, "{a}, {b} ± {error}");
 }
 
-/// Builds a floor below a pane as wide as the sky, below a disc of radiance 3.
+/// Builds a floor below an infinite pane, which is below a disc of radiance 3.
 fn below_disc(pane: &str) -> World {
     let shining = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 3 }";
     scene(
@@ -82,9 +82,9 @@ fn below_disc(pane: &str) -> World {
 }
 
 #[test]
-fn a_pane_lets_the_light_of_a_small_disc_through() {
-    // A disc seen under an angle t around the normal gives an irradiance of pi L sin(t)^2. Over
-    // such a small angle the pane's transmittance is constant to 1e-6.
+fn pane_transmits_the_light_of_a_small_disc() {
+    // A disc of angular radius t around the normal gives an irradiance of pi L sin(t)^2. Over such
+    // a small angle the pane's transmittance is constant to 1e-6.
     let irradiance = 3.0 * std::f64::consts::PI * 0.04 / 4.04;
     for (pane, share) in [
         ("transmissionWeight 1 specularRoughness 0 walls thin", 0.96 / 1.04),
@@ -95,7 +95,7 @@ fn a_pane_lets_the_light_of_a_small_disc_through() {
         for bounces in [0, 1] {
             let (world, expected) = (below_disc(pane), shown(share * irradiance));
             let (mean, error) = light(&world, below(), bounces, 1 << 13);
-            assert!((mean - expected).abs() <= 3.0 * error + 1e-3 * expected, "{pane}: {mean}, not {expected}");
+            assert!((mean - expected).abs() <= 3.0 * error + 1e-3 * expected, "{pane}: {mean}, expected {expected}");
             // A BSDF sample finds the light once in a hundred times: an error of 0.11.
             assert!(error < 0.02 * expected, "{pane}, {bounces} bounces: {mean} ± {error}");
         }
@@ -103,7 +103,7 @@ fn a_pane_lets_the_light_of_a_small_disc_through() {
 }
 
 #[test]
-fn points_of_lamps_and_directions_find_the_same_light_through_panes() {
+fn light_and_bsdf_sampling_agree_through_panes() {
     let settings = Settings { bounces: 4, ..Job::default().settings };
     let glossy = "PrincipledMaterial { baseColor 0.5 0.4 0.3 specularRoughness 0.3 }";
     let glass =
@@ -131,7 +131,7 @@ fn points_of_lamps_and_directions_find_the_same_light_through_panes() {
 }
 
 #[test]
-fn photons_bring_the_light_of_a_disc_through_a_pane_once() {
+fn photons_count_the_light_of_a_disc_through_a_pane_once() {
     let world = below_disc("transmissionWeight 1 specularRoughness 0 walls thin");
     let (a, _) = light(&world, below(), 12, 1 << 13);
     let (b, error) = by_photons(&world, below(), (20_000, 0.3), 24);

@@ -1,5 +1,5 @@
-//! Tests of two-sided emissive meshes: the light is the same with and without light sampling of
-//! their insides.
+//! Tests of two-sided emissive meshes: the light does not depend on whether their insides are
+//! sampled.
 
 use super::*;
 use crate::compile::AccelKind;
@@ -8,7 +8,7 @@ use durer_scene::dialect::Dialect;
 use std::path::Path as FilePath;
 use tempfile::TempDir;
 
-/// Returns a cube of half-width `half`, with triangles counter-clockwise from outside, or from
+/// Returns a cube of half-width `half`, with triangles counter-clockwise seen from outside, or from
 /// inside if `turned`.
 fn cube(half: f32, turned: bool) -> String {
     let corner = |i: usize| [1, 2, 4].map(|bit| if i & bit > 0 { half } else { -half });
@@ -40,7 +40,7 @@ fn world(folder: &FilePath, group: &str) -> World {
 }
 
 #[test]
-fn what_is_inside_a_shining_body_is_lit_by_it() {
+fn emissive_meshes_light_their_inside() {
     let folder = cubes(3.0);
     for name in ["out.obj", "in.obj"] {
         let world = world(
@@ -59,7 +59,7 @@ fn what_is_inside_a_shining_body_is_lit_by_it() {
 }
 
 #[test]
-fn nobody_looks_for_light_inside_a_lamp() {
+fn light_sampling_skips_insides_of_closed_emitters() {
     let folder = cubes(0.5);
     let lit = |name: &str, material: u32| {
         let lamp =
@@ -68,14 +68,14 @@ fn nobody_looks_for_light_inside_a_lamp() {
         light(&world, to_origin(), 0, 1 << 14)
     };
     let ((one, e1), (both, e2), (turned, e3)) = (lit("out.obj", 2), lit("out.obj", 1), lit("in.obj", 1));
-    assert_eq!((one, e1), (both, e2), "as if it shone outwards alone");
+    assert_eq!((one, e1), (both, e2), "must equal a one-sided emitter");
     let together = (e1 * e1 + e3 * e3).sqrt();
     assert!((one - turned).abs() < 3.6 * together, "{one} ± {e1}, {turned} ± {e3}");
-    assert!(e1 < 0.8 * e3, "what faces inwards has more noise: {e1} {e3}");
+    assert!(e1 < 0.8 * e3, "inward-facing triangles must have more noise: {e1} {e3}");
 }
 
 #[test]
-fn rays_find_the_inside_of_a_lamp_shining() {
+fn rays_inside_a_two_sided_emitter_see_its_emission() {
     let folder = cubes(0.5);
     let world = world(folder.path(), "MaterialIndex 1 TriangleMesh { obj_file out.obj }");
     let ray = Ray::new(Vec3::ZERO, Vec3::new(0.6, 0.0, 0.8));

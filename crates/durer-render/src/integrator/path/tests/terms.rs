@@ -12,7 +12,7 @@ pub(super) fn tree(path: &Path, ray: &Ray, sample: u32) -> Tree {
         for term in &node.terms {
             let expected = throughput(node) * term.factor.spectrum() * term.scale.spectrum();
             let difference = (throughput(term) - expected).abs();
-            assert!(difference.cmple(1e-5 * expected.abs()).all(), "{:?}, not {expected}: {term:?}", term.throughput);
+            assert!(difference.cmple(1e-5 * expected.abs()).all(), "{:?}, expected {expected}: {term:?}", term.throughput);
             check(term);
         }
     }
@@ -23,7 +23,7 @@ pub(super) fn tree(path: &Path, ray: &Ray, sample: u32) -> Tree {
     assert_eq!((tree.sum(), path.radiance(ray, id, &mut ())), (seen, seen));
     check(&tree.root);
     let nested = tree.color(tree.root.value);
-    assert!((nested - seen).abs().max_element() <= 1e-5 * seen.abs().max_element(), "{nested}, not {seen}");
+    assert!((nested - seen).abs().max_element() <= 1e-5 * seen.abs().max_element(), "{nested}, expected {seen}");
     tree
 }
 
@@ -55,7 +55,7 @@ fn from_center() -> Ray {
 }
 
 #[test]
-fn clamping_limits_each_contribution_that_was_scattered_more_than_once() {
+fn clamping_limits_contributions_after_more_than_one_scattering() {
     let world = closed_room();
     let settings = Settings { bounces: 6, ..Job::default().settings };
     let limit = 0.02;
@@ -81,7 +81,7 @@ fn clamping_limits_each_contribution_that_was_scattered_more_than_once() {
 }
 
 #[test]
-fn what_a_path_tells_sums_to_its_light() {
+fn reported_terms_of_a_path_sum_to_its_radiance() {
     let world = closed_room();
     let settings = Settings { bounces: 6, ..Job::default().settings };
     for (sample, color) in (0..200).zip([ColorMode::Rgb, ColorMode::Spectral].into_iter().cycle()) {

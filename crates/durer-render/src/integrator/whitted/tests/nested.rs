@@ -49,7 +49,7 @@ fn slab(material: u32, low: f32, high: f32, half: f32) -> String {
 }
 
 #[test]
-fn layers_inside_each_other_bend_by_their_own_indices_in_any_order() {
+fn nested_layers_refract_by_their_own_indices_in_any_order() {
     let layers = [slab(0, -3.0, 3.0, 30.0), slab(1, -2.0, 2.0, 20.0), slab(2, -1.0, 1.0, 10.0)];
     for order in [[0, 1, 2], [2, 1, 0], [1, 2, 0], [0, 2, 1]] {
         let objects: String = order.map(|i| layers[i].as_str()).concat();
@@ -73,7 +73,7 @@ fn short(index: f32) -> f32 {
 }
 
 #[test]
-fn ice_that_stands_out_of_water_displaces_it() {
+fn ice_partly_out_of_water_displaces_it() {
     let (water, ice) = (slab(1, -2.0, 0.0, 20.0), slab(2, -1.0, 1.0, 10.0));
     for objects in [format!("{water}{ice}"), format!("{ice}{water}")] {
         // The water's surface inside the ice is ignored.
@@ -87,7 +87,7 @@ fn ice_that_stands_out_of_water_displaces_it() {
 }
 
 #[test]
-fn a_bubble_is_air_and_a_pane_hides_nothing() {
+fn bubble_is_air_and_pane_hides_nothing() {
     let bubble = format!("{}{}", slab(0, -2.0, 2.0, 20.0), slab(3, -1.0, 1.0, 10.0));
     assert_eq!(indices(&bubble, [0.0, 6.0, 0.0], 0.5), [1.5, 1.0, 1.5, 1.0]);
     // Opaque objects inside glass are fully visible.
@@ -100,7 +100,7 @@ fn a_bubble_is_air_and_a_pane_hides_nothing() {
 }
 
 #[test]
-fn a_wall_turned_inside_out_is_that_of_a_cavity() {
+fn inverted_mesh_is_the_wall_of_a_cavity() {
     let folder = tempfile::tempdir().unwrap();
     // A box of twelve triangles with inverted orientation.
     let corners: String = (0..8)

@@ -15,12 +15,12 @@ fn random_ops(random: &mut Random) -> Vec<MatrixOp> {
 
 fn close(a: &Matrix, b: &Matrix, most: f32) {
     for (p, q) in a.0.iter().flatten().zip(b.0.iter().flatten()) {
-        assert!((p - q).abs() <= most, "{a:?} is not {b:?}");
+        assert!((p - q).abs() <= most, "{a:?} differs from {b:?}");
     }
 }
 
 #[test]
-fn products_and_what_is_left_without_shear_are_those_of_double_precision() {
+fn products_and_shear_removal_match_double_precision() {
     let mut random = Random(59);
     for _ in 0..500 {
         let ops = random_ops(&mut random);
@@ -32,7 +32,7 @@ fn products_and_what_is_left_without_shear_are_those_of_double_precision() {
 }
 
 #[test]
-fn both_inverses_undo_a_matrix() {
+fn inverse_of_both_libraries_undoes_the_matrix() {
     let mut random = Random(60);
     for _ in 0..500 {
         let matrix = Matrix::of(&random_ops(&mut random), MatrixRules::default(), Vectors::Vecmath);
@@ -49,7 +49,7 @@ fn both_inverses_undo_a_matrix() {
 }
 
 #[test]
-fn a_flat_matrix_is_told_and_a_tiny_one_passed_over() {
+fn singular_matrix_is_detected_and_tiny_one_is_skipped() {
     let flat = [MatrixOp::Scale(Vec3::new(1.0, 0.0, 1.0))];
     assert!(!Matrix::of(&flat, MatrixRules::default(), Vectors::Vecmath).is_regular());
     let tiny = MatrixRules { dropped_tiny: true, ..MatrixRules::default() };
@@ -62,7 +62,7 @@ fn a_flat_matrix_is_told_and_a_tiny_one_passed_over() {
 }
 
 #[test]
-fn the_sign_of_a_zero_is_that_of_each_library() {
+fn sign_of_zero_matches_each_library() {
     let moved = Matrix::of(&[MatrixOp::Translate(Vec3::ONE)], MatrixRules::default(), Vectors::Vecmath);
     let inverse = moved.inverse(Vectors::Vecmath);
     assert!(inverse.vector(Vec3::new(-0.5, 0.9, -0.0)).z.is_sign_positive());

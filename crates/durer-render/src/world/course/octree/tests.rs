@@ -19,7 +19,7 @@ fn visited(octree: &Octree, ray: &Ray) -> Vec<u32> {
     found
 }
 
-/// True if a ray meets the middle half of a box, well inside of it.
+/// Returns true if a ray passes through the middle half of a box.
 fn goes_through(ray: &Ray, b: &Aabb) -> bool {
     let inner = Aabb { min: b.min + 0.25 * b.size(), max: b.max - 0.25 * b.size() };
     let [near, far] = [inner.min, inner.max].map(|p| (p - ray.origin) / ray.dir);
@@ -27,7 +27,7 @@ fn goes_through(ray: &Ray, b: &Aabb) -> bool {
 }
 
 #[test]
-fn a_ray_visits_every_box_that_it_goes_through() {
+fn ray_visits_every_box_on_its_way() {
     let mut random = Random(7);
     for count in [1, 7, 8, 200, 3000] {
         let boxes = boxes(count, &mut random);
@@ -45,26 +45,26 @@ fn a_ray_visits_every_box_that_it_goes_through() {
 }
 
 #[test]
-fn a_ray_along_an_axis_loses_the_far_half_of_divided_cells() {
-    // Eight small boxes at the corners of a cube, and as many again, so that the root is divided.
+fn axis_parallel_ray_loses_the_far_half_of_divided_cells() {
+    // Eight small boxes at the corners of a cube, each twice, so that the root is divided.
     let at = |i: u32| Vec3::from_array([4, 2, 1].map(|bit| if i & bit != 0 { 1.0 } else { -1.0 }));
     let small = |i: u32| Aabb { min: at(i) - 0.1, max: at(i) + 0.1 };
     let octree = Octree::new((0..16).map(|i| small(i % 8)).collect());
     let down = |x: f32, y: f32, dir: Vec3| visited(&octree, &Ray::new(Vec3::new(x, y, 5.0), dir));
-    // The middle plane of x is NaN, and what is behind it is never asked for.
+    // The middle plane of x is NaN, so the cells behind it are never visited.
     let lost = down(1.0, 1.0, Vec3::NEG_Z);
     assert!(!lost.contains(&7) && !lost.contains(&6), "{lost:?}");
     assert!(down(-1.0, -1.0, Vec3::NEG_Z).contains(&1));
-    // A direction that is a little inclined loses nothing.
+    // A slightly inclined direction loses nothing.
     let found = down(1.0, 1.0, Vec3::new(-1e-6, -1e-6, -1.0));
     assert!(found.contains(&7) && found.contains(&6), "{found:?}");
-    // Seven are never divided, and none is lost.
+    // A cell of seven triangles is not divided, and none is lost.
     let few = Octree::new((0..7).map(|i| small(7 - i)).collect());
     assert_eq!(visited(&few, &Ray::new(Vec3::new(1.0, 1.0, 5.0), Vec3::NEG_Z)).len(), 7);
 }
 
 #[test]
-fn large_boxes_that_all_overlap_end_somewhere() {
+fn division_of_overlapping_boxes_terminates() {
     let whole = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
     let octree = Octree::new(vec![whole; 40]);
     assert!(octree.memory_usage() < 100 << 20, "{} bytes", octree.memory_usage());

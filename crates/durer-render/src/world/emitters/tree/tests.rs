@@ -25,7 +25,7 @@ fn all_ways() -> Bounds {
 }
 
 #[test]
-fn probabilities_are_those_of_sampling_and_sum_to_one() {
+fn probabilities_match_sampling_and_sum_to_one() {
     let mut random = Random(5);
     for (count, alike) in [(1, false), (2, false), (3, false), (17, false), (400, false), (400, true)] {
         let mut all = lights(&mut random, count);
@@ -53,7 +53,7 @@ fn probabilities_are_those_of_sampling_and_sum_to_one() {
 }
 
 #[test]
-fn what_lies_behind_a_surface_is_not_chosen() {
+fn lights_behind_a_surface_are_not_chosen() {
     let mut random = Random(7);
     let all: Vec<Bounds> = lights(&mut random, 300).into_iter().map(|light| Bounds { each: 0.0, ..light }).collect();
     let (tree, order) = LightTree::new(&all);
@@ -72,7 +72,7 @@ fn what_lies_behind_a_surface_is_not_chosen() {
 }
 
 #[test]
-fn whatever_can_shine_on_a_point_can_be_chosen() {
+fn every_light_that_reaches_a_point_can_be_chosen() {
     let mut random = Random(6);
     let all = lights(&mut random, 300);
     let (tree, order) = LightTree::new(&all);
