@@ -196,7 +196,7 @@ contents: Contents | null,
  */
 ms: number, } | { "kind": "checked", 
 /**
- * All findings, including those of [`Event::Scene`].
+ * The findings, including those of [`Event::Scene`].
  */
 findings: Array<Finding>, } | { "kind": "camera", 
 /**

@@ -81,7 +81,7 @@ const USAGE: &str = "Commands:
   cargo xtask peers --direct [--python PROGRAM] [--side 512] [--samples 16] [--runs 3] [--threads 2] [--only TEXT]
       What direct light of point lamps costs us, Mitsuba 3's `direct`, and Blender's Cycles where the package index has it.
   cargo xtask validate [--samples N]
-      Light against answers in closed form, white furnaces, directions against their densities, and docs/validation.md.
+      Light against known answers, white furnaces, and directions against their densities: docs/validation.md.
   cargo xtask lamps
       What a hundred thousand lamps cost beside ten, at equal error.
   cargo xtask bitterli [--samples 256] [--only TEXT] [--keep FOLDER]

@@ -190,7 +190,7 @@ pub enum Event {
     },
     /// Findings of `durer check`, computed after the picture is finished.
     Checked {
-        /// All findings, including those of [`Event::Scene`].
+        /// The findings, including those of [`Event::Scene`].
         findings: Vec<Finding>,
     },
     /// The camera was moved.
