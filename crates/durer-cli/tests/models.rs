@@ -92,7 +92,7 @@ fn things_of_models_are_told_once_by_their_names() {
     assert_eq!(ran.err.matches("no-objects").count(), 1, "{}", ran.err);
     place.put("empty.obj", "# nothing\n");
     let found = place.run("check empty.obj");
-    assert!(found.out.contains("nothing is to be seen") && !found.out.contains("Group"), "{}", found.out);
+    assert!(found.out.contains("the scene has no surfaces") && !found.out.contains("Group"), "{}", found.out);
     let room = "PerspectiveCamera { center 0 0 0 direction 0 0 -1 up 0 1 0 angle 40 }\nLights { DirectionalLight { direction \
                 0 -1 0 color 1 1 1 } }\nMaterials { PhongMaterial { diffuseColor 1 1 1 } }\nGroup { MaterialIndex 0 Box { min \
                 -1 -1 -1 max 1 1 1 } }\n";
