@@ -28,7 +28,7 @@ fn a_lesson_is_a_folder_with_a_page_a_text_and_its_pictures() {
         text.matches("](").count(),
         text.matches(".png)").count() + text.matches(".svg)").count() + 1 + { text.matches("(our-scene.txt)").count() }
     );
-    assert!(text.contains("> scene.txt cannot show this: no glass is seen in it"), "{text}");
+    assert!(text.contains("> scene.txt cannot show this: no glass is visible in it"), "{text}");
     assert!(text.contains("`crates/durer-render/src/integrator/whitted/secondary.rs`: `fn refract`"));
     // The last picture equals that of `render`.
     place.gives(0, &format!("render scene.txt -o p.png -q {SMALL}"));
@@ -71,7 +71,7 @@ fn wrong_orders_are_refused_and_leave_nothing() {
     place.put("broken.txt", "PerspectiveCamera {");
     for (arguments, words) in [
         ("scene.txt -o scene.txt", "is a file"),
-        ("scene.txt -o no/such/folder", "there is no folder `no/such`"),
+        ("scene.txt -o no/such/folder", "folder `no/such` does not exist"),
         ("scene.txt -o out --show depth", "unexpected argument '--show'"),
         ("scene.txt -o out --crop 1,1,4x4", "unexpected argument '--crop'"),
         ("scene.txt -o out --size 40", "640x480"),

@@ -39,7 +39,7 @@ fn a_measured_lamp_gives_its_illuminance() {
     let candela = 1000.0 - (1000.0 - 866.025) * 19.4712 / 30.0;
     let expected = candela * (4.0_f64 / 4.5).sqrt() / 4.5;
     assert!((rows[1][6] / expected - 1.0).abs() < 1e-4 && rows[1][4] == 1.0, "{rows:?}");
-    assert!(place.gives(2, "measure open.txt").err.contains("say where"));
+    assert!(place.gives(2, "measure open.txt").err.contains("--at X,Y,Z or --grid"));
     assert!(place.gives(2, "measure open.txt --at 0,0").err.contains("three numbers"));
     assert!(place.gives(2, "measure open.txt --at 0,0,0 --normal 0,0,0").err.contains("--normal"));
 }
@@ -64,7 +64,7 @@ Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Box { mi
     assert!((mean - expected).abs() < 3.0 * error + 0.02 * expected, "{mean} ± {error}, not {expected}");
     // Path tracing cannot find a point light behind glass.
     assert_eq!(lux("--samples 32").0, 0.0);
-    assert!(place.gives(2, "measure pane.txt --at 0,0,0 --integrator ao").err.contains("path, or photons"));
+    assert!(place.gives(2, "measure pane.txt --at 0,0,0 --integrator ao").err.contains("path or photons"));
 }
 
 #[test]
@@ -130,7 +130,7 @@ fn broken_lamps_names_and_dark_scenes_are_told_of() {
             .replace("MaterialIndex 1 Sphere { center 1", turned),
     );
     let told = place.gives(1, "check turned.txt").out;
-    assert!(told.contains("lamp-turned") && told.contains("exchange `edge0` and `edge1`"), "{told}");
+    assert!(told.contains("lamp-turned") && told.contains("swap `edge0` and `edge1`"), "{told}");
     place.put("milk.txt", LIT.replace("preset gold", "preset gold transmissionScatter 1 1 1"));
     let told = place.gives(1, "check milk.txt").out;
     assert!(told.contains("no-depth") && told.contains("transmissionDepth 1"), "{told}");
@@ -446,7 +446,7 @@ fn radiance_s_scenes_are_measured_in_lux_from_above() {
     let mirror = "void light l 0 0 3 100 100 100\nl sphere s 0 0 4 0 0 2 .05\nvoid mirror m 0 0 3 .9 .9 .9
 m polygon p 0 0 12 2 -9 -9 2 9 -9 2 9 9 2 -9 9\nvoid plastic w 0 0 5 .5 .5 .5 0 0\nw polygon f 0 0 12 -9 -9 0 9 -9 0 9 9 0 -9 9 0\n";
     place.put("mirror.rad", mirror);
-    place.refused(2, "measure mirror.rad --at 0,0,.8 --integrator photons --samples 2", &["lies on none"]);
+    place.refused(2, "measure mirror.rad --at 0,0,.8 --integrator photons --samples 2", &["is not on one"]);
     rows("measure mirror.rad --at 0,0,0 --integrator photons --samples 2");
     place.refused(2, "measure sky.rad --at 0,0,0 --samples 1", &["--samples"]);
 }

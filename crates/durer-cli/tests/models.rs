@@ -189,7 +189,7 @@ fn frames_are_moments_cameras_and_files() {
     place.refused(2, "render walk.%02d.txt --frames 8-9 --watch", &["apply to one picture"]);
     place.refused(2, "render a.stl --turntable 4 --turned 3", &["remove --camera, --view-file and --turned"]);
     // A scene with a camera cannot be turned, and the error says so.
-    place.refused(2, "render walk.08.txt --turntable 4", &["`durer convert` makes a glTF file"]);
+    place.refused(2, "render walk.08.txt --turntable 4", &["`durer convert` to a glTF file"]);
     place.refused(2, "render a.stl --fps 4", &["--frames"]);
     assert!(place.gives(2, "render walk.%02d.txt --frames 10-11 -q").err.contains("walk.11.txt"));
 }
