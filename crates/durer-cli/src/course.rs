@@ -234,7 +234,7 @@ fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
 /// Size of the picture that the 2012 program writes with only one of `-jitter` and `-filter`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum OddSize {
-    /// All sub-pixels: three by three per pixel.
+    /// Every sub-pixel, three by three per pixel.
     Threefold,
     /// The mean of each three by three pixels.
     Third,
