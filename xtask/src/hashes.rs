@@ -413,7 +413,7 @@ fn differences(old: &Lines, new: &Lines) -> Vec<String> {
 }
 
 #[test]
-fn lines_that_changed_appeared_or_vanished_are_told() {
+fn changed_new_and_missing_lines_are_reported() {
     let lines = |text: &str| parsed(text).unwrap();
     let old = lines("film\ta b.txt\t01\nfilm\tgone.txt\t02\npixels\ta b.txt: depth\t03\n");
     let new = lines("film\ta b.txt\t01\nfilm\tnew.txt\t02\npixels\ta b.txt: depth\t04\n");

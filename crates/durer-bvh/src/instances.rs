@@ -349,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn instances_are_met_as_their_triangles_are() {
+    fn instance_hits_equal_triangle_hits() {
         let mut random = Random(8);
         let meshes = [torus(16, 8), soup(&mut random, 200, 0.3)];
         let trees = meshes.clone().map(|(v, t)| Arc::new(TriangleBvh::build(&v, &t, BuildQuality::Balanced)));
@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn an_origin_in_double_precision_is_seen_from_the_instance() {
+    fn origin_keeps_double_precision_in_instances() {
         let mut random = Random(10);
         let mesh = torus(16, 8);
         let bvh = Arc::new(TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Balanced));
@@ -410,7 +410,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_met_where_nothing_is() {
+    fn empty_instances_are_never_hit() {
         let empty = Arc::new(TriangleBvh::build(&[], &[], BuildQuality::Fast));
         let ray = Ray::new(Vec3::ZERO, Vec3::X);
         for count in [0, 3] {
@@ -441,7 +441,7 @@ mod tests {
     }
 
     #[test]
-    fn masks_filters_sides_and_moves_are_obeyed() {
+    fn masks_filters_sides_and_moves_apply() {
         let mut random = Random(9);
         let meshes = [torus(16, 8), soup(&mut random, 100, 0.3)];
         let trees = meshes.clone().map(|(v, t)| Arc::new(TriangleBvh::build(&v, &t, BuildQuality::Balanced)));

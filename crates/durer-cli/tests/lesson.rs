@@ -16,7 +16,7 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn a_lesson_is_a_folder_with_a_page_a_text_and_its_pictures() {
+fn lesson_folder_has_page_text_and_pictures() {
     let place = Place::new();
     let ran = place.gives(0, &format!("lesson scene.txt -o out {SMALL}"));
     assert!(ran.out.starts_with("wrote out/index.html, lesson.md and "), "{}", ran.out);
@@ -66,7 +66,7 @@ fn only_files_of_an_earlier_lesson_are_replaced() {
 }
 
 #[test]
-fn wrong_orders_are_refused_and_leave_nothing() {
+fn invalid_arguments_leave_no_files() {
     let place = Place::new();
     place.put("broken.txt", "PerspectiveCamera {");
     for (arguments, words) in [
@@ -118,7 +118,7 @@ setTimeout(() => {
 "##;
 
 #[test]
-fn the_page_works_in_a_browser_without_network() {
+fn page_works_in_a_browser_without_network() {
     let place = Place::new();
     // A name that would end the script or link to a file to remove, if it were not escaped.
     let scene = "<b>](a).txt";

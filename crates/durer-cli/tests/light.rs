@@ -25,7 +25,7 @@ fn lit() -> Place {
 }
 
 #[test]
-fn a_measured_lamp_gives_its_illuminance() {
+fn photometric_light_has_its_specified_illuminance() {
     let place = lit();
     place.put("open.txt", LIT.replace("emissionLuminance 20", ""));
     // Beside the ball: E = I cos / d^2 with I = 1000 cos.
@@ -45,7 +45,7 @@ fn a_measured_lamp_gives_its_illuminance() {
 }
 
 #[test]
-fn photons_measure_what_glass_lets_through() {
+fn photons_measure_light_through_glass() {
     let place = Place::new();
     let scene = "PerspectiveCamera { center 0 2 6 direction 0 -0.3 -1 up 0 1 0 angle 40 } Background { color 0 0 0 }
 Lights { PointLight { position 0 2 0 color 31.830989 31.830989 31.830989 attenuation 0 0 1 } }
@@ -68,7 +68,7 @@ Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Box { mi
 }
 
 #[test]
-fn paths_have_the_same_bits_in_every_way_and_sum_in_explanations() {
+fn paths_are_deterministic_and_explanations_sum_up() {
     let place = lit();
     let hash = |options: &str| {
         let ran = place.gives(0, &format!("render lit.txt -o p.pfm --size 32x24 --samples 8 --hash -q {options}"));
@@ -85,7 +85,7 @@ fn paths_have_the_same_bits_in_every_way_and_sum_in_explanations() {
 }
 
 #[test]
-fn exposure_and_tone_change_eight_bits_alone() {
+fn exposure_and_tone_change_8_bit_pictures_only() {
     let place = lit();
     let bright = |options: &str| {
         place.gives(0, &format!("render lit.txt -o p.png --size 16x12 --samples 4 -q {options}"));
@@ -102,7 +102,7 @@ fn exposure_and_tone_change_eight_bits_alone() {
 }
 
 #[test]
-fn broken_lamps_names_and_dark_scenes_are_told_of() {
+fn invalid_photometric_files_names_and_dark_scenes_are_reported() {
     let place = lit();
     place.put("lamp.ies", LAMP.replace("0 30 60 90", "0 30 20 90"));
     let told = place.gives(2, "render lit.txt -o p.png").err;
@@ -161,7 +161,7 @@ Group {
 ";
 
 #[test]
-fn photons_wavelengths_and_fog_have_the_same_bits_however_they_are_made() {
+fn photons_spectra_and_fog_are_deterministic() {
     let place = Place::new();
     place.put("scene.txt", CAUSTIC);
     place.put("fog.txt", format!("Fog {{ extinction 0.2 color 0.9 0.8 0.7 min -3 0 -3 max 3 3 3 }}\n{CAUSTIC}"));
@@ -186,7 +186,7 @@ fn photons_wavelengths_and_fog_have_the_same_bits_however_they_are_made() {
 }
 
 #[test]
-fn options_of_light_that_make_no_sense_are_refused_and_noise_is_taken_out_beside_the_work() {
+fn invalid_light_options_are_refused_and_denoising_keeps_the_hash() {
     let place = Place::new();
     place.put("scene.txt", CAUSTIC);
     for (options, word) in [
@@ -216,7 +216,7 @@ fn options_of_light_that_make_no_sense_are_refused_and_noise_is_taken_out_beside
 }
 
 #[test]
-fn spectra_stand_beside_the_scene_and_lamps_have_names() {
+fn spectra_are_files_or_named_illuminants() {
     let place = Place::new();
     let scene = |base: &str, lamp: &str, sky: &str| {
         format!(
@@ -296,7 +296,7 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {thin
 }
 
 #[test]
-fn the_sun_stands_where_angles_or_place_and_time_say() {
+fn sun_position_follows_from_angles_or_place_and_time() {
     let place = Place::new();
     let lux = |sky: &str| -> Vec<f64> {
         let scene = format!(
@@ -334,7 +334,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
 }
 
 #[test]
-fn lights_in_candela_lumen_and_lux_light_as_much() {
+fn lights_in_candela_lumen_and_lux_have_that_strength() {
     let place = Place::new();
     place.put("lamp.ies", "TILT=NONE\n1 -1 2 3 1 1 2 0 0 0\n0.5 1 60\n0 90 180\n0\n100 100 100\n");
     let pi = std::f64::consts::PI;
@@ -388,7 +388,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
 }
 
 #[test]
-fn a_camera_s_settings_are_an_exposure() {
+fn camera_settings_give_the_exposure() {
     let place = Place::new();
     let scene =
         "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 } Background { color 3840 3840 3840 }
@@ -422,7 +422,7 @@ Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 } } Group { MaterialIndex
 }
 
 #[test]
-fn radiance_s_scenes_are_measured_in_lux_from_above() {
+fn radiance_scenes_are_measured_in_lux_from_above() {
     let place = Place::new();
     let sky = "void glow g 0 0 4 2 1 .5 0\ng source s 0 0 4 0 0 1 180\n";
     place.put("sky.rad", sky);
@@ -452,7 +452,7 @@ m polygon p 0 0 12 2 -9 -9 2 9 -9 2 9 9 2 -9 9\nvoid plastic w 0 0 5 .5 .5 .5 0 
 }
 
 #[test]
-fn what_of_a_sky_has_no_effect_is_told() {
+fn sky_fields_without_effect_are_reported() {
     let place = Place::new();
     let told = |sky: &str| {
         let scene = format!(

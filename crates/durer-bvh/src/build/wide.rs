@@ -365,7 +365,7 @@ mod tests {
     /// If two children are separated along an axis, closest-hit rays visit the nearer one first.
     /// Any-hit rays visit the farther one first, unless it is less than half as large.
     #[test]
-    fn children_come_in_the_order_that_rays_want() {
+    fn children_are_in_traversal_order() {
         let child = |axis: usize, at: f32, size: f32| {
             let (mut min, mut max) = ([0.0; 3], [size; 3]);
             (min[axis], max[axis]) = (at, at + size);

@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_saved_is_loaded() {
+    fn stored_trees_load_again() {
         let mut random = Random(41);
         for mesh in meshes(&mut random) {
             for (_, quality) in BuildQuality::NAMES {
@@ -291,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said() {
+    fn stored_errors_name_the_fault() {
         let bvh = TriangleBvh::build(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]], BuildQuality::Fast);
         let bytes = bvh.to_bytes();
         let with = |at: usize, byte: u8| {

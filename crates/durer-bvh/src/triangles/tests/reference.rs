@@ -136,7 +136,7 @@ fn try_rays(name: &str, mesh: &Mesh, seed: u64, rays: usize) -> Tried {
 
 /// Tests 10^5 rays per mesh; 10^7 in the long run.
 #[test]
-fn double_precision_says_the_same() {
+fn double_precision_reference_agrees() {
     const AT_ONCE: usize = 10_000;
     let all = rounds(100_000);
     let mut cut = 0;
