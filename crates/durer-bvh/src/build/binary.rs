@@ -171,7 +171,7 @@ impl Builder<'_> {
                 (boxes, middle)
             }
         };
-        let (here, below) = nodes.split_first_mut().expect("there is room for a node");
+        let (here, below) = nodes.split_first_mut().expect("the list has space for a node");
         let (left, right) = room.references.split_at_mut(middle);
         let [left_all, right_all] = &boxes;
         let left = BuildRange { references: left, ..room };

@@ -304,7 +304,7 @@ impl SubtreeNodes {
             moved
         };
         let mut moved = other.nodes.iter().map(moved);
-        self.nodes[number] = moved.next().expect("a subtree begins with its node");
+        self.nodes[number] = moved.next().expect("a subtree starts with its root");
         self.nodes.extend(moved);
         self.order.extend_from_slice(&other.order);
     }
@@ -353,7 +353,7 @@ fn places(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
     }
     let ends = [0, bounds.len() - 1].map(|end| {
         let child = places.iter().position(|place| *place == end);
-        areas[child.expect("each place is taken")]
+        areas[child.expect("each slot is in use")]
     });
     (from_last(axis, ends), places)
 }

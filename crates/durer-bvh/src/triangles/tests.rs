@@ -209,7 +209,7 @@ fn closed_mesh_has_even_crossings_from_outside_and_odd_from_inside() {
             }
         }
     }
-    println!("{counted} rays at vertices, edges and centroids: none is lost, no count is wrong");
+    println!("{counted} rays at vertices, edges and centroids: no ray is lost and all counts are right");
 }
 
 #[test]
@@ -418,13 +418,13 @@ fn a_tree_is_a_function_of_its_triangles() {
         };
         assert!(build(1) == build(2), "{name}");
     }
-    assert!(TriangleBvh::build(&bars.0, &bars.1, BuildQuality::Best).items() > bars.1.len(), "no part of a triangle");
+    assert!(TriangleBvh::build(&bars.0, &bars.1, BuildQuality::Best).items() > bars.1.len(), "no triangle was split");
 }
 
 /// The panic reaches the caller, whichever thread found the error, and the next tree can be built.
 #[test]
 #[cfg_attr(target_family = "wasm", ignore = "a panic ends the program there")]
-fn an_index_that_leads_nowhere_panics() {
+fn out_of_range_index_panics() {
     let (vertices, mut triangles) = soup(&mut Random(3), 20_000, 0.1);
     for quality in BuildQuality::NAMES.map(|(_, quality)| quality) {
         for place in [0, 10_000, 19_999] {

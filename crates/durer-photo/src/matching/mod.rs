@@ -190,7 +190,7 @@ pub fn match_all(
     }
     if found.iter().all(|(link, _)| link.moved < 0.5) {
         return Err(Error::new(
-            "the photographs are the same picture: without parallax there is no depth",
+            "the photographs are the same picture: without parallax, depth is undetermined",
         ));
     }
     let counts: Vec<usize> = photos.iter().map(|photo| photo.features.len()).collect();

@@ -147,8 +147,8 @@ fn double_precision_reference_agrees() {
             a += b;
             a
         });
-        println!("{name}: {all} rays, {} crossings, {} too near an edge to tell", tried.crossed, tried.unsure);
+        println!("{name}: {all} rays, {} crossings, {} too close to an edge to decide", tried.crossed, tried.unsure);
         assert!(tried.crossed > all / 50 && tried.unsure < tried.crossed / 10, "{name} {tried:?}");
     }
-    assert!(cut > 0, "no tree has parts of triangles");
+    assert!(cut > 0, "no tree has split triangles");
 }
