@@ -102,7 +102,7 @@ fn photographs_of_a_known_scene_give_its_cameras() {
     let walked = [
         "20 photographs, ",
         "button first: choose a photograph first, at -1",
-        "strip: 03.png: it sees ",
+        "strip: 03.png: sees ",
         "opacity 0.95, marked true | fills true",
         "is left true",
         "another true",
