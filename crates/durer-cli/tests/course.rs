@@ -18,7 +18,7 @@ fn every_option_of_2004() {
          -shade_back -weight 0.01 -gui -tessellation 100 50 -gouraud -stats -grid 10 10 10 -transparent_shadows \
          -jittered_samples 4 -gaussian_filter 0.4 -render_samples s.tga 3 -render_filter f.tga 4",
     );
-    // Its words say so themselves.
+    // The keywords identify the dialect.
     assert!(!ran.err.contains("read as"), "{}", ran.err);
     assert!(ran.out.starts_with("objects 2, rays "), "{}", ran.out);
     for (name, size) in [("o", (20, 10)), ("d", (20, 10)), ("n", (20, 10)), ("s", (60, 30)), ("f", (81, 41))] {

@@ -485,6 +485,6 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         let said = told(&format!("Background {{ {sky} }}"));
         assert!(!said.contains("no effect") && !said.contains("grey"), "{sky}: {said}");
     }
-    // Without a background there is no light around, and none that would have to be turned off.
+    // Without a background, the message does not suggest to turn it off.
     assert!(!told("").contains("`Background { color 0 0 0 }`"), "{}", told(""));
 }

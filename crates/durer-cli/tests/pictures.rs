@@ -128,7 +128,7 @@ fn names_and_defaults() {
     assert_eq!((ran.out.as_str(), ran.err.as_str()), ("", ""));
     assert_eq!((place.image8("my.best.scene.png").width, place.image8("my.best.scene.png").height), (512, 512));
     let ran = place.gives(0, "render scene.txt --size 3x3 -o p.png");
-    assert_eq!(ran.err, "", "what the words say is not told");
+    assert_eq!(ran.err, "", "an explicit option needs no note");
     let ran = place.gives(0, "render scene.txt --dialect f04 -o p.png");
     assert_eq!((ran.err.as_str(), place.image8("p.png").width), ("", 100));
 }

@@ -153,8 +153,8 @@ pub(super) fn turned(scout: &SceneProbe) -> Vec<Finding> {
             .at(scout.object_span(number))
             .effect("it lights nothing visible, and is black from behind")
             .help(format!(
-                "a surface shines to the side of its normal: {turn}, or give its material `walls thin`, with which both sides \
-                 shine"
+                "a surface emits on the side of its normal: {turn}, or set `walls thin` in its material, so that both sides \
+                 emit"
             ));
         let whole = scout.is_dark() || scout.world().lights().is_empty();
         Some(Finding::from(turned_round(scout, diagnostic, number)).whole(whole))
@@ -162,7 +162,7 @@ pub(super) fn turned(scout: &SceneProbe) -> Vec<Finding> {
     one_sided.filter_map(say).collect()
 }
 
-/// Adds the edit that flips a flat area light. Which corners of a triangle to exchange is for the
+/// Adds the edit that flips a flat area light. Which corners of a triangle to swap is for the
 /// author to decide.
 fn turned_round(scout: &SceneProbe, diagnostic: Diagnostic, number: u32) -> Diagnostic {
     match shape(&scout.world().objects()[number as usize]).and_then(Shape::flip) {

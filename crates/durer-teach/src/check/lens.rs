@@ -83,8 +83,8 @@ pub(super) fn wide_aperture(scout: &SceneProbe) -> Vec<Finding> {
             100.0 * sizes[sizes.len() / 2]
         ))
         .help(format!(
-            "it is the diameter of the opening in units of the scene, and no f-number: the focal length over that. \
-             `aperture {usual}`, say"
+            "`aperture` is the diameter of the lens in world units, not an f-number; a usual value is \
+             `aperture {usual}`"
         ));
     let span = scout.subject.scene.camera_span;
     let diagnostic = diagnostic.fix_at(scout.value(span, &["aperture"]), usual);
