@@ -18,8 +18,8 @@ pub(crate) fn distance(world: &World) -> f32 {
     let bounds = world.bounds();
     let center = if bounds.is_empty() { 1.0 } else { (bounds.center() - frame.eye).dot(frame.forward) };
     let hit = world.closest(&ray, &mut ()).map(|hit| hit.t).filter(|t| t.is_finite());
-    // Ignore a hit far beyond the scene, such as a ground plane near the horizon: it is not a useful
-    // center of an orbit.
+    // Ignore a hit far beyond the scene, such as a ground plane near the horizon: it is not a
+    // useful center of an orbit.
     let size = if bounds.is_empty() { f32::INFINITY } else { bounds.size().length() };
     let near = hit.filter(|&t| t <= center.max(0.0) + size);
     near.unwrap_or(center).max(1e-3 * frame.eye.length().max(1.0))
