@@ -13,7 +13,7 @@ import { connect, hasServer } from "./engine/connect";
 const root = document.getElementById("app");
 if (root) render(<App engine={connect()} />, root);
 
-// Static files work without a network after the first visit.
+// Cache static files, so that the page works offline after the first visit.
 if (!hasServer() && "serviceWorker" in navigator && location.protocol.startsWith("http")) {
   navigator.serviceWorker.register("./offline.js").catch(() => {});
 }

@@ -2,25 +2,25 @@
 
 export type Ask = { 
 /**
- * Number of the session, chosen by the page. A new number makes a new session.
+ * Number of the session, chosen by the page. A new number opens a new session.
  */
 session: number, 
 /**
- * Number of the question, from 1.
+ * Number of the request, from 1.
  */
 id: number, 
 /**
- * The question.
+ * The request.
  */
 request: Request, };
 
 export type Answer = { 
 /**
- * The session.
+ * Number of the session.
  */
 session: number, 
 /**
- * The question that it answers; 0 where nobody asked.
+ * Number of the request that it answers; 0 if unsolicited.
  */
 id: number, 
 /**
@@ -30,23 +30,23 @@ event: Event, };
 
 export type Request = { "kind": "open", 
 /**
- * The name of the file; its ending says the format.
+ * Name of the file; its extension selects the format.
  */
 name: string, 
 /**
- * The text; `None` for the file of the server.
+ * Text of the scene; `None` opens the server's file.
  */
 text: string | null, } | { "kind": "give", 
 /**
- * Its name in the scene.
+ * Name of the file, as written in the scene.
  */
 name: string, 
 /**
- * Its bytes in base64.
+ * Contents in base64.
  */
 base64: string, 
 /**
- * True for the scene itself.
+ * True if this is the scene itself.
  */
 opens: boolean, } | { "kind": "edit", 
 /**
@@ -54,19 +54,19 @@ opens: boolean, } | { "kind": "edit",
  */
 text: string, } | { "kind": "size", 
 /**
- * Columns.
+ * Width in pixels.
  */
 width: number, 
 /**
- * Rows.
+ * Height in pixels.
  */
 height: number, } | { "kind": "show", 
 /**
- * `color`, or the name of another picture.
+ * `color`, or the name of an auxiliary picture.
  */
 picture: string, 
 /**
- * Exposure in stops: light is multiplied by this power of two.
+ * Exposure in stops: radiance is multiplied by 2 to this power.
  */
 stops: number, 
 /**
@@ -78,27 +78,27 @@ tone: string, } | { "kind": "options",
  */
 options: Array<Setting>, } | { "kind": "move", 
 /**
- * How.
+ * The motion.
  */
 motion: Motion, 
 /**
- * True while the motion lasts: only coarse pictures are made.
+ * True while the motion continues: only coarse pictures are rendered.
  */
 moving: boolean, } | { "kind": "field", 
 /**
- * Its name.
+ * Keyword of the field in the scene language.
  */
 name: string, 
 /**
- * Its numbers.
+ * Numbers of its value.
  */
 values: Array<number>, 
 /**
- * True while the motion lasts.
+ * True while the motion continues.
  */
 moving: boolean, } | { "kind": "look", 
 /**
- * The eye.
+ * Position of the eye in world space.
  */
 center: [number, number, number], 
 /**
@@ -114,7 +114,7 @@ up: [number, number, number],
  */
 angle: number, 
 /**
- * True while the motion lasts.
+ * True while the motion continues.
  */
 moving: boolean, } | { "kind": "write_camera" } | { "kind": "explain", 
 /**
@@ -126,27 +126,27 @@ x: number,
  */
 y: number, 
 /**
- * Which of its samples; `None`: the one that counts most.
+ * Index of the sample; `None` selects the sample with the largest contribution.
  */
 sample: number | null, } | { "kind": "cast", 
 /**
- * Origin of the ray.
+ * Origin of the ray in world space.
  */
 origin: [number, number, number], 
 /**
- * Its direction, of any length.
+ * Direction of the ray, of any length.
  */
 direction: [number, number, number], 
 /**
- * End.
+ * End of the ray, in lengths of `direction`; `None` for an infinite ray.
  */
 t_max: number | null, } | { "kind": "outlines" } | { "kind": "language" } | { "kind": "export", 
 /**
- * The file's name, whose ending says the format.
+ * Name of the file; its extension selects the format.
  */
 name: string, } | { "kind": "save", 
 /**
- * True to overwrite what other programs wrote meanwhile.
+ * True to overwrite changes by other programs.
  */
 force: boolean, } | { "kind": "pause", 
 /**
@@ -156,7 +156,7 @@ pause: boolean, } | { "kind": "close" };
 
 export type Event = { "kind": "opened", 
 /**
- * The program's version.
+ * Version of the program.
  */
 version: string, 
 /**
@@ -164,11 +164,11 @@ version: string,
  */
 name: string, 
 /**
- * Its text; `None` for a model in a binary format.
+ * Text of the scene; `None` for a model in a binary format.
  */
 text: string | null, 
 /**
- * True if it can be saved.
+ * True if the scene can be saved.
  */
 saves: boolean, 
 /**
@@ -184,11 +184,11 @@ tones: Array<string>,
  */
 integrators: Array<Choice>, } | { "kind": "scene", 
 /**
- * Findings of the reader.
+ * Findings of the parser and the compiler.
  */
 findings: Array<Finding>, 
 /**
- * Contents; `None` if it has errors, and the picture stays the last one.
+ * Contents of the scene; `None` after errors, in which case the previous picture remains.
  */
 contents: Contents | null, 
 /**
@@ -196,15 +196,15 @@ contents: Contents | null,
  */
 ms: number, } | { "kind": "checked", 
 /**
- * The findings, those of [`Event::Scene`] among them.
+ * The findings, including those of [`Event::Scene`].
  */
 findings: Array<Finding>, } | { "kind": "camera", 
 /**
- * As it is now.
+ * The current camera.
  */
 camera: CameraState, } | { "kind": "picture", 
 /**
- * Meaning.
+ * Description of the payload.
  */
 head: PictureHead, } | { "kind": "explained", 
 /**
@@ -212,19 +212,19 @@ head: PictureHead, } | { "kind": "explained",
  */
 pixel: PixelAccount, } | { "kind": "cast", 
 /**
- * The answer of all.
+ * The results.
  */
 cast: CastAccount, } | { "kind": "outlines", 
 /**
- * One for each object, up to a limit.
+ * Outlines, one per object, up to a limit.
  */
 outlines: Array<Outline>, 
 /**
- * The lights that have a place.
+ * Lights that have a position or a direction.
  */
 lamps: Array<Lamp>, } | { "kind": "language", 
 /**
- * Words that begin a statement.
+ * Keywords that begin a statement.
  */
 words: Array<Word>, } | { "kind": "text", 
 /**
@@ -232,15 +232,15 @@ words: Array<Word>, } | { "kind": "text",
  */
 text: string, 
 /**
- * True if it was changed on disk.
+ * True if the file changed on disk.
  */
 from_disk: boolean, } | { "kind": "exported", 
 /**
- * Its name.
+ * Name of the file.
  */
 name: string, } | { "kind": "saved" } | { "kind": "conflict" } | { "kind": "refused", 
 /**
- * Why.
+ * Reason.
  */
 why: string, };
 
@@ -272,7 +272,7 @@ right: number,
  */
 up: number, } | { "kind": "dolly", 
 /**
- * The factor.
+ * Factor on the distance to the target, 0.01 to 100.
  */
 factor: number, } | { "kind": "walk", 
 /**
@@ -298,29 +298,29 @@ up: number, } | { "kind": "home" } | { "kind": "frame" };
 
 export type Choice = { 
 /**
- * Its name.
+ * Name of the item.
  */
 name: string, 
 /**
- * Its meaning.
+ * Meaning of the item.
  */
 doc: string, };
 
 export type Place = { 
 /**
- * Line from 1.
+ * Line, from 1.
  */
 line: number, 
 /**
- * Column from 1, in characters.
+ * Column in characters, from 1.
  */
 column: number, 
 /**
- * First byte.
+ * Byte offset of the start.
  */
 start: number, 
 /**
- * One past the last byte.
+ * Byte offset of the end, exclusive.
  */
 end: number, };
 
@@ -328,19 +328,19 @@ export type Severity = "note" | "warning" | "error";
 
 export type Finding = { 
 /**
- * How bad it is.
+ * Severity of the finding.
  */
 severity: Severity, 
 /**
- * Its kind, or nothing.
+ * Kind of the finding; may be empty.
  */
 code: string, 
 /**
- * In a sentence.
+ * Message in one sentence.
  */
 message: string, 
 /**
- * Advice.
+ * Help: how to fix it.
  */
 help: string | null, 
 /**
@@ -348,29 +348,29 @@ help: string | null,
  */
 effect: string | null, 
 /**
- * The file, if it is not the scene's.
+ * Name of the file, if it is not the scene's own.
  */
 file: string | null, 
 /**
- * Place in it.
+ * Place in the file.
  */
 place: Place | null, 
 /**
- * Edits that fix it.
+ * Edits that fix the fault.
  */
 fix: Array<Change>, };
 
 export type Change = { 
 /**
- * First byte that is replaced.
+ * Byte offset of the start of the replaced range.
  */
 start: number, 
 /**
- * One past the last.
+ * Byte offset of its end, exclusive.
  */
 end: number, 
 /**
- * By what.
+ * Replacement.
  */
 text: string, };
 
@@ -380,11 +380,11 @@ export type Contents = {
  */
 dialect: string, 
 /**
- * The camera.
+ * The current camera.
  */
 camera: CameraState, 
 /**
- * Objects, by number, up to a limit.
+ * Objects by number, up to a limit.
  */
 objects: Array<Thing>, 
 /**
@@ -396,21 +396,21 @@ object_count: number,
  */
 triangles: number, 
 /**
- * Lights, by number.
+ * Lights by number.
  */
 lights: Array<Thing>, 
 /**
- * Two opposite corners of the box around all that has an end.
+ * Minimum and maximum corner of the bounding box of all bounded objects, in world space.
  */
 bounds: [[number, number, number], [number, number, number]], 
 /**
- * The job, as on the command line, but for its size.
+ * Options of the job, without its size.
  */
 job: JobState, };
 
 export type JobState = { 
 /**
- * The size that the scene has by default.
+ * Default size of the scene, in pixels.
  */
 size: [number, number], 
 /**
@@ -418,21 +418,21 @@ size: [number, number],
  */
 integrator: string, 
 /**
- * Samples a pixel.
+ * Samples per pixel.
  */
 samples: number, 
 /**
- * Levels of mirrored and transmitted rays.
+ * Maximum depth of mirrored and transmitted rays.
  */
 bounces: number, 
 /**
- * Options that differ from the scene's defaults, as words of a command line.
+ * Options that differ from the scene's defaults, as command-line arguments.
  */
 words: Array<string>, };
 
 export type Thing = { 
 /**
- * Its keyword and line.
+ * Keyword and line.
  */
 name: string, 
 /**
@@ -442,49 +442,49 @@ place: Place | null, };
 
 export type CameraState = { 
 /**
- * Its keyword.
+ * Keyword of the camera.
  */
 keyword: string, 
 /**
- * The eye.
+ * Position of the eye in world space.
  */
 eye: [number, number, number], 
 /**
- * View direction, of length 1.
+ * View direction in world space, unit length.
  */
 forward: [number, number, number], 
 /**
- * To the right in the picture.
+ * Right direction of the picture in world space.
  */
 right: [number, number, number], 
 /**
- * Upwards in the picture.
+ * Up direction of the picture in world space.
  */
 up: [number, number, number], 
 /**
- * Half the width of what is seen at distance 1, by the larger side.
+ * Half the visible width at distance 1, along the larger side.
  */
 half_width: number, 
 /**
- * Distance of what it looks at.
+ * Distance from the eye to the target.
  */
 distance: number, 
 /**
- * Its fields.
+ * Fields of the camera.
  */
 fields: Array<FieldState>, 
 /**
- * How it is written.
+ * Statement of the camera in the scene language.
  */
 statement: string, 
 /**
- * True if it differs from the text.
+ * True if it differs from the camera of the text.
  */
 moved: boolean, };
 
 export type FieldState = { 
 /**
- * Its word in the scene language.
+ * Keyword in the scene language.
  */
 name: string, 
 /**
@@ -492,61 +492,61 @@ name: string,
  */
 doc: string, 
 /**
- * Its numbers; none for words and files.
+ * Numbers of the value; empty for words and files.
  */
 values: Array<number>, 
 /**
- * Its value if that is a word or a file name.
+ * Value, if it is a word or a file name.
  */
 text: string, 
 /**
- * Least value, if there is one.
+ * Minimum value, if limited.
  */
 least: number | null, 
 /**
- * Greatest value, if there is one.
+ * Maximum value, if limited.
  */
 most: number | null, };
 
 export type PictureHead = { 
 /**
- * `color`, or the name of another picture.
+ * `color`, or the name of an auxiliary picture.
  */
 picture: string, 
 /**
- * Columns of what follows.
+ * Width of the payload in pixels.
  */
 width: number, 
 /**
- * Rows of what follows.
+ * Height of the payload in pixels.
  */
 height: number, 
 /**
- * Columns of the whole picture: more than `width` where it is coarse.
+ * Width of the full picture in pixels; more than `width` for a coarse picture.
  */
 full_width: number, 
 /**
- * Rows of the whole picture.
+ * Height of the full picture in pixels.
  */
 full_height: number, 
 /**
- * Samples that each pixel has.
+ * Samples per pixel so far.
  */
 samples: number, 
 /**
- * Samples that each pixel gets.
+ * Samples per pixel of the finished picture.
  */
 all_samples: number, 
 /**
- * Rays traced for it.
+ * Number of rays traced.
  */
 rays: number, 
 /**
- * Milliseconds since the change that it shows.
+ * Time since the change that the picture shows, in milliseconds.
  */
 ms: number, 
 /**
- * The hash of its sums, once it is finished: that of `durer render --hash`.
+ * Hash of the finished picture, as `durer render --hash` prints it.
  */
 hash: string | null, };
 
@@ -556,37 +556,37 @@ export type Row = {
  */
 name: string, 
 /**
- * How, in symbols.
+ * Formula in symbols.
  */
 formula: string, 
 /**
- * The formula with numbers; may be empty.
+ * Formula in numbers; may be empty.
  */
 numbers: string, 
 /**
- * The result as text.
+ * Result as text.
  */
 result: string, 
 /**
- * The result as a number.
+ * Result as a number, if it is a scalar.
  */
 value: number | null, };
 
 export type Segment = { 
 /**
- * Meaning.
+ * Kind of the ray.
  */
 role: Role, 
 /**
- * Start.
+ * Start in world space.
  */
 from: [number, number, number], 
 /**
- * End.
+ * End in world space.
  */
 to: [number, number, number], 
 /**
- * True if it has no end.
+ * True if the ray leaves the scene.
  */
 escapes: boolean, };
 
@@ -598,51 +598,51 @@ export type Term = {
  */
 title: string, 
 /**
- * Its formulas.
+ * Formulas of the term.
  */
 rows: Array<Row>, 
 /**
- * The colour that comes of it.
+ * Value of the term, as linear RGB.
  */
 value: [number, number, number], 
 /**
- * Contribution to the pixel.
+ * Contribution to the pixel, as linear RGB.
  */
 adds: [number, number, number], 
 /**
- * Its share of the pixel's luminance.
+ * Share of the pixel's luminance, 0 to 1.
  */
 share: number, 
 /**
- * The value in eight bits.
+ * Value as 8-bit sRGB.
  */
 swatch: [number, number, number], 
 /**
- * Place of its object or light in the text.
+ * Place of the object or light in the text.
  */
 place: Place | null, 
 /**
- * Its ray.
+ * Segment to draw.
  */
 segment: Segment | null, 
 /**
- * Point and normal of what was hit.
+ * Position and normal of the hit, in world space.
  */
 normal: [[number, number, number], [number, number, number]] | null, 
 /**
- * The ray in numbers, to ask all objects about it: origin, direction.
+ * Origin and direction of the ray, for `Request::Cast`.
  */
 ray: [[number, number, number], [number, number, number]] | null, 
 /**
- * End of the ray.
+ * End of the ray, if finite.
  */
 t_max: number | null, 
 /**
- * Number of the object that it is about.
+ * Number of the hit or blocking object.
  */
 object: number | null, 
 /**
- * Terms that sum to it.
+ * Terms that sum to this one.
  */
 terms: Array<Term>, };
 
@@ -656,11 +656,11 @@ x: number,
  */
 y: number, 
 /**
- * The colour, in linear light.
+ * Colour as linear RGB.
  */
 color: [number, number, number], 
 /**
- * In eight bits.
+ * Colour as 8-bit sRGB.
  */
 bytes: [number, number, number], 
 /**
@@ -668,19 +668,19 @@ bytes: [number, number, number],
  */
 samples: number, 
 /**
- * Which of them the tree is of.
+ * Index of the sample that `tree` explains.
  */
 sample: number, 
 /**
- * Place in the picture, in pixels from the upper left corner.
+ * Position of the sample in the picture, in pixels from the upper left corner.
  */
 at: [number, number], 
 /**
- * The weight of that sample, divided by those of all.
+ * Filter weight of the sample, divided by the sum of all weights.
  */
 weight: number, 
 /**
- * The tree; `None` where the camera sees nothing.
+ * Tree of terms; `None` if the camera has no ray for this pixel.
  */
 tree: Term | null, };
 
@@ -692,41 +692,41 @@ export type ObjectTest = {
  */
 object: number, 
 /**
- * Its keyword and line.
+ * Keyword and line of the object.
  */
 name: string, 
 /**
- * Place in the text.
+ * Place of the object in the text.
  */
 place: Place | null, 
 /**
- * The answer.
+ * Result of the test.
  */
 verdict: Verdict, 
 /**
- * The answer in words.
+ * Result in words.
  */
 why: string, 
 /**
- * First crossing along the line.
+ * First crossing along the line, in lengths of the direction.
  */
 t: number | null, 
 /**
- * The formulas, with numbers.
+ * Formulas with numbers.
  */
 rows: Array<Row>, };
 
 export type CastAccount = { 
 /**
- * Origin of the ray.
+ * Origin of the ray in world space.
  */
 origin: [number, number, number], 
 /**
- * Its direction.
+ * Direction of the ray.
  */
 direction: [number, number, number], 
 /**
- * Tests of the objects in the order of the text, up to a limit.
+ * Tests in the order of the text, up to a limit.
  */
 tests: Array<ObjectTest>, 
 /**
@@ -734,7 +734,7 @@ tests: Array<ObjectTest>,
  */
 left_out: number, 
 /**
- * The first hit.
+ * The closest hit.
  */
 hit: HitAccount | null, };
 
@@ -744,27 +744,27 @@ export type HitAccount = {
  */
 object: number, 
 /**
- * Number of the triangle in a mesh, else 0.
+ * Index of the triangle in a mesh, else 0.
  */
 part: number, 
 /**
- * Position along the ray.
+ * Position along the ray, in lengths of its direction.
  */
 t: number, 
 /**
- * The point.
+ * Position in world space.
  */
 point: [number, number, number], 
 /**
- * Normal of the surface.
+ * Geometric normal in world space, unit length.
  */
 normal: [number, number, number], 
 /**
- * Normal for shading.
+ * Shading normal in world space, unit length.
  */
 shading_normal: [number, number, number], 
 /**
- * Texture coordinates.
+ * Texture coordinates, if the surface has any.
  */
 uv: [number, number] | null, 
 /**
@@ -778,31 +778,32 @@ export type Outline = {
  */
 object: number, 
 /**
- * Lines, each a row of points, three numbers each.
+ * Polylines in world space, each as x, y, z of its points.
  */
 lines: Array<Array<number>>, };
 
 export type Lamp = { 
 /**
- * Position; of directional lights, a point from where they shine.
+ * Position in world space; for a directional light, a point in the direction from which it
+ * shines.
  */
 at: [number, number, number], 
 /**
- * True if it is infinitely far.
+ * True for a directional light.
  */
 far: boolean, 
 /**
- * Its keyword and line.
+ * Keyword and line of the light.
  */
 name: string, };
 
 export type Word = { 
 /**
- * The word.
+ * The keyword.
  */
 word: string, 
 /**
- * Its chapter in the manual.
+ * Chapter of the manual.
  */
 chapter: string, 
 /**
@@ -810,17 +811,17 @@ chapter: string,
  */
 doc: string, 
 /**
- * Its fields.
+ * Fields of its block.
  */
 fields: Array<WordField>, 
 /**
- * How it is written.
+ * Example.
  */
 example: string, };
 
 export type WordField = { 
 /**
- * The word.
+ * The keyword.
  */
 word: string, 
 /**
@@ -832,7 +833,7 @@ value: string,
  */
 default: string | null, 
 /**
- * True if it must be given.
+ * True if the field is required.
  */
 required: boolean, 
 /**

@@ -69,7 +69,7 @@ const ADDITIONS: &[Addition] = &[
         content: include_str!("additions/retro.rs"),
         words: &[
             (LOBES, "pub mod rough;", "pub mod retro;\n"),
-            (LOBES, "/// A perfect mirror.", "/// A perfect retroreflector.\n    Retro(retro::Retro),\n    "),
+            (LOBES, "Mirror(glass::Mirror),", "Retro(retro::Retro),\n    /// A perfect mirror.\n    "),
         ],
     },
     Addition {
@@ -147,7 +147,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         .output()?;
     for name in String::from_utf8(files.stdout)?.lines().filter(|name| root.join(name).is_file()) {
         let to = copy.join(name);
-        std::fs::create_dir_all(to.parent().context("a file lies in a folder")?)?;
+        std::fs::create_dir_all(to.parent().context("a file without a folder")?)?;
         std::fs::copy(root.join(name), to)?;
     }
     let chosen: Vec<&Addition> = ADDITIONS.iter().filter(|addition| addition.kind.contains(only)).collect();
@@ -159,7 +159,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         .env("CARGO_TARGET_DIR", &built)
         .current_dir(&copy)
         .status()?;
-    ensure!(build.success(), "with the new things the sources do not build");
+    ensure!(build.success(), "the sources do not build with the additions");
     println!("{:16} {:>6} {:>6}", "a new", "places", "lines");
     for addition in &chosen {
         let lines: usize = addition
@@ -178,13 +178,13 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
 /// Adds a feature to a copy of the crates.
 fn add(crates: &Path, addition: &Addition) -> Result<()> {
     let file = crates.join(addition.file);
-    ensure!(!file.exists(), "{} is there already", addition.file);
-    std::fs::create_dir_all(file.parent().context("a file lies in a folder")?)?;
+    ensure!(!file.exists(), "{} already exists", addition.file);
+    std::fs::create_dir_all(file.parent().context("a file without a folder")?)?;
     std::fs::write(file, addition.content)?;
     for (list, before, words) in addition.words {
         let path = crates.join(list);
         let text = std::fs::read_to_string(&path)?;
-        ensure!(text.matches(before).count() == 1, "{list} has not one place `{before}`");
+        ensure!(text.matches(before).count() == 1, "{list} must contain `{before}` exactly once");
         std::fs::write(path, text.replace(before, &format!("{words}{before}")))?;
     }
     Ok(())

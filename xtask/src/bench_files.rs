@@ -37,7 +37,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         bail!("{}", String::from_utf8_lossy(&output.stderr));
     }
     let theirs = String::from_utf8(output.stdout)?;
-    println!("least of {runs} runs, bytes in memory already");
+    println!("minimum of {runs} runs, files already in memory");
     println!("| file | MB | GB/s | seconds | other | seconds | times faster |");
     println!("| --- | ---: | ---: | ---: | --- | ---: | ---: |");
     for (path, (bytes, seconds, triangles)) in files.iter().zip(ours) {
@@ -51,7 +51,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         match other {
             Some((who, theirs, count)) => {
                 if count != triangles {
-                    bail!("{who} reads {count} triangles in {name}, and we {triangles}");
+                    bail!("{who} reads {count} triangles from {name}, Dürer reads {triangles}");
                 }
                 println!("{own} | {who} | {theirs:.3} | {:.1} |", theirs / seconds);
             }

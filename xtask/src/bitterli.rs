@@ -58,7 +58,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let (only, keep) = (crate::value(arguments, "--only"), crate::value(arguments, "--keep").map(PathBuf::from));
     let folder = crate::corpus().join("samples/pbrt/bitterli");
     let Ok(entries) = std::fs::read_dir(&folder) else {
-        println!("skipped: there is no {}", folder.display());
+        println!("skipped: {} is missing", folder.display());
         return Ok(ExitCode::SUCCESS);
     };
     let mut scenes: Vec<PathBuf> = entries.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
@@ -66,7 +66,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     scenes.retain(|path| only.is_none_or(|only| path.to_string_lossy().contains(only.as_str())));
     scenes.sort();
     if scenes.is_empty() {
-        bail!("there are no such scenes in {}", folder.display());
+        bail!("no matching scenes in {}", folder.display());
     }
     let mut table = format!(
         "{samples} samples a pixel.\n\n\
@@ -95,8 +95,8 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         let page = crate::root()?.join("docs/models.md");
         let text = std::fs::read_to_string(&page)?;
         let (before, rest) =
-            text.split_once(BEGIN).context("docs/models.md has lost the mark of the table's beginning")?;
-        let (_, after) = rest.split_once(END).context("docs/models.md has lost the mark of the table's end")?;
+            text.split_once(BEGIN).context("docs/models.md lacks the comment that begins the table")?;
+        let (_, after) = rest.split_once(END).context("docs/models.md lacks the comment that ends the table")?;
         std::fs::write(&page, format!("{before}{BEGIN}\n{table}\n{END}{after}"))?;
         println!("wrote {}", page.display());
     }
@@ -110,9 +110,9 @@ fn compared(folder: &Path, samples: u32, keep: Option<&Path>) -> Result<Row> {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let options = LoadOptions::default();
     let loaded = load(&folder.join("scene-v4.pbrt"), &options, &mut files, &mut diagnostics)?;
-    let loaded = loaded.with_context(|| format!("{name} is not read: {diagnostics:?}"))?;
+    let loaded = loaded.with_context(|| format!("cannot read {name}: {diagnostics:?}"))?;
     let world = loaded.compile(&options, &mut files, &mut diagnostics);
-    let world = world.with_context(|| format!("{name} is no world: {diagnostics:?}"))?;
+    let world = world.with_context(|| format!("cannot compile {name}: {diagnostics:?}"))?;
     for finding in diagnostics.iter().filter(|finding| finding.severity == Severity::Warning) {
         println!("{name}: {}", finding.message);
     }

@@ -13,7 +13,7 @@ pub fn durer() -> Result<PathBuf> {
     let status =
         Command::new(crate::cargo()).args(["build", "--release", "--quiet", "--package", "durer-cli"]).status()?;
     if !status.success() {
-        bail!("the program does not build");
+        bail!("cannot build the program");
     }
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
     Ok(target.join("release/durer").canonicalize()?)

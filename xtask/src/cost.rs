@@ -40,7 +40,7 @@ fn world(name: &str) -> Result<World> {
     let loaded = load(&path, &options, &mut files, &mut diagnostics)?;
     match loaded.and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics)) {
         Some(world) => Ok(world),
-        None => bail!("{name} cannot be read: {diagnostics:?}"),
+        None => bail!("cannot read {name}: {diagnostics:?}"),
     }
 }
 

@@ -43,7 +43,7 @@ enum Verdict {
     Look,
 }
 
-/// A row that does not agree, and the reason.
+/// A row that differs from the official picture, and the reason.
 struct Reason {
     picture: &'static str,
     /// Share of differing pixels, in percent, that the cause explains; a larger share has another
@@ -56,16 +56,16 @@ const fn reason(picture: &'static str, most: f64, words: &'static str) -> Reason
     Reason { picture, most, words }
 }
 
-/// Rows that are known not to agree. None of them counts as passed.
+/// Rows with known differences. None of them counts as passed.
 const REASONS: &[Reason] = &[reason(
     "output7_02e.png",
     0.17,
-    "at the horizon fields are far smaller than a pixel: single-precision rounding of the old program decides",
+    "at the horizon, fields are far smaller than a pixel, so rounding of the old program decides",
 )];
 
-/// Pictures that were made of their scene after it was edited: what was written, and what instead.
+/// Pictures that were rendered from an edited scene: old and new text.
 const AMENDED: &[(&str, &[(&str, &str)])] = &[
-    // Found from the picture: 5 of its 40,000 pixels are others.
+    // Recovered from the picture: 5 of its 40,000 pixels differ.
     (
         "output5_03.png",
         &[
@@ -74,7 +74,8 @@ const AMENDED: &[(&str, &[(&str, &str)])] = &[
             ("size 5", "size 5.00053"),
         ],
     ),
-    // The board's two materials are exchanged: those of the same scene in output7_04a are not.
+    // The two materials of the board are swapped; in output7_04a, with the same scene, they are
+    // not.
     ("output6_18a.png", &[("materialIndex 3\n\tmaterialIndex 6", "materialIndex 6\n\tmaterialIndex 3")]),
 ];
 
@@ -83,7 +84,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let guess = arguments.iter().any(|a| a == "--guess");
     let (only, keep) = (value("--only"), value("--keep").map(PathBuf::from));
     let corpus = crate::corpus();
-    let course = corpus.join("course").canonicalize().context("the course is not there; set DURER_CORPUS")?;
+    let course = corpus.join("course").canonicalize().context("the course is missing; set DURER_CORPUS")?;
     let durer = crate::build::durer()?;
     let out = keep.clone().unwrap_or_else(|| std::env::temp_dir().join(format!("durer-course-{}", std::process::id())));
     std::fs::create_dir_all(&out)?;
@@ -134,7 +135,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     if keep.is_none() {
         std::fs::remove_dir_all(&out)?;
     }
-    println!("\n{passed} passed, {failed} failed, {explained} odd with a known reason, {looked} to look at only");
+    println!("\n{passed} passed, {failed} failed, {explained} differ for a known reason, {looked} for visual comparison only");
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
@@ -227,7 +228,7 @@ impl Bench {
                 let text = std::fs::read_to_string(&scene)?.replace('\r', "");
                 let path = folder.join(word);
                 if let Some((from, _)) = edits.iter().find(|(from, _)| !text.contains(from)) {
-                    bail!("{word} has no `{from}` to be edited");
+                    bail!("{word} does not contain `{from}`");
                 }
                 std::fs::write(&path, edits.iter().fold(text, |text, (from, to)| text.replacen(from, to, 1)))?;
                 command.arg(path).arg("--allow-outside").arg("--assets").arg(scene.parent().unwrap_or(&scene));
@@ -343,11 +344,11 @@ fn output_name(row: &Row) -> Result<String> {
         "normals" => "-normals",
         "samples" => "-render_samples",
         "filter" => "-render_filter",
-        other => bail!("nothing is known of pictures of {other}"),
+        other => bail!("unknown kind of picture: {other}"),
     };
     let words: Vec<&str> = row.arguments.split_whitespace().collect();
     let place = files(&words).find(|(name, _)| *name == option).map(|(_, place)| place);
-    place.and_then(|place| words.get(place)).map(|name| name.to_string()).context("the row writes no such picture")
+    place.and_then(|place| words.get(place)).map(|name| name.to_string()).context("the row does not write this picture")
 }
 
 fn read(path: &Path) -> Result<Image8> {

@@ -42,10 +42,10 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let course = corpus.join("course/scenes");
     match course.is_dir() {
         true => collect(&course, &mut scenes)?,
-        false => println!("the course is not there: only our own scenes"),
+        false => println!("the course is missing: testing only our own scenes"),
     }
     scenes.retain(|path| only.is_none_or(|only| path.to_string_lossy().contains(only.as_str())));
-    // Every scene with sane rules, and with its year's program's quirks.
+    // All scenes with sane rules, and with the quirks of their year's program.
     let ways: Vec<(&PathBuf, bool)> = scenes.iter().flat_map(|scene| [(scene, false), (scene, true)]).collect();
     let pool = rayon::ThreadPoolBuilder::new().stack_size(64 << 20).build()?;
     let read = || ways.par_iter().map(|(scene, official)| read(scene, *official, &course)).collect::<Result<Vec<_>>>();
@@ -58,10 +58,10 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     }
     let explained: u32 = found.iter().map(|found| found.pixels).sum();
     let differ: usize = found.iter().map(|found| found.differences.len()).sum();
-    println!("{} readings of {} files, some of which are no scenes", found.len(), scenes.len());
-    println!("{explained} pixels explained in {} ways of sampling: {differ} differ", SAMPLINGS.len());
+    println!("{} readings of {} files (some are not scenes)", found.len(), scenes.len());
+    println!("{explained} pixels explained with {} samplers: {differ} differ", SAMPLINGS.len());
     found.sort_by_key(|found| std::cmp::Reverse(found.slowest));
-    println!("slowest explanations, of a pixel of 16 samples in 512x512:");
+    println!("slowest explanations (16 samples a pixel, 512x512):");
     for Found { name, slowest, .. } in found.iter().take(SLOWEST) {
         println!("{:>8.2} ms  {name}", slowest.as_secs_f64() * 1e3);
     }

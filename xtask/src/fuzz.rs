@@ -51,7 +51,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let fuzz = crate::root()?.join("fuzz");
     let built = cargo_fuzz(&fuzz, &["build"]).status()?;
     if !built.success() {
-        bail!("the targets cannot be built");
+        bail!("cannot build the targets");
     }
     let scratch = fuzz.join("target/runs");
     println!("{} targets, {jobs} at a time, {minutes} minutes each; logs are in {}", targets.len(), scratch.display());
@@ -131,11 +131,11 @@ fn what_is_missing() -> Result<()> {
     };
     if !there(&["+nightly", "--version"]) {
         bail!(
-            "fuzzing takes a nightly compiler: `rustup toolchain install nightly` installs one beside the stable one"
+            "fuzzing needs a nightly compiler: `rustup toolchain install nightly` installs one beside the stable one"
         );
     }
     if !there(&["+nightly", "fuzz", "--version"]) {
-        bail!("fuzzing takes cargo-fuzz: `cargo install cargo-fuzz` installs it");
+        bail!("fuzzing needs cargo-fuzz: `cargo install cargo-fuzz` installs it");
     }
     Ok(())
 }

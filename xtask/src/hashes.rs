@@ -117,11 +117,11 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     };
     let old = value("--against").map(|file| {
         let text = fs::read_to_string(file).with_context(|| file.clone())?;
-        parsed(&text).with_context(|| format!("{file} was not written by `hashes`"))
+        parsed(&text).with_context(|| format!("{file} is not an output of `cargo xtask hashes`"))
     });
     let mut old = old.transpose()?;
     let cases = cases(only)?;
-    ensure!(!cases.is_empty(), "there is no such case");
+    ensure!(!cases.is_empty(), "no case matches");
     let lines = all(&durer, &cases)?;
     let text = written(&lines);
     if let Some(file) = value("-o") {
@@ -155,7 +155,7 @@ fn cases(only: Option<&String>) -> Result<Vec<Case>> {
             read_only(&root, &file, "", &mut cases);
         }
     }
-    let corpus = crate::corpus().canonicalize().context("there are no sample files; set DURER_CORPUS")?;
+    let corpus = crate::corpus().canonicalize().context("the sample files are missing; set DURER_CORPUS")?;
     course(&corpus, &mut cases)?;
     for folder in ["samples", "meshes"] {
         // Text files there are licences and tables.
@@ -205,7 +205,7 @@ fn course(corpus: &Path, cases: &mut Vec<Case>) -> Result<()> {
     for file in below(corpus, "course/scenes", true)?.iter().filter(|file| file.ends_with(".txt")) {
         read_only(corpus, file, MESHES, cases);
         if !known.contains(file) {
-            let dialect = file.split('/').nth(2).context("a scene is in no folder")?;
+            let dialect = file.split('/').nth(2).context("a scene without a folder")?;
             // The meshes of 2003 are among those of 2004.
             let meshes = if dialect == "f03" { "f04" } else { dialect };
             let words = format!("{PROGRAM} --dialect {dialect} --assets course/scenes/{meshes} {COURSE} -input");
@@ -220,7 +220,7 @@ fn below(root: &Path, folder: &str, deep: bool) -> Result<Vec<String>> {
     let mut found = Vec::new();
     for entry in fs::read_dir(root.join(folder)).with_context(|| folder.to_string())? {
         let entry = entry?;
-        let name = entry.file_name().into_string().ok().with_context(|| format!("{folder}: a name is not text"))?;
+        let name = entry.file_name().into_string().ok().with_context(|| format!("{folder}: a file name is not Unicode"))?;
         let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_lowercase();
         let path = format!("{folder}/{name}");
         if entry.path().is_dir() {
@@ -246,7 +246,7 @@ fn all(durer: &Path, cases: &[Case]) -> Result<Lines> {
             let mut lines = lines.lock().unwrap_or_else(PoisonError::into_inner);
             for (kind, path, value) in found {
                 let before = lines.insert((kind.into(), path.clone()), value);
-                ensure!(before.is_none(), "two lines are {kind} of {path}");
+                ensure!(before.is_none(), "duplicate line: {kind} of {path}");
             }
             let done = done.fetch_add(1, Relaxed) + 1;
             if visible {
@@ -294,7 +294,7 @@ impl Case {
         let kind = self.kind.word();
         let line = |kind, value: String| (kind, self.name.clone(), value);
         if ended.late {
-            return Ok(vec![line(kind, format!("no end within {} s", LIMIT.as_secs()))]);
+            return Ok(vec![line(kind, format!("timeout after {} s", LIMIT.as_secs()))]);
         }
         let code = ended.code.map_or_else(|| "a signal".into(), |code| code.to_string());
         let plain = |text: &[u8]| {
@@ -413,7 +413,7 @@ fn differences(old: &Lines, new: &Lines) -> Vec<String> {
 }
 
 #[test]
-fn lines_that_changed_appeared_or_vanished_are_told() {
+fn changed_new_and_missing_lines_are_reported() {
     let lines = |text: &str| parsed(text).unwrap();
     let old = lines("film\ta b.txt\t01\nfilm\tgone.txt\t02\npixels\ta b.txt: depth\t03\n");
     let new = lines("film\ta b.txt\t01\nfilm\tnew.txt\t02\npixels\ta b.txt: depth\t04\n");

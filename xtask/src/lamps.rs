@@ -54,9 +54,9 @@ fn room((name, low, high): (&str, [f64; 3], [f64; 3]), lamps: u32, placing: u64)
         writeln!(text, "Rectangle {{ corner {x} {y} {z} edge0 {side} 0 0 edge1 0 0 {side} }}")?;
     }
     text += "}\n";
-    // As if it were beside the mesh.
+    // Resolve the mesh relative to the corpus.
     let path = crate::corpus().join("meshes/room.txt");
-    crate::world(path.to_str().context("the corpus has no name in Unicode")?, &text)
+    crate::world(path.to_str().context("the path of the corpus is not Unicode")?, &text)
 }
 
 /// Pictures of the lower part of a room, and the minimum render time.
@@ -126,11 +126,11 @@ pub fn run() -> Result<ExitCode> {
             for (found, lamps, cost) in [(few, 10, &mut few_cost), (many, 100_000, &mut many_cost)] {
                 let (error, own) = found.cost();
                 *cost += own;
-                println!("{}, {lamps} lamps: {:.2} s, relative error {error:.4}", given.0, found.seconds);
+                println!("{}, {lamps} lights: {:.2} s, relative error {error:.4}", given.0, found.seconds);
             }
         }
         let ratio = many_cost / few_cost;
-        println!("at equal error a hundred thousand take {ratio:.2} x the time of ten");
+        println!("at equal error, a hundred thousand lights take {ratio:.2} x the time of ten");
         all_hold &= ratio <= MOST;
     }
     Ok(if all_hold { ExitCode::SUCCESS } else { ExitCode::FAILURE })

@@ -9,9 +9,9 @@ const TESTS: [(&str, &str, u32); 4] = [
     // 10^9 lanes.
     ("durer-bvh", "lanes::tests::every_level_gives_the_same_bits", 1_000),
     // 10^7 rays through each of twelve meshes.
-    ("durer-bvh", "triangles::tests::reference::double_precision_says_the_same", 100),
+    ("durer-bvh", "triangles::tests::reference::double_precision_reference_agrees", 100),
     // 10^8 rays.
-    ("durer-bvh", "triangles::tests::a_closed_mesh_is_crossed_evenly_from_outside_and_oddly_from_inside", 2_100),
+    ("durer-bvh", "triangles::tests::closed_mesh_has_even_crossings_from_outside_and_odd_from_inside", 2_100),
     // 10^7 rays from each shape.
     ("durer", "shape::tests::leaving::rays_do_not_hit_the_surface_that_they_leave", 100),
 ];

@@ -34,73 +34,74 @@ use std::process::ExitCode;
 
 const USAGE: &str = "Commands:
   cargo xtask course [--guess] [--only TEXT] [--keep FOLDER]
-      Render every row of the course's reference pictures through `durer course`, and compare.
+      Render all rows of the course's reference pictures with `durer course`, and compare.
       --guess: do not name the program, so that the dialect is guessed. --only: rows that contain TEXT.
-      --keep: leave our pictures there, with pictures of the differences.
+      --keep: save our pictures and the differences in FOLDER.
   cargo xtask verify [--trials 500] [--only TEXT]
-      `durer verify` for every scene of the repository, with various samplings.
+      Run `durer verify` on all scenes of the repository, with various samplers.
   cargo xtask explain [--pixels 100000] [--only TEXT]
-      Explain random pixels of every scene of the repository and of the course, in every way of sampling: do the terms
-      sum to the pixel, to the bit? And how long does an explanation take?
+      Explain random pixels of all scenes of the repository and the course with all samplers. Checks that the terms sum
+      to the pixel bit for bit, and measures the time.
   cargo xtask hashes [--program PATH] [--against FILE] [--only WORD] [-o FILE]
-      Hashes of the pictures and messages of all scenes, the course and the sample files. --against: print only what
-      differs from the hashes in FILE.
+      Hashes of the pictures and messages of all scenes, the course and the sample files. --against: print only
+      differences from the hashes in FILE.
   cargo xtask torture [--kills 100] [--offsets 50] [--seed 1]
-      Kill the program at random times while it works and saves, and go on with what it left; give it full disks and
-      disks that cannot be written.
+      Kill the program at random times while it renders and saves, and resume; run it on full and read-only disks.
   cargo xtask cost
-      What exact sums cost, what a second thread brings, how soon a cancelled render ends.
+      Cost of exact sums, speedup of a second thread, latency of cancelling a render.
   cargo xtask solids
-      A million random points against the Boolean of the parts of random solids, and the cost of rays at solids of a
-      thousand parts beside that at the same parts as plain objects.
+      Compare a million random points in random solids with the Boolean of the parts, and measure the cost of rays at
+      solids of a thousand parts against the same parts as plain objects.
   cargo xtask bench-rays [--quick] [--mesh NAME] [--threads N] ...
-      The very same rays through Dürer, Embree 4, obvhs, bvh and parry3d; --help says more.
+      Trace equal rays with Dürer, Embree 4, obvhs, bvh and parry3d; see --help.
   cargo xtask bench-rays --edges N [--threads N]
-      How many of N rays each of them loses at the vertices and edges of a closed mesh.
+      Count how many of N rays each of them misses at the vertices and edges of a closed mesh.
   cargo xtask bench-pictures [--runs 3] [--threads 2] [--side 512] [--only TEXT]
-      The same scenes by us and by POV-Ray 3.7 (Debian's `povray`), in turns: time, memory, and whether both show the same.
+      Compare time, memory and mean colour of Dürer and POV-Ray 3.7 (Debian's `povray`) on equal scenes, in turns.
   cargo xtask bench-files [--triangles 8] [--runs 3]
-      How fast meshes are read beside tobj, ply-rs-bw and gltf, on the same files: so many million triangles, in text a tenth.
+      Compare the speed of reading meshes with tobj, ply-rs-bw and gltf on equal files. --triangles: in millions; a tenth
+      of it in text formats.
   cargo xtask additions [--only TEXT]
-      Add a new primitive, camera, light, material, lobe, integrator, format of scenes, meshes and pictures, and a kind of picture
-      to a copy of the sources, build it, and use them: how many lists does each stand in?
+      Add a new primitive, camera, light, material, lobe, integrator, scene format, mesh format, picture format and AOV to
+      a copy of the sources, build and use them, and count the places that each must be listed in.
   cargo xtask long [--only TEXT] [--times N]
-      Tests of the suite with many more numbers: rays against a reference in double precision, rays at edges, rays that
-      leave surfaces, bits of all SIMD levels.
+      Run tests of the suite with many more iterations: rays against a double-precision reference, rays at edges, rays
+      that leave surfaces, equal bits at all SIMD levels.
   cargo xtask fuzz [--minutes 10] [--only TEXT] [--jobs N]
-      Random bytes as scenes, meshes, pictures and parts, and random scenes by tree, grid and brute force, side by side,
-      or N targets at a time, each for so many minutes. It takes a nightly compiler and cargo-fuzz.
+      Fuzz the readers of scenes, meshes, pictures and parts, and compare random scenes by tree, grid and brute force.
+      --minutes: for each target. --jobs: targets at a time. Needs a nightly compiler and cargo-fuzz.
   cargo xtask teach [--compare | --check] [--only TEXT] [--keep FOLDER]
-      Wrong pictures made by a tracer of its own, for `durer compare`, and broken scenes, for `durer check`: how many are told
-      rightly, and how many wrongly?
+      Count the mistakes that `durer compare` identifies in wrong pictures by an independent tracer, and the causes that
+      `durer check` identifies in broken scenes.
   cargo xtask peers [--python PROGRAM] [--samples 1024] [--only TEXT]
-      Equal scenes by us and by Mitsuba 3, compared pixel by pixel. Without --python, Mitsuba comes from the package index
-      into target/peers.
+      Compare equal scenes with Mitsuba 3, pixel by pixel. Without --python, installs Mitsuba from the package index into
+      target/peers.
   cargo xtask peers --time [--python PROGRAM] [--side 256] [--samples 64] [--runs 5] [--threads 2] [--only TEXT]
-      Time of the processor until the noise is equal, ours and Mitsuba's (llvm_ad_rgb), in turns.
+      CPU time to equal noise, Dürer and Mitsuba (llvm_ad_rgb), in turns.
   cargo xtask peers --direct [--python PROGRAM] [--side 512] [--samples 16] [--runs 3] [--threads 2] [--only TEXT]
-      What direct light of point lamps costs us, Mitsuba 3's `direct`, and Blender's Cycles where the package index has it.
+      Cost of direct light from point lights: Dürer, Mitsuba 3's `direct`, and Blender's Cycles if the package index has it.
   cargo xtask validate [--samples N]
-      Light against answers in closed form, white furnaces, directions against their densities, and docs/validation.md.
+      Compare light with known answers, test white furnaces, and test sampled directions against their pdf. Writes
+      docs/validation.md.
   cargo xtask lamps
-      What a hundred thousand lamps cost beside ten, at equal error.
+      Cost of a hundred thousand lights relative to ten, at equal error.
   cargo xtask bitterli [--samples 256] [--only TEXT] [--keep FOLDER]
-      Bitterli's scenes from pbrt's files beside Tungsten's pictures of them, and the table in docs/models.md. --keep: leave both
-      pictures there.
+      Compare Bitterli's scenes, read from pbrt files, with their pictures by Tungsten, and write the table in
+      docs/models.md. --keep: save both pictures in FOLDER.
   cargo xtask sheet [--samples 32] [--front] [--only TEXT] [--keep FOLDER]
-      The sample models, rendered without any option, or from the front, beside the pictures that came with them, as sheets.
+      Contact sheets of the sample models, rendered with default options (or --front), beside their reference pictures.
   cargo xtask page [--check]
-      Build the page of `durer live` from web/ (Node and npm), which is committed in web/dist. --check: is it what the
-      sources build?
+      Build the page of `durer live` from web/ (Node and npm) into web/dist, which is committed. --check: fail if web/dist
+      is stale.
   cargo xtask playground -o FOLDER
-      The same page as static files, over WebAssembly. It takes the target wasm32-unknown-unknown and the command
-      wasm-bindgen, of the version in crates/durer-wasm/Cargo.toml.
+      Build the page of `durer live` as static files, over WebAssembly. Needs the target wasm32-unknown-unknown, and
+      wasm-bindgen in the version of crates/durer-wasm/Cargo.toml.
   cargo xtask manual
-      Write the reference of the language, docs/language and its pictures, and the grammar for editors.
+      Write the language reference in docs/language with its pictures, and the grammar for editors.
   cargo xtask prose [--count] [PATH ...]
-      Words and patterns of xtask/prose.txt in comments, messages and documents, and comments beyond 100 columns. --count: only
-      how often. PATH: only files whose name contains it.
-The course is found in ../shared, or where DURER_CORPUS says.";
+      Find words and patterns of xtask/prose.txt in comments, messages and documents, and comments over 100 columns.
+      --count: print only the counts. PATH: only files whose path contains it.
+The course is in ../shared, or in the folder that DURER_CORPUS names.";
 
 fn main() -> anyhow::Result<ExitCode> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -176,7 +176,7 @@ fn grammar() -> String {
 }
 
 #[test]
-fn the_pages_say_what_the_code_states() {
+fn pages_match_the_code() {
     for (path, text) in pages() {
         let written = std::fs::read_to_string(&path).unwrap_or_default();
         assert!(written == text, "{} is old: run `cargo xtask manual`", path.display());

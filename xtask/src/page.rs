@@ -1,4 +1,4 @@
-//! The page of `durer live`, and the same as static files over WebAssembly.
+//! Builds the page of `durer live`, also as static files over WebAssembly.
 
 use crate::{cargo, root, value};
 use anyhow::{Context, Result, bail};
@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-/// Builds the page into `web/dist`, or compares what it builds with what is there.
+/// Builds the page into `web/dist`; with `--check`, compares the result with `web/dist` instead.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let web = root()?.join("web");
     if !arguments.iter().any(|argument| argument == "--check") {
@@ -23,11 +23,11 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         .filter(|name| there.get(*name) != wanted.get(*name))
         .collect();
     if stale.is_empty() {
-        println!("web/dist is what the sources build: {} files", wanted.len());
+        println!("web/dist matches the sources: {} files", wanted.len());
         return Ok(ExitCode::SUCCESS);
     }
     stale.iter().for_each(|name| println!("web/dist/{name} is stale"));
-    println!("`cargo xtask page` builds them");
+    println!("run `cargo xtask page`");
     Ok(ExitCode::FAILURE)
 }
 
@@ -49,10 +49,11 @@ fn files(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
     Ok(all)
 }
 
-/// Writes the page, the library as WebAssembly, and what keeps both for times without a network.
+/// Writes the page, the WebAssembly library, and the service worker that caches both for offline
+/// use.
 pub fn playground(arguments: &[String]) -> Result<ExitCode> {
     let root = root()?;
-    let folder = PathBuf::from(value(arguments, "-o").context("say where it goes: -o FOLDER")?);
+    let folder = PathBuf::from(value(arguments, "-o").context("missing -o FOLDER")?);
     let target =
         std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from).join("playground");
     let flags = format!("{} -C target-feature=+simd128", std::env::var("RUSTFLAGS").unwrap_or_default());
@@ -92,7 +93,7 @@ pub fn playground(arguments: &[String]) -> Result<ExitCode> {
 
 fn call(command: &mut Command) -> Result<()> {
     let name = command.get_program().to_string_lossy().into_owned();
-    let status = command.status().with_context(|| format!("`{name}` cannot be started"))?;
+    let status = command.status().with_context(|| format!("cannot start `{name}`"))?;
     if !status.success() {
         bail!("`{name}` failed");
     }

@@ -138,7 +138,7 @@ def scenes():
          {"type": "roughdielectric", "distribution": "ggx", "alpha": r * r, "int_ior": 1.5, "ext_ior": 1.0}),
         (f"PrincipledMaterial {{ baseColor 1 1 1 baseMetalness 1 specularRoughness {r:g} }}",
          {"type": "roughconductor", "distribution": "ggx", "alpha": r * r, "material": "none"}))
-    yield balls("a little rough glass and metal", *rough(0.2))
+    yield balls("slightly rough glass and metal", *rough(0.2))
     s = Scene("plastic and a pane", 12).box()
     s.sphere(*LEFT, ("PrincipledMaterial { baseColor 0.2 0.5 0.8 specularRoughness 0 }",
                      {"type": "plastic", "diffuse_reflectance": rgb((0.2, 0.5, 0.8)), "nonlinear": False, "int_ior": 1.5, "ext_ior": 1.0}))
@@ -157,7 +157,7 @@ def scenes():
         s.theirs["env"] = {"type": "constant", "radiance": rgb(s.background)}
         return s
 
-    s = sky(outside("open sky and a lamp"))
+    s = sky(outside("open sky and a light"))
     s.sphere((0.7, 0, 0), 0.6, glass())
     s.sphere((0, 3, 1), 0.8, None, (5, 4, 4))
     yield s
@@ -166,11 +166,11 @@ def scenes():
     s.lights.append("PointLight { position 1 3 2 color 6 5 4 attenuation 0 0 1 }")
     s.theirs["l"] = {"type": "point", "position": [1, 3, 2], "intensity": rgb([np.pi * c for c in (6, 5, 4)])}
     yield s
-    s = sky(outside("a far light"))
+    s = sky(outside("a directional light"))
     s.lights.append("DirectionalLight { direction -1 -2 -1 color 1 0.9 0.7 }")
     s.theirs["l"] = {"type": "directional", "direction": [-1, -2, -1], "irradiance": rgb([np.pi * c for c in (1, 0.9, 0.7)])}
     yield s
-    s = outside("fifty lamps")
+    s = outside("fifty lights")
     turns = np.linspace(0, 2 * np.pi, 50, endpoint=False)
     for i, turn in enumerate(turns):
         center = (2 * np.cos(turn), 0.5 + 0.02 * i, 2 * np.sin(turn) - 0.5)
@@ -183,7 +183,7 @@ def scenes():
     s.sphere(*RIGHT, matte((0.5, 0.5, 0.5)))
     yield s
     for name, ior, extinction, albedo, g in [
-        ("a cloud", 1.0, 3.0, (0.9, 0.8, 0.6), 0.0), ("a cloud that scatters onwards", 1.0, 5.0, (0.95, 0.95, 0.9), 0.7),
+        ("a cloud", 1.0, 3.0, (0.9, 0.8, 0.6), 0.0), ("a forward-scattering cloud", 1.0, 5.0, (0.95, 0.95, 0.9), 0.7),
     ]:
         inside, theirs = medium(extinction, albedo, g)
         s = sky(outside(name, volumes=True))
@@ -264,7 +264,7 @@ def main():
     mi.set_variant("scalar_rgb")
     global T
     T = mi.ScalarTransform4f
-    print("| scene | bounces | mean, ours over theirs | pixel channels alike | |\n| --- | --- | --- | --- | --- |")
+    print("| scene | bounces | mean, ours over theirs | equal pixel channels | |\n| --- | --- | --- | --- | --- |")
     with tempfile.TemporaryDirectory() as folder:
         chosen = [scene for scene in scenes() if given.only in scene.name]
         good = [compare(given.program, scene, given.samples, pathlib.Path(folder)) for scene in chosen]

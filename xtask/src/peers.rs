@@ -43,7 +43,7 @@ fn environment(folder: &Path, blender: bool) -> Result<PathBuf> {
     }
     did(Command::new(&python).args(["-m", "pip", "install", "--quiet", MITSUBA, "numpy"]))?;
     if blender && did(Command::new(&python).args(["-m", "pip", "install", "--quiet", BLENDER])).is_err() {
-        eprintln!("there is no {BLENDER} for this Python: Cycles is left out");
+        eprintln!("{BLENDER} does not support this Python: skipping Cycles");
     }
     Ok(python)
 }

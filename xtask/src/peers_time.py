@@ -104,7 +104,7 @@ def scenes(meshes, folder):
         (low, high) = triangles.min((0, 1)), triangles.max((0, 1))
         size, forward = high - low, np.array((0.8, -0.1, 0.59))
         eye = (low + high) / 2 - 0.15 * size * forward
-        room = Scene(f"{name} with lamps", 8, eye=eye, direction=forward, fov=70)
+        room = Scene(f"{name} with lights", 8, eye=eye, direction=forward, fov=70)
         write_ply(folder / f"{name}.ply", triangles)
         mesh(room, folder / f"{name}.ply", matte((0.6, 0.6, 0.6)))
         for x, z in itertools.product((0.35, 0.65), (0.4, 0.6)):
@@ -119,7 +119,7 @@ def scenes(meshes, folder):
     # noise.
     corner = 0.004 * np.array(((0, 0, 0), (1, 0, 0), (0, 0, 1)))
     write_ply(folder / "lamps.ply", centers[:, None, :] + corner)
-    many = Scene("100,000 small lamps", 8, eye=(0, 2.5, 9), direction=(0, -0.5, -1), fov=50)
+    many = Scene("100,000 small lights", 8, eye=(0, 2.5, 9), direction=(0, -0.5, -1), fov=50)
     many.rectangle((-50, 0, 50), (100, 0, 0), (0, 0, -100), matte((0.5, 0.4, 0.3)))
     mesh(many, folder / "lamps.ply", None, (300, 250, 200))
     for x in range(-3, 4):

@@ -30,7 +30,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     }
     paths.retain(|path| only.is_none_or(|only| path.to_string_lossy().contains(only.as_str())));
     if paths.is_empty() {
-        bail!("there are no such models in {}", crate::corpus().display());
+        bail!("no matching models in {}", crate::corpus().display());
     }
     std::fs::create_dir_all(&keep)?;
     let (mut cells, mut failed) = (Vec::new(), 0);
@@ -47,7 +47,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
             }
             Err(error) => {
                 failed += 1;
-                println!("  not shown: {shown}: {}", format!("{error:#}").lines().next().unwrap_or_default());
+                println!("  not rendered: {shown}: {}", format!("{error:#}").lines().next().unwrap_or_default());
             }
         }
     }
@@ -58,7 +58,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         save(&place, &bytes)?;
         println!("wrote {}", place.display());
     }
-    println!("{} models shown, {failed} not", paths.len() - failed);
+    println!("{} models rendered, {failed} failed", paths.len() - failed);
     Ok(ExitCode::SUCCESS)
 }
 
@@ -89,7 +89,7 @@ fn rendered(path: &Path, samples: u32, front: bool) -> Result<Image> {
     let staging = Staging { aspect: Some(1.0), view, ..Staging::default() };
     let options = LoadOptions { staging, ..LoadOptions::default() };
     let complaint = |diagnostics: &Diagnostics| {
-        diagnostics.iter().map(|finding| finding.message.clone()).next().unwrap_or_else(|| "nothing was said".into())
+        diagnostics.iter().map(|finding| finding.message.clone()).next().unwrap_or_else(|| "no message".into())
     };
     let loaded = load(path, &options, &mut files, &mut diagnostics)?;
     let loaded = loaded.with_context(|| complaint(&diagnostics))?;

@@ -28,7 +28,7 @@ pub fn run() -> Result<ExitCode> {
         .context("cannot run cargo")?;
     println!(
         "{:52} {:>8} {:>12} {:>12}",
-        "a thousand balls, rays from everywhere", "objects", "ns a ray", "tests a ray"
+        "a thousand spheres, random rays", "objects", "ns a ray", "tests a ray"
     );
     for (name, radius) in [("apart from each other", 0.3), ("touching: one tree of a thousand parts", 0.6)] {
         let plain = world("Group", radius)?;
@@ -37,7 +37,7 @@ pub fn run() -> Result<ExitCode> {
         let rows = [
             ("as plain objects", &plain),
             ("merged", &merged),
-            ("cut out of a box, of which all else is left", &holes),
+            ("subtracted from a box", &holes),
         ];
         let mut least = [Duration::MAX; 3];
         for _ in 0..TURNS {
@@ -89,7 +89,7 @@ fn compiled(body: &str) -> Result<World> {
     let (mut files, mut diagnostics, source) = (Files::default(), Diagnostics::default(), FolderSource::new("."));
     let file = files.add("balls.txt", text.as_bytes().into());
     let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
-    let scene = read(text.as_bytes(), file, options, &mut diagnostics).context("the balls cannot be read")?;
+    let scene = read(text.as_bytes(), file, options, &mut diagnostics).context("cannot read the spheres")?;
     let resources = Resources::new(&source, &Decoder, &mut files);
     compile(&scene, Dialect::Durer.rules(), AccelKind::Bvh, resources, &mut diagnostics).context("no world")
 }

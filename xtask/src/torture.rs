@@ -80,7 +80,7 @@ fn kills(bench: &Bench, kills: u64, seed: u64) -> Result<()> {
         if output.status.code().is_some() {
             ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
             finished += 1;
-            ensure!(last_line(&output) == expected, "another hash after {killed} kills");
+            ensure!(last_line(&output) == expected, "the hash differs after {killed} kills");
             fs::remove_file(&wild)?;
             continue;
         }
@@ -98,13 +98,13 @@ fn kills(bench: &Bench, kills: u64, seed: u64) -> Result<()> {
         }
     }
     let output = bench.render(WORK, &wild).output()?;
-    ensure!(last_line(&output) == expected, "another hash in the end");
-    ensure!(fs::read(&wild)? == fs::read(&calm)?, "other bytes in the end");
+    ensure!(last_line(&output) == expected, "the final hash differs");
+    ensure!(fs::read(&wild)? == fs::read(&calm)?, "the final file differs");
     let left = names(wild.parent().context("a folder")?)?;
     ensure!(left == ["p.exr"], "litter: {left:?}");
     println!(
         "{killed} kills: {parts} checkpoints met, none torn; {finished} runs ended in between, all with one hash; \
-         temporary files met {litter}, left in the end 0"
+         temporary files seen {litter}, 0 left at the end"
     );
     Ok(())
 }
@@ -118,7 +118,7 @@ fn full_disks(bench: &Bench, offsets: u64) -> Result<()> {
         let whole = bench.place("whole")?.join(name);
         ensure!(
             bench.render(&format!("{options} --quiet"), &whole).output()?.status.success(),
-            "{name} cannot be made"
+            "cannot make {name}"
         );
         let size = fs::metadata(&whole)?.len();
         for i in 0..offsets {
@@ -178,6 +178,6 @@ fn refused(output: &Output, words: &str, name: &str, limit: u64) -> Result<()> {
     let said = [&output.stderr[..], &output.stdout].concat();
     let said = String::from_utf8_lossy(&said);
     ensure!(output.status.code().is_some_and(|code| code != 0), "{name} at {limit}: {:?} {said}", output.status);
-    ensure!(said.contains(words), "{name} at {limit} gives no reason: {said}");
+    ensure!(said.contains(words), "{name} at {limit}: no reason in {said}");
     Ok(())
 }

@@ -52,19 +52,19 @@ impl fmt::Display for BuildError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             BuildError::MissingVertex { triangle, index, vertices } => {
-                write!(f, "triangle {triangle} names vertex {index}, but there are {vertices}, counted from 0")
+                write!(f, "triangle {triangle} refers to vertex {index}, but there are {vertices} vertices, numbered from 0")
             }
             BuildError::TooManyTriangles { triangles } => {
-                write!(f, "{triangles} triangles: a tree holds less than 2^28")
+                write!(f, "{triangles} triangles are too many: a tree holds fewer than 2^28")
             }
-            BuildError::NotInThrees { list, len } => write!(f, "{list} has {len} numbers, which is no multiple of 3"),
+            BuildError::NotInThrees { list, len } => write!(f, "{list} has {len} numbers, which is not a multiple of 3"),
             BuildError::NoGrid { columns, rows, heights } => {
                 write!(
                     f,
-                    "{columns} times {rows} lines need two at least either way, and as many heights: not {heights}"
+                    "a grid of {columns} x {rows} lines needs at least two lines along each axis and a height per crossing, not {heights} heights"
                 )
             }
-            BuildError::NotFinite => write!(f, "a grid of heights has numbers that are not finite"),
+            BuildError::NotFinite => write!(f, "the height grid has values that are not finite"),
             BuildError::OtherTriangles { built, given } => {
                 write!(f, "the tree was built over {built} triangles, but {given} were given")
             }
@@ -98,13 +98,13 @@ pub enum LoadError {
 impl fmt::Display for LoadError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            LoadError::NotATree => f.write_str("this is no saved tree"),
-            LoadError::Version(version) => write!(f, "the tree is saved in format {version}, which is not known here"),
+            LoadError::NotATree => f.write_str("the data is not a saved tree"),
+            LoadError::Version(version) => write!(f, "the tree is saved in format {version}, which this version does not support"),
             LoadError::Length { expected, found } => {
                 write!(f, "the saved tree should have {expected} bytes, but has {found}")
             }
             LoadError::Damaged => f.write_str("the saved tree is damaged: its checksum is wrong"),
-            LoadError::Invalid(what) => write!(f, "the saved tree is wrong: {what}"),
+            LoadError::Invalid(what) => write!(f, "the saved tree is invalid: {what}"),
         }
     }
 }

@@ -254,7 +254,7 @@ impl InstanceBvh {
     ///
     /// If `rays` and `hits` have different lengths.
     pub fn closest_batch(&self, rays: &[Ray], hits: &mut [Option<InstanceHit>]) {
-        assert_eq!(rays.len(), hits.len(), "a place for each hit");
+        assert_eq!(rays.len(), hits.len(), "`rays` and `hits` must have the same length");
         rays.iter().zip(hits).for_each(|(ray, hit)| *hit = self.closest(ray));
     }
 
@@ -264,7 +264,7 @@ impl InstanceBvh {
     ///
     /// If `rays` and `answers` have different lengths.
     pub fn occluded_batch(&self, rays: &[Ray], answers: &mut [bool]) {
-        assert_eq!(rays.len(), answers.len(), "a place for each answer");
+        assert_eq!(rays.len(), answers.len(), "`rays` and `answers` must have the same length");
         rays.iter().zip(answers).for_each(|(ray, answer)| *answer = self.occluded(ray));
     }
 
@@ -274,7 +274,7 @@ impl InstanceBvh {
     ///
     /// If `rays` and `counts` have different lengths.
     pub fn hit_count_batch(&self, rays: &[Ray], counts: &mut [u32]) {
-        assert_eq!(rays.len(), counts.len(), "a place for each count");
+        assert_eq!(rays.len(), counts.len(), "`rays` and `counts` must have the same length");
         rays.iter().zip(counts).for_each(|(ray, count)| *count = self.hit_count(ray) as u32);
     }
 
@@ -349,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn instances_are_met_as_their_triangles_are() {
+    fn instance_hits_equal_triangle_hits() {
         let mut random = Random(8);
         let meshes = [torus(16, 8), soup(&mut random, 200, 0.3)];
         let trees = meshes.clone().map(|(v, t)| Arc::new(TriangleBvh::build(&v, &t, BuildQuality::Balanced)));
@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn an_origin_in_double_precision_is_seen_from_the_instance() {
+    fn origin_keeps_double_precision_in_instances() {
         let mut random = Random(10);
         let mesh = torus(16, 8);
         let bvh = Arc::new(TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Balanced));
@@ -410,7 +410,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_met_where_nothing_is() {
+    fn empty_instances_are_never_hit() {
         let empty = Arc::new(TriangleBvh::build(&[], &[], BuildQuality::Fast));
         let ray = Ray::new(Vec3::ZERO, Vec3::X);
         for count in [0, 3] {
@@ -441,7 +441,7 @@ mod tests {
     }
 
     #[test]
-    fn masks_filters_sides_and_moves_are_obeyed() {
+    fn masks_filters_sides_and_moves_apply() {
         let mut random = Random(9);
         let meshes = [torus(16, 8), soup(&mut random, 100, 0.3)];
         let trees = meshes.clone().map(|(v, t)| Arc::new(TriangleBvh::build(&v, &t, BuildQuality::Balanced)));

@@ -70,7 +70,7 @@ impl WideNode {
         }
         self.children[place] = child;
         let rest = if child & LEAF == 0 { child - self.first } else { IS_LEAF };
-        assert!(rest == IS_LEAF || rest & !BEHIND == 0, "inner children lie side by side");
+        assert!(rest == IS_LEAF || rest & !BEHIND == 0, "inner children are consecutive");
         self.child_tags[place] = (place as u32 | rest) as u8;
     }
 

@@ -61,7 +61,7 @@ pub fn codes_are_right(node: &node::WideNode) -> bool {
 }
 
 #[test]
-fn every_thing_is_offered_to_a_ray_through_its_box_whatever_the_boxes() {
+fn every_thing_is_offered_to_a_ray_through_its_box() {
     let (mut random, mut fast) = (Random(2), 0);
     for (name, boxes) in collections() {
         let bvh = Bvh::build(&boxes);
@@ -111,7 +111,7 @@ fn every_thing_is_offered_to_a_ray_through_its_box_whatever_the_boxes() {
 
 #[test]
 #[cfg_attr(target_family = "wasm", ignore = "no threads there")]
-fn a_tree_does_not_depend_on_the_number_of_threads() {
+fn tree_is_independent_of_the_number_of_threads() {
     let mut random = Random(3);
     let boxes: Vec<Aabb> = (0..30_000).map(|_| cube(random.point(), 0.01 * random.unit())).collect();
     let build = |threads: usize| {
@@ -122,7 +122,7 @@ fn a_tree_does_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
-fn boxes_that_begin_where_the_ray_ends_are_offered_and_an_ended_walk_stops() {
+fn boxes_at_the_ray_end_are_offered_and_traversal_stops_on_request() {
     let boxes: Vec<Aabb> = (0..100).map(|i| cube(Vec3::X * i as f32, 0.5)).collect();
     let bvh = Bvh::build(&boxes);
     let ray = Ray::new(Vec3::X * -1.5, Vec3::X);
@@ -142,7 +142,7 @@ fn boxes_that_begin_where_the_ray_ends_are_offered_and_an_ended_walk_stops() {
 }
 
 #[test]
-fn a_slab_is_clipped_by_the_sign_of_the_direction() {
+fn slab_is_clipped_by_the_sign_of_the_direction() {
     let b = cube(Vec3::ZERO, 1.0);
     assert_eq!(b.clip(Vec3::new(-3.0, 0.0, 0.0), Vec3::X), Some((2.0, 4.0)));
     assert_eq!(b.clip(Vec3::new(3.0, 0.0, 0.0), Vec3::X * -2.0), Some((1.0, 2.0)));
@@ -154,7 +154,7 @@ fn a_slab_is_clipped_by_the_sign_of_the_direction() {
 }
 
 #[test]
-fn grids_hold_everything_or_are_refused() {
+fn grids_contain_everything_or_are_refused() {
     let unit = cube(Vec3::ZERO, 1.0);
     for counts in [[0, 1, 1], [1, 0, 5], [u32::MAX, u32::MAX, u32::MAX], [1 << 13, 1 << 13, 2]] {
         assert!(Grid::build(unit, counts, &[unit], |_, _| true).is_none(), "{counts:?}");
@@ -213,7 +213,7 @@ fn grid_cells_are_visited_in_order_and_only_up_to_the_hit() {
 
 /// Such rays are frequent: orthographic cameras, voxels, a sun overhead.
 #[test]
-fn rays_with_zero_components_are_tame() {
+fn rays_with_zero_components_are_fast() {
     let is_fast = |origin, dir| TraversalRay::new(&Ray::new(origin, dir), 3.0).is_some();
     for (axis, least) in
         [0.0, -0.0, 1e-45, -1e-42, f32::MIN_POSITIVE, 1e-20].into_iter().flat_map(|x| (0..3).map(move |axis| (axis, x)))
@@ -236,7 +236,7 @@ fn rays_with_zero_components_are_tame() {
 }
 
 #[test]
-fn a_far_ray_is_offered_little_and_all_that_it_may_touch() {
+fn distant_ray_is_offered_few_boxes_and_every_hit() {
     let at = |i: usize| (i % 20) as f32 / 10.0 - 0.95;
     let boxes: Vec<Aabb> = (0..8000).map(|i| cube(Vec3::new(at(i), at(i / 20), at(i / 400)), 0.04)).collect();
     let bounds = boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union);

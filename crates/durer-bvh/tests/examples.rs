@@ -36,7 +36,7 @@ examples! {
 }
 
 #[test]
-fn trees_go_between_threads() {
+fn trees_are_send_and_sync() {
     fn is_shared<T: Send + Sync + Clone + std::fmt::Debug>() {}
     is_shared::<durer_bvh::TriangleBvh>();
     is_shared::<durer_bvh::InstanceBvh>();

@@ -49,11 +49,10 @@ pub enum Command {
     Convert(ConvertArgs),
     Compare(Box<CompareArgs>),
     Photo(PhotoArgs),
-    /// List the dialects of the scene language, and the old programs' quirks that can be had by
-    /// name
+    /// List the dialects of the scene language and the quirks of the old programs
     #[command(after_help = "Example:\n  durer dialects")]
     Dialects,
-    /// Look up a word of the scene language: what it takes, in which dialects, with an example
+    /// Look up a word of the scene language: its fields, its dialects, and an example
     #[command(
         after_help = "Examples:\n  durer words\n  durer words PhongMaterial\n  durer words falloff --dialect f16"
     )]
@@ -61,7 +60,7 @@ pub enum Command {
     /// Print shell completions to standard output
     #[command(after_help = "Example:\n  durer completions bash > ~/.local/share/bash-completion/completions/durer")]
     Completions {
-        /// The shell
+        /// Shell
         shell: clap_complete::Shell,
     },
     /// Print the manual page to standard output

@@ -116,12 +116,12 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     output::save(&places.iter().zip(contents).collect::<Vec<_>>(), false)
 }
 
-/// Whether files of the name's ending are read, and not written.
+/// Returns true if the format of the name's extension can be read but not written.
 fn is_only_read(name: &str) -> bool {
     mesh_format_for(name).is_none() && scene_format_for(name).is_some_and(|format| format.write.is_none())
 }
 
-/// The options of rendering that a file asks for, if any.
+/// Returns the render options that a file asks for, if any.
 fn asked_for(wishes: &Wishes) -> Option<String> {
     let size = wishes.size.map(|(width, height)| format!("--size {width}x{height}"));
     let crop = wishes.crop.map(|(left, top, width, height)| format!("--crop {left},{top},{width}x{height}"));

@@ -1,4 +1,4 @@
-//! `durer course`: the command lines of the course's own programs, of every year.
+//! `durer course`: the command lines of the course's programs of all years.
 
 mod options;
 
@@ -29,7 +29,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Take the arguments of the course's own programs, of any year
+/// Accept the arguments of the course's own programs, of any year
 #[derive(Args)]
 #[command(
     disable_help_flag = true,
@@ -39,12 +39,12 @@ use std::sync::atomic::Ordering::Relaxed;
 `durer course --help` lists the options."
 )]
 pub struct CourseArgs {
-    /// Arguments as the course's programs take them
+    /// Arguments as for the course's programs
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
     pub arguments: Vec<String>,
 }
 
-/// The old programs know no limit of memory.
+/// Memory limit; the old programs have no option for it.
 const MEMORY: Memory = Memory::Percent(80.0);
 
 pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Result<(), Failure> {
@@ -56,8 +56,8 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     let quiet = given.has("--quiet");
     let options = load_options(&given, program_name)?;
     given.check_unknown(options.dialect, quiet)?;
-    let scene = given.text("-input").ok_or_else(|| bad("-input is missing: which scene?"))?;
-    // Wrong file names are better known before than after the work.
+    let scene = given.text("-input").ok_or_else(|| bad("-input is missing: name the scene"))?;
+    // Report invalid file names before the work.
     let mut guard = Guard::default();
     let outputs = Outputs::of(&given, options.dialect, &mut guard)?;
     let opened = open(Path::new(scene), &options, quiet, &mut guard)?;
@@ -68,7 +68,7 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     for zoom in [zooms.0, zooms.1].into_iter().flatten() {
         diagrams::check(&job, zoom).map_err(failed)?;
     }
-    // The picture of the grid takes the place of the colour picture.
+    // The picture of the grid replaces the colour picture.
     let grid_wanted = job.color && given.has("-visualize_grid");
     let job = Job { color: job.color && !grid_wanted, ..job };
     let (rendered, grid, diagrams) = progress::watch(&control, quiet, || {
@@ -79,7 +79,7 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
         Ok((rendered, grid.map(|image| Layer::color("color", image)), [samples, filter]))
     })
     .map_err(failed)?;
-    // It may have come when all was done already: it was asked for all the same.
+    // The interrupt may arrive after the work is done; honour it anyway.
     if control.cancel.load(Relaxed) {
         return Err(failed(RenderError::Cancelled));
     }
@@ -106,20 +106,20 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
 fn load_options(given: &Given, program_name: Option<&'static Program>) -> Result<LoadOptions, Failure> {
     let named = match given.text("--program") {
         Some(name) => Some(program(name).ok_or_else(|| {
-            bad(format!("there is no program {name}: known are {}", PROGRAMS.map(|p| p.name).join(", ")))
+            bad(format!("unknown program {name}; known programs: {}", PROGRAMS.map(|p| p.name).join(", ")))
         })?),
         None => program_name,
     };
     let dialect = match given.text("--dialect") {
         Some(name) => Some(Dialect::from_name(name).ok_or_else(|| {
-            bad(format!("there is no dialect {name}: known are {}", Dialect::ALL.map(Dialect::name).join(", ")))
+            bad(format!("unknown dialect {name}; known dialects: {}", Dialect::ALL.map(Dialect::name).join(", ")))
         })?),
         None => named.map(|program| program.dialect),
     };
     let mut compat: Vec<(Compat, bool)> = named.iter().flat_map(|p| p.compat).map(|&compat| (compat, true)).collect();
     for word in given.text("--compat").into_iter().flat_map(|names| names.split(',')) {
         let (name, on) = word.strip_prefix("no-").map_or((word, true), |name| (name, false));
-        let known = Compat::from_name(name).ok_or_else(|| bad(format!("--compat: there is no quirk {name}")))?;
+        let known = Compat::from_name(name).ok_or_else(|| bad(format!("--compat: unknown quirk {name}")))?;
         compat.push((known, on));
     }
     let cells = given.numbers::<u32>("-grid", 3)?.and_then(|cells| <[u32; 3]>::try_from(cells).ok());
@@ -141,7 +141,7 @@ fn load_options(given: &Given, program_name: Option<&'static Program>) -> Result
     })
 }
 
-/// The files to be written, in the order of the pictures.
+/// Files to write, in the order of the pictures.
 struct Outputs(Vec<(Destination, &'static Format)>);
 
 impl Outputs {
@@ -160,15 +160,15 @@ impl Outputs {
         let files: Vec<_> = named.into_iter().map(place).collect::<Result<_, Failure>>()?;
         if files.is_empty() {
             return Err(bad(
-                "there is nothing to write: give -output, -depth, -normals, -render_samples or -render_filter",
+                "nothing to write: pass -output, -depth, -normals, -render_samples or -render_filter",
             ));
         }
         Ok(Outputs(files))
     }
 }
 
-/// The format of a name. TGA for names without an extension, as the old programs have it; the one
-/// of 2012, where it is asked for, writes TGA into whatever is not named .bmp.
+/// Returns the format for a name. Names without an extension are TGA, as in the old programs; with
+/// the dialect f12a4, every name except .bmp is TGA.
 fn course_format(name: &str, asked: Option<Dialect>) -> Result<&'static Format, Failure> {
     let nameless = Path::new(name).extension().is_none();
     let is_tga = nameless || asked == Some(Dialect::F12a4) && !name.ends_with(".bmp");
@@ -178,11 +178,11 @@ fn course_format(name: &str, asked: Option<Dialect>) -> Result<&'static Format, 
 fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
     let rules = &opened.loaded.rules;
     let size = given.numbers::<u32>("-size", 2)?;
-    // A camera whose picture has a shape of its own makes that; the old programs knew none.
+    // A camera with a fixed aspect ratio determines the size; the old programs have no such camera.
     let natural = || Raster::natural_size(opened.world.camera().proportions(), rules.size);
     let (width, height) = size.map_or_else(natural, |size| (size[0], size[1]));
     if width == 0 || height == 0 {
-        return Err(bad("-size: a picture has at least one pixel"));
+        return Err(bad("-size: a picture needs at least one pixel"));
     }
     let odd = odd_size(given, opened);
     let (width, height) = match odd {
@@ -190,7 +190,7 @@ fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
         _ => (width, height),
     };
     if odd == Some(OddSize::Third) && (width < 3 || height < 3) {
-        return Err(bad("-filter without -jitter makes one pixel of three by three, and there are not so many"));
+        return Err(bad("-filter without -jitter averages three by three pixels, but the picture is smaller"));
     }
     let depth = given.numbers::<f32>("-depth", 2)?;
     let depth_range = depth.map(|range| (range[0], range[1]));
@@ -198,11 +198,12 @@ fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
     if depth_range.is_some_and(|(min, max)| !(min.is_finite() && max.is_finite() && (min != max || clamped))) {
         return Err(bad("-depth needs two different numbers"));
     }
-    // An empty range divides zero by zero, and is black, like one that everything is behind.
+    // For an empty range the old program divides zero by zero and writes black, as if everything
+    // were behind the range.
     let depth_range = depth_range.map(|range| if range.0 == range.1 { (-2.0, -1.0) } else { range });
     let bounces = given.number("-bounces")?.unwrap_or(rules.bounces);
     if bounces > Settings::MAX_BOUNCES {
-        return Err(bad(format!("-bounces: at most {}", Settings::MAX_BOUNCES)));
+        return Err(bad(format!("-bounces: must be at most {}", Settings::MAX_BOUNCES)));
     }
     let weight = given.text("-weight").map(weight).transpose().map_err(|error| bad(format!("-weight: {error}")))?;
     let wanted = [("-depth", "depth"), ("-normals", "normals")];
@@ -230,12 +231,12 @@ fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
     })
 }
 
-/// The size of the picture that 2012 writes under `-jitter` or `-filter` alone.
+/// Size of the picture that the 2012 program writes with only one of `-jitter` and `-filter`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum OddSize {
-    /// All sub-pixels, three by three to a pixel.
+    /// Every sub-pixel, three by three per pixel.
     Threefold,
-    /// Three by three pixels averaged.
+    /// The mean of each three by three pixels.
     Third,
 }
 
@@ -248,7 +249,7 @@ fn odd_size(given: &Given, opened: &Opened) -> Option<OddSize> {
     }
 }
 
-/// Averages three by three pixels of a picture.
+/// Averages blocks of three by three pixels.
 fn third(layer: &mut Layer) -> Result<(), Failure> {
     let &Image { width, height, ref pixels } = &*layer.image;
     let pixels = average_3x3(pixels, width, height);
@@ -260,7 +261,7 @@ fn third(layer: &mut Layer) -> Result<(), Failure> {
 fn sampling(given: &Given, dialect: Dialect) -> Result<Sampling, Failure> {
     let (jitter, blur) = (given.has("-jitter"), given.has("-filter"));
     if jitter || blur {
-        // The programs of 2016 and later accept both, and do nothing.
+        // The programs of 2016 and later accept both options without effect.
         let ignored = matches!(dialect, Dialect::F16 | Dialect::F23);
         return Ok(if ignored { Sampling::Center } else { Sampling::Course2012 { jitter, blur } });
     }
@@ -306,7 +307,7 @@ fn threads(given: &Given) -> Result<Option<usize>, Failure> {
     Ok(threads)
 }
 
-/// `-stats`.
+/// Prints the output of `-stats`.
 fn stats(opened: &Opened, control: &Control) {
     let rays = control.rays.load(Relaxed);
     say(&format!("objects {}, rays {rays}", opened.world.objects().len()));

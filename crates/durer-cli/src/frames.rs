@@ -167,7 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn frames_are_read() {
+    fn frames_are_parsed() {
         let read = |text: &str| text.parse::<Frames>().map(|frames| frames.numbers().collect::<Vec<_>>());
         assert_eq!(read("7"), Ok(vec![7]));
         assert_eq!(read("1-4"), Ok(vec![1, 2, 3, 4]));
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_take_their_places() {
+    fn frame_numbers_replace_placeholders() {
         assert_eq!(numbered("a.%04d.txt", 7), "a.0007.txt");
         assert_eq!(numbered("%d/%03d", 12345), "12345/12345");
         assert_eq!(numbered("100%.txt", 1), "100%.txt");

@@ -138,7 +138,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_file_is_read_and_written_by_whatever_name() {
+    fn no_file_is_input_and_output_under_any_name() {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         std::fs::create_dir(at("a")).unwrap();

@@ -49,9 +49,9 @@ use std::path::Path;
 #[cfg(unix)]
 pub use terminal::look_at_standard_output;
 
-/// Does what a command line says, whose first word is the name of the program; gives the exit code.
-/// It hears signals. `end` ends the process at once with an exit code: after a second Ctrl-C, or where
-/// standard output cannot be written to.
+/// Executes a command line, whose first word is the program's name, and returns the exit code.
+/// Handles signals. `end` ends the process immediately with an exit code: after a second Ctrl-C, or
+/// if standard output cannot be written to.
 pub fn run(words: Vec<OsString>, end: terminal::End) -> u8 {
     terminal::set_end(end);
     progress::hear_interrupts();
@@ -59,7 +59,7 @@ pub fn run(words: Vec<OsString>, end: terminal::End) -> u8 {
         return bad(error.to_string()).report();
     }
     durer::threads::prepare();
-    // Under the name of an official program, `durer` is that program.
+    // Under the name of an official program, `durer` acts as that program.
     let name = words.first().cloned().unwrap_or_default();
     let name = Path::new(&name).file_stem().unwrap_or_default().to_string_lossy();
     let result = match course::program(&name) {
@@ -96,11 +96,11 @@ pub fn run(words: Vec<OsString>, end: terminal::End) -> u8 {
     }
 }
 
-/// What a command line says. Help is written as all else is, so that it is told if it cannot be.
+/// Parses a command line. Prints help like other output, so that write errors are reported.
 fn parsed(words: Vec<OsString>) -> Cli {
     Cli::try_parse_from(words).unwrap_or_else(|error| {
         if error.use_stderr() || std::io::stdout().is_terminal() {
-            // A closed terminal reads no message either.
+            // Ignore errors: a closed terminal cannot show a message.
             let _ = error.print();
             terminal::end(u8::try_from(error.exit_code()).unwrap_or(terminal::OTHER_FAILURE));
         }

@@ -7,18 +7,18 @@ use durer_live::Server;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-/// Show a scene in the browser: edit it, go around in it, and ask why a pixel has its colour
+/// Show a scene in the browser: edit it, orbit it, and explain its pixels
 #[derive(Args)]
 #[command(after_help = "Examples:
   durer live scene.txt
   durer live model.glb --open
 
-The page is served on this machine alone, at an address with a random token. From another machine it is reached by
+The page is served on this machine only, at a URL with a random token. To reach it from another machine, use
 `ssh -L 8000:127.0.0.1:PORT`.")]
 pub struct LiveArgs {
-    /// The scene
+    /// Scene or model file
     pub scene: PathBuf,
-    /// Port; 0 for any that is free
+    /// Port; 0 for any free port
     #[arg(long, default_value_t = 0)]
     pub port: u16,
     /// Open the page in the browser
@@ -36,7 +36,7 @@ pub fn run(args: &LiveArgs) -> Result<(), Failure> {
     say(&format!("{address}\nCtrl-C ends"));
     if args.open {
         let opener = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
-        // The address is there to be copied where no browser opens.
+        // Ignore errors: the address is printed and can be copied.
         let _ = Command::new(opener).arg(&address).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
     }
     crate::progress::idle();

@@ -1,4 +1,4 @@
-//! `durer measure`: how much light arrives at points.
+//! `durer measure`: illuminance and irradiance at points.
 
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
@@ -27,34 +27,34 @@ use std::path::PathBuf;
   durer measure room.txt --grid 0,0.8,0:4,0,0:0,0,6:8x12 > desk.csv
   durer measure lens.txt --at 0,0,0 --integrator photons --samples 64
 
-A grid is a corner, two edges from it and numbers of points: the points are the middles of its cells. Unless --normal says otherwise
-it measures what falls from above; an upright grid has the normal of its second edge times its first.
-The illuminance is in lux where the scene's light is in cd/m^2 (`emissionLuminance`, `sun`), and of Radiance's scenes; the
-irradiance is by colour. Nothing is measured on the other side of the normal. Standard errors are those of independent samples;
-these are spread more evenly, and are nearer than that. Light of lamps that only chance finds, as in mirrors, makes them larger.")]
+A grid is a corner, two edges from it and numbers of points: the points are the centers of its cells. Without --normal, it
+measures light from above; an upright grid has the cross product of its second and first edge as its normal.
+The illuminance is in lux if the scene's light is in cd/m^2 (`emissionLuminance`, `sun`), and for Radiance scenes; the
+irradiance has a value per colour channel. Light from behind the normal does not count. Standard errors assume independent samples;
+the actual errors are smaller. Lights that only BSDF sampling finds, such as in mirrors, increase them.")]
 pub struct MeasureArgs {
-    /// The scene file
+    /// Scene or model file
     pub scene: PathBuf,
-    /// A point; may be repeated
+    /// Point to measure; may be given several times
     #[arg(id = "point", long = "at", value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub points: Vec<Vec3>,
-    /// The side from which light is counted [default: upwards]
+    /// Normal of the receiving surface [default: upwards]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub normal: Option<Vec3>,
-    /// Points in rows: corner, two edges and their numbers
+    /// Grid of points: corner, two edges and the numbers of points
     #[arg(long, value_name = "CORNER:EDGE:EDGE:NxM", value_parser = grid, allow_hyphen_values = true)]
     pub grid: Vec<Grid>,
-    /// Threads [default: as many as the machine has]
+    /// Threads [default: one per processor]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     #[command(flatten)]
     pub reading: SceneArgs,
-    /// How often light may be scattered before it arrives
+    /// Maximum number of scattering events before light arrives
     #[arg(long, default_value_t = durer::job::PATH_BOUNCES, value_parser = clap::value_parser!(u32).range(0..=256))]
     pub bounces: u32,
     #[command(flatten)]
     pub method: MethodArgs,
-    /// Samples of each point
+    /// Samples per point
     #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u32).range(2..=1 << 24))]
     pub samples: u32,
     /// Seed of the random numbers
@@ -62,7 +62,7 @@ pub struct MeasureArgs {
     pub seed: u64,
 }
 
-/// Points in rows.
+/// A grid of points.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid {
     corner: Vec3,
@@ -70,19 +70,19 @@ pub struct Grid {
     counts: [u32; 2],
 }
 
-/// Points at most.
+/// Maximum number of points.
 const MAX_POINTS: usize = 1 << 20;
 
 fn vector(text: &str) -> Result<Vec3, String> {
     let numbers: Vec<f32> = text.split(',').map_while(|word| word.trim().parse().ok()).collect();
     match numbers[..] {
         [x, y, z] if text.split(',').count() == 3 && numbers.iter().all(|x| x.is_finite()) => Ok(Vec3::new(x, y, z)),
-        _ => Err("three numbers are wanted, as in 0,0.8,0".into()),
+        _ => Err("expected three numbers, as in 0,0.8,0".into()),
     }
 }
 
 fn grid(text: &str) -> Result<Grid, String> {
-    let wanted = || "wanted is CORNER:EDGE:EDGE:NxM, as in 0,0.8,0:4,0,0:0,0,6:8x12".to_string();
+    let wanted = || "expected CORNER:EDGE:EDGE:NxM, as in 0,0.8,0:4,0,0:0,0,6:8x12".to_string();
     let [corner, a, b, counts] = text.split(':').collect::<Vec<_>>()[..] else { return Err(wanted()) };
     let (n, m) = counts.split_once('x').ok_or_else(wanted)?;
     let count = |word: &str| word.parse().ok().filter(|n| (1..=4096).contains(n)).ok_or_else(wanted);
@@ -97,7 +97,7 @@ impl Grid {
     }
 }
 
-/// What was measured at a point so far.
+/// Sums of the samples at a point.
 #[derive(Clone, Default)]
 struct Sums {
     light: [f64; 3],
@@ -113,9 +113,10 @@ impl Sums {
         self.squares += brightness * brightness;
     }
 
-    /// The mean by colour, that of the brightness, and its standard error. Had one sample more found
-    /// the brightest lamp that is found by chance alone, the mean would be `rare` over the number of
-    /// samples larger: it is not known better than that.
+    /// Returns the mean per channel, the mean of the luminous quantity, and its standard error.
+    /// `rare` is the largest value of a light that only BSDF sampling finds. One more such sample
+    /// would raise the mean by `rare` over the number of samples, so the error includes that
+    /// amount.
     fn mean(&self, samples: u32, rare: f64) -> ([f64; 3], f64, f64) {
         let n = f64::from(samples);
         let mean = self.bright / n;
@@ -125,7 +126,7 @@ impl Sums {
     }
 }
 
-/// The first point with a normal that has no surface just below or above it.
+/// Returns the first point without a surface just below or above it along its normal.
 fn in_the_air(world: &World, places: &[(Vec3, Vec3)]) -> Option<Vec3> {
     let bounds = world.bounds();
     let size = (bounds.max - bounds.min).length();
@@ -143,7 +144,7 @@ fn vector_of(v: Vec3) -> String {
 
 pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let mut options = load_options(&args.reading);
-    // What is measured is the scene's own light.
+    // Measure only the scene's own light.
     options.staging.own_light = options.staging.studio.is_none();
     let opened = open(&args.scene, &options, false, &mut Guard::default())?;
     let scene = &opened.loaded.scene;
@@ -157,7 +158,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let own = args.points.iter().map(|&point| (point, up)).chain(grids);
     let mut places: Vec<(Vec3, Vec3)> = own.take(MAX_POINTS + 1).collect();
     if places.is_empty() || places.len() > MAX_POINTS {
-        return Err(bad(format!("say where: --at X,Y,Z or --grid, at most {MAX_POINTS} points")));
+        return Err(bad(format!("no points to measure, or more than {MAX_POINTS}: pass --at X,Y,Z or --grid")));
     }
     if let Some(normal) = args.normal {
         let Some(normal) = normal.try_normalize() else { return Err(bad("--normal must not be 0,0,0")) };
@@ -167,19 +168,19 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let method = args.method.0.resolved_method(Method::PATH).map_err(bad)?;
     let setup = Setup { world: &opened.world, settings, cone: None, seed: args.seed, cancel: None };
     let (Integrator::Path(path) | Integrator::Photons(path)) = method.over(setup) else {
-        return Err(bad("illuminances are measured by paths: --integrator path, or photons"));
+        return Err(bad("only path tracing can measure illuminance: set --integrator path or photons"));
     };
     if path.photons.is_some()
         && let Some(point) = in_the_air(&opened.world, &places)
     {
         let message = format!(
-            "photons are kept on surfaces, and {} lies on none: light by mirrors and glass would be missing",
+            "photons are stored on surfaces, but {} is not on one: light from mirrors and glass would be missing",
             vector_of(point)
         );
-        return Err(bad(format!("{message}; measure there by --integrator path, or put a surface there")));
+        return Err(bad(format!("{message}; use --integrator path, or add a surface there")));
     }
     let mut sums = vec![Sums::default(); places.len()];
-    // Photons are made for one sample after the other.
+    // Photons are traced again for each sample.
     let step = if method.prepares() { 1 } else { args.samples };
     threads::install(args.threads.map(usize::from), || {
         for first in (0..args.samples).step_by(step as usize) {
@@ -202,8 +203,8 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         say(&format!("{p},{n},{mean:.6},{error:.6},{c}"));
     }
     if missed {
-        let message = "some lamps are found by chance alone, in mirrors or glass, on solids or by their pictures: errors \
-                       say what one more of them would bring; take more `--samples`, or `--integrator photons`";
+        let message = "only BSDF sampling finds some lights (in mirrors or glass, on solids, or textured ones): the errors \
+                       include the effect of one more such sample; use more `--samples`, or `--integrator photons`";
         report::note(&Diagnostic::warning(message).code("RARE_LIGHT"));
     }
     Ok(())

@@ -79,7 +79,7 @@ mod tests {
     use clap::{Args, Command, FromArgMatches};
 
     #[test]
-    fn options_that_have_other_names_now_keep_the_older_ones() {
+    fn renamed_options_keep_their_old_names() {
         let command = || RenderCommand::augment_args(Command::new("render"));
         let read = |option: &str, value: &str| {
             let matches = command().try_get_matches_from(["render", "scene.txt", option, value]);

@@ -59,7 +59,7 @@ pub fn note(diagnostic: &Diagnostic) {
     complain(&format!("note: {}", diagnostic.message));
 }
 
-/// Says which samples were left out, and why, where the world is at hand that they are of.
+/// Prints the number of rejected samples, the first of them and, if the world is given, the cause.
 pub fn rejected(statistics: &Statistics, world: Option<&World>, quiet: bool) {
     if let (Some(first), false) = (statistics.first_rejected.first(), quiet) {
         let count = statistics.rejected;
@@ -71,7 +71,8 @@ pub fn rejected(statistics: &Statistics, world: Option<&World>, quiet: bool) {
     }
 }
 
-/// The light or material that makes infinite light, or NaN, under the rules of old programs.
+/// Describes the light or material that yields infinite or NaN radiance under the rules of old
+/// programs.
 fn cause(world: &World) -> Option<String> {
     let divides = |light: &Light| match light {
         Light::Point(lamp) => lamp.attenuation == Some(Vec3::ZERO),
@@ -79,8 +80,8 @@ fn cause(world: &World) -> Option<String> {
     };
     if let Some(number) = world.lights().iter().position(divides) {
         let why = match &world.lights()[number] {
-            Light::Point(_) => "the falloff of light {} is missing or 0, and it divides by that",
-            _ => "the direction of light {} is 0 0 0, and it divides by its length",
+            Light::Point(_) => "light {} divides by its falloff, which is missing or 0",
+            _ => "light {} divides by the length of its direction, which is 0 0 0",
         };
         return Some(why.replace("{}", &number.to_string()));
     }
@@ -89,10 +90,10 @@ fn cause(world: &World) -> Option<String> {
         Material::Solid(..) => false,
     };
     let number = world.materials().iter().position(below)?;
-    Some(format!("the shininess of material {number} is below 0, and its highlight grows without end"))
+    Some(format!("the shininess of material {number} is negative, so its highlight is infinite"))
 }
 
-/// A scene file that cannot be read.
+/// Returns the failure for an unreadable scene file.
 pub fn unreadable(error: SourceError) -> Failure {
     Failure::Input(Some(error.to_string()))
 }

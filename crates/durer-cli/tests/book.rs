@@ -95,7 +95,7 @@ fn every_command_of_the_book_runs() {
 }
 
 #[test]
-fn links_of_the_pages_lead_somewhere() {
+fn links_of_the_pages_are_valid() {
     let docs = std::fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path());
     let language = std::fs::read_dir(root().join("docs/language")).unwrap().map(|entry| entry.unwrap().path());
     let pages = docs.chain(language).chain([root().join("README.md")]);
@@ -112,7 +112,7 @@ fn links_of_the_pages_lead_somewhere() {
 }
 
 #[test]
-fn the_table_of_conventions_is_that_of_the_code() {
+fn table_of_conventions_matches_the_code() {
     let text = std::fs::read_to_string(root().join("docs/photographs.md")).unwrap();
     for c in durer_photo::format::CONVENTIONS {
         let cells = [c.name, c.files, c.way, c.frame, c.rotation, c.translation, c.pixels, c.lens];

@@ -24,7 +24,7 @@ fn targa(place: &Place, name: &str) -> (u8, Vec<[u8; 4]>) {
 }
 
 #[test]
-fn what_a_camera_does_not_see_is_transparent_however_it_is_sampled() {
+fn pixels_outside_the_camera_are_transparent_with_any_sampling() {
     let place = Place::new();
     place.put("eye.txt", seen_by(&format!("FisheyeCamera {{ {POSE} angle 160 }}")));
     let ways = [
@@ -58,7 +58,7 @@ fn what_a_camera_does_not_see_is_transparent_however_it_is_sampled() {
 }
 
 #[test]
-fn pictures_take_the_shape_of_their_cameras() {
+fn pictures_have_the_aspect_ratio_of_their_cameras() {
     let place = Place::new();
     for (camera, size) in [
         ("FisheyeCamera {@}", (512, 512)),
@@ -88,7 +88,7 @@ fn pictures_take_the_shape_of_their_cameras() {
 }
 
 #[test]
-fn lenses_have_the_same_bits_in_parts_and_on_all_threads() {
+fn lens_pictures_are_identical_in_crops_and_on_any_number_of_threads() {
     let place = Place::new();
     let lens = format!("ThinLensCamera {{ {POSE} angle 40 aperture 0.8 focusDistance 8 blades 5 }}");
     place.put("lens.txt", seen_by(&lens));
@@ -109,7 +109,7 @@ fn lenses_have_the_same_bits_in_parts_and_on_all_threads() {
 }
 
 #[test]
-fn wrong_cameras_are_told_of() {
+fn invalid_cameras_are_refused() {
     let place = Place::new();
     let refused = |camera: &str, words: &[&str]| {
         place.put("wrong.txt", seen_by(&camera.replace('@', POSE)));

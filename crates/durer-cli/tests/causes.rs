@@ -98,7 +98,7 @@ fn put_files(place: &Place) {
 }
 
 #[test]
-fn each_cause_is_told_first_and_its_neighbour_is_sound() {
+fn each_cause_is_reported_first_and_its_near_miss_is_not() {
     let place = Place::new();
     put_files(&place);
     let cases = cases();
@@ -135,7 +135,7 @@ fn each_cause_is_told_first_and_its_neighbour_is_sound() {
 
 /// Every code has a scene, here or in its own file.
 #[test]
-fn every_cause_has_its_scene() {
+fn every_cause_has_a_scene() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/broken");
     let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     let of_files = files.filter_map(|name| Some(name.split_once('.')?.0.to_string()));

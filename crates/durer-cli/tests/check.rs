@@ -42,7 +42,7 @@ fn codes(scene: &Value) -> Vec<String> {
 }
 
 #[test]
-fn the_cause_is_among_the_first_two() {
+fn cause_is_among_the_first_two() {
     let (place, names) = with_broken();
     let ran = place.gives(2, &format!("check --json {}", names.join(" ")));
     let all = json(&ran);
@@ -104,7 +104,7 @@ const MENDED: [&str; 32] = [
 ];
 
 #[test]
-fn what_is_mechanical_is_mended() {
+fn mechanical_faults_are_fixed() {
     let (place, names) = with_broken();
     for name in &names {
         let before = place.bytes(name);
@@ -129,7 +129,7 @@ fn what_is_mechanical_is_mended() {
 }
 
 #[test]
-fn mending_in_place_says_what_it_did() {
+fn fixing_in_place_reports_the_changes() {
     let (place, _) = with_broken();
     let ran = place.gives(0, "check wrong-count.group.txt --fix");
     assert!(
@@ -157,7 +157,7 @@ fn mending_in_place_says_what_it_did() {
 }
 
 #[test]
-fn the_exit_code_tells() {
+fn exit_code_reflects_the_worst_finding() {
     let (place, _) = with_broken();
     assert!(place.gives(0, "check scene.txt").out.contains("scene.txt: no findings"));
     // Notes do not change the exit code.
@@ -171,7 +171,7 @@ fn the_exit_code_tells() {
 }
 
 #[test]
-fn options_decide_what_is_odd() {
+fn options_affect_the_findings() {
     let place = Place::new();
     place.put(
         "back.txt",
@@ -184,7 +184,7 @@ Group { numObjects 1 MaterialIndex 0 Triangle { vertex0 -1 0 0 vertex1 0 1 0 ver
     place.gives(0, "check back.txt");
     // The course's programs leave back faces black, so here the triangle is at fault.
     let ran = place.gives(1, "check back.txt --dialect f04");
-    assert!(ran.out.contains("[seen-from-behind]") && ran.out.contains("its back is left black"), "{}", ran.out);
+    assert!(ran.out.contains("[seen-from-behind]") && ran.out.contains("its back stays black"), "{}", ran.out);
     place.gives(0, "check back.txt --dialect f04 --fix -o front.txt");
     place.gives(0, "check front.txt --dialect f04");
     place.gives(0, "check back.txt --dialect f04 --shade-back");
@@ -192,14 +192,14 @@ Group { numObjects 1 MaterialIndex 0 Triangle { vertex0 -1 0 0 vertex1 0 1 0 ver
     place.gives(0, "check scene.txt --depth-range 6 30");
     for range in ["100 200", "0.1 1", "0 100000"] {
         let ran = place.gives(1, &format!("check scene.txt --depth-range {range}"));
-        assert!(ran.out.contains("[depth-range]") && ran.out.contains("depths in the picture go from"), "{}", ran.out);
+        assert!(ran.out.contains("[depth-range]") && ran.out.contains("the picture has depths from"), "{}", ran.out);
     }
     let ran = place.gives(1, "check scene.txt --bounces 0");
     assert!(ran.out.contains("[no-bounces]"), "{}", ran.out);
 }
 
 #[test]
-fn a_picture_that_looks_wrong_is_told_of_after_the_render() {
+fn faulty_picture_is_reported_after_the_render() {
     let (place, _) = with_broken();
     let render = |scene: &str, more: &str| {
         place.gives(0, &format!("render {scene} -o p.png --size 40x30 --samples 2 {more}")).err
@@ -207,7 +207,7 @@ fn a_picture_that_looks_wrong_is_told_of_after_the_render() {
     let err = render("scene.txt", "");
     assert!(!err.contains("the picture"), "{err}");
     let err = render("camera-away.point.txt", "");
-    assert!(err.contains("the picture is of one colour; `durer check` reports:"), "{err}");
+    assert!(err.contains("the picture has only one colour; `durer check` reports:"), "{err}");
     assert!(err.contains("[camera-away]") && err.contains("turn it: `direction"), "{err}");
     let err = render("light-divides.txt", "");
     assert!(err.contains("lacks samples") && err.contains("[light-divides]") && err.contains("sample 0"), "{err}");

@@ -16,7 +16,7 @@ const MODELS: [&str; 7] = [
 ];
 
 #[test]
-fn the_year_of_every_official_command_is_guessed() {
+fn year_of_every_official_command_is_guessed() {
     let Some(course) = corpus() else { return };
     let place = Place::new();
     let table = std::fs::read_to_string(course.join("reference.csv")).unwrap();
@@ -59,7 +59,7 @@ fn the_year_of_every_official_command_is_guessed() {
 }
 
 #[test]
-fn models_written_in_words_make_the_same_picture() {
+fn models_converted_to_text_render_the_same_picture() {
     let Some(course) = corpus() else { return };
     let models = course.join("../samples/gltf/khronos");
     let place = Place::new();
@@ -80,7 +80,7 @@ fn models_written_in_words_make_the_same_picture() {
 }
 
 #[test]
-fn scenes_written_anew_make_the_same_picture() {
+fn converted_scenes_render_the_same_picture() {
     let Some(course) = corpus() else { return };
     let place = Place::new();
     let mut count = 0;

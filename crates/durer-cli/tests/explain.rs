@@ -27,7 +27,7 @@ fn sum(node: &Value) -> [f32; 3] {
 }
 
 #[test]
-fn the_tree_sums_to_the_pixel_of_the_picture() {
+fn tree_sums_to_the_pixel_of_the_picture() {
     let place = Place::new();
     place.gives(0, &format!("render scene.txt -o p.pfm --samples 1 {SMALL}"));
     let picture = place.image("p.pfm");
@@ -40,7 +40,7 @@ fn the_tree_sums_to_the_pixel_of_the_picture() {
 }
 
 #[test]
-fn samplers_of_the_course_are_explained_with_their_neighbours() {
+fn course_samplers_are_explained_with_neighbouring_pixels() {
     let place = Place::new();
     let ran = |options: &str| place.gives(0, &format!("explain scene.txt --pixel 20,13 {options} {SMALL}")).out;
     let text = ran("--sampler jittered --samples 4 --filter gaussian");
@@ -56,7 +56,7 @@ fn samplers_of_the_course_are_explained_with_their_neighbours() {
 }
 
 #[test]
-fn the_text_names_things_by_their_place_in_the_file() {
+fn text_names_objects_by_their_place_in_the_file() {
     let place = Place::new();
     let ran = place.gives(0, &format!("explain scene.txt --pixel 20,13 {SMALL}"));
     for wanted in [
@@ -89,7 +89,7 @@ fn the_text_names_things_by_their_place_in_the_file() {
 
 /// Prints the vectors of highlights and the colour weight of 2012's glass.
 #[test]
-fn the_formulas_have_all_their_factors() {
+fn formulas_show_all_factors() {
     let place = Place::new();
     let scene = common::SCENE
         .replace("diffuseColor 0.8 0.3 0.2", "diffuseColor 0.8 0.3 0.2 specularColor 0.5 0.5 0.5 shininess 4");
@@ -108,7 +108,7 @@ fn the_formulas_have_all_their_factors() {
 
 /// Omits small and deep terms and says so; prints no minus before 0 and at most four digits.
 #[test]
-fn the_text_can_be_read() {
+fn text_is_readable() {
     let place = Place::new();
     let told =
         |options: &str| place.gives(0, &format!("explain scene.txt --pixel 20,26 --samples 1 {options} {SMALL}")).out;
@@ -125,7 +125,7 @@ fn the_text_can_be_read() {
 }
 
 #[test]
-fn the_brightest_and_the_oddest_pixel_are_found() {
+fn brightest_and_worst_pixels_are_found() {
     let place = Place::new();
     let scene = common::SCENE.replace("color 0.2 0.1 0.5", "color 0 0 0");
     place.put("dark.txt", scene);
@@ -141,7 +141,7 @@ fn the_brightest_and_the_oddest_pixel_are_found() {
 }
 
 #[test]
-fn wrong_questions_are_refused() {
+fn invalid_options_are_refused() {
     let place = Place::new();
     for (question, answer) in [
         ("", "choose a pixel or a ray"),
@@ -157,7 +157,7 @@ fn wrong_questions_are_refused() {
 }
 
 #[test]
-fn the_page_holds_all_that_it_needs() {
+fn page_is_self_contained() {
     let place = Place::new();
     place.put("a<b.txt", common::SCENE);
     let ran = place.gives(0, "explain a<b.txt --pixel 20,12 --size 40x30 --html why.html");
@@ -188,7 +188,7 @@ fn words(json: &Value, found: &mut std::collections::BTreeSet<String>) {
 }
 
 #[test]
-fn all_that_the_json_has_is_documented() {
+fn every_json_field_is_documented() {
     let (place, mut found) = (Place::new(), Default::default());
     let glass = common::ENDLESS.replace("indexOfRefraction", "refractionIndex");
     place.put("glass.txt", glass);
@@ -248,7 +248,7 @@ setTimeout(() => {
 "##;
 
 #[test]
-fn the_page_works_in_a_browser_without_network() {
+fn page_works_in_a_browser_without_network() {
     let place = Place::new();
     place.gives(0, &format!("explain scene.txt --pixel 20,26 --html why.html --samples 4 {SMALL}"));
     let wanted = [

@@ -11,7 +11,7 @@ use std::time::Duration;
 const SOON: Duration = Duration::from_secs(8);
 
 #[test]
-fn rendering_stops_soon_and_where_there_is_nothing_leaves_nothing() {
+fn rendering_stops_soon_and_leaves_no_empty_files() {
     let place = Place::new();
     place.put("old.png", "an old picture");
     let before = place.names();
@@ -41,7 +41,7 @@ fn rendering_stops_soon_and_where_there_is_nothing_leaves_nothing() {
 }
 
 #[test]
-fn what_is_there_is_saved() {
+fn finished_work_is_saved_on_interrupt() {
     let place = Place::new();
     for options in [
         "scene.txt --samples 1048576",
@@ -72,7 +72,7 @@ fn what_is_there_is_saved() {
 }
 
 #[test]
-fn reading_stops_too() {
+fn reading_stops_on_interrupt() {
     let place = Place::new();
     // Two million triangles take seconds to read and sort, in any build.
     let mut mesh = String::new();
@@ -93,7 +93,7 @@ fn reading_stops_too() {
 }
 
 #[test]
-fn whenever_it_comes_the_file_is_whole_or_not_there() {
+fn interrupt_leaves_a_complete_file_or_none() {
     let place = Place::new();
     for after in (0..120).step_by(8) {
         let _ = std::fs::remove_file(place.path("p.png"));
@@ -114,7 +114,7 @@ fn whenever_it_comes_the_file_is_whole_or_not_there() {
 }
 
 #[test]
-fn a_bar_is_shown_on_a_terminal_only() {
+fn progress_bar_appears_on_terminals_only() {
     let place = Place::new();
     let on_terminal = |options: &str| {
         let line =
@@ -136,7 +136,7 @@ fn a_bar_is_shown_on_a_terminal_only() {
 }
 
 #[test]
-fn whoever_watches_sees_what_is_saved_and_ends_by_ctrl_c() {
+fn watch_renders_saved_changes_until_ctrl_c() {
     let place = Place::new();
     let scene = std::fs::read_to_string(place.path("scene.txt")).unwrap();
     let mut child = place

@@ -31,7 +31,7 @@ fn defined(file: &str, symbol: &str) {
 }
 
 #[test]
-fn places_in_the_source_are_there() {
+fn places_in_the_source_exist() {
     for place in durer::lesson::TOPICS.iter().flat_map(|topic| topic.places) {
         defined(place.file, place.symbol);
     }
@@ -48,7 +48,7 @@ fn places_in_the_source_are_there() {
 }
 
 #[test]
-fn links_lead_somewhere_and_every_picture_is_shown() {
+fn links_are_valid_and_every_picture_is_shown() {
     let guide = guide();
     let links: BTreeSet<&str> = between(&guide, "](", ")").collect();
     for link in &links {
@@ -61,7 +61,7 @@ fn links_lead_somewhere_and_every_picture_is_shown() {
 }
 
 #[test]
-fn pictures_are_what_their_commands_make() {
+fn commands_reproduce_the_pictures() {
     let (guide, place) = (guide(), Place::new());
     let commands: Vec<&str> = guide.lines().filter_map(|line| line.strip_prefix("    cargo durer ")).collect();
     assert_eq!(commands.len(), between(&guide, "](lecture/", ")").count());

@@ -16,7 +16,7 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn a_lesson_is_a_folder_with_a_page_a_text_and_its_pictures() {
+fn lesson_folder_has_page_text_and_pictures() {
     let place = Place::new();
     let ran = place.gives(0, &format!("lesson scene.txt -o out {SMALL}"));
     assert!(ran.out.starts_with("wrote out/index.html, lesson.md and "), "{}", ran.out);
@@ -28,7 +28,7 @@ fn a_lesson_is_a_folder_with_a_page_a_text_and_its_pictures() {
         text.matches("](").count(),
         text.matches(".png)").count() + text.matches(".svg)").count() + 1 + { text.matches("(our-scene.txt)").count() }
     );
-    assert!(text.contains("> scene.txt cannot show this: no glass is seen in it"), "{text}");
+    assert!(text.contains("> scene.txt cannot show this: no glass is visible in it"), "{text}");
     assert!(text.contains("`crates/durer-render/src/integrator/whitted/secondary.rs`: `fn refract`"));
     // The last picture equals that of `render`.
     place.gives(0, &format!("render scene.txt -o p.png -q {SMALL}"));
@@ -66,12 +66,12 @@ fn only_files_of_an_earlier_lesson_are_replaced() {
 }
 
 #[test]
-fn wrong_orders_are_refused_and_leave_nothing() {
+fn invalid_arguments_leave_no_files() {
     let place = Place::new();
     place.put("broken.txt", "PerspectiveCamera {");
     for (arguments, words) in [
         ("scene.txt -o scene.txt", "is a file"),
-        ("scene.txt -o no/such/folder", "there is no folder `no/such`"),
+        ("scene.txt -o no/such/folder", "folder `no/such` does not exist"),
         ("scene.txt -o out --show depth", "unexpected argument '--show'"),
         ("scene.txt -o out --crop 1,1,4x4", "unexpected argument '--crop'"),
         ("scene.txt -o out --size 40", "640x480"),
@@ -118,7 +118,7 @@ setTimeout(() => {
 "##;
 
 #[test]
-fn the_page_works_in_a_browser_without_network() {
+fn page_works_in_a_browser_without_network() {
     let place = Place::new();
     // A name that would end the script or link to a file to remove, if it were not escaped.
     let scene = "<b>](a).txt";

@@ -25,7 +25,7 @@ fn lit() -> Place {
 }
 
 #[test]
-fn a_measured_lamp_gives_its_illuminance() {
+fn photometric_light_has_its_specified_illuminance() {
     let place = lit();
     place.put("open.txt", LIT.replace("emissionLuminance 20", ""));
     // Beside the ball: E = I cos / d^2 with I = 1000 cos.
@@ -39,13 +39,13 @@ fn a_measured_lamp_gives_its_illuminance() {
     let candela = 1000.0 - (1000.0 - 866.025) * 19.4712 / 30.0;
     let expected = candela * (4.0_f64 / 4.5).sqrt() / 4.5;
     assert!((rows[1][6] / expected - 1.0).abs() < 1e-4 && rows[1][4] == 1.0, "{rows:?}");
-    assert!(place.gives(2, "measure open.txt").err.contains("say where"));
+    assert!(place.gives(2, "measure open.txt").err.contains("--at X,Y,Z or --grid"));
     assert!(place.gives(2, "measure open.txt --at 0,0").err.contains("three numbers"));
     assert!(place.gives(2, "measure open.txt --at 0,0,0 --normal 0,0,0").err.contains("--normal"));
 }
 
 #[test]
-fn photons_measure_what_glass_lets_through() {
+fn photons_measure_light_through_glass() {
     let place = Place::new();
     let scene = "PerspectiveCamera { center 0 2 6 direction 0 -0.3 -1 up 0 1 0 angle 40 } Background { color 0 0 0 }
 Lights { PointLight { position 0 2 0 color 31.830989 31.830989 31.830989 attenuation 0 0 1 } }
@@ -64,11 +64,11 @@ Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Box { mi
     assert!((mean - expected).abs() < 3.0 * error + 0.02 * expected, "{mean} ± {error}, not {expected}");
     // Path tracing cannot find a point light behind glass.
     assert_eq!(lux("--samples 32").0, 0.0);
-    assert!(place.gives(2, "measure pane.txt --at 0,0,0 --integrator ao").err.contains("path, or photons"));
+    assert!(place.gives(2, "measure pane.txt --at 0,0,0 --integrator ao").err.contains("path or photons"));
 }
 
 #[test]
-fn paths_have_the_same_bits_in_every_way_and_sum_in_explanations() {
+fn paths_are_deterministic_and_explanations_sum_up() {
     let place = lit();
     let hash = |options: &str| {
         let ran = place.gives(0, &format!("render lit.txt -o p.pfm --size 32x24 --samples 8 --hash -q {options}"));
@@ -85,7 +85,7 @@ fn paths_have_the_same_bits_in_every_way_and_sum_in_explanations() {
 }
 
 #[test]
-fn exposure_and_tone_change_eight_bits_alone() {
+fn exposure_and_tone_change_8_bit_pictures_only() {
     let place = lit();
     let bright = |options: &str| {
         place.gives(0, &format!("render lit.txt -o p.png --size 16x12 --samples 4 -q {options}"));
@@ -102,7 +102,7 @@ fn exposure_and_tone_change_eight_bits_alone() {
 }
 
 #[test]
-fn broken_lamps_names_and_dark_scenes_are_told_of() {
+fn invalid_photometric_files_names_and_dark_scenes_are_reported() {
     let place = lit();
     place.put("lamp.ies", LAMP.replace("0 30 60 90", "0 30 20 90"));
     let told = place.gives(2, "render lit.txt -o p.png").err;
@@ -130,7 +130,7 @@ fn broken_lamps_names_and_dark_scenes_are_told_of() {
             .replace("MaterialIndex 1 Sphere { center 1", turned),
     );
     let told = place.gives(1, "check turned.txt").out;
-    assert!(told.contains("lamp-turned") && told.contains("exchange `edge0` and `edge1`"), "{told}");
+    assert!(told.contains("lamp-turned") && told.contains("swap `edge0` and `edge1`"), "{told}");
     place.put("milk.txt", LIT.replace("preset gold", "preset gold transmissionScatter 1 1 1"));
     let told = place.gives(1, "check milk.txt").out;
     assert!(told.contains("no-depth") && told.contains("transmissionDepth 1"), "{told}");
@@ -161,7 +161,7 @@ Group {
 ";
 
 #[test]
-fn photons_wavelengths_and_fog_have_the_same_bits_however_they_are_made() {
+fn photons_spectra_and_fog_are_deterministic() {
     let place = Place::new();
     place.put("scene.txt", CAUSTIC);
     place.put("fog.txt", format!("Fog {{ extinction 0.2 color 0.9 0.8 0.7 min -3 0 -3 max 3 3 3 }}\n{CAUSTIC}"));
@@ -186,7 +186,7 @@ fn photons_wavelengths_and_fog_have_the_same_bits_however_they_are_made() {
 }
 
 #[test]
-fn options_of_light_that_make_no_sense_are_refused_and_noise_is_taken_out_beside_the_work() {
+fn invalid_light_options_are_refused_and_denoising_keeps_the_hash() {
     let place = Place::new();
     place.put("scene.txt", CAUSTIC);
     for (options, word) in [
@@ -216,7 +216,7 @@ fn options_of_light_that_make_no_sense_are_refused_and_noise_is_taken_out_beside
 }
 
 #[test]
-fn spectra_stand_beside_the_scene_and_lamps_have_names() {
+fn spectra_are_files_or_named_illuminants() {
     let place = Place::new();
     let scene = |base: &str, lamp: &str, sky: &str| {
         format!(
@@ -296,7 +296,7 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {thin
 }
 
 #[test]
-fn the_sun_stands_where_angles_or_place_and_time_say() {
+fn sun_position_follows_from_angles_or_place_and_time() {
     let place = Place::new();
     let lux = |sky: &str| -> Vec<f64> {
         let scene = format!(
@@ -334,7 +334,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
 }
 
 #[test]
-fn lights_in_candela_lumen_and_lux_light_as_much() {
+fn lights_in_candela_lumen_and_lux_have_that_strength() {
     let place = Place::new();
     place.put("lamp.ies", "TILT=NONE\n1 -1 2 3 1 1 2 0 0 0\n0.5 1 60\n0 90 180\n0\n100 100 100\n");
     let pi = std::f64::consts::PI;
@@ -388,7 +388,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
 }
 
 #[test]
-fn a_camera_s_settings_are_an_exposure() {
+fn camera_settings_give_the_exposure() {
     let place = Place::new();
     let scene =
         "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 } Background { color 3840 3840 3840 }
@@ -422,7 +422,7 @@ Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 } } Group { MaterialIndex
 }
 
 #[test]
-fn radiance_s_scenes_are_measured_in_lux_from_above() {
+fn radiance_scenes_are_measured_in_lux_from_above() {
     let place = Place::new();
     let sky = "void glow g 0 0 4 2 1 .5 0\ng source s 0 0 4 0 0 1 180\n";
     place.put("sky.rad", sky);
@@ -446,13 +446,13 @@ fn radiance_s_scenes_are_measured_in_lux_from_above() {
     let mirror = "void light l 0 0 3 100 100 100\nl sphere s 0 0 4 0 0 2 .05\nvoid mirror m 0 0 3 .9 .9 .9
 m polygon p 0 0 12 2 -9 -9 2 9 -9 2 9 9 2 -9 9\nvoid plastic w 0 0 5 .5 .5 .5 0 0\nw polygon f 0 0 12 -9 -9 0 9 -9 0 9 9 0 -9 9 0\n";
     place.put("mirror.rad", mirror);
-    place.refused(2, "measure mirror.rad --at 0,0,.8 --integrator photons --samples 2", &["lies on none"]);
+    place.refused(2, "measure mirror.rad --at 0,0,.8 --integrator photons --samples 2", &["is not on one"]);
     rows("measure mirror.rad --at 0,0,0 --integrator photons --samples 2");
     place.refused(2, "measure sky.rad --at 0,0,0 --samples 1", &["--samples"]);
 }
 
 #[test]
-fn what_of_a_sky_has_no_effect_is_told() {
+fn sky_fields_without_effect_are_reported() {
     let place = Place::new();
     let told = |sky: &str| {
         let scene = format!(
@@ -485,6 +485,6 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         let said = told(&format!("Background {{ {sky} }}"));
         assert!(!said.contains("no effect") && !said.contains("grey"), "{sky}: {said}");
     }
-    // Without a background there is no light around, and none that would have to be turned off.
+    // Without a background, the message does not suggest to turn it off.
     assert!(!told("").contains("`Background { color 0 0 0 }`"), "{}", told(""));
 }

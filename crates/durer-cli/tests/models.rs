@@ -10,7 +10,7 @@ const STL: &str = "solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex
 const SMALL: &str = "--size 24x16 --samples 2";
 
 #[test]
-fn a_model_is_rendered_from_all_sides_in_any_light() {
+fn model_is_rendered_with_every_view_and_studio() {
     let place = Place::new();
     place.put("a.stl", STL);
     let hash = |more: &str| place.gives(0, &format!("render a.stl -o a.png {SMALL} --hash -q {more}")).out;
@@ -26,7 +26,7 @@ fn a_model_is_rendered_from_all_sides_in_any_light() {
 }
 
 #[test]
-fn a_model_is_converted_also_to_words() {
+fn model_is_converted_to_meshes_and_scenes() {
     let place = Place::new();
     place.put("a.stl", STL);
     for name in ["b.ply", "b.obj", "b.stl", "b.glb", "b.gltf"] {
@@ -51,7 +51,7 @@ fn a_model_is_converted_also_to_words() {
 }
 
 #[test]
-fn a_part_of_the_picture_that_a_file_asks_for_is_made() {
+fn crop_of_a_file_is_rendered() {
     let place = Place::new();
     let film = |more: &str| {
         format!(
@@ -74,7 +74,7 @@ fn a_part_of_the_picture_that_a_file_asks_for_is_made() {
 }
 
 #[test]
-fn what_is_wrong_with_a_model_is_said_at_line_and_column() {
+fn model_errors_have_line_and_column() {
     let place = Place::new();
     place.put("a.stl", STL.replace("1 1 0.5", "1 1 x"));
     place.refused(2, "render a.stl -o a.png", &["a.stl:12:12", "expected a number, found `x`"]);
@@ -84,7 +84,7 @@ fn what_is_wrong_with_a_model_is_said_at_line_and_column() {
 }
 
 #[test]
-fn things_of_models_are_told_once_by_their_names() {
+fn model_objects_are_reported_once_by_name() {
     let place = Place::new();
     place.put("empty.gltf", r#"{"asset":{"version":"2.0"},"scenes":[{"name":"S"}]}"#);
     let ran = place.gives(0, &format!("render empty.gltf -o a.png {SMALL}"));
@@ -92,7 +92,7 @@ fn things_of_models_are_told_once_by_their_names() {
     assert_eq!(ran.err.matches("no-objects").count(), 1, "{}", ran.err);
     place.put("empty.obj", "# nothing\n");
     let found = place.run("check empty.obj");
-    assert!(found.out.contains("nothing is to be seen") && !found.out.contains("Group"), "{}", found.out);
+    assert!(found.out.contains("the scene has no surfaces") && !found.out.contains("Group"), "{}", found.out);
     let room = "PerspectiveCamera { center 0 0 0 direction 0 0 -1 up 0 1 0 angle 40 }\nLights { DirectionalLight { direction \
                 0 -1 0 color 1 1 1 } }\nMaterials { PhongMaterial { diffuseColor 1 1 1 } }\nGroup { MaterialIndex 0 Box { min \
                 -1 -1 -1 max 1 1 1 } }\n";
@@ -112,7 +112,7 @@ const RAD: &str = "void plastic grey 0 0 5 .5 .5 .5 0 0\nvoid light lamp 0 0 3 9
     lamp sphere bulb 0 0 4 0 0 3 .5\n!genbox grey box 1 1 1 | xform -t 1 0 0\n";
 
 #[test]
-fn radiance_is_rendered_by_its_views() {
+fn radiance_views_are_cameras() {
     let place = Place::new();
     place.put("a.rad", RAD);
     place.put(
@@ -138,7 +138,7 @@ const XML: &str = "<scene version='3.0.0'><sensor type='perspective' id='one'><f
     <emitter type='point'><point name='position' x='3' y='3' z='5'/></emitter></scene>";
 
 #[test]
-fn mitsuba_is_rendered_by_its_sensors_and_becomes_gltf() {
+fn mitsuba_sensors_are_cameras_and_scenes_convert_to_gltf() {
     let place = Place::new();
     place.put("a.xml", XML);
     let hash = |what: &str| place.gives(0, &format!("render {what} -o a.png --samples 2 --hash -q")).out;
@@ -156,7 +156,7 @@ const COURSE: &str = "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0
     Lights { DirectionalLight { direction 0 0 -1 color 1 1 1 } }";
 
 #[test]
-fn frames_are_moments_cameras_and_files() {
+fn frames_are_times_cameras_and_files() {
     let place = Place::new();
     place.put("a.stl", STL);
     let hash = |words: &str| place.gives(0, &format!("render {words} {SMALL} --hash -q")).out;
@@ -189,13 +189,13 @@ fn frames_are_moments_cameras_and_files() {
     place.refused(2, "render walk.%02d.txt --frames 8-9 --watch", &["apply to one picture"]);
     place.refused(2, "render a.stl --turntable 4 --turned 3", &["remove --camera, --view-file and --turned"]);
     // A scene with a camera cannot be turned, and the error says so.
-    place.refused(2, "render walk.08.txt --turntable 4", &["`durer convert` makes a glTF file"]);
+    place.refused(2, "render walk.08.txt --turntable 4", &["`durer convert` to a glTF file"]);
     place.refused(2, "render a.stl --fps 4", &["--frames"]);
     assert!(place.gives(2, "render walk.%02d.txt --frames 10-11 -q").err.contains("walk.11.txt"));
 }
 
 #[test]
-fn a_turntable_goes_around_and_fit_moves_the_camera() {
+fn turntable_rotates_and_fit_moves_the_camera() {
     let place = Place::new();
     place.put("a.stl", STL);
     place.gives(0, &format!("render a.stl -o a.png {SMALL} --turntable 4"));
@@ -213,7 +213,7 @@ fn a_turntable_goes_around_and_fit_moves_the_camera() {
 }
 
 #[test]
-fn an_environment_lights_a_model() {
+fn environment_lights_a_model() {
     let place = Place::new();
     place.put("a.stl", STL);
     let view = "EquirectangularCamera { center 0 0 0 direction 0 0 -1 up 0 1 0 } Background { color 2 3 4 }";
@@ -233,7 +233,7 @@ fn an_environment_lights_a_model() {
 }
 
 #[test]
-fn json_is_a_scene_for_every_command() {
+fn json_scene_works_with_every_command() {
     let place = Place::new();
     place.gives(0, "convert scene.txt -o a.json");
     let hash = |name: &str| place.gives(0, &format!("render {name} -o a.png {SMALL} --hash -q")).out;

@@ -46,7 +46,7 @@ fn shards_merge_to_the_bytes_of_one_run() {
 }
 
 #[test]
-fn work_that_was_stopped_is_gone_on_with() {
+fn stopped_work_is_resumed() {
     let place = Place::new();
     let work = "render scene.txt --size 120x90 --samples 300 --quiet --hash";
     let hash = last_line(&place.gives(0, &format!("{work} -o calm.png")).out);
@@ -74,7 +74,7 @@ fn work_that_was_stopped_is_gone_on_with() {
 }
 
 #[test]
-fn one_pixel_is_told_alone() {
+fn single_pixel_is_printed() {
     let place = Place::new();
     let options = "render scene.txt --size 40x30 --samples 4 --pixel 20,15";
     let one = place.gives(0, &format!("{options} --sample 3")).out;
@@ -87,7 +87,7 @@ fn one_pixel_is_told_alone() {
 }
 
 #[test]
-fn rules_of_stopping_and_limits() {
+fn stopping_rules_and_limits() {
     let place = Place::new();
     let ran = place.gives(0, "render scene.txt --size 64x48 --noise-threshold 0.005 --show sample-count -o n.exr");
     assert_eq!(ran.out, "wrote n.exr\n");
@@ -145,7 +145,7 @@ fn rules_of_stopping_and_limits() {
 }
 
 #[test]
-fn verify_says_one_hash() {
+fn verify_reports_one_hash() {
     let place = Place::new();
     let ran = place.gives(0, "verify scene.txt --trials 6 --size 24x20");
     assert!(ran.out.starts_with("6 ways, structures bvh, grid, none"), "{}", ran.out);
@@ -156,7 +156,7 @@ fn verify_says_one_hash() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_killed_program_leaves_nothing_that_its_next_run_does_not_take_up() {
+fn killed_program_is_resumed_by_the_next_run() {
     let place = Place::new();
     let work = "render scene.txt --size 160x120 --samples 80 --quiet --hash --resume --checkpoint-every 5ms";
     let hash = last_line(&place.gives(0, &format!("{work} -o calm.exr")).out);
@@ -174,7 +174,7 @@ fn a_killed_program_leaves_nothing_that_its_next_run_does_not_take_up() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_is_told_and_the_old_file_is_intact() {
+fn full_disk_is_reported_and_keeps_the_old_file() {
     let place = Place::new();
     for (name, options) in [("p.png", ""), ("p.exr", ""), ("p.part", "--shard 1/2")] {
         // Saved work replaces only saved work.

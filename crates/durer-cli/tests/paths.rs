@@ -26,7 +26,7 @@ fn place() -> Place {
 }
 
 #[test]
-fn errors_are_shown_beside_the_work() {
+fn error_bounds_do_not_change_the_hash() {
     let place = place();
     let render = "render glass.txt --integrator photons --photons 500 --size 16x12 --samples 8 --hash -q --restart";
     let plain = place.gives(0, &format!("{render} -o p.png")).out;
@@ -51,7 +51,7 @@ fn errors_are_shown_beside_the_work() {
 }
 
 #[test]
-fn ways_to_one_light_differ_in_noise_alone() {
+fn light_sampling_strategies_differ_in_noise_only() {
     let place = place();
     let render = |way: &str| {
         let options = format!("--size 16x12 --samples 64 --seed {} --direct {way} -q", way.len());
@@ -73,7 +73,7 @@ fn ways_to_one_light_differ_in_noise_alone() {
 }
 
 #[test]
-fn denoisers_are_chosen_and_where_to_get_one_is_told() {
+fn denoiser_is_chosen_or_install_hint_is_printed() {
     let place = place();
     // A file with the library's name that is not a library.
     for name in ["libOpenImageDenoise.so.2", "libOpenImageDenoise.2.dylib", "OpenImageDenoise.dll"] {

@@ -86,12 +86,12 @@ fn photographs_of_a_known_scene_give_its_cameras() {
         );
     }
     assert!(
-        place.gives(0, "photo explain scene.gltf --camera 03.png").out.contains("nothing tells which points it sees")
+        place.gives(0, "photo explain scene.gltf --camera 03.png").out.contains("the file has no observations of it")
     );
     assert!(
-        place.gives(0, "photo explain points.ply --point 3").out.contains("nothing tells which photographs see it")
+        place.gives(0, "photo explain points.ply --point 3").out.contains("the file has no observations of it")
     );
-    place.refused(2, "photo convert matches.json", &["these are matches, which have no cameras yet"]);
+    place.refused(2, "photo convert matches.json", &["these are matches without cameras"]);
     place.refused(2, "photo solve scene.gltf -o no.out", &["there is nothing to adjust"]);
     place.refused(
         2,
@@ -102,7 +102,7 @@ fn photographs_of_a_known_scene_give_its_cameras() {
     let walked = [
         "20 photographs, ",
         "button first: choose a photograph first, at -1",
-        "strip: 03.png: it sees ",
+        "strip: 03.png: sees ",
         "opacity 0.95, marked true | fills true",
         "is left true",
         "another true",
@@ -113,7 +113,7 @@ fn photographs_of_a_known_scene_give_its_cameras() {
         "turned true",
     ];
     browser::sees(&place, "tour.html", include_str!("common/walk.js"), &walked);
-    place.refused(2, "photo explain solved --camera 77.png", &["there is no photograph `77.png`; these are: 00.png"]);
+    place.refused(2, "photo explain solved --camera 77.png", &["no photograph `77.png`; known photographs: 00.png"]);
     let all = read(&place.path("solved")).unwrap();
     assert_eq!(all.registered(), 20);
     let (far, angle) = differences(&all, &cameras());
@@ -125,7 +125,7 @@ fn photographs_of_a_known_scene_give_its_cameras() {
 }
 
 #[test]
-fn threads_change_no_bit() {
+fn results_are_independent_of_threads() {
     let place = Place::new();
     for threads in [1, 2, 5] {
         place.gives(0, &format!("photo match {PHOTOGRAPHS} -o {threads}.json --features 800 --threads {threads} -q"));
@@ -153,7 +153,7 @@ fn with_exif(jpeg: &[u8], millimetres: [u32; 2], pixels: [u32; 2]) -> Vec<u8> {
 }
 
 #[test]
-fn exif_that_cannot_be_true_is_told_and_what_may_be_is_corrected() {
+fn implausible_exif_is_reported_and_wrong_exif_is_corrected() {
     let place = Place::new();
     std::fs::create_dir(place.path("photos")).unwrap();
     let photographs = (0..6).map(|i| (i, std::fs::read(Path::new(PHOTOGRAPHS).join(format!("{i}.jpg"))).unwrap()));
@@ -168,7 +168,7 @@ fn exif_that_cannot_be_true_is_told_and_what_may_be_is_corrected() {
         place.put(&format!("photos/{i}.jpg"), with_exif(&jpeg, millimetres, pixels));
     }
     let matched = place.gives(0, "photo match photos -o m.json --features 1500 --field 60");
-    assert!(matched.err.contains("warning: 0.jpg: EXIF's focal length, 196850394 pixels by 5 mm"), "{}", matched.err);
+    assert!(matched.err.contains("warning: 0.jpg: EXIF's focal length, 196850394 pixels from 5 mm"), "{}", matched.err);
     assert!(!matched.err.contains("1.jpg") && matched.out.contains("1.jpg: 320x240, 1500 features, focal length 277"));
     assert!(matched.out.contains("2.jpg: 320x240, 1500 features, focal length 660 (EXIF: 25.4 mm"), "{}", matched.out);
     let solved = place.gives(0, "photo solve m.json -o m.out");
@@ -188,18 +188,18 @@ fn noise(seed: u64) -> Vec<u8> {
 }
 
 #[test]
-fn what_is_no_set_of_photographs_is_refused() {
+fn unsuitable_photographs_are_refused() {
     let place = Place::new();
     let refused = |words: &[&str]| place.refused(2, "photo match photos -o m.json", words);
     refused(&["cannot read the folder `photos`"]);
     std::fs::create_dir(place.path("photos")).unwrap();
     refused(&["no photographs (.jpg, .jpeg, .png) in `photos`"]);
     place.put("photos/a.png", noise(1));
-    refused(&["two photographs or more are needed"]);
+    refused(&["at least two photographs are needed"]);
     place.put("photos/b.png", noise(1));
-    refused(&["the same picture again"]);
+    refused(&["are the same picture"]);
     place.put("photos/b.png", noise(2));
-    refused(&["no two of the photographs show the same things"]);
+    refused(&["no two photographs show the same objects"]);
     place.put("photos/b.png", &noise(2)[..900]);
     refused(&["b.png: cannot be read as a picture"]);
     place.put("photos/b.png", noise(2));
@@ -208,11 +208,11 @@ fn what_is_no_set_of_photographs_is_refused() {
     // A decoder would fill missing parts with grey.
     let jpeg = std::fs::read(Path::new(PHOTOGRAPHS).join("0.jpg")).unwrap();
     place.put("photos/b.jpg", &jpeg[..jpeg.len() / 2]);
-    refused(&["b.jpg: cannot be read as a picture: the JPEG is cut off"]);
+    refused(&["b.jpg: cannot be read as a picture: the JPEG is truncated"]);
     std::fs::remove_file(place.path("photos/b.jpg")).unwrap();
     // Folders do not count as photographs.
     std::fs::create_dir(place.path("photos/folder.jpg")).unwrap();
-    refused(&["no two of the photographs show the same things"]);
+    refused(&["no two photographs show the same objects"]);
     assert!(!place.path("m.json").exists());
     false_matches_are_refused(&place);
 }
@@ -248,7 +248,7 @@ fn false_matches_are_refused(place: &Place) {
 }
 
 #[test]
-fn broken_files_are_refused_at_their_place() {
+fn broken_files_are_refused_with_their_place() {
     let place = Place::new();
     place.put("p.png", noise(1));
     let flat =
@@ -257,16 +257,16 @@ fn broken_files_are_refused_at_their_place() {
         ("b.out", "# Bundle file v0.3\n1 0\n700 0 x\n", "photo convert b.out -o c.ply", &["b.out:3:7", "`x`"][..]),
         ("b.out", "1 1\n", "photo convert b.out -o c.ply", &["b.out", "the file ends"]),
         ("b.out", "9999999 1\n", "photo convert b.out -o c.ply", &["b.out:1:1", "too short"]),
-        ("b.txt", "1 1 1\n3 0 1 1\n", "photo solve b.txt -o c.ply", &["b.txt:2:1", "there are 1, from 0"]),
-        ("b.txt", "BZh91AY", "photo solve b.txt -o c.ply", &["b.txt", "cannot be unpacked (bzip2)"]),
+        ("b.txt", "1 1 1\n3 0 1 1\n", "photo solve b.txt -o c.ply", &["b.txt:2:1", "there are 1, numbered from 0"]),
+        ("b.txt", "BZh91AY", "photo solve b.txt -o c.ply", &["b.txt", "cannot decompress it (bzip2)"]),
         ("b.json", "[{\"cameras\": 3}]", "photo convert b.json -o c.ply", &["b.json:1:"]),
         ("m.json", "{\"format\": \"durer matches 1\"}", "photo solve m.json -o c.ply", &["m.json:1:"]),
-        ("b.xyz", "", "photo convert b.xyz -o c.ply", &["the name should end in"]),
+        ("b.xyz", "", "photo convert b.xyz -o c.ply", &["the name must end in"]),
         (
             "p.points",
             flat,
             "photo camera p.png --points p.points -o c.txt",
-            &["lie in a plane: DLT has no unique answer"],
+            &["lie in a plane, so DLT has no unique solution"],
         ),
         (
             "p.points",
@@ -290,7 +290,7 @@ fn broken_files_are_refused_at_their_place() {
             "b.out",
             "1 0\n700 0 0 9 9 9 0 1 0 0 0 1 0 0 0\n",
             "photo convert b.out -o c.ply",
-            &["b.out:2:9", "no rotation"],
+            &["b.out:2:9", "not a rotation"],
         ),
         ("b.out", "1 0\n-700 0 0\n", "photo convert b.out -o c.ply", &["b.out:2:1", "must be positive"]),
         ("b.txt", "1 0 0\n0 0 0 0 0 0 0 0 0\n", "photo solve b.txt -o c.ply", &["b.txt:2:1", "focal length"]),
@@ -319,7 +319,7 @@ fn broken_files_are_refused_at_their_place() {
     place.put("twice/cameras.txt", "1 SIMPLE_PINHOLE 9 9 5 4 4\n1 SIMPLE_PINHOLE 9 9 5 4 4\n");
     place.put("twice/images.txt", "");
     place.put("twice/points3D.txt", "");
-    place.refused(2, "photo convert twice -o c.ply", &["twice/cameras.txt:2:", "the id 1 was there before"]);
+    place.refused(2, "photo convert twice -o c.ply", &["twice/cameras.txt:2:", "the id 1 occurs twice"]);
     place.put("twice/cameras.txt", "1 SIMPLE_PINHOLE 9 9 5 4 4 7\n");
     place.refused(2, "photo convert twice -o c.ply", &["twice/cameras.txt:1:28: the row should end here"]);
     place.refused(2, "photo camera p.png", &["--points FILE or --lines FILE"]);
@@ -334,7 +334,7 @@ fn square() -> Vec<u8> {
 }
 
 #[test]
-fn things_are_placed_in_a_photograph_with_their_shadows() {
+fn objects_are_placed_in_a_photograph_with_shadows() {
     let place = Place::new();
     let ours = |name: &str| Path::new(PHOTOGRAPHS).join(name);
     for name in ["placed.txt", "2.jpg"] {
@@ -373,7 +373,7 @@ fn things_are_placed_in_a_photograph_with_their_shadows() {
 }
 
 #[test]
-fn a_thing_sits_in_a_photograph_of_others() {
+fn object_is_placed_in_an_external_photograph() {
     let Some(course) = corpus() else { return };
     let picture = course.with_file_name("samples/photos/bundler-kermit/kermit001.jpg");
     if !picture.is_file() {

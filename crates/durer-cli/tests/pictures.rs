@@ -18,7 +18,7 @@ const SAMPLINGS: [&str; 9] = [
 ];
 
 #[test]
-fn a_crop_is_the_same_part_of_the_whole() {
+fn crop_equals_that_part_of_the_whole_picture() {
     let place = Place::new();
     for sampling in SAMPLINGS {
         for dialect in ["f04", "f12a4", "durer"] {
@@ -48,7 +48,7 @@ fn a_crop_is_the_same_part_of_the_whole() {
 }
 
 #[test]
-fn threads_and_structures_change_no_bit() {
+fn threads_and_accelerators_change_no_bit() {
     let place = Place::new();
     for sampling in SAMPLINGS {
         let render = format!("render scene.txt --size 40x30 {sampling} -o");
@@ -61,7 +61,7 @@ fn threads_and_structures_change_no_bit() {
 }
 
 #[test]
-fn a_seed_changes_random_pictures_only() {
+fn seed_changes_random_pictures_only() {
     let place = Place::new();
     for sampling in SAMPLINGS {
         let render = format!("render scene.txt --size 30x30 {} -o", sampling.replace("--seed 7", ""));
@@ -93,7 +93,7 @@ fn every_format_is_written_and_read_back() {
 }
 
 #[test]
-fn several_pictures_are_files_of_their_own_or_layers() {
+fn several_pictures_are_separate_files_or_layers() {
     let place = Place::new();
     let before = place.names();
     let all = "color,depth,normals,position,uv,barycentric,object,material,cost,samples,filter";
@@ -128,7 +128,7 @@ fn names_and_defaults() {
     assert_eq!((ran.out.as_str(), ran.err.as_str()), ("", ""));
     assert_eq!((place.image8("my.best.scene.png").width, place.image8("my.best.scene.png").height), (512, 512));
     let ran = place.gives(0, "render scene.txt --size 3x3 -o p.png");
-    assert_eq!(ran.err, "", "what the words say is not told");
+    assert_eq!(ran.err, "", "an explicit option needs no note");
     let ran = place.gives(0, "render scene.txt --dialect f04 -o p.png");
     assert_eq!((ran.err.as_str(), place.image8("p.png").width), ("", 100));
 }
@@ -172,7 +172,7 @@ fn extreme_values_work() {
 }
 
 #[test]
-fn an_existing_link_and_its_file_stay() {
+fn existing_link_is_kept() {
     let place = Place::new();
     place.put("real.png", "old");
     #[cfg(unix)]

@@ -6,7 +6,7 @@ use common::{Place, SCENE};
 use std::process::{Command, Stdio};
 
 #[test]
-fn a_bad_scene_gives_all_errors_with_their_places() {
+fn invalid_scene_gives_all_errors_with_their_places() {
     let place = Place::new();
     place.put(
         "bad.txt",
@@ -32,7 +32,7 @@ fn a_bad_scene_gives_all_errors_with_their_places() {
 }
 
 #[test]
-fn twenty_errors_are_shown_at_most() {
+fn at_most_twenty_errors_are_shown() {
     let place = Place::new();
     place.put("bad.txt", SCENE.replace("numObjects 2", &format!("numObjects 2 {}", "Spheer { } ".repeat(1000))));
     let ran = place.gives(2, "render bad.txt");
@@ -41,7 +41,7 @@ fn twenty_errors_are_shown_at_most() {
 }
 
 #[test]
-fn files_that_a_scene_names_are_missed_at_their_line() {
+fn missing_files_are_reported_at_their_line() {
     let place = Place::new();
     let scene = SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "\nTriangleMesh { obj_file cube.obj }");
     place.put("mesh.txt", &scene);
@@ -54,7 +54,7 @@ fn files_that_a_scene_names_are_missed_at_their_line() {
 }
 
 #[test]
-fn what_is_no_scene_is_refused_at_once() {
+fn files_other_than_scenes_are_refused_at_once() {
     let place = Place::new();
     for (name, content) in [
         ("empty.txt", Vec::new()),
@@ -77,7 +77,7 @@ fn what_is_no_scene_is_refused_at_once() {
 
 #[cfg(unix)]
 #[test]
-fn pipes_and_devices_are_no_scenes() {
+fn pipes_and_devices_are_refused() {
     let place = Place::new();
     assert!(Command::new("mkfifo").arg(place.path("pipe.txt")).status().unwrap().success());
     place.refused(2, "render pipe.txt -o p.png", &["not a regular file"]);
@@ -145,7 +145,7 @@ fn bad_options_of_render() {
 }
 
 #[test]
-fn what_cannot_be_written_is_exit_code_1_and_harms_nothing() {
+fn write_errors_have_exit_code_1_and_keep_old_files() {
     let place = Place::new();
     std::fs::create_dir(place.path("folder.png")).unwrap();
     place.refused(1, "render scene.txt -o missing/p.png", &["there is no folder `missing`"]);
@@ -165,7 +165,7 @@ fn what_cannot_be_written_is_exit_code_1_and_harms_nothing() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_is_an_error() {
+fn full_disk_is_an_error() {
     let place = Place::new();
     std::os::unix::fs::symlink("/dev/full", place.path("full.png")).unwrap();
     place.refused(1, "render scene.txt --size 8x8 -o full.png", &["No space left"]);

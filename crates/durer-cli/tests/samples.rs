@@ -50,7 +50,7 @@ fn khronos(name: &str) -> Option<PathBuf> {
 const SCENES: usize = 3;
 
 #[test]
-fn scenes_of_the_course_come_back_from_our_own_words_and_from_json() {
+fn course_scenes_survive_conversion_to_durer_and_json() {
     let Some(folder) = corpus() else { return };
     let mut all = Vec::new();
     below(&folder, &["txt"], &mut all);
@@ -100,7 +100,7 @@ const WRITTEN: [&str; 12] = [
 ];
 
 #[test]
-fn gltf_written_anew_makes_the_same_picture() {
+fn converted_gltf_renders_the_same_picture() {
     let place = Place::new();
     for name in WRITTEN {
         let Some(path) = khronos(name) else { continue };
@@ -116,7 +116,7 @@ fn gltf_written_anew_makes_the_same_picture() {
 }
 
 #[test]
-fn a_mesh_is_the_same_in_all_formats_that_carry_the_same() {
+fn mesh_is_equal_in_all_formats_with_the_same_attributes() {
     let place = Place::new();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/meshes");
     // PLY and STL are written without normals, so a mesh with normals changes.

@@ -60,7 +60,7 @@ fn found(scenes: &[PathBuf], options: &str) -> Vec<(String, String, String)> {
 }
 
 #[test]
-fn the_course_is_sound_but_for_what_is_truly_odd() {
+fn course_scenes_have_only_expected_findings() {
     let Some(course) = corpus() else { return };
     let (mut serious, mut notes) = (Vec::new(), BTreeMap::<String, usize>::new());
     let mut count = 0;
@@ -83,7 +83,7 @@ fn the_course_is_sound_but_for_what_is_truly_odd() {
 }
 
 #[test]
-fn our_own_scenes_are_sound() {
+fn repository_scenes_have_no_findings() {
     let own = scenes(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes"));
     assert!(own.len() > 30, "{} scenes", own.len());
     // Daylight is in cd/m^2 and needs an exposure.

@@ -120,7 +120,7 @@ const GREY: &str = "Material { diffuseColor 0.6 0.6 0.6 }";
 const ANGLE: &str = "PerspectiveCamera { center 0 2 9 direction 0 -0.15 -1 up 0 1 0 angle 35 }";
 
 #[test]
-fn the_cause_stands_first() {
+fn cause_is_reported_first() {
     let place = Place::new();
     place.put("quad.obj", "v -2 0 0\nv 0 0 0\nv 0 2 0\nv -2 2 0\nf 1 2 3 4\n");
     for year in ["f04", "f12a4", "f12a5", "f16"] {
@@ -141,7 +141,7 @@ fn the_cause_stands_first() {
 /// A colour out of range is not reported as too much light as well; an object behind glass is not
 /// hidden.
 #[test]
-fn consequences_are_silent() {
+fn consequences_are_not_reported() {
     let place = Place::new();
     let (codes, _) = found(&place, "f04", "--bounces 3", &[("color 0.9 0.9 0.9", "color 230 230 230")]);
     assert!(!codes.iter().any(|code| code == "too-bright"), "{codes:?}");
@@ -152,7 +152,7 @@ fn consequences_are_silent() {
 
 /// A possible intention gets at most a note, and no change.
 #[test]
-fn what_may_be_meant_is_left_alone() {
+fn possible_intentions_are_left_unchanged() {
     let place = Place::new();
     // A crescent moon; and only ambient light of 1, as in the first assignment.
     let moon = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 20 }
@@ -176,7 +176,7 @@ Group { numObjects 1 MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }
 
 /// A colour of 5 does not mean 5 of 255, and messages use the year's own words.
 #[test]
-fn help_is_what_was_meant() {
+fn help_suggests_the_intended_value() {
     let place = Place::new();
     place.put("five.txt", scene("f04", &[("diffuseColor 0.6 0.6 0.6", "diffuseColor 5 5 5")]));
     let before = place.bytes("five.txt");
@@ -195,7 +195,7 @@ fn help_is_what_was_meant() {
         ("diffuseColor 0.6 0.6 0.6", "diffuseColor 0.6 0.6 0.6 reflectiveColor 1 1 1"),
     ];
     let (codes, text) = found(&place, "f04", "--bounces 3", &mirrors);
-    assert!(codes[0] == "too-bright" && text.contains("material 1 gives back 1.6 times what it gets"), "{text}");
+    assert!(codes[0] == "too-bright" && text.contains("material 1 reflects and transmits 1.6 times the light that it receives"), "{text}");
     assert!(!text.contains("colours of the lights"), "{text}");
     let nodes = "Camera { center 0 0 9 direction 0 0 -1 up 0 1 0 fov 30 }
 Background { color 0 0 0 ambient_light 0.1 0.1 0.1 }
@@ -213,7 +213,7 @@ Scene { Node { Component<Object> { type sphere radius 1 } }
 }
 
 #[test]
-fn the_reader_knows_what_is_meant() {
+fn reader_suggests_the_intended_word() {
     let place = Place::new();
     let says = |dialect: &str, text: &str, wanted: &str| {
         place.put("words.txt", text);

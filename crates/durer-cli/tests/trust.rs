@@ -62,7 +62,7 @@ const LIMITED: &str = "ulimit -v 700000; export RAYON_NUM_THREADS=2; $DURER ";
 
 #[cfg(target_os = "linux")]
 #[test]
-fn profiles_that_inflate_without_end_are_never_inflated() {
+fn compression_bombs_in_profiles_are_not_inflated() {
     let place = Place::new();
     let mut profile = b"x\0\0".to_vec();
     profile.extend(zeros(1 << 29));
@@ -77,7 +77,7 @@ fn profiles_that_inflate_without_end_are_never_inflated() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn large_pictures_are_refused_by_their_heads() {
+fn large_pictures_are_refused_by_their_headers() {
     let place = Place::new();
     place.put("large.png", png(6000, b""));
     let [texture, field, sky] = with_pictures(&place, "large.png");
@@ -129,7 +129,7 @@ fn large_pictures_are_refused_by_their_heads() {
 }
 
 #[test]
-fn no_file_is_read_and_replaced() {
+fn no_input_is_overwritten() {
     let place = Place::new();
     place.put("p.png", png(8, b""));
     place.put("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -202,7 +202,7 @@ fn no_file_is_read_and_replaced() {
 }
 
 #[test]
-fn a_lesson_replaces_no_file_of_its_scene() {
+fn lesson_replaces_no_file_of_its_scene() {
     let place = Place::new();
     place.gives(0, "lesson scene.txt -o lesson --size 16x12 --samples 1 --quiet");
     let own: Vec<_> = std::fs::read_dir(place.path("lesson")).unwrap().map(|e| e.unwrap().file_name()).collect();
@@ -216,7 +216,7 @@ fn a_lesson_replaces_no_file_of_its_scene() {
 }
 
 #[test]
-fn places_that_are_no_files_are_written_through_or_refused_at_once() {
+fn special_files_are_written_through_or_refused_at_once() {
     let place = Place::new();
     symlink("nowhere", place.path("dangling.png")).unwrap();
     symlink("loop.png", place.path("loop.png")).unwrap();
@@ -237,7 +237,7 @@ fn places_that_are_no_files_are_written_through_or_refused_at_once() {
 }
 
 #[test]
-fn unfinished_work_is_not_thrown_away_unasked() {
+fn unfinished_work_is_kept_unless_restarted() {
     let place = Place::new();
     let work = "render scene.txt --size 300x200 --samples 100000 --quiet";
     for (place_of_part, options) in [("o.png.part", "-o o.png"), ("s.part", "--shard 1/2 -o s.part")] {
@@ -263,7 +263,7 @@ fn unfinished_work_is_not_thrown_away_unasked() {
 }
 
 #[test]
-fn signals_that_end_programs_save_the_work() {
+fn terminating_signals_save_the_work() {
     let place = Place::new();
     let work = "render scene.txt --size 300x200 --samples 100000 --quiet --restart -o o.png";
     for (signals, code) in [
@@ -290,7 +290,7 @@ fn signals_that_end_programs_save_the_work() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn limits_of_the_system_are_errors_with_a_name() {
+fn system_limits_are_named_errors() {
     let place = Place::new();
     let work = "$DURER render scene.txt --size 64x64 --samples 1 --quiet";
     let ran = place.shell(&format!("(ulimit -f 1; {work} -o o.pfm 2>&1) | cat; exit ${{PIPESTATUS[0]}}"));
@@ -316,7 +316,7 @@ fn limits_of_the_system_are_errors_with_a_name() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn without_threads_the_calling_thread_does_it_all() {
+fn calling_thread_does_all_work_without_threads() {
     let place = Place::new();
     // The superuser has no such limit, so the test runs as nobody, in a folder that nobody may
     // write to.

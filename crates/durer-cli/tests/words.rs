@@ -65,7 +65,7 @@ fn info_as_text_and_json() {
 }
 
 #[test]
-fn a_scene_written_anew_is_the_same() {
+fn converted_scene_is_the_same() {
     let place = Place::new();
     place.put("commented.txt", format!("# a comment\n{SCENE}"));
     for (from, options) in [("scene.txt", ""), ("scene.txt", "--to durer"), ("commented.txt", "")] {

@@ -1,4 +1,4 @@
-//! One connection: a file, or a WebSocket.
+//! An HTTP connection: serves one file, or upgrades to a WebSocket.
 
 use crate::head::{self, Head};
 use crate::{Shared, page, socket};
@@ -6,28 +6,28 @@ use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream};
 use std::time::Duration;
 
-/// How long a client may take for its head, and for taking what it asked for.
+/// Time limit for reading the request and for writing the answer.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Time and bytes for which a client is heard after its answer.
+/// Limits in time and bytes for reading from a client after its answer.
 const LINGER: Duration = Duration::from_secs(1);
 const MAX_REST: u64 = 1 << 20;
 
-/// Rights of pages, a header of every answer.
+/// Content security policy, sent with every answer.
 const POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; \
                       connect-src 'self' ws://127.0.0.1:* ws://localhost:*; worker-src 'self'; base-uri 'none'; \
                       form-action 'none'; frame-ancestors 'none'";
 
-/// Says that there are too many connections.
+/// Refuses a connection because too many are open.
 pub(crate) fn refuse(mut stream: &TcpStream) {
-    // Nobody waits for what a client does with it.
+    // Do not block on a slow client.
     let _ = stream.set_nonblocking(true);
     let _ = stream.write_all(b"HTTP/1.1 503 Service Unavailable\r\nContent-Length: 0\r\nConnection: close\r\n\r\n");
 }
 
-/// Answers the one request of a connection.
+/// Answers the single request of a connection.
 pub(crate) fn serve(mut stream: TcpStream, shared: &Shared) {
-    // Whatever goes wrong, the client is gone or not worth an answer.
+    // Ignore errors: the client disconnected or sent an invalid request.
     let _ = answer(&mut stream, shared);
 }
 
@@ -39,15 +39,15 @@ fn answer(stream: &mut TcpStream, shared: &Shared) -> io::Result<()> {
     let head = match head::read(stream) {
         Ok(head) => head,
         Err(error) if error.kind() == io::ErrorKind::InvalidData => {
-            return send(stream, "400 Bad Request", "text/plain", b"this is no request\n");
+            return send(stream, "400 Bad Request", "text/plain", b"invalid request\n");
         }
         Err(error) => return Err(error),
     };
     if !head.is_local() {
-        return send(stream, "403 Forbidden", "text/plain", b"this server answers pages of its own machine alone\n");
+        return send(stream, "403 Forbidden", "text/plain", b"this server answers pages from localhost only\n");
     }
     let Some(path) = head.path_behind(&shared.token) else {
-        return send(stream, "404 Not Found", "text/plain", b"there is nothing here\n");
+        return send(stream, "404 Not Found", "text/plain", b"not found\n");
     };
     if head.method != "GET" {
         return send(stream, "405 Method Not Allowed", "text/plain", b"\n");
@@ -58,14 +58,14 @@ fn answer(stream: &mut TcpStream, shared: &Shared) -> io::Result<()> {
     match page::file(path) {
         Some((_, kind)) if path.is_empty() || path == "index.html" => send(stream, "200 OK", kind, &page::index()),
         Some((bytes, kind)) => send(stream, "200 OK", kind, bytes),
-        None => send(stream, "404 Not Found", "text/plain", b"there is nothing here\n"),
+        None => send(stream, "404 Not Found", "text/plain", b"not found\n"),
     }
 }
 
 fn upgrade(stream: &mut TcpStream, head: &Head, shared: &Shared) -> io::Result<()> {
-    // Scripts of other pages always send an origin; programs without one are not pages.
+    // Browsers always send an `Origin` with WebSocket requests; reject clients without one.
     let (true, Some(key), Some(_)) = (head.upgrade, &head.key, &head.origin) else {
-        return send(stream, "426 Upgrade Required", "text/plain", b"this is a WebSocket\n");
+        return send(stream, "426 Upgrade Required", "text/plain", b"this path needs a WebSocket\n");
     };
     let accept = tungstenite::handshake::derive_accept_key(key.as_bytes());
     let answer = format!(
@@ -86,7 +86,8 @@ fn send(stream: &mut TcpStream, status: &str, kind: &str, body: &[u8]) -> io::Re
     stream.write_all(head.as_bytes())?;
     stream.write_all(body)?;
     stream.flush()?;
-    // Bytes that nobody has read would reset the connection, and the answer would be lost with it.
+    // Unread bytes would reset the connection, and the client could lose the answer. Read them
+    // first.
     stream.shutdown(Shutdown::Write)?;
     stream.set_read_timeout(Some(LINGER))?;
     io::copy(&mut stream.take(MAX_REST), &mut io::sink()).map(|_| ())

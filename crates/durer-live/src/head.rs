@@ -1,12 +1,12 @@
-//! The head of a request, and whether it may be answered.
+//! Parser of HTTP request heads, and access checks.
 
 use std::io::{self, Read};
 use std::net::TcpStream;
 
-/// The most bytes of a head.
+/// Maximum size of a head in bytes.
 const MAX_HEAD: usize = 8 << 10;
 
-/// A request without its body, of which none is read.
+/// Head of an HTTP request. Bodies are not read.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Head {
     pub method: String,
@@ -15,7 +15,7 @@ pub(crate) struct Head {
     pub origin: Option<String>,
     pub upgrade: bool,
     pub key: Option<String>,
-    /// Bytes that came behind the head.
+    /// Bytes received after the head.
     pub rest: Vec<u8>,
 }
 
@@ -37,7 +37,7 @@ pub(crate) fn read(stream: &mut TcpStream) -> io::Result<Head> {
     }
 }
 
-/// A head, if all of it is there.
+/// Parses a head; `None` if it is incomplete.
 pub(crate) fn parse(bytes: &[u8]) -> io::Result<Option<Head>> {
     let invalid = |error| io::Error::new(io::ErrorKind::InvalidData, error);
     let mut headers = [httparse::EMPTY_HEADER; 64];
@@ -52,7 +52,7 @@ pub(crate) fn parse(bytes: &[u8]) -> io::Result<Option<Head>> {
     for header in request.headers {
         let value = String::from_utf8_lossy(header.value).into_owned();
         match header.name.to_ascii_lowercase().as_str() {
-            // One who sends two wants to be misunderstood.
+            // Reject a second `Host` header, since proxies differ on which one counts.
             "host" if head.host.is_some() => return Err(io::ErrorKind::InvalidData.into()),
             "host" => head.host = Some(value),
             "origin" => head.origin = Some(value),
@@ -65,20 +65,20 @@ pub(crate) fn parse(bytes: &[u8]) -> io::Result<Option<Head>> {
 }
 
 impl Head {
-    /// Returns true if it comes from a page of this machine: a page of another name may be resolved to the
-    /// loopback
-    /// interface, but still sends its own name. The port differs behind `ssh -L`.
+    /// True if the request comes from a page of this machine. After DNS rebinding a foreign name
+    /// resolves to the loopback interface, but the browser still sends that name. The port is
+    /// ignored, because it differs behind `ssh -L`.
     pub fn is_local(&self) -> bool {
         let Some(host) = &self.host else { return false };
         let same = |origin: &String| origin.strip_prefix("http://").is_some_and(|origin| origin == host);
         is_loopback(host) && self.origin.as_ref().is_none_or(same)
     }
 
-    /// The path behind the token; `None` for another token.
+    /// Path after the token; `None` if the token is wrong.
     pub fn path_behind(&self, token: &str) -> Option<&str> {
         let path = self.path.split(['?', '#']).next()?.strip_prefix('/')?;
         let (found, rest) = path.split_once('/')?;
-        // All bytes are compared, so that time tells nothing.
+        // Compare all bytes, in constant time.
         let differ = found.bytes().zip(token.bytes()).fold(0, |all, (a, b)| all | (a ^ b));
         (found.len() == token.len() && differ == 0).then_some(rest)
     }
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn only_pages_of_this_machine_are_answered() {
+    fn only_loopback_hosts_and_origins_are_local() {
         assert!(head("Host: 127.0.0.1:8000\r\n").is_local());
         assert!(head("Host: localhost:9\r\nOrigin: http://localhost:9\r\n").is_local());
         for lines in [
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn a_path_needs_the_whole_token() {
+    fn path_needs_the_whole_token() {
         let head = head("Host: localhost\r\n");
         assert_eq!(head.path_behind("secret"), Some("socket"));
         for token in ["secre", "secret1", "sfcret", ""] {
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn heads_that_are_none_are_refused() {
+    fn invalid_heads_are_refused() {
         assert_eq!(parse(b"GET / HTTP/1.1\r\nHost: a").unwrap(), None);
         assert!(parse(b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03").is_err());
         assert!(parse(b"GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n").is_err());

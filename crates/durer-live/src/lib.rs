@@ -1,8 +1,7 @@
-//! A server for one who looks at a scene: the page, and a WebSocket to a [`durer_session::Host`].
+//! Server for interactive viewing: the web page, and a WebSocket to a [`durer_session::Host`].
 //!
-//! It listens on the loopback interface alone. Every path begins with a random token, `Host` and
-//! `Origin` must
-//! name the loopback interface, and no file but those of the page can be had.
+//! It listens on the loopback interface only. Every path begins with a random token, `Host` and
+//! `Origin` must name the loopback interface, and only the files of the page are served.
 
 mod connection;
 mod head;
@@ -19,17 +18,17 @@ use std::time::Duration;
 
 /// Maximum number of open connections.
 const MAX_CONNECTIONS: usize = 48;
-/// How often it is looked whether to stop.
+/// Interval at which the server checks whether to stop.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// A server that listens.
+/// A listening server.
 #[derive(Debug)]
 pub struct Server {
     listener: TcpListener,
     shared: Arc<Shared>,
 }
 
-/// State shared by the connections.
+/// State shared by all connections.
 #[derive(Debug)]
 pub(crate) struct Shared {
     pub token: String,
@@ -39,11 +38,11 @@ pub(crate) struct Shared {
 }
 
 impl Server {
-    /// Listens on a port, or on any if it is 0, with a file to open.
+    /// Listens on `port`, or on any free port if it is 0. `file` is the scene to open.
     ///
     /// # Errors
     ///
-    /// The port is taken, or the system gives no random numbers.
+    /// Fails if the port is in use, or if the system provides no random numbers.
     pub fn bind(port: u16, file: Option<PathBuf>) -> io::Result<Server> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         listener.set_nonblocking(true)?;
@@ -54,21 +53,21 @@ impl Server {
         Ok(Server { listener, shared: Arc::new(shared) })
     }
 
-    /// Address of the page.
+    /// URL of the page.
     ///
     /// # Errors
     ///
-    /// The system does not tell the port.
+    /// Fails if the system does not report the port.
     pub fn address(&self) -> io::Result<String> {
         let SocketAddr::V4(address) = self.listener.local_addr()? else { return Err(io::ErrorKind::Other.into()) };
         Ok(format!("http://{address}/{}/", self.shared.token))
     }
 
-    /// Serves until `stop` says so.
+    /// Serves until `stop` returns true.
     ///
     /// # Errors
     ///
-    /// Errors of the listener.
+    /// Returns errors of the listening socket.
     pub fn run(&self, stop: impl Fn() -> bool) -> io::Result<()> {
         while !stop() {
             match self.listener.accept() {
@@ -79,7 +78,7 @@ impl Server {
                         connection::refuse(&stream);
                         continue;
                     }
-                    // Without a thread the connection is dropped, and the browser tries again.
+                    // If no thread can be started, drop the connection; the browser tries again.
                     let _ =
                         std::thread::Builder::new().name("durer-live".into()).stack_size(64 << 20).spawn(move || {
                             let _held = held;
@@ -89,7 +88,7 @@ impl Server {
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
                     std::thread::sleep(LOOK.min(Duration::from_millis(5)))
                 }
-                // One that was reset before it was accepted.
+                // The client reset the connection before it was accepted.
                 Err(error) if error.kind() == io::ErrorKind::ConnectionAborted => {}
                 Err(error) => return Err(error),
             }
@@ -99,7 +98,7 @@ impl Server {
     }
 }
 
-/// A place among the open connections.
+/// A slot among the open connections.
 struct Held(Arc<Shared>);
 
 impl Held {

@@ -1,8 +1,8 @@
-//! The files of the page, as they were built from `web/`.
+//! Files of the page, built from `web/`.
 
 macro_rules! files {
     ($($name:literal),+ $(,)?) => {
-        /// Names and bytes.
+        /// Name and contents of each file.
         const FILES: &[(&str, &[u8])] = &[$(($name, include_bytes!(concat!("../../../web/dist/", $name)))),+];
     };
 }
@@ -17,7 +17,7 @@ files![
     "inter-greek-wght-normal.woff2",
 ];
 
-/// A file of the page, and its type.
+/// Contents and media type of a file of the page.
 pub(crate) fn file(path: &str) -> Option<(&'static [u8], &'static str)> {
     let name = if path.is_empty() { "index.html" } else { path };
     let (name, bytes) = FILES.iter().find(|(known, _)| *known == name)?;
@@ -31,7 +31,7 @@ pub(crate) fn file(path: &str) -> Option<(&'static [u8], &'static str)> {
     Some((bytes, kind))
 }
 
-/// The page, with the mark that a server is behind it.
+/// Returns the page with a mark that tells it to connect to this server.
 pub(crate) fn index() -> Vec<u8> {
     let html = String::from_utf8_lossy(file("").map_or(&[][..], |found| found.0));
     html.replacen("<head>", "<head>\n    <meta name=\"durer-server\" content=\"1\" />", 1).into_bytes()
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_page_names_no_file_that_is_not_there() {
+    fn page_refers_to_existing_files_only() {
         let text = String::from_utf8(index()).unwrap();
         assert!(text.contains("durer-server"));
         for part in text.split(['"', '\'']).filter_map(|part| part.strip_prefix("./")) {
@@ -51,7 +51,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_else_can_be_had() {
+    fn other_paths_are_not_served() {
         for path in ["../Cargo.toml", "/etc/passwd", "index.html/..", "INDEX.HTML", "wasm/durer_wasm.js"] {
             assert!(file(path).is_none(), "{path}");
         }

@@ -1,4 +1,4 @@
-//! A WebSocket to a host of sessions.
+//! WebSocket connection to a host of sessions.
 
 use crate::Shared;
 use durer_session::{Clock, Host};
@@ -10,16 +10,16 @@ use std::time::{Duration, Instant};
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Error, Message, WebSocket};
 
-/// The largest message of a page: a model that is dropped.
+/// Maximum size of a message from the page in bytes, large enough for a dropped model.
 const MAX_MESSAGE: usize = 360 << 20;
-/// How long it is waited for a message when there is nothing to do.
+/// Time to wait for a message while idle.
 const IDLE: Duration = Duration::from_millis(250);
-/// How long a page may take to read a message before it counts as gone.
+/// Time after which a page that does not read is disconnected.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// Answers messages, and works in between, until the page is gone.
+/// Handles messages and renders in between, until the page disconnects.
 pub(crate) fn serve(stream: TcpStream, rest: Vec<u8>, shared: &Shared) {
-    // A connection that ends is expected.
+    // Ignore errors: connections may end at any time.
     let _ = talk(stream, rest, shared);
 }
 
@@ -55,7 +55,7 @@ fn talk(stream: TcpStream, rest: Vec<u8>, shared: &Shared) -> Result<(), Error> 
     Ok(())
 }
 
-/// The next message, if there is one, or if one comes soon.
+/// Returns the next message; `None` if none arrives in time.
 fn next(socket: &mut WebSocket<TcpStream>, at_once: bool) -> Result<Option<Message>, Error> {
     if at_once {
         socket.get_ref().set_nonblocking(true)?;

@@ -1,4 +1,4 @@
-//! Clients of all kinds: pages, programs that are none, and those that mean harm.
+//! Clients of the server: pages, other programs, and attackers.
 
 use durer_live::Server;
 use std::io::{Read, Write};
@@ -11,7 +11,7 @@ use std::time::Duration;
 use tungstenite::client::IntoClientRequest;
 use tungstenite::{Message, WebSocket};
 
-/// A server that runs while this lives.
+/// A server that runs until it is dropped.
 struct Running {
     address: String,
     stop: Arc<AtomicBool>,
@@ -35,11 +35,11 @@ impl Running {
         &self.address["http://".len() + self.host().len()..]
     }
 
-    /// The answer to some bytes.
+    /// Sends raw bytes and returns the answer.
     fn raw(&self, request: &[u8]) -> String {
         let mut stream = TcpStream::connect(self.host()).unwrap();
         stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
-        // Those that are refused early hear no more.
+        // The server may close early when it refuses a request.
         let _ = stream.write_all(request);
         let mut answer = Vec::new();
         let _ = stream.read_to_end(&mut answer);
@@ -67,7 +67,7 @@ impl Drop for Running {
     }
 }
 
-/// The next answer of a kind.
+/// Returns the next event of a kind.
 fn hear(socket: &mut WebSocket<TcpStream>, kind: &str) -> serde_json::Value {
     loop {
         let Message::Binary(bytes) = socket.read().unwrap() else { continue };
@@ -85,7 +85,7 @@ fn ask(socket: &mut WebSocket<TcpStream>, request: serde_json::Value) {
 }
 
 #[test]
-fn the_page_is_served_behind_its_token_alone() {
+fn page_is_served_behind_its_token_only() {
     let server = Running::new(None);
     let host = format!("Host: {}\r\n", server.host());
     let page = server.get(server.path(), &host);
@@ -113,7 +113,7 @@ fn the_page_is_served_behind_its_token_alone() {
 }
 
 #[test]
-fn a_page_opens_edits_and_saves_its_scene_and_hears_of_conflicts() {
+fn page_opens_edits_and_saves_a_scene_and_gets_conflicts() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("scene.txt");
     let text = "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }\n\
@@ -129,7 +129,7 @@ fn a_page_opens_edits_and_saves_its_scene_and_hears_of_conflicts() {
     ask(&mut socket, serde_json::json!({ "kind": "save", "force": false }));
     hear(&mut socket, "saved");
     assert_eq!(std::fs::read_to_string(&file).unwrap(), blue);
-    // Another program writes.
+    // Another program changes the file.
     std::fs::write(&file, format!("# mine\n{text}")).unwrap();
     let changed = hear(&mut socket, "text");
     assert_eq!(
@@ -145,7 +145,7 @@ fn a_page_opens_edits_and_saves_its_scene_and_hears_of_conflicts() {
 }
 
 #[test]
-fn scenes_of_pages_read_no_file_outside_the_folder() {
+fn scenes_from_pages_read_files_in_the_folder_only() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("secret.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
     let inner = folder.path().join("inner");
@@ -163,7 +163,7 @@ fn scenes_of_pages_read_no_file_outside_the_folder() {
         ask(&mut socket, serde_json::json!({ "kind": "edit", "text": text }));
         let scene = hear(&mut socket, "scene");
         assert!(scene["contents"].is_null(), "{name}: {scene}");
-        // Nor does another name of the scene lead there.
+        // Another name for the scene does not help either.
         let elsewhere = folder.path().join("scene.txt");
         ask(&mut socket, serde_json::json!({ "kind": "open", "name": elsewhere, "text": text.replace("../", "") }));
         let scene = hear(&mut socket, "scene");
@@ -172,12 +172,12 @@ fn scenes_of_pages_read_no_file_outside_the_folder() {
 }
 
 #[test]
-fn foreign_origins_and_wrong_tokens_get_no_socket() {
+fn foreign_origins_and_wrong_tokens_are_refused() {
     let server = Running::new(None);
     assert!(server.connect("http://evil.example").is_err());
     assert!(server.connect("null").is_err());
     let mut socket = server.connect(&format!("http://{}", server.host())).unwrap();
-    // Nonsense is answered, and the socket stays.
+    // An invalid message gets an answer, and the socket stays open.
     socket.send(Message::text("{")).unwrap();
     hear(&mut socket, "refused");
     socket.send(Message::binary(vec![1, 2, 3])).unwrap();
@@ -186,11 +186,11 @@ fn foreign_origins_and_wrong_tokens_get_no_socket() {
 }
 
 #[test]
-fn many_idle_connections_keep_nobody_out_for_long() {
+fn idle_connections_block_others_for_a_short_time_only() {
     let server = Running::new(None);
     let host = format!("Host: {}\r\n", server.host());
     let idle: Vec<TcpStream> = (0..200).filter_map(|_| TcpStream::connect(server.host()).ok()).collect();
-    // It is refused, or reset before it hears so.
+    // The connection is refused, or reset before the answer arrives.
     assert!(!server.get(server.path(), &host).starts_with("HTTP/1.1 200"));
     drop(idle);
     let answered = (0..100).any(|_| {

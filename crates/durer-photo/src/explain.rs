@@ -11,17 +11,17 @@ pub fn point(all: &Reconstruction, number: usize) -> Result<String, Error> {
     let point = all
         .points
         .get(number)
-        .ok_or_else(|| Error::new(format!("there is no point {number}: there are {count}, from 0")))?;
+        .ok_or_else(|| Error::new(format!("point {number} does not exist: the file has {count} points, numbered from 0")))?;
     let p = point.position;
     let angle = all.angle(point).to_degrees();
     let mut text = format!("point {number} at ({:.6}, {:.6}, {:.6}), colour {:?}\n", p.x, p.y, p.z, point.color);
     match point.track.len() {
-        0 => text.push_str("nothing tells which photographs see it\n"),
+        0 => text.push_str("the file has no observations of it\n"),
         count => {
             let _ =
                 writeln!(text, "seen in {count} photographs; the widest angle between two rays is {angle:.2} degrees");
             if angle < 1.0 {
-                text.push_str("the rays are nearly parallel: how far away it is, is not determined well\n");
+                text.push_str("the rays are nearly parallel, so its distance is uncertain\n");
             }
         }
     }
@@ -35,7 +35,7 @@ pub fn point(all: &Reconstruction, number: usize) -> Result<String, Error> {
             "  ray        from ({:.6}, {:.6}, {:.6}) along ({:.6}, {:.6}, {:.6})",
             c.x, c.y, c.z, d.x, d.y, d.z
         );
-        let _ = writeln!(text, "  distance   {:.6}, of which {:.6} along the view", (p - c).norm(), pose.depth(&p));
+        let _ = writeln!(text, "  distance   {:.6}, {:.6} of it along the view", (p - c).norm(), pose.depth(&p));
         let pixel = seen.pixel + residual;
         let _ = writeln!(text, "  should be  ({:.3}, {:.3})", pixel.x, pixel.y);
         let _ = writeln!(text, "  is         ({:.3}, {:.3})", seen.pixel.x, seen.pixel.y);
@@ -49,7 +49,7 @@ pub fn view_of(all: &Reconstruction, name: &str) -> Result<usize, Error> {
     let number = all.views.iter().position(|view| view.name == name).or_else(|| name.parse().ok());
     number.filter(|number| *number < all.views.len()).ok_or_else(|| {
         let names: Vec<&str> = all.views.iter().take(8).map(|view| &*view.name).collect();
-        Error::new(format!("there is no photograph `{name}`; these are: {}", names.join(", ")))
+        Error::new(format!("no photograph `{name}`; known photographs: {}", names.join(", ")))
     })
 }
 
@@ -57,7 +57,7 @@ pub fn view_of(all: &Reconstruction, name: &str) -> Result<usize, Error> {
 /// is determined.
 pub fn camera(all: &Reconstruction, view: usize) -> Result<String, Error> {
     let name = &all.views[view].name;
-    let pose = all.views[view].pose.ok_or_else(|| Error::new(format!("nobody knows where {name} was taken")))?;
+    let pose = all.views[view].pose.ok_or_else(|| Error::new(format!("the pose of {name} is unknown")))?;
     let lens = all.lenses[all.views[view].lens];
     let (c, r, t) = (pose.center(), pose.rotation, pose.translation);
     let mut text = format!("{name}\n\nP = R X + t, from the world to the camera (x right, y down, z forward):\n\n");
@@ -106,7 +106,7 @@ pub fn camera(all: &Reconstruction, view: usize) -> Result<String, Error> {
         squares.push((residual.norm_squared(), i));
     }
     if squares.is_empty() {
-        text.push_str("nothing tells which points it sees\n");
+        text.push_str("the file has no observations of it\n");
         return Ok(text);
     }
     let count = squares.len();
@@ -120,20 +120,20 @@ pub fn camera(all: &Reconstruction, view: usize) -> Result<String, Error> {
     let [first, second, third] = crate::geometry::camera::spread(&points);
     let _ = writeln!(text, "the points spread {first:.4}, {second:.4}, {third:.4} along their principal axes");
     if count < 6 {
-        text.push_str("fewer than six points: they alone would not determine the camera (DLT has eleven unknowns)\n");
+        text.push_str("fewer than six points do not determine the camera (DLT has eleven unknowns)\n");
     } else if third <= 1e-3 * first {
-        text.push_str("these points lie in a plane: DLT has no unique answer from them alone\n");
+        text.push_str("these points lie in a plane, so DLT has no unique solution\n");
     }
     match covariance(all, &Options::default()) {
         Err(error) => {
-            let _ = writeln!(text, "how exactly it is known cannot be said: {error}");
+            let _ = writeln!(text, "its uncertainty cannot be computed: {error}");
         }
         Ok(found) => {
             if let (Some(place), Some(covariance)) = (found.place(all, view), found.pose(view)) {
                 let turn = covariance.fixed_view::<3, 3>(0, 0).trace().max(0.0).sqrt().to_degrees();
                 let _ = writeln!(
                     text,
-                    "standard deviations, for {:.3} pixels: place {place:.6}, direction {turn:.4} degrees (the first photograph is held)",
+                    "standard deviations, for {:.3} pixels: position {place:.6}, direction {turn:.4} degrees (the first photograph is fixed)",
                     found.sigma
                 );
             }

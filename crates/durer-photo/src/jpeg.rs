@@ -31,7 +31,7 @@ mod tests {
     use super::is_whole;
 
     #[test]
-    fn the_end_is_that_of_the_picture() {
+    fn end_marker_of_the_picture_is_found() {
         let head: &[u8] = &[0xff, 0xd8, 0xff, 0xe1, 0, 6, 0xff, 0xd8, 0xff, 0xd9, 0xff, 0xda, 0, 2];
         let with = |data: &[u8]| [head, data].concat();
         assert!(is_whole(&with(&[1, 0xff, 0, 0xff, 0xd0, 7, 0xff, 0xff, 0xd9])));

@@ -58,12 +58,12 @@ pub fn size(file: &str, bytes: &[u8]) -> Result<[u32; 2], Error> {
 pub fn read(name: &str, bytes: &[u8]) -> Result<Photo, Error> {
     let reader = reader(name, bytes)?;
     if reader.format() == Some(ImageFormat::Jpeg) && !is_whole(bytes) {
-        return Err(Error::of(name, "cannot be read as a picture: the JPEG is cut off, its end is missing"));
+        return Err(Error::of(name, "cannot be read as a picture: the JPEG is truncated"));
     }
     let decoded: DynamicImage = reader.decode().map_err(|error| broken(name, &error))?;
     let pixels = decoded.into_rgb8();
     if pixels.width().min(pixels.height()) < 16 {
-        return Err(Error::of(name, "the picture is too small: both sides need 16 pixels or more"));
+        return Err(Error::of(name, "the picture is too small: both sides need at least 16 pixels"));
     }
     let exif = exif(bytes, [pixels.width(), pixels.height()]);
     Ok(Photo { name: name.to_string(), pixels, exif })
@@ -147,7 +147,7 @@ fn exif(bytes: &[u8], size: [u32; 2]) -> Exif {
     let all: Vec<_> = [from_sensor(), from_film()].into_iter().flatten().collect();
     found.focal = all.iter().find(|focal| plausible(focal)).cloned();
     if let (None, Some((focal, how))) = (&found.focal, all.first()) {
-        found.doubt = Some(format!("EXIF's focal length, {focal:.0} pixels by {how}, cannot be true"));
+        found.doubt = Some(format!("EXIF's focal length, {focal:.0} pixels from {how}, is implausible"));
     }
     found
 }

@@ -54,22 +54,22 @@ pub fn camera(pairs: &[Pair], known: &Known) -> Result<Resection, Error> {
     if pairs.len() < least {
         let found = pairs.len();
         let why = match known.focal {
-            Some(_) => "three points fit up to four cameras, and the fourth decides",
+            Some(_) => "three points fit up to four cameras; the fourth point selects one",
             None => "the direct linear transform has eleven unknowns, and a point gives two equations",
         };
         let what = if known.focal.is_some() { "known" } else { "unknown" };
         return Err(Error::new(format!(
-            "{least} points or more are needed where the focal length is {what}, and there are {found}: {why}"
+            "at least {least} points are needed if the focal length is {what}, but there are {found}: {why}"
         )));
     }
     let [first, second, third] = spread(&points);
     if second <= FLAT * first {
-        return Err(Error::new("these points lie in a line: the camera could be anywhere around it"));
+        return Err(Error::new("these points lie on a line: the camera could be anywhere around it"));
     }
     let flat = third <= FLAT * first;
     if flat && known.focal.is_none() {
         return Err(Error::new(
-            "these points lie in a plane: DLT has no unique answer. Name the focal length, or points outside the plane",
+            "these points lie in a plane, so DLT has no unique solution: pass the focal length, or points outside the plane",
         ));
     }
     let side = f64::from(known.size[0].max(known.size[1]));
@@ -105,7 +105,7 @@ pub fn camera(pairs: &[Pair], known: &Known) -> Result<Resection, Error> {
     })?;
     if best.conditioning < CONDITIONED {
         return Err(Error::new(
-            "these points do not determine the camera: another focal length and distance would do nearly as well",
+            "these points do not determine the camera: another focal length and distance fit nearly as well",
         ));
     }
     Ok(best)
@@ -198,19 +198,19 @@ pub fn from_vanishing_lines(known: &VanishingLines, distance: f64) -> Result<(Le
     let size = f64::from(known.size[0].max(known.size[1]));
     let [one, two] = known.axes;
     if one.index == two.index {
-        return Err(Error::new("both sets of lines are of the same axis: they must be at right angles in the world"));
+        return Err(Error::new("both sets of lines have the same axis: they must be perpendicular in the world"));
     }
     let mut points = Vec::new();
     for lines in &known.lines {
         let v = meeting(lines, size).ok_or_else(|| {
             Error::new(
-                "a vanishing point needs two lines or more that do not lie on each other, each by two different pixels",
+                "a vanishing point needs at least two distinct lines, each through two different pixels",
             )
         })?;
         if v.z.abs() * 1e4 * size < v.xy().norm() {
             return Err(Error::new(
                 "lines that are parallel in the world are parallel in the picture too: their vanishing point is infinitely far, and \
-                 the focal length has no unique answer",
+                 the focal length is undetermined",
             ));
         }
         points.push(v.xy() / v.z - known.center);
@@ -218,7 +218,7 @@ pub fn from_vanishing_lines(known: &VanishingLines, distance: f64) -> Result<(Le
     let square = -points[0].dot(&points[1]);
     if square <= 1e-6 * size * size {
         return Err(Error::new(
-            "no camera has these vanishing points: seen from the principal point they must be more than a right angle apart",
+            "no camera has these vanishing points: seen from the principal point, they must be more than a right angle apart",
         ));
     }
     let focal = square.sqrt();

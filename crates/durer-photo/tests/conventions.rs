@@ -135,7 +135,7 @@ fn told(path: &Path) -> Reconstruction {
 }
 
 #[test]
-fn every_format_means_what_the_table_says() {
+fn every_format_follows_the_table() {
     let place = TempDir::new().unwrap();
     let cases = files();
     let rows = CONVENTIONS.iter().filter(|row| row.way.starts_with("in")).map(|row| row.name);
@@ -158,7 +158,7 @@ fn every_format_means_what_the_table_says() {
 }
 
 #[test]
-fn what_is_written_for_other_programs_means_what_the_table_says() {
+fn written_files_follow_the_table() {
     let place = TempDir::new().unwrap();
     let (_, path, files) = files().remove(2);
     files.iter().for_each(|(file, bytes)| put(place.path(), file, bytes));
@@ -224,7 +224,7 @@ fn clouds() -> Vec<(&'static str, Vec<u8>)> {
 }
 
 #[test]
-fn clouds_are_read_however_their_numbers_are_written() {
+fn clouds_are_read_in_every_encoding() {
     let place = TempDir::new().unwrap();
     for (format, bytes) in clouds() {
         put(place.path(), "cloud.ply", &bytes);
@@ -243,7 +243,7 @@ fn clouds_are_read_however_their_numbers_are_written() {
 }
 
 #[test]
-fn what_is_wrong_in_a_cloud_or_in_a_gltf_file_is_told() {
+fn ply_and_gltf_errors_name_the_fault() {
     let place = TempDir::new().unwrap();
     let told = |name: &str, text: &str| {
         put(place.path(), name, text.as_bytes());
@@ -254,16 +254,16 @@ fn what_is_wrong_in_a_cloud_or_in_a_gltf_file_is_told() {
     for (old, new, wanted) in [
         ("ply", "plx", ": this is not a PLY file"),
         ("end_header", "comment end_header", ": this is not a PLY file"),
-        ("ascii", "utf8", ":2:1: `utf8` is not a format of PLY's"),
+        ("ascii", "utf8", ":2:1: `utf8` is not a PLY format"),
         ("vertex 1", "vertex 99999999999", ":3:16: the file is too short for 99999999999 points: 6 bytes follow"),
         ("vertex 1", "vertex -1", ":3:16: `-1` is not a number of points"),
-        ("vertex 1", "vertices 1", ":3:1: the points, `vertex`, should come before `vertices`"),
+        ("vertex 1", "vertices 1", ":3:1: the element `vertex` must come before `vertices`"),
         ("float z", "float w", ":3:16: these points have no x, y and z"),
-        ("float z", "list uchar int z", ":6:10: `list` is not the type of a number"),
+        ("float z", "list uchar int z", ":6:10: `list` is not a number type"),
         ("1 2 3", "1 2", ":8:4: the row ends where z should follow"),
         ("1 2 3", "1 2 x", ":8:5: `x` is not z, a number"),
         ("1 2 3", "1 2 3 4", ":8:7: the row should end here: it is a point's"),
-        ("property float x\nproperty float y\nproperty float z\n", "", ": there are no points in this file"),
+        ("property float x\nproperty float y\nproperty float z\n", "", ": the file has no points"),
     ] {
         let error = told("c.ply", &cloud.replace(old, new));
         assert!(error.starts_with(wanted), "{new}: {error}");
@@ -273,22 +273,22 @@ fn what_is_wrong_in_a_cloud_or_in_a_gltf_file_is_told() {
     for (old, new, wanted) in [
         ("\"children\": [0]", "\"children\": [1]", ": some nodes are their own ancestors"),
         ("\"children\": [0]", "\"children\": [0, 0]", ": node 0 has two parents"),
-        ("\"children\": [0]", "\"children\": [9]", ": there is no node 9"),
-        ("\"camera\": 0", "\"camera\": 1", ": node 0: there is no camera 1"),
-        ("\"mesh\": 0", "\"mesh\": 1", ": node 2: there is no mesh 1"),
-        ("[2, 2, 2]", "[2, 2, -2]", ": node 0: a camera cannot be scaled to nothing, or mirrored"),
-        ("0.8950399503143397", "4", ": camera 0: its `yfov` or its `aspectRatio` cannot be"),
-        ("\"width\": 640", "\"width\": 0", ": camera 0: its `extras.lens` tells of photographs without pixels"),
+        ("\"children\": [0]", "\"children\": [9]", ": node 9 does not exist"),
+        ("\"camera\": 0", "\"camera\": 1", ": node 0: camera 1 does not exist"),
+        ("\"mesh\": 0", "\"mesh\": 1", ": node 2: mesh 1 does not exist"),
+        ("[2, 2, 2]", "[2, 2, -2]", ": node 0: a camera cannot be scaled to zero, or mirrored"),
+        ("0.8950399503143397", "4", ": camera 0: its `yfov` or its `aspectRatio` is out of range"),
+        ("\"width\": 640", "\"width\": 0", ": camera 0: its `extras.lens` has a size of 0"),
         ("\"width\": 640, ", "", ": camera 0: its `extras.lens`: missing field `width`"),
         (
             "\"count\": 1, \"type\": \"VEC3\"",
             "\"count\": 2, \"type\": \"VEC3\"",
-            ": accessor 0: its bytes are not all there",
+            ": accessor 0: its bytes are incomplete",
         ),
-        ("\"byteLength\": 16}],", "\"byteLength\": 17}],", ": accessor 0: its bytes are not all there"),
+        ("\"byteLength\": 16}],", "\"byteLength\": 17}],", ": accessor 0: its bytes are incomplete"),
         ("data:application", "points.bin?", ": accessor 0: its bytes are in another file"),
-        ("AACAPw", "AACA/w", ": accessor 0: some of it is not a number"),
-        ("{\"asset\"", "glTF", ": this binary glTF file is cut off"),
+        ("AACAPw", "AACA/w", ": accessor 0: it contains NaN or infinity"),
+        ("{\"asset\"", "glTF", ": this binary glTF file is truncated"),
     ] {
         let text = gltf.replace(old, new);
         assert_ne!(text, gltf, "{old}");
@@ -300,7 +300,7 @@ fn what_is_wrong_in_a_cloud_or_in_a_gltf_file_is_told() {
 }
 
 #[test]
-fn binary_gltf_is_read_and_cameras_of_other_programs_have_a_thousand_rows() {
+fn binary_gltf_is_read_and_foreign_cameras_have_1000_rows() {
     let place = TempDir::new().unwrap();
     let json = r#"{"nodes": [{"camera": 0, "matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 1,2,3,1]}, {"camera": 0}, {"mesh": 0}, {"mesh": 1}],
         "cameras": [{"name": "Camera", "type": "perspective", "perspective": {"yfov": 1.5707963267948966, "aspectRatio": 1.5}}],
@@ -334,7 +334,7 @@ fn binary_gltf_is_read_and_cameras_of_other_programs_have_a_thousand_rows() {
 }
 
 #[test]
-fn what_is_packed_is_unpacked() {
+fn compressed_files_are_decompressed() {
     use std::io::Write;
     let place = TempDir::new().unwrap();
     let (_, _, files) = files().remove(1);
@@ -348,19 +348,19 @@ fn what_is_packed_is_unpacked() {
         is_as_meant(&told(&place.path().join(name)), "BAL");
         put(place.path(), name, &bytes[..bytes.len() / 2]);
         let error = read(&place.path().join(name)).unwrap_err().to_string();
-        assert!(error.contains(name) && error.contains("cannot be unpacked"), "{error}");
+        assert!(error.contains(name) && error.contains("cannot decompress it"), "{error}");
     }
 }
 
 #[test]
-fn what_is_wrong_with_a_row_is_told_at_its_place() {
+fn row_errors_have_their_place() {
     let told = |text: &str| read_control("c", text.as_bytes(), &["a.jpg", "b.jpg"]).err().unwrap().to_string();
     for (text, wanted) in [
         ("0 0 0 a.jpg 1 2\n0 0 nan b.jpg 1 2\n", "c:2:5: `nan` is not one of X Y Z"),
         ("0 0 0 a.jpg 1\n1 0 0 b.jpg 1 2\n", "c:1:14: the row ends where one of u v should follow"),
         ("0 0\n0 0 0\n", "c:1:4: the row ends where one of X Y Z should follow"),
-        ("0 0 0 a.jpg 1 2 c.jpg 3 4\n", "c:1:17: there is no photograph `c.jpg`"),
-        ("0 0 0 a.jpg 1 2 a.jpg 3 4\n", "c:1:17: this row names twice the photograph `a.jpg`"),
+        ("0 0 0 a.jpg 1 2 c.jpg 3 4\n", "c:1:17: unknown photograph `c.jpg`"),
+        ("0 0 0 a.jpg 1 2 a.jpg 3 4\n", "c:1:17: this row names a photograph twice: `a.jpg`"),
     ] {
         assert!(told(text).starts_with(wanted), "{text}: {}", told(text));
     }

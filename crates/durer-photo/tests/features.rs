@@ -13,7 +13,7 @@ fn blot(side: usize, x: f32, y: f32, sigma: f32) -> Gray {
 }
 
 #[test]
-fn blots_are_found_where_they_are() {
+fn blobs_are_found_at_their_positions() {
     // Pictures of up to 1000 pixels are doubled first, larger ones are not. The blobs cover all
     // octaves.
     for (side, x, y, sigma) in [

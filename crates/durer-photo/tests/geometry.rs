@@ -62,7 +62,7 @@ fn two_views_are_found_from_five_seven_and_eight_points() {
 }
 
 #[test]
-fn three_points_give_the_pose_among_others() {
+fn p3p_solutions_include_the_true_pose() {
     let random = &mut Random::new(2);
     for _ in 0..200 {
         let (truth, points) = (pose(random), [(); 3].map(|()| point(random)));
@@ -78,7 +78,7 @@ fn three_points_give_the_pose_among_others() {
 }
 
 #[test]
-fn false_matches_are_told_from_true_ones() {
+fn outliers_are_separated_from_inliers() {
     let random = &mut Random::new(3);
     let second = pose(random);
     let pair = |random: &mut Random, truth: bool| {
@@ -97,7 +97,7 @@ fn false_matches_are_told_from_true_ones() {
 }
 
 #[test]
-fn a_similarity_is_found_again() {
+fn similarity_is_recovered() {
     let random = &mut Random::new(4);
     let points: Vec<_> = (0..5).map(|_| vector(random, 3.0)).collect();
     let rotation = rotation_of(&vector(random, 2.0));
@@ -120,7 +120,7 @@ fn a_similarity_is_found_again() {
 }
 
 #[test]
-fn rotations_come_back_from_axis_and_angle() {
+fn rotations_survive_conversion_to_axis_and_angle() {
     let random = &mut Random::new(5);
     for size in [1e-12, 1e-5, 1e-3, 0.1, 1.7] {
         let axis = vector(random, size);
@@ -171,15 +171,15 @@ fn one_photograph_of_known_points_gives_its_camera() {
 }
 
 #[test]
-fn what_tells_no_camera_is_named() {
+fn degenerate_points_are_reported() {
     let why = |pairs: &[_], focal| camera(pairs, &known(focal)).unwrap_err().message;
-    assert!(why(&photographed(20, true).2, None).contains("lie in a plane: DLT has no unique answer"));
-    assert!(why(&photographed(5, false).2, None).contains("6 points or more"));
+    assert!(why(&photographed(20, true).2, None).contains("lie in a plane, so DLT has no unique solution"));
+    assert!(why(&photographed(5, false).2, None).contains("at least 6 points"));
     assert!(why(&photographed(3, false).2, Some(750.0)).contains("three points fit up to four cameras"));
     let line: Vec<_> = (0..9)
         .map(|i| (Vector3::new(f64::from(i), 0.0, 9.0), Vector2::new(400.0 + 50.0 * f64::from(i), 300.0)))
         .collect();
-    assert!(why(&line, Some(750.0)).contains("lie in a line"));
+    assert!(why(&line, Some(750.0)).contains("lie on a line"));
     let random = &mut Random::new(8);
     let chance: Vec<_> = (0..40).map(|_| (point(random), 200.0 * vector(random, 1.0).xy())).collect();
     assert!(why(&chance, None).contains("no camera sees these points"));
@@ -208,7 +208,7 @@ fn vanishing_lines_give_the_camera() {
     };
     let across = |y: f64| [Vector2::new(10.0, y), Vector2::new(700.0, y)];
     assert!(why(&|k| k.lines[0] = vec![across(10.0), across(400.0)]).contains("infinitely far"));
-    assert!(why(&|k| k.lines[0].truncate(1)).contains("two lines or more"));
+    assert!(why(&|k| k.lines[0].truncate(1)).contains("at least two distinct lines"));
     assert!(why(&|k| k.axes[1] = k.axes[0]).contains("same axis"));
     assert!(why(&|k| k.lines[1] = k.lines[0].clone()).contains("right angle"));
 }

@@ -18,7 +18,7 @@ fn samples() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
     let folder = std::env::var_os("DURER_CORPUS").map_or_else(beside, PathBuf::from).join("samples/photos");
     if !folder.is_dir() {
-        println!("skipped: there is no {}", folder.display());
+        println!("skipped: {} not found", folder.display());
         return None;
     }
     Some(folder)
@@ -61,7 +61,7 @@ fn stored_solutions_reproject_as_published() {
 }
 
 #[test]
-fn adjusting_reaches_the_published_ends() {
+fn adjustment_reaches_the_published_costs() {
     let Some(folder) = samples() else { return };
     let mut bal = read(&folder.join("bal/problem-16-22106-pre.txt")).unwrap();
     let report = adjust(&mut bal, &Options::default());
@@ -80,7 +80,7 @@ fn adjusting_reaches_the_published_ends() {
 }
 
 #[test]
-fn every_format_gives_back_what_it_was_given() {
+fn every_format_reads_back_what_it_writes() {
     let Some(folder) = samples() else { return };
     let berlin = read(&folder.join("opensfm-berlin/reconstruction_example.json")).unwrap();
     let place = tempfile::tempdir().unwrap();
@@ -108,7 +108,7 @@ fn every_format_gives_back_what_it_was_given() {
 
 /// glTF has no tracks, and stores positions in single precision; PLY has no cameras.
 #[test]
-fn gltf_gives_back_cameras_and_ply_gives_back_points() {
+fn gltf_keeps_cameras_and_ply_keeps_points() {
     let Some(folder) = samples() else { return };
     let berlin = read(&folder.join("opensfm-berlin/reconstruction_example.json")).unwrap();
     let place = tempfile::tempdir().unwrap();
@@ -227,7 +227,7 @@ fn median_residual(cameras: &Reconstruction, seen: &Reconstruction) -> f64 {
 /// Checks the uncertainty of the positions if Bundler's observations have normal errors as large as
 /// their residuals: the median over draws from the covariance.
 #[test]
-fn what_bundler_saw_does_not_tell_places_to_a_hundredth() {
+fn bundler_observations_do_not_determine_positions_to_1_percent() {
     let Some(folder) = samples() else { return };
     let mut bundler = read(&folder.join("bundler-kermit/results.example/bundle.out")).unwrap();
     adjust(&mut bundler, &Options::default());
@@ -255,7 +255,7 @@ fn what_bundler_saw_does_not_tell_places_to_a_hundredth() {
 }
 
 #[test]
-fn a_wrong_focal_length_in_exif_is_found_out() {
+fn wrong_exif_focal_length_is_corrected() {
     let Some(folder) = samples() else { return };
     let bundler = read(&folder.join("gtsam/Balbianello.out")).unwrap();
     let names: Vec<String> = (1..6).map(|i| format!("BalbianelloMedium-{i}.jpg")).collect();

@@ -1,4 +1,5 @@
-//! Tests of a ray against each object, with the reason why an object is not the one that is seen.
+//! Intersection tests of a ray with each object, and the reason why an object is not the closest
+//! hit.
 
 use crate::document::Compiled;
 use crate::protocol::{CastAccount, HitAccount, ObjectTest, Row, Verdict};
@@ -11,7 +12,7 @@ use glam::DVec3;
 /// Maximum number of objects that are listed.
 const MAX_TESTS: usize = 200;
 
-/// Asks all objects about a ray.
+/// Intersects a ray (world space) with every object and reports each result.
 pub(crate) fn cast(compiled: &Compiled, ray: &Ray) -> CastAccount {
     let world = &compiled.world;
     let ray64 = Ray64::from(*ray);
@@ -57,10 +58,10 @@ fn test(compiled: &Compiled, number: u32, object: &Object, ray: &Ray64, first: O
         }
         (Some(hit), ..) => (Verdict::Closest, format!("it is hit at t = {}", text(hit.t))),
         (None, Some(hit), _) if hit.t <= ray.rounded.t_min => {
-            (Verdict::Behind, format!("the line meets it at t = {}, behind the start of the ray", text(hit.t)))
+            (Verdict::Behind, format!("the line meets it at t = {}, before the ray's start", text(hit.t)))
         }
         (None, Some(hit), _) => {
-            (Verdict::Beyond, format!("the line meets it at t = {}, behind the end of the ray", text(hit.t)))
+            (Verdict::Beyond, format!("the line meets it at t = {}, beyond the ray's end", text(hit.t)))
         }
         (None, None, _) => (Verdict::Missed, "the line does not meet it".into()),
     };
@@ -75,7 +76,7 @@ fn test(compiled: &Compiled, number: u32, object: &Object, ray: &Ray64, first: O
     };
     if let Some(local) = object.own_ray(ray) {
         told.rows.push(vector_row("o", "M⁻¹ o", vector(ray.rounded.origin), local.origin));
-        told.rows.push(vector_row("d", "M⁻¹ d, not normalised: t stays", vector(ray.rounded.dir), local.dir));
+        told.rows.push(vector_row("d", "M⁻¹ d, not normalised, so t is unchanged", vector(ray.rounded.dir), local.dir));
         told.rows.extend(formulas(object, &local, anywhere.as_ref()));
     } else {
         told.rows.extend(formulas(object, &ray.rounded, anywhere.as_ref()));
@@ -92,7 +93,7 @@ fn text(t: f32) -> String {
     number(t.into())
 }
 
-/// How an object of a kind is met, in numbers of object space.
+/// Returns the formulas of the intersection with their numbers, in object space.
 fn formulas(object: &Object, ray: &Ray, hit: Option<&Hit>) -> Vec<Row> {
     let line = Line { origin: ray.origin.as_dvec3(), dir: ray.dir.as_dvec3() };
     let back = object.center;
@@ -109,20 +110,20 @@ fn formulas(object: &Object, ray: &Ray, hit: Option<&Hit>) -> Vec<Row> {
         Geometry::Mesh(tree) => match hit {
             Some(hit) => {
                 let mut rows = vec![row("triangles", "in the mesh", "", tree.mesh.len() as f64)];
-                rows.push(row("triangle", "the one that is hit", "", f64::from(hit.part)));
+                rows.push(row("triangle", "index of the hit triangle", "", f64::from(hit.part)));
                 rows.extend(triangle(tree.mesh.corners(hit.part).map(|corner| corner + back), &line));
                 rows
             }
             None => vec![
                 row("triangles", "in the mesh", "", tree.mesh.len() as f64),
-                so("no triangle of the mesh is met by the line"),
+                so("the line misses every triangle of the mesh"),
             ],
         },
         Geometry::Solid(_) => Vec::new(),
     }
 }
 
-/// The conclusion.
+/// Returns a row that states the conclusion.
 fn so(words: &str) -> Row {
     Row { name: "so".into(), formula: String::new(), numbers: String::new(), result: words.into(), value: None }
 }
@@ -138,7 +139,7 @@ fn sphere(ball: &Sphere, line: &Line) -> Vec<Row> {
         row("Δ", "b² − 4 a c", format!("{}² − 4 · {} · {}", factor(b), number(a), factor(c)), discriminant),
     ];
     if discriminant < 0.0 {
-        rows.push(so("Δ < 0: the line passes the sphere"));
+        rows.push(so("Δ < 0: the line misses the sphere"));
         return rows;
     }
     let root = discriminant.sqrt();
@@ -169,7 +170,7 @@ fn plane(it: &Plane, line: &Line) -> Vec<Row> {
     rows
 }
 
-/// By Cramer's rule: o + t d = a + β (b − a) + γ (c − a).
+/// Solves o + t d = a + β (b − a) + γ (c − a) by Cramer's rule.
 fn triangle(corners: [Vec3; 3], line: &Line) -> Vec<Row> {
     let [a, b, c] = corners.map(|corner| corner.as_dvec3());
     let (e1, e2, s, d) = (b - a, c - a, line.origin - a, line.dir);
@@ -198,7 +199,7 @@ fn triangle(corners: [Vec3; 3], line: &Line) -> Vec<Row> {
     rows
 }
 
-/// Crossings of a line with another shape, found by the shape.
+/// Returns the crossings of a line with any other shape, as computed by the shape itself.
 fn crossings(shape: &Primitive, back: Vec3, line: &Line) -> Vec<Row> {
     let moved = Line { origin: line.origin - back.as_dvec3(), dir: line.dir };
     let mut found: Vec<f64> = Vec::new();

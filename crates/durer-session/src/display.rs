@@ -1,14 +1,15 @@
-//! From light to the pixels of a page.
+//! Conversion of linear radiance to the 8-bit pixels of a page.
 
 use durer::image::{Display, Layer, Tone, Transfer};
 
-/// How light becomes eight bits: as the command does it with `--exposure` and `--tone`.
+/// Returns the display transform for an exposure in stops and a tone curve, as `--exposure` and
+/// `--tone` define it.
 pub(crate) fn display(stops: f32, tone: &str) -> Display {
     let tone = Tone::from_name(tone).unwrap_or_default();
     Display { exposure: durer::math::fp::pow(2.0, stops), tone, transfer: Transfer::Srgb }
 }
 
-/// Four bytes a pixel: red, green, blue, coverage.
+/// Returns four bytes per pixel: red, green, blue, coverage.
 pub(crate) fn pixels(layer: &Layer, display: &Display) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(4 * layer.image.pixels.len());
     let alpha = |i: usize| layer.coverage.as_ref().map_or(255, |coverage| (255.0 * coverage[i] + 0.5) as u8);

@@ -1,4 +1,4 @@
-//! The text of a scene, and what it was compiled to.
+//! The text of a scene and its compiled form.
 
 use crate::protocol::{Change, Finding, Place, Severity};
 use durer::camera::Camera;
@@ -16,23 +16,23 @@ use durer::{LoadOptions, Loaded, load_text};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// The number of the scene's own file.
+/// File number of the scene's own file.
 const OWN: u32 = 0;
 
-/// A scene file that may be edited.
+/// An editable scene file.
 pub(crate) struct Document {
     pub path: PathBuf,
     pub bytes: Arc<[u8]>,
     pub options: LoadOptions,
-    /// The last text without errors.
+    /// Compiled form of the last text without errors.
     pub compiled: Option<Compiled>,
 }
 
-/// A text without errors, and what became of it.
+/// A text without errors, and its compiled world.
 pub(crate) struct Compiled {
     loaded: Loaded,
     pub world: World,
-    /// The camera as written.
+    /// The camera as written in the text.
     pub written: Camera,
     pub files: Files,
     diagnostics: Diagnostics,
@@ -44,14 +44,13 @@ impl Document {
         Document { path, bytes, options, compiled: None }
     }
 
-    /// The text; `None` where the file holds none.
+    /// The text; `None` if the file is not UTF-8.
     pub fn text(&self) -> Option<&str> {
         std::str::from_utf8(&self.bytes).ok()
     }
 
-    /// Reads and compiles the text. Tells what is wrong with it; after errors, what was compiled
-    /// before
-    /// stays.
+    /// Reads and compiles the text. Returns true on success, and the findings. After errors, the
+    /// previous compiled scene remains.
     pub fn compile(&mut self) -> (bool, Vec<Finding>) {
         let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
         let loaded = load_text(&self.path, self.bytes.clone(), &self.options, &mut files, &mut diagnostics);
@@ -106,7 +105,7 @@ impl Compiled {
         Names { files: &self.files, scene: &self.loaded.scene, world: &self.world }
     }
 
-    /// Findings of `durer check`.
+    /// Returns the findings of `durer check`.
     pub fn check(&self, job: &Job) -> Vec<Finding> {
         let subject = Subject {
             scene: &self.loaded.scene,
@@ -120,7 +119,7 @@ impl Compiled {
         check(&subject, &self.diagnostics).iter().map(|found| finding(&found.diagnostic, &self.files)).collect()
     }
 
-    /// A light's keyword and line.
+    /// Keyword and line of a light.
     pub fn light(&self, number: usize) -> String {
         let light = self.loaded.scene.lights.iter().flatten().nth(number);
         match light.and_then(|light| Some((light.value.own_keyword(), self.place(light.span)?.line))) {
@@ -129,7 +128,7 @@ impl Compiled {
         }
     }
 
-    /// The place of a span, if it is in the scene's own text.
+    /// Returns the place of a span if it lies in the scene's own text.
     pub fn place(&self, span: Span) -> Option<Place> {
         place(&self.files, span)
     }

@@ -1,8 +1,8 @@
-//! A picture as a file.
+//! Export of a picture to a file format.
 
 use durer::image::{Display, Layer, WriteOptions, format_for};
 
-/// The bytes of a picture in the format that a name's ending says.
+/// Encodes a picture in the format given by the extension of `name`.
 pub(crate) fn export(name: &str, layer: &Layer, display: Display) -> Result<Vec<u8>, String> {
     let format = format_for(name).map_err(|error| error.to_string())?;
     let mut bytes = Vec::new();

@@ -1,10 +1,10 @@
-//! Several sessions behind one line.
+//! Several sessions on one connection.
 
 use crate::protocol::{Answer, Ask, Event, Request};
 use crate::session::{Clock, Session, Start};
 use std::collections::BTreeMap;
 
-/// Maximum number of sessions; each has a scene in memory.
+/// Maximum number of sessions; each holds a scene in memory.
 const MAX_SESSIONS: usize = 64;
 
 /// The sessions of a page.
@@ -12,24 +12,24 @@ pub struct Host {
     start: Start,
     clock: Clock,
     sessions: BTreeMap<u32, Session>,
-    /// The session that was asked last: its coarse pictures come first.
+    /// Session that received the last request; it has priority for coarse pictures.
     latest: u32,
-    /// The session that worked last: the others have their turns before it.
+    /// Session that worked last; the others have their turns before it.
     worked: u32,
 }
 
 impl Host {
-    /// A host without sessions.
+    /// Creates a host without sessions.
     pub fn new(start: Start, clock: Clock) -> Self {
         Host { start, clock, sessions: BTreeMap::new(), latest: 0, worked: 0 }
     }
 
-    /// Answers a message, which is the JSON of an [`Ask`].
+    /// Answers a message: the JSON of an [`Ask`].
     pub fn receive(&mut self, message: &str, send: &mut dyn FnMut(Vec<u8>)) {
         let Ask { session, id, request } = match serde_json::from_str(message) {
             Ok(ask) => ask,
             Err(error) => {
-                let event = Event::Refused { why: format!("this is not a request: {error}") };
+                let event = Event::Refused { why: format!("invalid request: {error}") };
                 return send(Answer { session: 0, id: 0, event }.encode(&[]));
             }
         };
@@ -39,7 +39,7 @@ impl Host {
         }
         let mut say = |(event, payload): (Event, Vec<u8>)| send(Answer { session, id, event }.encode(&payload));
         if !self.sessions.contains_key(&session) && self.sessions.len() >= MAX_SESSIONS {
-            return say((Event::Refused { why: "there are too many sessions".into() }, Vec::new()));
+            return say((Event::Refused { why: "too many sessions are open".into() }, Vec::new()));
         }
         self.latest = session;
         let (start, clock) = (&self.start, &self.clock);
@@ -56,9 +56,8 @@ impl Host {
         self.sessions.values().any(Session::is_busy)
     }
 
-    /// Does some milliseconds of work: for a session of which nothing is seen yet, best the one
-    /// that was asked last;
-    /// else for each in turn.
+    /// Works for some milliseconds. Sessions without a picture of their last change come first, and
+    /// among them the one that received the last request; the others take turns.
     pub fn step(&mut self, send: &mut dyn FnMut(Vec<u8>)) {
         let Some(session) = self.next() else { return };
         self.worked = session;
@@ -66,7 +65,7 @@ impl Host {
         found.step(&mut |(event, payload)| send(Answer { session, id: 0, event }.encode(&payload)));
     }
 
-    /// The session whose turn it is.
+    /// Returns the session that works next.
     fn next(&self) -> Option<u32> {
         let urgent = |id: &u32| self.sessions.get(id).is_some_and(Session::is_urgent);
         let first = [self.latest].into_iter().chain(self.sessions.keys().copied()).find(urgent);
@@ -74,7 +73,7 @@ impl Host {
         first.or_else(|| turns.filter(|(_, session)| session.is_busy()).map(|(id, _)| *id).next())
     }
 
-    /// Tells pages of files that were changed on disk.
+    /// Notifies pages of files that changed on disk.
     #[cfg(feature = "fs")]
     pub fn look_at_disk(&mut self, send: &mut dyn FnMut(Vec<u8>)) {
         for (&session, found) in &mut self.sessions {

@@ -1,10 +1,10 @@
-//! The words of the scene language, for completion and hints.
+//! Keywords of the scene language, for completion and hints.
 
 use crate::protocol::{Word, WordField};
 use durer::dialect::Dialect;
 use durer::format::course::reference::{Entry, FieldEntry, Spelling, entries};
 
-/// Words of Dürer's own dialect.
+/// Returns the keywords of Dürer's own dialect.
 pub(crate) fn words() -> Vec<Word> {
     entries().iter().filter_map(word).collect()
 }

@@ -1,10 +1,9 @@
-//! A scene that somebody looks at: its text is edited, the camera is moved, pictures come from
-//! coarse to
-//! fine, and pixels are explained.
+//! Interactive sessions: edit the text of a scene, move its camera, render progressively from
+//! coarse to fine, and explain pixels.
 //!
-//! [`Session`] does the work and [`Host`] keeps several. They speak the messages of [`protocol`],
-//! and know
-//! neither sockets nor browsers: `durer-live` and `durer-wasm` carry the messages.
+//! [`Session`] does the work and [`Host`] holds several sessions. They exchange the messages of
+//! [`protocol`] and are independent of sockets and browsers: `durer-live` and `durer-wasm`
+//! transport the messages.
 
 mod candidates;
 mod display;

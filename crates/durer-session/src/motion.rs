@@ -1,4 +1,4 @@
-//! Moving a camera.
+//! Camera motions.
 
 use crate::protocol::{CameraState, FieldState, Motion};
 use durer::camera::{Camera, Projection};
@@ -8,23 +8,24 @@ use durer::math::{Aabb, Vec3};
 use durer::world::World;
 use glam::Quat;
 
-/// How near to its axis a camera that orbits may come, in radians.
+/// Smallest angle between the view direction of an orbiting camera and its axis, in radians.
 const POLE: f32 = 0.02;
 
-/// Distance of what a camera looks at.
+/// Distance from the eye to the point that the camera looks at, in world units.
 pub(crate) fn distance(world: &World) -> f32 {
     let frame = world.camera_frame();
     let ray = durer::math::Ray::new(frame.eye, frame.forward);
     let bounds = world.bounds();
     let center = if bounds.is_empty() { 1.0 } else { (bounds.center() - frame.eye).dot(frame.forward) };
     let hit = world.closest(&ray, &mut ()).map(|hit| hit.t).filter(|t| t.is_finite());
-    // A floor at the horizon is nothing to go around.
+    // Ignore a hit far beyond the scene, such as a ground plane near the horizon: it is not a
+    // useful center of an orbit.
     let size = if bounds.is_empty() { f32::INFINITY } else { bounds.size().length() };
     let near = hit.filter(|&t| t <= center.max(0.0) + size);
     near.unwrap_or(center).max(1e-3 * frame.eye.length().max(1.0))
 }
 
-/// Number of the field of a name in code.
+/// Index of the camera's field with this name.
 fn field(camera: &Camera, name: &str) -> Option<usize> {
     camera.fields().iter().position(|field| field.name == name)
 }
@@ -35,7 +36,7 @@ fn set(camera: &mut Camera, name: &str, value: Vec3) {
     }
 }
 
-/// The camera after a motion, and the distance of what it looks at.
+/// Returns the camera after a motion, and the distance of its target.
 pub(crate) fn moved(world: &World, written: &Camera, mut distance: f32, motion: Motion) -> (Camera, f32) {
     let frame = world.camera_frame();
     let (mut eye, mut forward) = (frame.eye, frame.forward.normalize_or(Vec3::NEG_Z));
@@ -80,17 +81,18 @@ fn reach(bounds: &Aabb) -> f32 {
     0.55 * bounds.size().length().max(1e-3)
 }
 
-/// A direction turned about an axis, and towards or away from it.
+/// Rotates a direction by `around` about an axis, then tilts it by `towards` radians towards the
+/// axis.
 fn turned(forward: Vec3, axis: Vec3, right: Vec3, around: f32, towards: f32) -> Vec3 {
     let angle = forward.angle_between(axis);
     let limit = std::f32::consts::PI - POLE;
-    // A camera that looks along its axis already stays where it is.
+    // A camera that already looks along its axis keeps its angle.
     let wanted = (angle - towards).clamp(POLE.min(angle), limit.max(angle));
     let pitched = Quat::from_axis_angle(right, angle - wanted) * forward;
     (Quat::from_axis_angle(axis, around) * pitched).normalize_or(forward)
 }
 
-/// Sets the numbers of a field, by its word in the scene language.
+/// Sets the numbers of a field, named by its keyword in the scene language.
 pub(crate) fn set_field(camera: &mut Camera, word: &str, numbers: &[f32]) -> Result<(), String> {
     let fields = camera.fields();
     let at = fields.iter().position(|field| spelled(field) == word).ok_or_else(|| format!("no field `{word}`"))?;
@@ -98,7 +100,7 @@ pub(crate) fn set_field(camera: &mut Camera, word: &str, numbers: &[f32]) -> Res
         (Some(Value::Vec3(_)), &[x, y, z]) => Value::Vec3(Vec3::new(x, y, z)),
         (Some(Value::Int(_)), &[x]) if x >= 0.0 => Value::Int(x as u32),
         (_, &[x]) => Value::Float(x),
-        _ => return Err(format!("`{word}` has another form")),
+        _ => return Err(format!("`{word}` takes another type or count of values")),
     };
     fields[at].rule.validate(&value).map_err(|wrong| format!("`{word}` {wrong}"))?;
     let mut changed = camera.clone();
@@ -112,7 +114,7 @@ fn spelled(field: &Field) -> &'static str {
     field.spelling(Dialect::Durer).unwrap_or(field.name)
 }
 
-/// The state of a camera, for the page.
+/// Returns the state of a camera for the page.
 pub(crate) fn state(world: &World, written: &Camera, dialect: Dialect, distance: f32) -> CameraState {
     let (camera, frame) = (world.camera(), world.camera_frame());
     CameraState {
@@ -151,7 +153,7 @@ fn told(field: &Field, value: Option<Value>) -> FieldState {
     FieldState { name: spelled(field).into(), doc: field.doc.trim().into(), values, text, least, most }
 }
 
-/// The camera as a statement of the scene language.
+/// Returns the camera as a statement of the scene language.
 pub(crate) fn statement(camera: &Camera, dialect: Dialect) -> String {
     let fields = camera.fields().iter().enumerate().filter_map(|(i, field)| {
         let word = field.spelling(dialect)?;

@@ -1,4 +1,4 @@
-//! Line drawings of a scene, for the page's view in space.
+//! Line drawings of a scene, for the page's 3D view.
 
 use crate::document::Compiled;
 use crate::protocol::{Lamp, Outline};

@@ -1,10 +1,8 @@
-//! The messages between a page and a session.
+//! Messages between a page and a session.
 //!
-//! A page sends [`Ask`]s as JSON and gets [`Answer`]s. An answer is written as the length of its
-//! JSON (four
-//! bytes, little endian), the JSON, and bytes that belong to it: pixels, or a file. The same types
-//! in
-//! TypeScript are in `web/src/protocol.ts`, written by the tests of this crate.
+//! A page sends [`Ask`]s as JSON and receives [`Answer`]s. An answer consists of the length of its
+//! JSON (four bytes, little endian), the JSON, and a payload of bytes: pixels or a file. The tests
+//! of this crate generate the TypeScript types in `web/src/protocol.ts` from these.
 
 mod account;
 mod scene;
@@ -19,11 +17,11 @@ use ts_rs::TS;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Ask {
-    /// Number of the session, chosen by the page. A new number makes a new session.
+    /// Number of the session, chosen by the page. A new number opens a new session.
     pub session: u32,
-    /// Number of the question, from 1.
+    /// Number of the request, from 1.
     pub id: u32,
-    /// The question.
+    /// The request.
     pub request: Request,
 }
 
@@ -31,35 +29,34 @@ pub struct Ask {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Answer {
-    /// The session.
+    /// Number of the session.
     pub session: u32,
-    /// The question that it answers; 0 where nobody asked.
+    /// Number of the request that it answers; 0 if unsolicited.
     pub id: u32,
     /// The event.
     pub event: Event,
 }
 
-/// Requests of a page.
+/// Requests from a page.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Request {
-    /// Opens a scene by its text, or the file that the server was started with. Answer:
-    /// [`Event::Opened`], then
-    /// [`Event::Scene`].
+    /// Opens a scene from its text, or the file that the server was started with. Answer:
+    /// [`Event::Opened`], then [`Event::Scene`].
     Open {
-        /// The name of the file; its ending says the format.
+        /// Name of the file; its extension selects the format.
         name: String,
-        /// The text; `None` for the file of the server.
+        /// Text of the scene; `None` opens the server's file.
         text: Option<String>,
     },
-    /// Gives a file that the scene may name.
+    /// Uploads a file that the scene refers to.
     Give {
-        /// Its name in the scene.
+        /// Name of the file, as written in the scene.
         name: String,
-        /// Its bytes in base64.
+        /// Contents in base64.
         base64: String,
-        /// True for the scene itself.
+        /// True if this is the scene itself.
         opens: bool,
     },
     /// Replaces the scene's text. Answer: [`Event::Scene`].
@@ -69,44 +66,44 @@ pub enum Request {
     },
     /// Sets the size of the picture in pixels.
     Size {
-        /// Columns.
+        /// Width in pixels.
         width: u32,
-        /// Rows.
+        /// Height in pixels.
         height: u32,
     },
-    /// Sets which picture is shown, and how.
+    /// Selects the picture to show and its display transform.
     Show {
-        /// `color`, or the name of another picture.
+        /// `color`, or the name of an auxiliary picture.
         picture: String,
-        /// Exposure in stops: light is multiplied by this power of two.
+        /// Exposure in stops: radiance is multiplied by 2 to this power.
         stops: f32,
         /// Name of the tone curve.
         tone: String,
     },
-    /// Sets the options of the job; those that are not named follow from the scene.
+    /// Sets the options of the job. Options that are not listed follow from the scene.
     Options {
         /// Names and values, as on the command line.
         options: Vec<Setting>,
     },
     /// Moves the camera. Answer: [`Event::Camera`].
     Move {
-        /// How.
+        /// The motion.
         motion: Motion,
-        /// True while the motion lasts: only coarse pictures are made.
+        /// True while the motion continues: only coarse pictures are rendered.
         moving: bool,
     },
     /// Sets a field of the camera. Answer: [`Event::Camera`].
     Field {
-        /// Its name.
+        /// Keyword of the field in the scene language.
         name: String,
-        /// Its numbers.
+        /// Numbers of its value.
         values: Vec<f32>,
-        /// True while the motion lasts.
+        /// True while the motion continues.
         moving: bool,
     },
-    /// Puts a perspective camera into the scene. Answer: [`Event::Camera`].
+    /// Replaces the camera by a perspective camera. Answer: [`Event::Camera`].
     Look {
-        /// The eye.
+        /// Position of the eye in world space.
         center: [f32; 3],
         /// View direction.
         direction: [f32; 3],
@@ -114,44 +111,44 @@ pub enum Request {
         up: [f32; 3],
         /// Field of view across the larger side, in degrees.
         angle: f32,
-        /// True while the motion lasts.
+        /// True while the motion continues.
         moving: bool,
     },
     /// Writes the camera into the text. Answer: [`Event::Text`].
     WriteCamera,
-    /// Asks why a pixel has its colour. Answer: [`Event::Explained`].
+    /// Explains the colour of a pixel. Answer: [`Event::Explained`].
     Explain {
         /// Column from the left.
         x: u32,
         /// Row from the top.
         y: u32,
-        /// Which of its samples; `None`: the one that counts most.
+        /// Index of the sample; `None` selects the sample with the largest contribution.
         sample: Option<u32>,
     },
-    /// Asks what each object says of a ray. Answer: [`Event::Cast`].
+    /// Intersects a ray with each object. Answer: [`Event::Cast`].
     Cast {
-        /// Origin of the ray.
+        /// Origin of the ray in world space.
         origin: [f32; 3],
-        /// Its direction, of any length.
+        /// Direction of the ray, of any length.
         direction: [f32; 3],
-        /// End.
+        /// End of the ray, in lengths of `direction`; `None` for an infinite ray.
         t_max: Option<f32>,
     },
-    /// Asks for the lines of all objects. Answer: [`Event::Outlines`].
+    /// Requests the outlines of all objects. Answer: [`Event::Outlines`].
     Outlines,
-    /// Asks for the words of the language. Answer: [`Event::Language`].
+    /// Requests the keywords of the language. Answer: [`Event::Language`].
     Language,
-    /// Asks for the picture as a file. Answer: [`Event::Exported`], with its bytes.
+    /// Requests the picture as a file. Answer: [`Event::Exported`], with its bytes.
     Export {
-        /// The file's name, whose ending says the format.
+        /// Name of the file; its extension selects the format.
         name: String,
     },
     /// Writes the text into the scene's file. Answer: [`Event::Saved`] or [`Event::Conflict`].
     Save {
-        /// True to overwrite what other programs wrote meanwhile.
+        /// True to overwrite changes by other programs.
         force: bool,
     },
-    /// Pauses or resumes work on the picture, for pages that do not show it.
+    /// Pauses or resumes rendering, for pages that are hidden.
     Pause {
         /// True to pause.
         pause: bool,
@@ -160,20 +157,20 @@ pub enum Request {
     Close,
 }
 
-/// Events of a session.
+/// Events from a session.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Event {
     /// A scene was opened.
     Opened {
-        /// The program's version.
+        /// Version of the program.
         version: String,
         /// Name of the file.
         name: String,
-        /// Its text; `None` for a model in a binary format.
+        /// Text of the scene; `None` for a model in a binary format.
         text: Option<String>,
-        /// True if it can be saved.
+        /// True if the scene can be saved.
         saves: bool,
         /// Pictures that can be shown.
         pictures: Vec<Choice>,
@@ -184,77 +181,77 @@ pub enum Event {
     },
     /// A text was read.
     Scene {
-        /// Findings of the reader.
+        /// Findings of the parser and the compiler.
         findings: Vec<Finding>,
-        /// Contents; `None` if it has errors, and the picture stays the last one.
+        /// Contents of the scene; `None` after errors, in which case the previous picture remains.
         contents: Option<Contents>,
         /// Time to read and compile it, in milliseconds.
         ms: f64,
     },
-    /// Findings of `durer check`, after the picture.
+    /// Findings of `durer check`, computed after the picture is finished.
     Checked {
-        /// The findings, those of [`Event::Scene`] among them.
+        /// The findings, including those of [`Event::Scene`].
         findings: Vec<Finding>,
     },
     /// The camera was moved.
     Camera {
-        /// As it is now.
+        /// The current camera.
         camera: CameraState,
     },
-    /// A picture; its pixels follow, four bytes each: red, green, blue, coverage.
+    /// A picture. The payload holds four bytes per pixel: red, green, blue, coverage.
     Picture {
-        /// Meaning.
+        /// Description of the payload.
         head: PictureHead,
     },
-    /// Why a pixel has its colour.
+    /// Explanation of a pixel's colour.
     Explained {
         /// The pixel.
         pixel: PixelAccount,
     },
-    /// Tests of a ray against each object.
+    /// Intersection tests of a ray with each object.
     Cast {
-        /// The answer of all.
+        /// The results.
         cast: CastAccount,
     },
     /// Line drawing of the scene.
     Outlines {
-        /// One for each object, up to a limit.
+        /// Outlines, one per object, up to a limit.
         outlines: Vec<Outline>,
-        /// The lights that have a place.
+        /// Lights that have a position or a direction.
         lamps: Vec<Lamp>,
     },
-    /// The words of the language.
+    /// Keywords of the language.
     Language {
-        /// Words that begin a statement.
+        /// Keywords that begin a statement.
         words: Vec<Word>,
     },
-    /// The text was changed by the session, or on disk.
+    /// The session changed the text, or the file changed on disk.
     Text {
         /// The new text.
         text: String,
-        /// True if it was changed on disk.
+        /// True if the file changed on disk.
         from_disk: bool,
     },
-    /// A picture as a file; its bytes follow.
+    /// A picture as a file. The payload holds the file.
     Exported {
-        /// Its name.
+        /// Name of the file.
         name: String,
     },
     /// The text was saved.
     Saved,
-    /// The file was changed since it was read; nothing was written.
+    /// The file changed since it was read; it was not overwritten.
     Conflict,
     /// The request failed.
     Refused {
-        /// Why.
+        /// Reason.
         why: String,
     },
 }
 
 impl Answer {
-    /// The message as bytes.
+    /// Encodes the message with its payload.
     pub fn encode(&self, payload: &[u8]) -> Vec<u8> {
-        // Strings, numbers and lists can always be written.
+        // Serialization of these types cannot fail.
         let json = serde_json::to_vec(self).unwrap_or_default();
         let mut bytes = Vec::with_capacity(4 + json.len() + payload.len());
         bytes.extend((json.len() as u32).to_le_bytes());

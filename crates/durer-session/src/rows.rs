@@ -1,9 +1,9 @@
-//! Formulas with numbers in them.
+//! Formulas with their numbers.
 
 use crate::protocol::Row;
 use glam::DVec3;
 
-/// A number with five significant digits.
+/// Formats a number with five significant digits.
 pub(crate) fn number(x: f64) -> String {
     if x == 0.0 {
         return "0".into();
@@ -17,18 +17,18 @@ pub(crate) fn number(x: f64) -> String {
     text.replace('-', "−")
 }
 
-/// A vector as a tuple.
+/// Formats a vector as a tuple.
 pub(crate) fn vector(v: impl Into<DVec3>) -> String {
     let v = v.into();
     format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
 }
 
-/// A number in a formula: a negative one in parentheses.
+/// Formats a factor of a formula: negative numbers in parentheses.
 pub(crate) fn factor(x: f64) -> String {
     if x < 0.0 { format!("({})", number(x)) } else { number(x) }
 }
 
-/// A formula whose result is a number.
+/// Returns a row with a scalar result.
 pub(crate) fn row(name: &str, formula: &str, numbers: impl Into<String>, value: f64) -> Row {
     Row {
         name: name.into(),
@@ -39,7 +39,7 @@ pub(crate) fn row(name: &str, formula: &str, numbers: impl Into<String>, value: 
     }
 }
 
-/// A formula whose result is a vector.
+/// Returns a row with a vector result.
 pub(crate) fn vector_row(name: &str, formula: &str, numbers: impl Into<String>, value: impl Into<DVec3>) -> Row {
     Row { name: name.into(), formula: formula.into(), numbers: numbers.into(), result: vector(value), value: None }
 }

@@ -1,4 +1,4 @@
-//! One scene and one who looks at it.
+//! One scene with its camera and its picture, for one viewer.
 
 use crate::document::{Compiled, Document};
 use crate::motion::{distance, moved, set_field, state};
@@ -17,22 +17,22 @@ use durer::world::Geometry;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Tells the time in milliseconds from any moment on.
+/// Clock in milliseconds, with an arbitrary origin.
 pub type Clock = Arc<dyn Fn() -> f64 + Send + Sync>;
 
 /// Maximum number of objects that are listed.
 const MAX_THINGS: usize = 2000;
-/// The largest text or file that a page may send.
+/// Maximum size of a text or file from a page, in bytes.
 const MAX_BYTES: usize = 256 << 20;
 
 /// Starting state of a session.
 #[derive(Clone, Debug, Default)]
 pub struct Start {
-    /// The file that is opened where a page names none, and is saved.
+    /// File that is opened and saved if a page does not name one.
     pub file: Option<PathBuf>,
 }
 
-/// A message to the page, and bytes that belong to it.
+/// A message to the page, and its payload.
 pub(crate) type Message = (Event, Vec<u8>);
 
 /// One scene, its camera and its picture.
@@ -41,15 +41,15 @@ pub struct Session {
     clock: Clock,
     document: Option<Document>,
     viewer: Viewer,
-    /// Distance of what the camera looks at.
+    /// Distance from the eye to the camera's target.
     distance: f32,
-    /// True until the scene is checked.
+    /// True until the current scene has been checked.
     unchecked: bool,
     paused: bool,
-    /// Stamp of the scene's file when it was read or saved.
+    /// Stamp of the scene's file when it was last read or saved.
     #[cfg(feature = "fs")]
     stamp: Option<durer::source::Stamp>,
-    /// Its stamp when the page last heard of a change.
+    /// Stamp of the file when the page was last notified.
     #[cfg(feature = "fs")]
     told: Option<durer::source::Stamp>,
     /// True if the document is the server's file.
@@ -57,7 +57,7 @@ pub struct Session {
 }
 
 impl Session {
-    /// A session without a scene.
+    /// Creates a session without a scene.
     pub fn new(start: Start, clock: Clock) -> Self {
         Session {
             start,
@@ -85,7 +85,7 @@ impl Session {
         !self.paused && self.viewer.is_urgent()
     }
 
-    /// Answers a request at once.
+    /// Handles a request immediately.
     pub(crate) fn handle(&mut self, request: Request, say: &mut dyn FnMut(Message)) {
         if let Err(why) = self.answer(request, say) {
             say((Event::Refused { why }, Vec::new()));
@@ -157,7 +157,7 @@ impl Session {
             Request::Cast { origin, direction, t_max } => {
                 let ray = Ray::new(origin.into(), direction.into());
                 if !(ray.origin.is_finite() && ray.dir.is_finite() && ray.dir != Vec3::ZERO) {
-                    return Err("a ray needs finite numbers, and a direction that is not 0 0 0".into());
+                    return Err("the ray is invalid: it needs finite numbers and a direction other than 0 0 0".into());
                 }
                 let ray = Ray { t_max: t_max.unwrap_or(f32::INFINITY), ..ray };
                 let cast = candidates::cast(self.compiled()?, &ray);
@@ -208,9 +208,8 @@ impl Session {
         self.begin(path, bytes, tell)
     }
 
-    /// The path of a scene that a page gives: in the folder of the server's file, and nowhere else,
-    /// so that it can
-    /// name the files there and no others.
+    /// Path of a scene from a page. It always lies in the folder of the server's file, so the scene
+    /// can refer to files in that folder only.
     fn beside(&self, name: &str) -> PathBuf {
         let folder = self.start.file.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
         let name = name.rsplit(['/', '\\']).next().filter(|name| !["", ".", ".."].contains(name));
@@ -229,7 +228,7 @@ impl Session {
             name,
             text: document.text().map(Into::into),
             saves: self.on_disk && document.text().is_some(),
-            pictures: std::iter::once(("color", "the light that comes to each pixel"))
+            pictures: std::iter::once(("color", "radiance of each pixel"))
                 .chain(AOVS.iter().map(|aov| (aov.name, aov.doc)))
                 .map(choice)
                 .collect(),
@@ -244,7 +243,7 @@ impl Session {
         if base64.len() > MAX_BYTES {
             return Err(format!("`{name}` is too large"));
         }
-        let bytes: Arc<[u8]> = decode(base64).ok_or_else(|| format!("`{name}` did not arrive whole"))?.into();
+        let bytes: Arc<[u8]> = decode(base64).ok_or_else(|| format!("`{name}` arrived incomplete"))?.into();
         if opens {
             self.on_disk = false;
             let path = self.beside(&name);
@@ -264,8 +263,8 @@ impl Session {
         self.read(false, tell)
     }
 
-    /// Reads and compiles the text. A camera that was moved stays where it is, unless the text
-    /// moves it too.
+    /// Reads and compiles the text. A moved camera keeps its position unless the text changed the
+    /// camera.
     fn read(&mut self, anew: bool, tell: &mut dyn FnMut(Event)) -> Result<(), String> {
         let start = (self.clock)();
         let document = self.document.as_mut().ok_or("no scene is open")?;
@@ -357,8 +356,8 @@ impl Session {
         let statement = self.camera()?.statement;
         let document = self.document.as_ref().ok_or("no scene is open")?;
         let (start, end) =
-            document.camera_statement().ok_or("the camera of this file cannot be replaced in its text")?;
-        let text = document.text().ok_or("this file is not text")?;
+            document.camera_statement().ok_or("cannot replace the camera in the text of this file")?;
+        let text = document.text().ok_or("this file is not a text")?;
         Ok(format!("{}{statement}{}", &text[..start], &text[end..]))
     }
 
@@ -375,7 +374,7 @@ impl Session {
         self.viewer.restart(now);
     }
 
-    /// Does some milliseconds of work.
+    /// Works for some milliseconds.
     pub(crate) fn step(&mut self, say: &mut dyn FnMut(Message)) {
         let Some(compiled) = self.document.as_ref().and_then(|document| document.compiled.as_ref()) else {
             self.viewer.rest();
@@ -400,7 +399,7 @@ impl Session {
     #[cfg(feature = "fs")]
     fn save(&mut self, force: bool) -> Result<Event, String> {
         use durer::format::folder::stamp_of;
-        let document = self.document.as_ref().filter(|_| self.on_disk).ok_or("this scene is in no file")?;
+        let document = self.document.as_ref().filter(|_| self.on_disk).ok_or("this scene does not belong to a file")?;
         if !force && stamp_of(&document.path) != self.stamp {
             return Ok(Event::Conflict);
         }
@@ -414,8 +413,8 @@ impl Session {
         Err("files cannot be saved here".into())
     }
 
-    /// Reads the scene's file again if it was changed. A text that was edited here stays: the page
-    /// hears of the conflict when it saves.
+    /// Notifies the page if the scene's file changed on disk. The edited text stays; saving it
+    /// reports a conflict.
     #[cfg(feature = "fs")]
     pub(crate) fn look_at_disk(&mut self, say: &mut dyn FnMut(Message)) {
         let Some(document) = self.document.as_ref().filter(|_| self.on_disk) else { return };
@@ -433,7 +432,7 @@ impl Session {
         }
     }
 
-    /// Takes over what is in the scene's file now.
+    /// Accepts the current contents of the file as read, if they equal `text`.
     #[cfg(feature = "fs")]
     pub(crate) fn take_over(&mut self, text: &str) {
         if let Some(document) = self.document.as_ref().filter(|_| self.on_disk)
@@ -453,7 +452,7 @@ fn read(path: &Path) -> Result<Arc<[u8]>, String> {
     Ok(bytes.into())
 }
 
-/// The bytes of a text in base64, with or without padding.
+/// Decodes base64, with or without padding.
 fn decode(text: &str) -> Option<Vec<u8>> {
     let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
     let (mut bits, mut count) = (0_u32, 0);

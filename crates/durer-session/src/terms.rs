@@ -1,4 +1,4 @@
-//! The tree of a pixel's light, each term with its formula and its numbers.
+//! Tree of terms of a pixel's radiance, each with its formula and numbers.
 
 use crate::document::Compiled;
 use crate::protocol::{PixelAccount, Role, Row, Segment, Term};
@@ -12,7 +12,7 @@ use durer::render::Job;
 use durer::render::explain::{Explanation, Names};
 use durer::world::emitters::LightId;
 
-/// Explains a pixel by one of its samples; without a number, by the one that counts most.
+/// Explains a pixel by one of its samples; `None` selects the sample with the largest contribution.
 pub(crate) fn account(compiled: &Compiled, job: &Job, explanation: &Explanation, sample: Option<u32>) -> PixelAccount {
     let chosen = sample.map_or(explanation.heaviest(), |sample| sample as usize);
     let chosen = chosen.min(explanation.samples.len().saturating_sub(1));
@@ -42,15 +42,15 @@ pub(crate) fn account(compiled: &Compiled, job: &Job, explanation: &Explanation,
     }
 }
 
-/// The camera's ray of a place in the picture.
+/// Formulas of the camera ray through a position in the picture.
 fn camera_rows(compiled: &Compiled, job: &Job, place: Vec2) -> Vec<Row> {
     let world = &compiled.world;
     let raster = durer::render::raster(world, job.width, job.height);
     let (point, frame) = (raster.point(place), world.camera_frame());
     let mut rows = vec![Row {
         name: "(x, y)".into(),
-        formula: "place in the picture, −1 to 1 across its larger side".into(),
-        numbers: format!("pixel place ({}, {})", number(place.x.into()), number(place.y.into())),
+        formula: "position in the picture, −1 to 1 across its larger side".into(),
+        numbers: format!("pixel position ({}, {})", number(place.x.into()), number(place.y.into())),
         result: format!("({}, {})", number(point.x.into()), number(point.y.into())),
         value: None,
     }];
@@ -61,12 +61,12 @@ fn camera_rows(compiled: &Compiled, job: &Job, place: Vec2) -> Vec<Row> {
         let (x, y) = (f64::from(point.x), f64::from(point.y));
         let numbers =
             format!("{} {} + {} {} + {} {}", number(distance), vector(w), factor(x), vector(u), factor(y), vector(v));
-        rows.push(vector_row("d", "D w + x u + y v, then to length 1", numbers, distance * w + x * u + y * v));
+        rows.push(vector_row("d", "D w + x u + y v, normalised", numbers, distance * w + x * u + y * v));
     }
     rows
 }
 
-/// Context of a term.
+/// Vectors of the enclosing terms.
 #[derive(Clone, Default)]
 struct Around {
     dir: Vec3,
@@ -78,7 +78,7 @@ struct Teller<'a> {
     compiled: &'a Compiled,
     names: Names<'a>,
     tree: &'a Tree,
-    /// Luminance of all.
+    /// Luminance of the whole pixel.
     whole: f32,
 }
 
@@ -150,9 +150,9 @@ impl Teller<'_> {
             TermKind::Highlight { .. } => "Highlight".into(),
             TermKind::Secondary { total: true, .. } => "Total reflection".into(),
             TermKind::Secondary { .. } => "Mirrored and transmitted".into(),
-            TermKind::Cut { .. } => "Counts for too little, not traced".into(),
-            TermKind::Spent => "No more bounces".into(),
-            TermKind::Emission { .. } => "The surface shines".into(),
+            TermKind::Cut { .. } => "Contribution too small, not traced".into(),
+            TermKind::Spent => "Maximum depth reached".into(),
+            TermKind::Emission { .. } => "Emission".into(),
             TermKind::Direct { light, shadow, .. } => {
                 let name = match light {
                     LightId::Light(number) => self.compiled.light(*number as usize),
@@ -165,7 +165,7 @@ impl Teller<'_> {
                 }
             }
             TermKind::Photons { photons, .. } => format!("Caustic of {photons} photons"),
-            TermKind::OneWavelength { nm } => format!("At {nm:.0} nm alone"),
+            TermKind::OneWavelength { nm } => format!("At {nm:.0} nm only"),
         }
     }
 
@@ -220,9 +220,9 @@ impl Teller<'_> {
                 }
                 if let Some(hit) = hit {
                     let numbers = format!("{} + {} {}", vector(ray.origin), number(hit.t.into()), vector(ray.dir));
-                    rows.push(row("t", "the least of all objects", "", hit.t.into()));
+                    rows.push(row("t", "least t of all objects", "", hit.t.into()));
                     rows.push(vector_row("P", "o + t d", numbers, hit.position));
-                    rows.push(vector_row("n", "normal that light is reckoned with", "", hit.n));
+                    rows.push(vector_row("n", "shading normal", "", hit.n));
                     if let Some(uv) = hit.uv {
                         rows.push(words("(u, v)", &format!("({}, {})", number(uv.x.into()), number(uv.y.into()))));
                     }
@@ -232,21 +232,21 @@ impl Teller<'_> {
                 }
                 if let Some(bounce) = bounce {
                     rows.push(words("lobe", bounce.lobe));
-                    rows.push(row("p", "density of the direction", "", bounce.pdf.into()));
-                    rows.push(row("q", "chance that the path went on", "", bounce.survival.into()));
+                    rows.push(row("p", "pdf of the direction", "", bounce.pdf.into()));
+                    rows.push(row("q", "survival probability", "", bounce.survival.into()));
                 }
-                rows.push(row("weight", "what it counts for in the pixel", "", (*weight).into()));
+                rows.push(row("weight", "weight in the pixel", "", (*weight).into()));
             }
             TermKind::Ambient { share } => {
                 rows.push(words("L", &format!("k_a · ambient = {} · {}", color(node.value), color(node.factor))));
                 if *share != 1.0 {
-                    rows.push(row("share", "of the material in this point", "", (*share).into()));
+                    rows.push(row("share", "of the material at this point", "", (*share).into()));
                 }
             }
             TermKind::Light { to_light, distance, shadow, .. } => {
                 rows.push(vector_row("l", "unit vector to the light", "", *to_light));
                 if distance.is_finite() {
-                    rows.push(row("r", "distance of the light", "", (*distance).into()));
+                    rows.push(row("r", "distance to the light", "", (*distance).into()));
                 }
                 rows.push(words("arrives", &color(node.scale)));
                 rows.extend(shadow.as_ref().map(|shadow| self.shadow_row(shadow)));
@@ -281,7 +281,7 @@ impl Teller<'_> {
             }
             TermKind::Secondary { here, there, fresnel, total } => {
                 rows.push(row("η", "refractive index on this side", "", (*here).into()));
-                rows.push(row("η′", "behind the surface", "", (*there).into()));
+                rows.push(row("η′", "refractive index behind the surface", "", (*there).into()));
                 let cosine = -around.dir.normalize_or_zero().dot(around.n);
                 let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
                 let beyond = f64::from(sine) * f64::from(*here) / f64::from(*there);
@@ -291,18 +291,18 @@ impl Teller<'_> {
                     rows.push(row("sin θ′", "η sin θ / η′ (Snell)", numbers, beyond));
                 }
                 if *total {
-                    rows.push(words("so", "sin θ′ > 1: no light gets through"));
+                    rows.push(words("so", "sin θ′ > 1: total reflection"));
                 }
                 if let Some(fresnel) = fresnel {
-                    rows.push(row("R", "mirrored share (Fresnel, by Schlick)", "", (*fresnel).into()));
+                    rows.push(row("R", "reflectance (Fresnel, by Schlick)", "", (*fresnel).into()));
                 }
             }
-            TermKind::Cut { weight } => rows.push(row("weight", "what it would count for", "", (*weight).into())),
-            TermKind::Emission { mis } => rows.push(row("MIS", "weight of being met by chance", "", (*mis).into())),
+            TermKind::Cut { weight } => rows.push(row("weight", "weight in the pixel", "", (*weight).into())),
+            TermKind::Emission { mis } => rows.push(row("MIS", "weight of BSDF sampling", "", (*mis).into())),
             TermKind::Direct { to_light, distance, choice, pdf, bsdf, mis, shadow, .. } => {
                 rows.push(vector_row("ω", "direction to the light", "", *to_light));
                 if distance.is_finite() {
-                    rows.push(row("r", "distance of the light", "", (*distance).into()));
+                    rows.push(row("r", "distance to the light", "", (*distance).into()));
                 }
                 rows.push(words("f cos θ", &color(*bsdf)));
                 rows.push(row(
@@ -311,12 +311,12 @@ impl Teller<'_> {
                     format!("{} · {}", number((*choice).into()), number((*pdf).into())),
                     f64::from(*choice) * f64::from(*pdf),
                 ));
-                rows.push(row("MIS", "weight of being chosen", "", (*mis).into()));
+                rows.push(row("MIS", "weight of light sampling", "", (*mis).into()));
                 rows.extend(shadow.as_ref().map(|shadow| self.shadow_row(shadow)));
             }
             TermKind::Photons { radius, photons } => {
-                rows.push(row("radius", "how far away photons count", "", (*radius).into()));
-                rows.push(row("photons", "within it", "", *photons as f64));
+                rows.push(row("radius", "search radius", "", (*radius).into()));
+                rows.push(row("photons", "number within the radius", "", *photons as f64));
             }
             TermKind::OneWavelength { .. } | TermKind::Sky | TermKind::Spent => {}
         }
@@ -335,10 +335,10 @@ impl Teller<'_> {
         match shadow.blocker {
             Some((object, t)) => {
                 let what = self.names.short_object(object);
-                words("shadow ray", &format!("meets {what} at t = {}: no light", number(t.into())))
+                words("shadow ray", &format!("hits {what} at t = {}: shadow", number(t.into())))
             }
-            None if shadow.share.is(1.0) => words("shadow ray", "meets nothing before the light"),
-            None => words("shadow ray", &format!("lets {} through", vector(self.tree.color(shadow.share)))),
+            None if shadow.share.is(1.0) => words("shadow ray", "reaches the light"),
+            None => words("shadow ray", &format!("transmits {}", vector(self.tree.color(shadow.share)))),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A picture that comes from coarse to fine, in steps that take some milliseconds each.
+//! Progressive rendering from coarse to fine, in steps of some milliseconds.
 
 use crate::display::{display, pixels};
 use crate::document::Compiled;
@@ -8,16 +8,16 @@ use durer::RenderJob;
 use durer::job::View;
 use durer::render::{Control, Job, ProgressiveRender, RenderError, Sampling};
 
-/// Milliseconds that a coarse picture may take: while the camera moves, and else.
+/// Time budget for a coarse picture in milliseconds: while the camera moves, and otherwise.
 const MOVING: f64 = 24.0;
 const RESTING: f64 = 45.0;
-/// Milliseconds after which a step ends, so that messages are heard.
+/// Duration of a step in milliseconds; messages are handled between steps.
 const STEP: f64 = 12.0;
-/// Milliseconds between pictures of one render.
+/// Time between pictures of one render, in milliseconds.
 const BETWEEN: f64 = 160.0;
-/// Sides of a coarse picture's pixels, in pixels.
+/// Sizes of a coarse picture's blocks, in pixels.
 const DIVISORS: [u32; 9] = [1, 2, 3, 4, 5, 6, 8, 12, 16];
-/// The largest side of a picture.
+/// Maximum width and height of a picture, in pixels.
 const LARGEST: u32 = 8192;
 
 /// The picture of a session.
@@ -30,27 +30,27 @@ pub(crate) struct Viewer {
     pub moving: bool,
     options: RenderJob,
     stage: Stage,
-    /// Milliseconds for a pixel with one sample, as far as known.
+    /// Time per pixel with one sample, in milliseconds; `None` if unknown.
     cost: Option<f64>,
     tiles: u64,
     changed: f64,
     told: f64,
-    /// The picture last made, for who shows it otherwise or saves it.
+    /// Last finished picture, to show it with other display settings or to export it.
     shown: Option<ProgressiveRender>,
     rays: u64,
 }
 
 /// Stage of the picture.
 enum Stage {
-    /// There is nothing to do.
+    /// No work is left.
     Rest,
-    /// A coarse picture comes first.
+    /// A coarse picture is next.
     Coarse,
-    /// The picture itself, once a pass over it is made.
+    /// The full picture, with the samples per pixel of the last complete pass.
     Fine(Box<ProgressiveRender>, Option<u32>),
 }
 
-/// A picture for the page.
+/// A picture for the page: its description and its pixels.
 pub(crate) type Shown = (PictureHead, Vec<u8>);
 
 impl Viewer {
@@ -87,12 +87,12 @@ impl Viewer {
         (self.width, self.height) = (width.clamp(1, LARGEST), height.clamp(1, LARGEST));
     }
 
-    /// Restarts the picture after a change.
+    /// Restarts rendering after a change.
     pub fn restart(&mut self, now: f64) {
         (self.stage, self.changed, self.rays) = (Stage::Coarse, now, 0);
     }
 
-    /// Forgets how long pixels take: another scene was opened.
+    /// Forgets the measured cost and the last picture, when another scene is opened.
     pub fn forget(&mut self) {
         (self.cost, self.shown) = (None, None);
     }
@@ -102,7 +102,7 @@ impl Viewer {
         matches!(self.stage, Stage::Coarse)
     }
 
-    /// Leaves the picture as it is.
+    /// Stops rendering and keeps the last picture.
     pub fn rest(&mut self) {
         self.stage = Stage::Rest;
     }
@@ -111,23 +111,23 @@ impl Viewer {
         !matches!(self.stage, Stage::Rest)
     }
 
-    /// The job of the picture that is shown.
+    /// Returns the job of the picture that is shown.
     pub fn job(&self, compiled: &Compiled) -> Result<Job, String> {
         self.job_of(compiled, &self.picture)
     }
 
-    /// The job of a picture.
+    /// Returns the job of a picture.
     pub fn job_of(&self, compiled: &Compiled, picture: &str) -> Result<Job, String> {
         let options = self.options.clone().size((self.width, self.height));
         options.resolve(&compiled.job_context(), Some(&View { crop: None, show: vec![picture.into()] }))
     }
 
-    /// Options that differ from the scene's defaults.
+    /// Returns the options that differ from the scene's defaults.
     pub fn spelled(&self, compiled: &Compiled, job: &Job) -> Vec<String> {
         RenderJob::of(job, &compiled.job_context()).spelled()
     }
 
-    /// Does a part of the work.
+    /// Works for about one [`STEP`].
     pub fn step(&mut self, compiled: &Compiled, clock: &dyn Fn() -> f64) -> Result<Option<Shown>, String> {
         match std::mem::replace(&mut self.stage, Stage::Rest) {
             Stage::Rest => Ok(None),
@@ -159,8 +159,8 @@ impl Viewer {
         while render.next_pass(&compiled.world, &control).map_err(wrong)?.is_some() {}
         let shown = self.picture_of(&render, [coarse.width, coarse.height], 1, None)?;
         let made = (clock() - start) / f64::from(coarse.width * coarse.height);
-        // A clock without steps, or a first picture that was slow for want of caches, is forgotten
-        // soon.
+        // Average the cost: a first picture with cold caches or a coarse clock soon loses its
+        // influence.
         let known = self.cost.map_or(made, |cost| 0.5 * (cost + made));
         self.cost = (made > 0.0).then_some(known).or(self.cost);
         self.tiles = self.cost.map_or(4, |cost| ((STEP / cost / 256.0) as u64).clamp(2, 4096));
@@ -209,7 +209,7 @@ impl Viewer {
         Ok(shown)
     }
 
-    /// The finished picture, encoded again.
+    /// Encodes the finished picture again with the current display settings.
     pub fn again(&self, clock: &dyn Fn() -> f64) -> Option<Shown> {
         let render = self.shown.as_ref().filter(|_| !self.is_busy())?;
         let job = render.part().job();
@@ -218,7 +218,7 @@ impl Viewer {
         Some(self.head(shown, Some(job), clock))
     }
 
-    /// The picture as a file.
+    /// Encodes the finished picture as a file.
     pub fn export(&self, name: &str) -> Result<Vec<u8>, String> {
         let render = self.shown.as_ref().ok_or("the picture is not finished yet")?;
         let mut rendered = render.part().pictures().map_err(|error| error.to_string())?;

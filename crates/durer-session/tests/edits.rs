@@ -1,10 +1,10 @@
-//! Thousands of edits, most of them nonsense.
+//! Robustness of a session against thousands of random edits.
 
 use durer_session::{Host, Start};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Numbers that look random.
+/// Linear congruential generator.
 struct Random(u64);
 
 impl Random {
@@ -33,7 +33,7 @@ const WORDS: [&str; 16] = [
     "Noise {",
 ];
 
-/// A text with something cut out, put in or repeated, at places where letters begin.
+/// Returns the text with a random part removed, inserted or repeated, at character boundaries.
 fn changed(text: &str, random: &mut Random) -> String {
     let mut place = || {
         let at = random.below(text.len() + 1);

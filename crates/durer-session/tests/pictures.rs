@@ -1,4 +1,4 @@
-//! Sessions against the library: the same bits, whatever happened before.
+//! Pictures of sessions equal those of the library bit by bit, for any history of requests.
 
 use durer::prelude::*;
 use durer_session::protocol::{Answer, Event, PictureHead};
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// A host with a clock that goes on by a millisecond at each look.
+/// A host whose clock advances by one millisecond at each reading.
 struct Page(Host);
 
 impl Page {
@@ -23,7 +23,7 @@ impl Page {
         all
     }
 
-    /// Pictures until the session rests.
+    /// Returns all pictures until the session is idle.
     fn pictures(&mut self) -> Vec<(PictureHead, Vec<u8>)> {
         let mut all = Vec::new();
         while self.0.is_busy() {
@@ -47,7 +47,7 @@ fn scene(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name)
 }
 
-/// The hash of a picture that is made at once.
+/// Renders a picture in one pass and returns its hash.
 fn hash(scene: &CompiledScene, job: RenderJob) -> String {
     let job = scene.job(&job).unwrap();
     let part = durer::render::PartialRender::new(scene.world(), &job, durer::render::Shard::WHOLE).unwrap();
@@ -84,7 +84,7 @@ fn finished_pictures_have_the_hash_of_the_command() {
 }
 
 #[test]
-fn motion_makes_coarse_pictures_alone_and_home_is_exact() {
+fn motion_renders_coarse_pictures_only_and_home_restores_the_picture() {
     let mut page = Page::new(Some(scene("sphere.txt")));
     page.ask(r#"{"kind":"open","name":"","text":null}"#);
     page.ask(r#"{"kind":"size","width":80,"height":60}"#);
@@ -103,7 +103,7 @@ fn motion_makes_coarse_pictures_alone_and_home_is_exact() {
 }
 
 #[test]
-fn a_camera_that_is_written_into_the_text_is_where_it_was() {
+fn camera_written_into_text_renders_the_same_picture() {
     let mut page = Page::new(None);
     let text = std::fs::read_to_string(scene("whitted.txt")).unwrap();
     let open = serde_json::json!({ "kind": "open", "name": "scene.txt", "text": text });
@@ -116,7 +116,7 @@ fn a_camera_that_is_written_into_the_text_is_where_it_was() {
     assert!(now.contains("# Homage to Turner Whitted") && now.contains("PerspectiveCamera { center "), "{now}");
     assert_eq!(now.lines().count(), text.lines().count());
     assert_eq!(page.pictures().pop().unwrap().0.hash, moved.0.hash);
-    // Read by the command, it is the same picture.
+    // The command renders the same picture from the written text.
     let folder = std::env::temp_dir().join(format!("durer-session-{}.txt", std::process::id()));
     std::fs::write(&folder, now).unwrap();
     let command = hash(&durer::open(&folder).unwrap(), RenderJob::default().size((64, 48)));
@@ -125,7 +125,7 @@ fn a_camera_that_is_written_into_the_text_is_where_it_was() {
 }
 
 #[test]
-fn a_text_with_errors_keeps_the_picture_and_says_where() {
+fn text_with_errors_keeps_the_picture_and_reports_the_place() {
     let mut page = Page::new(None);
     let text = std::fs::read_to_string(scene("sphere.txt")).unwrap();
     page.ask(&serde_json::json!({ "kind": "open", "name": "scene.txt", "text": text }).to_string());
@@ -171,7 +171,7 @@ fn terms_of_a_pixel_sum_to_it() {
 }
 
 #[test]
-fn all_objects_answer_a_ray() {
+fn cast_reports_a_verdict_for_each_object() {
     let mut page = Page::new(Some(scene("whitted.txt")));
     page.ask(r#"{"kind":"open","name":"","text":null}"#);
     let answers = page.ask(r#"{"kind":"cast","origin":[1.15,1.2,6],"direction":[0,0,-2],"t_max":null}"#);
@@ -179,14 +179,14 @@ fn all_objects_answer_a_ray() {
     let verdicts: Vec<String> = cast.tests.iter().map(|test| format!("{:?}", test.verdict)).collect();
     assert_eq!(verdicts, ["Missed", "Missed", "Closest"]);
     assert_eq!(cast.hit.as_ref().unwrap().object, 2);
-    // The sphere at z = -1.6 with radius 1.2, from z = 6 in steps of 2.
+    // The sphere has center z = -1.6 and radius 1.2; the ray starts at z = 6 in steps of 2.
     let value = |name: &str| cast.tests[2].rows.iter().find(|row| row.name == name).unwrap().value.unwrap();
     assert!((value("t₁") - 3.2).abs() < 1e-6 && (value("t₂") - 4.4).abs() < 1e-6);
     assert!((f64::from(cast.hit.as_ref().unwrap().t) - value("t₁")).abs() < 1e-6);
 }
 
 #[test]
-fn what_is_no_question_is_refused() {
+fn invalid_requests_are_refused() {
     let mut page = Page::new(None);
     for request in [
         "{}",

@@ -1,4 +1,5 @@
-//! The sessions of `durer-session` in a Web Worker: messages come as texts, answers go as bytes.
+//! Sessions of `durer-session` in a Web Worker. Requests arrive as JSON text, answers leave as
+//! bytes.
 
 use durer_session::{Clock, Host, Start};
 use js_sys::{Function, Uint8Array};
@@ -17,7 +18,7 @@ pub struct Engine(Host);
 
 #[wasm_bindgen]
 impl Engine {
-    /// An engine without sessions.
+    /// Creates an engine without sessions.
     #[wasm_bindgen(constructor)]
     #[expect(clippy::new_without_default)]
     pub fn new() -> Engine {
@@ -25,12 +26,12 @@ impl Engine {
         Engine(Host::new(Start::default(), clock))
     }
 
-    /// Answers a message; `send` is called with each answer.
+    /// Handles a message and calls `send` with each answer.
     pub fn receive(&mut self, message: &str, send: &Function) {
         self.0.receive(message, &mut |bytes| call(send, &bytes));
     }
 
-    /// Does some milliseconds of work. Tells whether there is more.
+    /// Works for some milliseconds. Returns true if work is left.
     pub fn step(&mut self, send: &Function) -> bool {
         self.0.step(&mut |bytes| call(send, &bytes));
         self.0.is_busy()
@@ -38,6 +39,6 @@ impl Engine {
 }
 
 fn call(send: &Function, bytes: &[u8]) {
-    // An error of the page's own code stays there.
+    // Ignore exceptions of the callback.
     let _ = send.call1(&JsValue::NULL, &Uint8Array::from(bytes));
 }

@@ -169,12 +169,12 @@ pub fn part(data: &[u8]) {
 fn folder() -> PathBuf {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     let make = || {
-        let folder = tempfile::tempdir().expect("there is a folder for temporary files").keep();
+        let folder = tempfile::tempdir().expect("cannot create a temporary folder").keep();
         let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\n\
                     f 1/1 3/3 2/2\nf 1/1 2/2 4/3\nf 1/1 4/2 3/3\nf 2/1 3/2 4/3\n";
         let picture = [b"P6 2 2 255\n".as_slice(), &[9, 200, 30, 0, 0, 0, 255, 255, 255, 80, 90, 100]].concat();
-        std::fs::write(folder.join("a.obj"), mesh).expect("it can be written");
-        std::fs::write(folder.join("a.ppm"), picture).expect("it can be written");
+        std::fs::write(folder.join("a.obj"), mesh).expect("cannot write the mesh");
+        std::fs::write(folder.join("a.ppm"), picture).expect("cannot write the picture");
         folder
     };
     FOLDER.get_or_init(make).clone()
@@ -201,11 +201,11 @@ pub fn ways(data: &[u8]) {
         let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
         let bytes = text.as_bytes().into();
         let loaded = crate::load_text(&path, bytes, &options, &mut files, &mut diagnostics);
-        let loaded = loaded.unwrap_or_else(|| panic!("what was written is not read: {diagnostics:?}\n{text}"));
+        let loaded = loaded.unwrap_or_else(|| panic!("cannot read the written scene: {diagnostics:?}\n{text}"));
         let world = loaded.compile(&options, &mut files, &mut diagnostics)?;
-        let part = PartialRender::new(&world, &job, Shard::WHOLE).expect("the job is possible");
+        let part = PartialRender::new(&world, &job, Shard::WHOLE).expect("the job is valid");
         let control = Control { threads: Some(1), ..Control::default() };
-        match part.render(&world, &control, &mut |_, _| {}).expect("it can be rendered") {
+        match part.render(&world, &control, &mut |_, _| {}).expect("the render failed") {
             RenderOutcome::Finished => Some(part.hash()),
             stop => panic!("{stop:?}\n{text}"),
         }

@@ -9,15 +9,18 @@
 //! fn main() -> Result<(), Error> {
 //!     let mut scene = Scene::builder();
 //!     scene.camera(PerspectiveCamera::look_at(vec3(1.0, 1.0, 6.0), Vec3::ZERO, 40.0));
-//!     scene.light(PointLight { position: vec3(3.0, 4.0, 5.0), candela: Some(60.0), ..Default::default() });
-//!     let red = scene.material(PrincipledMaterial { base_color: rgb(0.8, 0.2, 0.1), ..Default::default() });
+//!     let position = vec3(3.0, 4.0, 5.0);
+//!     scene.light(PointLight { position, candela: Some(60.0), ..Default::default() });
+//!     let base_color = rgb(0.8, 0.2, 0.1);
+//!     let red = scene.material(PrincipledMaterial { base_color, ..Default::default() });
 //!     let corners = [vec3(-1.0, 0.0, 0.0), vec3(1.0, 0.0, 0.0), vec3(0.0, 1.5, 0.0)];
 //!     let triangle = scene.mesh(&corners, &[[0, 1, 2]]);
 //!     scene.add(triangle).material(red).translate(vec3(1.0, -0.5, 0.0));
 //!     scene.add(Sphere { center: vec3(-1.0, 0.0, 0.0), radius: 1.0 }).material(red);
 //!     let world = scene.build()?.compile()?;
 //!
-//!     let mut render = Renderer::new(&world, RenderJob::for_scene(&world).size((64, 48)).samples(4_u32))?;
+//!     let job = RenderJob::for_scene(&world).size((64, 48)).samples(4_u32);
+//!     let mut render = Renderer::new(&world, job)?;
 //!     while let Some(progress) = render.next_pass()? {
 //!         println!("{} of {} samples", progress.samples, progress.all_samples);
 //!     }

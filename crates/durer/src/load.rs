@@ -144,15 +144,15 @@ pub fn load_text(
         return Some(Loaded { scene, rules: dialect.rules().clone(), dialect, guess: None, source, memory });
     }
     if options.staging.turned.is_some() {
-        let error = Diagnostic::error("nothing goes around this scene: it is seen by the camera that is written in it");
-        let help = "`durer convert` makes a glTF file of it, which is a model that `--turntable` goes around";
+        let error = Diagnostic::error("`--turntable` cannot rotate around this scene, because it has its own camera");
+        let help = "convert it with `durer convert` to a glTF file, a model that `--turntable` rotates around";
         diagnostics.push(error.help(help));
         return None;
     }
     let mut guess = None;
     let dialect = options.dialect.unwrap_or_else(|| {
         let found = match &json {
-            // Nobody asked for it; the scene says it.
+            // A JSON scene states its dialect, so there is nothing to detect.
             Some(json) => Guess { dialect: json.dialect(), reasons: Vec::new(), others: Vec::new(), hinted: false },
             None => course::guess(&bytes, file, &options.hints, &|name| source.contains(name)),
         };
@@ -212,7 +212,7 @@ fn portability(bytes: &[u8], file: u32, dialect: Dialect, said: &Diagnostics) ->
         let message = format!("the program of {} would refuse this file: {}", dialect.name(), first.message);
         let note = Diagnostic::note(message)
             .code("portability")
-            .help("it is read here all the same; `--strict` refuses it too");
+            .help("it is read anyway; `--strict` refuses it too");
         notes.push(Diagnostic { span: first.span, ..note });
     }
     notes
@@ -221,7 +221,7 @@ fn portability(bytes: &[u8], file: u32, dialect: Dialect, said: &Diagnostics) ->
 impl Loaded {
     /// Returns the context of a job's defaults. `timed`: a time limit ends the sampling.
     pub fn job_context(&self, timed: bool) -> JobContext<'_> {
-        // Our own dialect emulates no program.
+        // Dürer's own dialect emulates no program.
         let emulates = self.guess.is_none() && self.dialect != Dialect::Durer;
         JobContext { scene: &self.scene, rules: &self.rules, emulates, timed }
     }

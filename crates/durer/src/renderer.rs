@@ -88,7 +88,7 @@ impl<'w> Renderer<'w> {
     pub fn image(&self) -> Result<Picture, Error> {
         let mut rendered = self.render.part().pictures()?;
         match rendered.layers.is_empty() {
-            true => Err(RenderError::Job("no colour was asked for".into()).into()),
+            true => Err(RenderError::Job("the job has no colour picture".into()).into()),
             false => Ok(Picture { layer: rendered.layers.swap_remove(0), attributes: rendered.attributes }),
         }
     }

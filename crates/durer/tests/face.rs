@@ -13,7 +13,7 @@ fn spheres() -> CompiledScene {
 }
 
 #[test]
-fn passes_make_the_picture_of_one_render() {
+fn passes_render_the_same_picture_as_one_render() {
     let world = spheres();
     for options in [
         RenderJob::for_scene(&world).size((40, 24)).samples(37_u32),
@@ -29,7 +29,7 @@ fn passes_make_the_picture_of_one_render() {
 }
 
 #[test]
-fn a_cancelled_render_keeps_what_is_made() {
+fn cancelled_render_keeps_finished_passes() {
     let world = spheres();
     let options = RenderJob::for_scene(&world).size((40, 24)).samples(8_u32);
     let mut passes = Renderer::with_control(&world, options.clone(), Control::default()).unwrap();

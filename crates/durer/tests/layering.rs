@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use syn::{Item, UseTree};
 
-/// The crates by layer, as ARCHITECTURE.md draws them. A crate may name crates of lower layers only.
+/// Crates by layer, as in ARCHITECTURE.md. A crate may use only crates of lower layers.
 const LAYERS: [&[&str]; 10] = [
     &["durer-bvh", "durer-diag", "durer-photo"],
     &["durer-image"],
@@ -51,14 +51,14 @@ fn dependencies(manifest: &str) -> Vec<String> {
 }
 
 #[test]
-fn crates_name_only_crates_below_them() {
+fn crates_use_only_lower_layers() {
     for (own, crates) in LAYERS.iter().enumerate() {
         for name in *crates {
             let manifest = fs::read_to_string(folder_of(name).join("Cargo.toml")).unwrap();
             for other in dependencies(&manifest) {
-                let below = layer(&other).unwrap_or_else(|| panic!("{other} is in no layer"));
+                let below = layer(&other).unwrap_or_else(|| panic!("{other} has no layer"));
                 let for_tests = (*name, &other[..]) == FOR_TESTS;
-                assert!(below < own || for_tests, "{name} may not name {other}");
+                assert!(below < own || for_tests, "{name} may not use {other}");
             }
         }
     }
@@ -176,20 +176,20 @@ fn in_circles(arrows: &BTreeMap<String, BTreeSet<String>>) -> Vec<&String> {
 }
 
 #[test]
-fn modules_name_each_other_in_no_circle() {
+fn modules_have_no_cyclic_dependencies() {
     let mut count = 0;
     for name in LAYERS.concat() {
         for (folder, arrows) in arrows(&folder_of(name).join("src")) {
             count += arrows.values().map(BTreeSet::len).sum::<usize>();
             let circle = in_circles(&arrows);
-            assert!(circle.is_empty(), "{name}, {}: {circle:?} name each other in a circle", folder.join("::"));
+            assert!(circle.is_empty(), "{name}, {}: {circle:?} depend on each other in a cycle", folder.join("::"));
         }
     }
-    assert!(count > 500, "only {count} arrows were found");
+    assert!(count > 500, "only {count} dependencies were found");
 }
 
 #[test]
-fn a_circle_is_found() {
+fn cycle_is_found() {
     let arrow = |from: &str, to: &str| (from.to_string(), BTreeSet::from([to.to_string()]));
     let arrows = BTreeMap::from([arrow("a", "b"), arrow("b", "c"), arrow("c", "b"), arrow("d", "a")]);
     assert_eq!(in_circles(&arrows), ["b", "c"]);

@@ -1,5 +1,5 @@
-//! The arithmetic of the course's programs since 2012: where their rays go, what they hit, and what
-//! is done where nobody asked for them.
+//! Arithmetic of the course's programs since 2012: their rays, their hits, and Dürer's behaviour
+//! without their quirks.
 
 #![allow(clippy::disallowed_methods, reason = "the official programs call the platform's tangent")]
 
@@ -12,7 +12,8 @@ use durer::world::{Hit, World};
 use durer::{LoadOptions, load_text};
 use std::path::Path;
 
-/// A world of a dialect with its quirks, but for those that are turned off; files are in a folder.
+/// Compiles a world of a dialect with its quirks, except those in `off`. Files are read from
+/// `folder`.
 fn world_in(folder: &Path, text: &str, dialect: Dialect, off: &[Compat]) -> (World, Diagnostics) {
     let compat = off.iter().map(|&compat| (compat, false)).collect();
     let options = LoadOptions { dialect: Some(dialect), compat, course: true, ..LoadOptions::default() };
@@ -49,7 +50,7 @@ fn seen(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Color {
     Whitted { world, settings, cancel: None }.radiance(&ray, &mut ())
 }
 
-/// A scene before 2020: a camera, lights, and objects of one white material each.
+/// Returns a scene before 2020: a camera, lights, and objects with one white material.
 fn classic(lights: &str, objects: &[&str]) -> String {
     let count = lights.matches("Light {").count();
     format!(
@@ -63,7 +64,7 @@ fn classic(lights: &str, objects: &[&str]) -> String {
     )
 }
 
-/// A scene of nodes, each with its transform and its object.
+/// Returns a scene of nodes, each with its transform and its object.
 fn nodes(objects: &[&str]) -> String {
     let node = |object: &&str| format!("Node {{ Component<Material> {{ index 0 }} {object} }}\n");
     format!(
@@ -78,9 +79,9 @@ fn nodes(objects: &[&str]) -> String {
 const SUN: &str = "DirectionalLight { direction 0 -1 0 color 1 1 1 }";
 
 #[test]
-fn secondary_rays_of_2016_start_a_little_along_and_those_of_2012_count_from_there_on() {
-    // A lamp 0.005 before the right wall lights the left one, from which it is 1.995 away: the ray
-    // meets the right wall 1.99 from where it starts, 0.01 along.
+fn secondary_rays_of_2016_start_farther_along_and_those_of_2012_have_a_minimum_t() {
+    // A light 0.005 in front of the right wall illuminates the left wall at a distance of 1.995.
+    // The ray hits the right wall at t = 1.99, because it starts 0.01 along its direction.
     let lamp = "PointLight { position 0.995 1 0 color 1 1 1 falloff 0.25 }";
     let scene = classic(lamp, &["Plane { normal 1 0 0 offset -1 }", "Plane { normal -1 0 0 offset -1 }"]);
     let left = |world: &World| seen(world, [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]);
@@ -99,7 +100,7 @@ fn secondary_rays_of_2016_start_a_little_along_and_those_of_2012_count_from_ther
 }
 
 #[test]
-fn a_plane_is_hit_where_the_ray_starts_since_2016() {
+fn plane_is_hit_at_the_ray_origin_since_2016() {
     let plane = ["Plane { normal 0 1 0 offset 1 }"];
     let on =
         |world: &World| hit(world, [0.0, 1.0, 0.0], [0.6, 0.0, 0.8]).or(hit(world, [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]));
@@ -111,7 +112,7 @@ fn a_plane_is_hit_where_the_ray_starts_since_2016() {
 }
 
 #[test]
-fn rays_of_2020_are_differences_of_two_points_for_every_object() {
+fn object_space_rays_of_2020_are_differences_of_two_points() {
     let plane = "Component<Object> { type plane normal 0 3 0 offset -4.5 }";
     let ball = "Transform { translate 3 -2 1 } Component<Object> { type sphere radius 900 }";
     let world = world(&nodes(&[plane, ball]), Dialect::F23);
@@ -132,7 +133,7 @@ fn rays_of_2020_are_differences_of_two_points_for_every_object() {
     assert!(differ > 150, "{differ}");
 }
 
-/// The ray of a point of the picture, and the camera's vectors as written.
+/// Returns the ray through a point of the picture, for the camera as written.
 fn camera_ray(world: &World, point: Vec2) -> Vec3 {
     world.camera().ray(world.camera_frame(), &CameraSample::at(point)).unwrap().dir
 }
@@ -163,7 +164,7 @@ fn camera_rays_are_sums_of_the_axes_of_their_year() {
 }
 
 #[test]
-fn a_triangle_of_2012_wins_where_something_else_is_as_near() {
+fn triangle_of_2012_wins_ties() {
     let triangle = "Triangle { vertex0 -1 0 1 vertex1 1 0 1 vertex2 0 0 -2 }";
     let plane = "Plane { normal 0 1 0 offset 0 }";
     for (dialect, tied) in [(Dialect::F12a4, true), (Dialect::F12a5, true), (Dialect::F16, false)] {
@@ -174,7 +175,8 @@ fn a_triangle_of_2012_wins_where_something_else_is_as_near() {
     }
 }
 
-/// A closed mesh of 48 triangles: an octahedron whose faces are cut into six around their middle.
+/// Returns a closed mesh of 48 triangles: an octahedron with each face split into six around its
+/// center.
 fn stone() -> String {
     let mut text = String::from("v 0 0 0\n");
     let mut count = 1;
@@ -195,7 +197,7 @@ fn stone() -> String {
 }
 
 #[test]
-fn a_ray_along_an_axis_sees_through_half_of_a_mesh() {
+fn axis_parallel_ray_misses_half_of_a_mesh() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("stone.obj"), stone()).unwrap();
     let classic = classic(SUN, &["TriangleMesh { obj_file stone.obj }"]);
@@ -209,7 +211,7 @@ fn a_ray_along_an_axis_sees_through_half_of_a_mesh() {
         let (world, _) = world_in(folder.path(), text, dialect, &[]);
         let down = |x: f32, y: f32| hit(&world, [x, y, 5.0], [0.0, 0.0, -1.0]);
         assert_eq!(down(0.35, 0.3).is_none(), holes, "{dialect:?}");
-        // On the near side only the cells at the mesh's lowest corner are visited, where nothing is.
+        // On the near side, only cells at the mesh's lowest corner are visited, and they are empty.
         assert_eq!(down(-0.35, -0.3).is_none(), holes, "{dialect:?}");
         let inclined = hit(&world, [0.35, 0.3, 5.0], [1e-7, 1e-7, -1.0]).unwrap();
         assert!((inclined.t - 4.65).abs() < 1e-5, "{dialect:?} {inclined:?}");
@@ -219,7 +221,7 @@ fn a_ray_along_an_axis_sees_through_half_of_a_mesh() {
 }
 
 #[test]
-fn meshes_are_hit_where_all_their_triangles_tested_one_by_one_are() {
+fn octree_hits_equal_brute_force_hits() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("stone.obj"), stone()).unwrap();
     let mut random = durer::math::random::Random(5);
@@ -262,7 +264,7 @@ fn meshes_are_hit_where_all_their_triangles_tested_one_by_one_are() {
 }
 
 #[test]
-fn glass_of_2012_takes_the_normals_of_planes_and_in_its_first_version_air_for_the_other_side() {
+fn glass_of_2012_uses_plane_normals_as_written() {
     let pane = |normal: &str, offset: f32| {
         format!(
             "PerspectiveCamera {{ center 0 5 0 direction 0 -1 0 up 0 0 1 angle 40 }}
@@ -275,7 +277,7 @@ fn glass_of_2012_takes_the_normals_of_planes_and_in_its_first_version_air_for_th
                MaterialIndex 1 Sphere {{ center 0 -2 0 radius 1 }} }}"
         )
     };
-    // Seen straight on through the pane, the ball has 1 - R of its light.
+    // Seen at normal incidence through the pane, the ball has 1 - R of its light.
     let share = |text: &str, off: &[Compat]| {
         seen(&world_in(Path::new("."), text, Dialect::F12a5, off).0, [0.0, 5.0, 0.0], [0.0, -1.0, 0.0]).x
     };

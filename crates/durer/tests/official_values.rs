@@ -1,5 +1,5 @@
-//! What the course's programs since 2012 make of values that mean little, and of words that come
-//! twice; and what is done where nobody asked for these programs.
+//! Treatment of degenerate values and repeated sections by the course's programs since 2012, and
+//! Dürer's behaviour without their quirks.
 
 use durer::diag::{Diagnostics, Files, Severity};
 use durer::dialect::{Compat, Dialect};
@@ -12,8 +12,8 @@ use durer::world::World;
 use durer::{LoadOptions, load_text};
 use std::path::Path;
 
-/// A world of a dialect, with its quirks if it is `official`, and what was found; `None` after
-/// errors.
+/// Loads a world of a dialect, with its quirks if `official`, and returns the diagnostics; the
+/// world is `None` after errors.
 fn load(folder: &Path, text: &str, dialect: Dialect, official: bool) -> (Option<World>, Diagnostics) {
     let all = Compat::ALL.iter().map(|row| (row.0, false));
     let compat = if official { Vec::new() } else { all.collect() };
@@ -48,7 +48,7 @@ const DOWN: [f32; 3] = [0.0, -1.0, 0.0];
 const LIT: &str = "Lights { numLights 1 DirectionalLight { direction 0 -1 0 color 0.5 0.5 0.5 } }";
 const BALL: &str = "Sphere { center 0 0 0 radius 2 }";
 
-/// A scene before 2020, seen from above.
+/// Returns a scene before 2020, seen from above.
 fn classic(lights: &str, angle: &str, shininess: &str, objects: &str) -> String {
     format!(
         "PerspectiveCamera {{ center 0 5 0 direction 0 -1 0 up 0 0 1 angle {angle} }} {lights}
@@ -70,7 +70,7 @@ fn nodes(fov: &str, shininess: &str, node: &str) -> String {
 
 const NODE: &str = "Node { Component<Material> { index 0 } Component<Object> { type sphere radius 2 } }";
 
-/// The years whose programs are asked, with a scene of each.
+/// Years with an official program, each with a scene.
 fn years(edit: impl Fn(&str) -> String) -> Vec<(Dialect, String)> {
     let classic = edit(&classic(LIT, "40", "10", BALL));
     let mut scenes: Vec<_> =
@@ -80,7 +80,7 @@ fn years(edit: impl Fn(&str) -> String) -> Vec<(Dialect, String)> {
 }
 
 #[test]
-fn values_that_mean_nothing_are_drawn_for_a_named_year_and_refused_else() {
+fn degenerate_values_are_rendered_for_a_named_year_and_refused_otherwise() {
     let plain = |text: &str| text.to_string();
     let of = |edit: &dyn Fn(&str) -> String| years(edit);
     for (what, scenes) in [
@@ -102,7 +102,7 @@ fn values_that_mean_nothing_are_drawn_for_a_named_year_and_refused_else() {
             assert!(world.is_none() && found.has_errors(), "{what} {dialect:?}");
         }
     }
-    // Nobody draws these.
+    // No program renders these.
     for wrong in ["radius 1e99", "radius x", "radius nan"] {
         let text = years(|text| text.replace("radius 2", wrong)).remove(2).1;
         assert!(load(Path::new("."), &text, Dialect::F16, true).0.is_none(), "{wrong}");
@@ -110,7 +110,7 @@ fn values_that_mean_nothing_are_drawn_for_a_named_year_and_refused_else() {
 }
 
 #[test]
-fn a_radius_below_0_is_as_large_and_one_of_0_shows_nothing() {
+fn negative_radius_is_used_as_absolute_value_and_zero_is_invisible() {
     for (dialect, text) in years(str::to_string) {
         let [whole, below, none] =
             ["radius 2", "radius -2", "radius 0"].map(|radius| official(&text.replace("radius 2", radius), dialect));
@@ -140,7 +140,7 @@ fn hexadecimal_numbers_are_read_before_2020() {
 }
 
 #[test]
-fn flat_scales_are_drawn_before_2020_and_passed_over_since() {
+fn flat_scales_are_rendered_before_2020_and_ignored_since() {
     let flat = |scale: &str| classic(LIT, "40", "10", &format!("Transform {{ Scale {scale} {BALL} }}"));
     for dialect in [Dialect::F12a4, Dialect::F12a5, Dialect::F16] {
         let (world, found) = load(Path::new("."), &flat("1 0 1"), dialect, true);
@@ -148,14 +148,14 @@ fn flat_scales_are_drawn_before_2020_and_passed_over_since() {
         let (world, found) = load(Path::new("."), &flat("1 0 1"), dialect, false);
         assert!(world.is_none() && found.has_errors(), "{dialect:?}");
     }
-    // 2016's sphere is hit far away, by no number, and black; the others are not hit.
+    // The sphere of 2016 is hit at a NaN t and is black; the others are not hit.
     assert_eq!(seen(&official(&flat("1 0 1"), Dialect::F16), [0.0, 5.0, 0.0], DOWN), Color::ZERO);
     assert_eq!(seen(&official(&flat("1 0 1"), Dialect::F12a4), [0.0, 5.0, 0.0], DOWN), Color::new(0.0, 0.0, 0.25));
     let node = |scale: &str| {
         let node = NODE.replace("Node {", &format!("Node {{ Transform {{ translate 9 0 0 scale {scale} }}"));
         official(&nodes("40", "10", &node), Dialect::F23)
     };
-    // Its matrices are passed over as a whole: it stays where it is.
+    // All matrices of the transform are ignored, so the sphere keeps its position.
     for scale in ["1 0 1", "0.004 0.004 0.004"] {
         assert_ne!(seen(&node(scale), [1.5, 5.0, 0.0], DOWN), Color::new(0.0, 0.0, 0.25), "{scale}");
     }
@@ -163,7 +163,7 @@ fn flat_scales_are_drawn_before_2020_and_passed_over_since() {
 }
 
 #[test]
-fn light_that_is_divided_by_zero_is_black() {
+fn light_divided_by_zero_is_not_finite() {
     let lamp = |attenuation: &str| {
         let light = format!(
             "Node {{ Transform {{ translate 0 9 0 }} Component<Light> {{ type point color 1 1 1 {attenuation} }} }}"
@@ -181,7 +181,7 @@ fn light_that_is_divided_by_zero_is_black() {
 }
 
 #[test]
-fn a_second_section_of_lights_is_added_in_2016_and_counts_alone_else() {
+fn second_lights_section_is_added_in_2016_and_replaces_the_first_otherwise() {
     let second = LIT.replace("0.5 0.5 0.5", "0.25 0 0");
     let text = classic(&format!("{LIT} {second}"), "40", "10", BALL);
     let colors = |world: &World| -> Vec<f32> {
@@ -197,7 +197,7 @@ fn a_second_section_of_lights_is_added_in_2016_and_counts_alone_else() {
 }
 
 #[test]
-fn a_face_without_area_makes_triangles_at_its_corners_black_in_2016() {
+fn face_without_area_makes_neighbours_black_in_2016() {
     let folder = tempfile::tempdir().unwrap();
     let mesh = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv 3 0 -1\nv 3 0 1\nf 3 2 1\nf 4 3 1\nf 6 5 2\nf 1 4 4\n";
     std::fs::write(folder.path().join("flat.obj"), mesh).unwrap();
@@ -213,7 +213,7 @@ fn a_face_without_area_makes_triangles_at_its_corners_black_in_2016() {
 }
 
 #[test]
-fn depths_of_2012_are_kept_within_the_range_before_they_become_greys() {
+fn depths_of_2012_are_clamped_before_they_are_mapped_to_grey() {
     let text = classic(LIT, "40", "10", BALL);
     let grey = |dialect, range: (f32, f32)| {
         let world = official(&text, dialect);
@@ -227,10 +227,10 @@ fn depths_of_2012_are_kept_within_the_range_before_they_become_greys() {
         };
         render(&world, &job, &Control::default()).unwrap().pictures[0].image.pixels[4].x
     };
-    // The ball is hit at 3.
+    // The ball is hit at t = 3.
     assert_eq!(grey(Dialect::F12a4, (2.0, 6.0)), 0.75);
     assert_eq!(grey(Dialect::F12a4, (4.0, 6.0)), 1.0);
-    // Of a range that runs backwards, all before its start is that, and all else its end.
+    // In a reversed range, depths below its start become the start, and all others its end.
     assert_eq!(grey(Dialect::F12a4, (9.0, 2.0)), 1.0);
     assert_eq!(grey(Dialect::F12a4, (2.5, 2.0)), 0.0);
     assert_eq!(grey(Dialect::F04, (9.0, 2.0)), 0.0 + (2.0 - 3.0) / (2.0 - 9.0));

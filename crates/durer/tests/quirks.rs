@@ -53,14 +53,14 @@ fn seen(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Color {
 }
 
 fn close(a: Color, b: [f32; 3]) {
-    assert!((a - Vec3::from(b)).abs().max_element() < 1e-4, "{a} is not {b:?}");
+    assert!((a - Vec3::from(b)).abs().max_element() < 1e-4, "{a} differs from {b:?}");
 }
 
 const CAMERA: &str = "PerspectiveCamera { center 0 5 0 direction 0 -1 0 up 0 0 1 angle 40 }\n";
 const DOWN: [f32; 3] = [0.0, -1.0, 0.0];
 
 #[test]
-fn a_transform_of_2023_drops_shear_and_nested_ones_keep_it() {
+fn transform_of_2023_drops_shear_and_nested_transforms_keep_it() {
     let node = |transform: &str, inner: &str| {
         format!(
             "Camera {{ center 0 0 9 direction 0 0 -1 up 0 1 0 fov 40 }}
@@ -98,7 +98,7 @@ fn a_transform_of_2023_drops_shear_and_nested_ones_keep_it() {
 }
 
 #[test]
-fn normals_of_planes_count_with_their_length() {
+fn plane_normals_are_not_normalised() {
     let scene = |plane: &str| {
         format!(
             "{CAMERA}Background {{ color 0.5 0.25 1 ambientLight 0 0 0 }}
@@ -161,7 +161,7 @@ fn only_meshes_of_2012_have_textures() {
 }
 
 #[test]
-fn a_scene_of_2023_without_lights_is_as_bright_as_is_written() {
+fn scene_of_2023_without_lights_keeps_its_ambient_light() {
     let text = "Camera { center 0 0 9 direction 0 0 -1 up 0 1 0 fov 40 }
         Background { color 0 0 0 ambient_light 0.25 0.5 0 }
         Materials { Material { diffuse 1 0.5 1 } Material { specular 0 0 0 } }
@@ -184,7 +184,7 @@ fn a_scene_of_2023_without_lights_is_as_bright_as_is_written() {
 }
 
 #[test]
-fn a_camera_of_2012_inside_glass_is_in_air() {
+fn camera_of_2012_inside_glass_starts_in_air() {
     let text = format!(
         "{CAMERA}Background {{ color 0 0 0 ambientLight 0 0 0 }}
          Lights {{ numLights 1 DirectionalLight {{ direction 0 0 -1 color 1 1 1 }} }}
@@ -201,7 +201,7 @@ fn a_camera_of_2012_inside_glass_is_in_air() {
 }
 
 #[test]
-fn r0_is_zero_for_rays_that_leave_whatever_the_index() {
+fn r0_is_zero_for_rays_that_leave_glass() {
     for index in [0.7f32, 1.5] {
         let text = format!(
             "{CAMERA}Background {{ color 1 1 1 ambientLight 0 0 0 }}
@@ -240,7 +240,7 @@ fn r0_is_zero_for_rays_that_leave_whatever_the_index() {
 }
 
 #[test]
-fn meshes_are_read_as_each_program_read_them() {
+fn meshes_are_read_as_by_each_program() {
     let folder = tempfile::tempdir().unwrap();
     let corners = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\n";
     let put = |name: &str, faces: &str| std::fs::write(folder.path().join(name), format!("{corners}{faces}")).unwrap();

@@ -75,23 +75,23 @@ fn pixels(name: &str, accel: AccelKind, threads: usize) -> Vec<Vec3> {
 }
 
 #[test]
-fn scenes_are_read_as_our_own_without_a_finding() {
+fn scenes_are_read_in_our_dialect_without_diagnostics() {
     for name in scenes() {
         let (loaded, _) = opened(&name, AccelKind::Bvh);
         let guess = loaded.guess.unwrap();
         assert_eq!((guess.dialect, loaded.dialect), (Dialect::Durer, Dialect::Durer), "{name}");
         let text = fs::read_to_string(root().join(format!("scenes/{name}.txt"))).unwrap();
-        assert!(text.starts_with("# "), "{name} does not begin by saying what it shows");
+        assert!(text.starts_with("# "), "{name} does not begin with a description");
     }
 }
 
 #[test]
-fn scenes_have_the_same_bits_for_all_numbers_of_threads_and_structures() {
+fn scenes_are_identical_for_all_thread_counts_and_accelerators() {
     let bits = |pixels: &[Vec3]| -> Vec<[u32; 3]> { pixels.iter().map(|p| p.to_array().map(f32::to_bits)).collect() };
     for name in scenes() {
         let picture = pixels(&name, AccelKind::Bvh, 1);
         assert!(picture.iter().all(|p| p.is_finite()), "{name}");
-        assert!(picture.iter().any(|p| *p != picture[0]), "{name} is of one colour");
+        assert!(picture.iter().any(|p| *p != picture[0]), "{name} has only one colour");
         for (accel, threads) in [(AccelKind::Bvh, 2), (AccelKind::Grid(None), 1), (AccelKind::Grid(None), 2)] {
             let other = pixels(&name, accel, threads);
             // Do not print whole pictures in the message.
@@ -101,7 +101,7 @@ fn scenes_have_the_same_bits_for_all_numbers_of_threads_and_structures() {
 }
 
 #[test]
-fn scenes_are_told_of_and_shown() {
+fn scenes_are_listed_and_shown() {
     let table = fs::read_to_string(root().join("scenes/README.md")).unwrap();
     let gallery = fs::read_to_string(root().join("docs/gallery.md")).unwrap();
     let pictures = names("docs/gallery", ".png");
@@ -118,7 +118,7 @@ fn scenes_are_told_of_and_shown() {
 }
 
 #[test]
-fn scenes_are_the_same_as_json_and_in_the_words_that_come_of_it() {
+fn scenes_are_equal_after_conversion_to_json_and_back() {
     for name in scenes() {
         let (loaded, world) = opened(&name, AccelKind::Bvh);
         let text = json::write(&loaded.scene, loaded.dialect);

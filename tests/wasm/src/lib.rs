@@ -1,8 +1,8 @@
-//! Rays through each structure of `durer-bvh`, pictures by each integrator, and a hash of the answers to compare between
-//! targets: see `.ci/wasm`.
+//! Traces rays through each structure of `durer-bvh`, renders pictures with each integrator, and
+//! hashes the results, to compare targets: see `.ci/wasm`.
 //!
-//! Input comes from integers, sums, products, quotients and square roots, which are the same on
-//! every machine; `sin` and its like are not.
+//! Inputs are computed with integers, sums, products, quotients and square roots only, which have
+//! the same result on every machine, unlike `sin` and other functions.
 
 #[path = "pictures.rs"]
 mod pictures;
@@ -15,13 +15,13 @@ use durer_bvh::{BuildQuality, InstanceHit, SimdLevel, TriangleBvh, TriangleHit};
 use durer_bvh::{Bvh, Facing, Grid, HeightGrid, Instance, InstanceBvh, PackHit, PrimitivePacks};
 use std::sync::{Arc, OnceLock};
 
-/// Rays of each part.
+/// Number of rays per part.
 const RAYS: usize = 10_000;
 
-/// A name, and work that returns the hash of its answers.
+/// Name of a part, and a function that returns the hash of its results.
 type Part = (&'static str, fn() -> u64);
 
-/// All parts.
+/// The parts.
 pub const PARTS: [Part; 14] = [
     ("trees", trees),
     ("single", single),
@@ -39,40 +39,40 @@ pub const PARTS: [Part; 14] = [
     ("photons", pictures::photons),
 ];
 
-/// The number of parts.
+/// Number of parts.
 #[unsafe(no_mangle)]
 pub extern "C" fn part_count() -> usize {
     PARTS.len()
 }
 
-/// The address of the name of a part.
+/// Address of a part's name.
 #[unsafe(no_mangle)]
 pub extern "C" fn name(part: usize) -> *const u8 {
     PARTS[part].0.as_ptr()
 }
 
-/// The length of the name of a part, in bytes.
+/// Length of a part's name in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn name_length(part: usize) -> usize {
     PARTS[part].0.len()
 }
 
-/// The hash of a part.
+/// Hash of a part.
 #[unsafe(no_mangle)]
 pub extern "C" fn hash(part: usize) -> u64 {
     PARTS[part].1()
 }
 
-/// 1 if rays use `simd128`, else 0.
+/// Returns 1 if traversal uses `simd128`, else 0.
 #[unsafe(no_mangle)]
 pub extern "C" fn simd128() -> u32 {
     (SimdLevel::chosen() == SimdLevel::Simd128).into()
 }
 
-/// A mesh of 101,568 triangles, and rays to time.
+/// A mesh of 101,568 triangles, and the rays to time.
 static TIMED: OnceLock<(TriangleBvh, Vec<Ray>)> = OnceLock::new();
 
-/// Builds what [`shoot`] needs, with this many rays.
+/// Prepares [`shoot`] with this number of rays.
 #[unsafe(no_mangle)]
 pub extern "C" fn prepare(rays: usize) {
     TIMED.get_or_init(|| {
@@ -82,14 +82,14 @@ pub extern "C" fn prepare(rays: usize) {
     });
 }
 
-/// Shoots the rays of [`prepare`] one by one, and counts those that hit.
+/// Traces the rays of [`prepare`] one by one and returns the number of hits.
 #[unsafe(no_mangle)]
 pub extern "C" fn shoot() -> usize {
-    let (tree, rays) = TIMED.get().expect("`prepare` comes first");
+    let (tree, rays) = TIMED.get().expect("call `prepare` first");
     rays.iter().filter(|ray| tree.closest(ray).is_some()).count()
 }
 
-/// A hash of 64 bits.
+/// A 64-bit hash.
 struct Hash(u64);
 
 impl Hash {
@@ -105,7 +105,7 @@ impl Hash {
         floats.into_iter().for_each(|x| self.add(x.to_bits().into()));
     }
 
-    /// 1 for a hit and 0 for none, to count hits by.
+    /// Adds a hit. Returns 1 for a hit and 0 for a miss.
     fn hit(&mut self, hit: Option<TriangleHit>) -> usize {
         let Some(TriangleHit { t, uv, triangle }) = hit else {
             self.add(u64::MAX);
@@ -127,7 +127,7 @@ impl Hash {
         hit.is_some().into()
     }
 
-    /// The hash. A part in which almost nothing is hit tests nothing.
+    /// Returns the hash. Panics if too few or all rays hit, since such a part tests little.
     fn of(self, hits: usize, rays: usize) -> u64 {
         assert!(hits > rays / 4 && hits < rays, "{hits} of {rays}");
         self.0
@@ -155,8 +155,8 @@ impl Mesh {
     }
 }
 
-/// A rough ball around the origin: a closed mesh of 12 `cells`² triangles, between radius 1 and
-/// radius 1.1.
+/// Returns a bumpy ball around the origin: a closed mesh of 12 `cells`² triangles with radii from 1
+/// to 1.1.
 fn planet(cells: u32) -> Mesh {
     let vertex = |at: [u32; 3]| {
         let bump = Random(at.iter().fold(7, |seed, &i| seed << 16 | u64::from(i))).unit();
@@ -179,7 +179,7 @@ fn planet(cells: u32) -> Mesh {
     Mesh::of(corners)
 }
 
-/// Triangles that lie anyhow, some of them long: [`BuildQuality::Best`] cuts those.
+/// Returns random triangles, some of them long, which [`BuildQuality::Best`] splits.
 fn soup(random: &mut Random, count: usize) -> Mesh {
     let mut triangle = |i: usize| {
         let (a, size) = (random.point(), if i.is_multiple_of(20) { 1.0 } else { 0.1 });
@@ -188,14 +188,14 @@ fn soup(random: &mut Random, count: usize) -> Mesh {
     Mesh::of((0..count).map(&mut triangle).collect())
 }
 
-/// From a sphere of radius 2 to a point in the cube from -1 to 1.
+/// Returns a ray from a sphere of radius 2 to a point in the cube from -1 to 1.
 fn through(random: &mut Random) -> Ray {
     let origin = 2.0 * random.direction();
     Ray::new(origin, random.point() - origin)
 }
 
-/// Ordinary rays, and rays through vertices and edges, along axes, with limits, and with numbers
-/// that are very small, very large, or NaN.
+/// Returns a random ray. Some rays go through vertices or edges, along axes, have limits, or
+/// contain very small numbers, very large numbers or NaN.
 fn ray(mesh: &Mesh, random: &mut Random) -> Ray {
     let [a, b, c] = mesh.corners(random.below(mesh.triangles.len()));
     let ray = through(random);
@@ -228,7 +228,7 @@ fn meshes() -> [Mesh; 2] {
 
 const QUALITIES: [BuildQuality; 3] = [BuildQuality::Fast, BuildQuality::Balanced, BuildQuality::Best];
 
-/// Trees as bytes, and again when they are read from these.
+/// Serializes trees and reads them back.
 fn trees() -> u64 {
     let mut hash = Hash::new();
     for mesh in meshes() {
@@ -242,7 +242,7 @@ fn trees() -> u64 {
     hash.0
 }
 
-/// One ray at a time: the first hit, any hit, all hits, and hits that a filter takes.
+/// Single rays: closest hit, any hit, all hits, and filtered hits.
 fn single() -> u64 {
     let (mut hash, mut hits) = (Hash::new(), 0);
     for mesh in meshes() {
@@ -258,7 +258,7 @@ fn single() -> u64 {
             hash.add(tree.occluded_where(ray, filter).into());
         }
     }
-    // Rays from inside leave a closed mesh once, also through vertices and edges.
+    // Rays from inside leave a closed mesh exactly once, also through vertices and edges.
     let mesh = planet(20);
     let tree = mesh.tree(BuildQuality::Fast);
     for [a, b, c] in (0..mesh.triangles.len()).map(|i| mesh.corners(i)) {
@@ -269,7 +269,7 @@ fn single() -> u64 {
     hash.of(hits, 2 * RAYS)
 }
 
-/// Answers to a batch, also where rays have limits.
+/// Hashes the results of a batch, also for rays with limits.
 fn batch(hash: &mut Hash, tree: &TriangleBvh, rays: &[Ray]) -> usize {
     let (mut hits, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
     tree.closest_batch(rays, &mut hits);
@@ -278,7 +278,7 @@ fn batch(hash: &mut Hash, tree: &TriangleBvh, rays: &[Ray]) -> usize {
     hits.into_iter().map(|hit| hash.hit(hit)).sum()
 }
 
-/// Rays of a camera in tiles of eight by eight, which go through a tree together.
+/// Camera rays in tiles of 8 × 8, which traverse the tree as packets.
 fn packets() -> u64 {
     let (mut hash, mut hits) = (Hash::new(), 0);
     let mut rays = Vec::new();
@@ -294,7 +294,7 @@ fn packets() -> u64 {
     hash.of(hits, 2 * rays.len())
 }
 
-/// Rays that have nothing in common, in a tree so large that several are on their way at once.
+/// Incoherent rays in a tree large enough for the stream traversal.
 fn streams() -> u64 {
     let mut hash = Hash::new();
     let mesh = planet(130);
@@ -304,7 +304,7 @@ fn streams() -> u64 {
     hash.of(hits, RAYS)
 }
 
-/// The points of meshes that are nearest to others, some of them within a distance.
+/// Closest points of meshes to query points, some with a maximum distance.
 fn nearest() -> u64 {
     let (mut hash, mut random, mut found) = (Hash::new(), Random(5), 0);
     for mesh in meshes() {
@@ -321,7 +321,7 @@ fn nearest() -> u64 {
     hash.of(found, 2 * RAYS)
 }
 
-/// Rays in a tree whose vertices have moved.
+/// Rays in a tree after its vertices moved.
 fn refit() -> u64 {
     let (mut hash, mut random) = (Hash::new(), Random(6));
     let mut mesh = soup(&mut random, 5_000);
@@ -332,12 +332,12 @@ fn refit() -> u64 {
     hash.of(hits, RAYS)
 }
 
-/// One triangle and one ray.
+/// Single triangles and single rays.
 fn triangles() -> u64 {
     let (mut hash, mut hits) = (Hash::new(), 0);
     let (mesh, mut random) = (soup(&mut Random(8), 100), Random(9));
     for _ in 0..RAYS {
-        // Three of four go through the triangle.
+        // Three of four rays go through the triangle.
         let (ray, corners) = (ray(&mesh, &mut random), mesh.corners(random.below(100)));
         let [a, b, c] = corners;
         let target = a + 0.5 * random.unit() * (b - a) + 0.5 * random.unit() * (c - a);
@@ -352,7 +352,7 @@ fn triangles() -> u64 {
     hash.of(hits, RAYS)
 }
 
-/// Meshes that are turned, stretched, mirrored and moved.
+/// Instances of meshes that are rotated, scaled, mirrored and translated.
 fn instances() -> u64 {
     let (mut hash, mut random) = (Hash::new(), Random(10));
     let trees = [planet(8), soup(&mut random, 500)].map(|mesh| Arc::new(mesh.tree(BuildQuality::Best)));
@@ -377,7 +377,7 @@ fn instances() -> u64 {
     hash.of(hits, RAYS)
 }
 
-/// A landscape with a ball on it.
+/// A height field with a ball on it.
 fn heights() -> u64 {
     let (mut hash, mut random) = (Hash::new(), Random(12));
     let lines = || (0..=60).map(|i| i as f32 / 30.0 - 1.0).collect::<Vec<_>>();
@@ -394,7 +394,7 @@ fn heights() -> u64 {
     hash.of(single, RAYS)
 }
 
-/// Where a ray first meets a sphere between `t_min` and `t_max`.
+/// Returns the closest hit of a ray with a sphere between `t_min` and `t_max`.
 fn sphere(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
     let (o, d) = (ray.origin.as_dvec3() - center.as_dvec3(), ray.dir.as_dvec3());
     let (a, b, c) = (d.dot(d), o.dot(d), o.dot(o) - f64::from(radius) * f64::from(radius));
@@ -407,8 +407,8 @@ fn spheres() -> Vec<(Vec3, f32)> {
     (0..2_000).map(|_| (random.point(), random.between(0.01, 0.05))).collect()
 }
 
-/// The caller's own things in a tree of boxes and in a grid. Boxes that are offered may differ
-/// between levels, the nearest sphere may not.
+/// Custom primitives in a tree of boxes and in a grid. The offered boxes may differ between SIMD
+/// levels; the closest sphere may not.
 fn boxes() -> u64 {
     let (mut hash, mut hits) = (Hash::new(), 0);
     let things = spheres();
@@ -436,7 +436,7 @@ fn boxes() -> u64 {
     hash.of(hits, 2 * RAYS)
 }
 
-/// Planes, spheres, discs, rectangles and boxes: eight for one ray, and one for eight rays.
+/// Planes, spheres, discs, rectangles and boxes: eight per ray, and one per eight rays.
 fn packs() -> u64 {
     let (mut hash, mut random, mut hits) = (Hash::new(), Random(16), 0);
     let mut packs = PrimitivePacks::default();

@@ -1,5 +1,5 @@
-//! The module of `lib.rs` as a native program: prints a hash for each part, or with the argument
-//! `time` how long a million rays take.
+//! Runs `lib.rs` as a native program. Prints a hash for each part or, with the argument `time`, the
+//! time for one million rays.
 
 #[path = "lib.rs"]
 mod module;

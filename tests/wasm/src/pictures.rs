@@ -3,7 +3,7 @@
 use super::Hash;
 use durer::prelude::*;
 
-/// A box with a mesh, a ball of glass, a mirror and an area light.
+/// Returns a box with a mesh, a glass ball, a mirror and an area light.
 fn room() -> CompiledScene {
     let mut scene = Scene::builder();
     scene.camera(PerspectiveCamera::look_at(vec3(0.0, 0.0, 4.5), Vec3::ZERO, 40.0));
@@ -38,7 +38,7 @@ fn picture(integrator: &str, samples: u32) -> u64 {
     hash.0
 }
 
-/// The course's integrator: local light, mirrors and glass.
+/// Integrator of the course: local illumination, mirrors and glass.
 pub fn whitted() -> u64 {
     picture("whitted", 4)
 }
@@ -48,7 +48,7 @@ pub fn path() -> u64 {
     picture("path", 8)
 }
 
-/// Paths with photon maps.
+/// Path tracing with photon maps.
 pub fn photons() -> u64 {
     picture("photons", 2)
 }

@@ -2,7 +2,7 @@ import type { Completion, CompletionContext, CompletionResult } from "@codemirro
 import { hoverTooltip } from "@codemirror/view";
 import type { Word } from "../protocol";
 
-/** The word whose block a place is in; `null` outside of all. */
+/** Keyword of the block that contains a position; `null` outside of all blocks. */
 export function blockAt(text: string, position: number): string | null {
   let depth = 0;
   for (let i = position - 1; i >= 0; i--) {
@@ -14,7 +14,7 @@ export function blockAt(text: string, position: number): string | null {
   return null;
 }
 
-/** Completes the fields of the block that the cursor is in, and words that begin something. */
+/** Completes the fields of the block at the cursor, and keywords that begin a statement. */
 export function completion(words: () => Word[]) {
   return (context: CompletionContext): CompletionResult | null => {
     const before = context.matchBefore(/[A-Za-z_]\w*/);
@@ -39,7 +39,7 @@ export function completion(words: () => Word[]) {
   };
 }
 
-/** Shows the manual's entry of the word under the pointer. */
+/** Shows the manual's entry for the keyword under the pointer. */
 export function manual(words: () => Word[]) {
   return hoverTooltip((view, position) => {
     const at = view.state.wordAt(position);

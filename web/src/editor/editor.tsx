@@ -111,7 +111,7 @@ function save(store: Store): boolean {
   return true;
 }
 
-/** Findings as the editor shows them, each with a click that mends it. */
+/** Converts findings to the editor's diagnostics, each with its fix as an action. */
 export function diagnostics(findings: Finding[], text: string): Diagnostic[] {
   const at = toOffsets(text);
   return findings
@@ -130,7 +130,7 @@ export function diagnostics(findings: Finding[], text: string): Diagnostic[] {
     });
 }
 
-/** The change that a `did you mean` asks for. */
+/** Returns the edit that a `did you mean` suggests. */
 function meant(finding: Finding): Finding["fix"] {
   const word = /did you mean `([^`]+)`/.exec(`${finding.help ?? ""} ${finding.message}`)?.[1];
   if (!word || !finding.place) return [];
@@ -139,6 +139,6 @@ function meant(finding: Finding): Finding["fix"] {
 
 function fixName(fix: Finding["fix"]): string {
   const text = fix.length === 1 ? fix[0]?.text.trim() : "";
-  if (fix.length === 1 && text === "") return "Take it out";
-  return text && text.length < 28 ? `Write ${text}` : "Mend it";
+  if (fix.length === 1 && text === "") return "Remove";
+  return text && text.length < 28 ? `Write ${text}` : "Fix";
 }

@@ -2,7 +2,7 @@ import { type Store, useStore } from "../viewer/store";
 
 const words = { error: "Error", warning: "Warning", note: "Note" } as const;
 
-/** What is wrong or odd with the scene; a click goes to its place. */
+/** Errors, warnings and notes of the scene; a click shows the place in the text. */
 export function Findings({ store }: { store: Store }) {
   useStore(store);
   if (store.findings.length === 0) return null;

@@ -6,7 +6,7 @@ interface State {
   depth: number;
 }
 
-/** The scene language, with the words that the library knows. */
+/** Highlighting of the scene language, with the keywords of the library. */
 export function sceneLanguage(words: Word[]) {
   const begins = new Set(words.map((word) => word.word));
   const fields = new Set(words.flatMap((word) => word.fields.map((field) => field.word)));
@@ -37,7 +37,7 @@ export function sceneLanguage(words: Word[]) {
   });
 }
 
-/** Colours of the words, by the page's tokens. */
+/** Highlight colours, from the page's design tokens. */
 export const sceneHighlight = syntaxHighlighting(
   HighlightStyle.define([
     { tag: tags.keyword, color: "var(--accent)", fontWeight: "600" },

@@ -10,7 +10,7 @@ import {
 
 const number = /[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?/g;
 
-/** The number around a place in a line of text: its range and value. */
+/** Finds the number at a column of a line: its range and value. */
 export function numberAt(line: string, column: number): { from: number; to: number; value: number } | null {
   for (const found of line.matchAll(number)) {
     const to = found.index + found[0].length;
@@ -22,7 +22,7 @@ export function numberAt(line: string, column: number): { from: number; to: numb
   return null;
 }
 
-/** The number after a drag by some pixels, written with as many decimals as make sense. */
+/** Returns the number after a drag by some pixels, with a suitable number of decimals. */
 export function scrubbed(text: string, pixels: number): string {
   const value = Number(text);
   const decimals = Math.max(text.split(".")[1]?.length ?? 0, Math.abs(value) < 10 ? 2 : 1);
@@ -34,7 +34,7 @@ export function scrubbed(text: string, pixels: number): string {
   return whole ? String(Math.round(changed)) : String(Number(changed.toFixed(Math.min(decimals, 4))));
 }
 
-/** Numbers are dragged with the Alt key held. */
+/** Changes numbers by dragging with the Alt key held. */
 export const scrubbing = EditorView.domEventHandlers({
   mousedown(event, view) {
     if (!event.altKey || event.button !== 0) return false;
@@ -95,7 +95,7 @@ class Swatch extends WidgetType {
   }
 }
 
-/** A colour of the page for three numbers of linear light. */
+/** Converts three numbers of linear RGB to a CSS colour. */
 export function encoded(rgb: number[]): string {
   const byte = (x: number) => {
     const clamped = Math.min(1, Math.max(0, x));
@@ -107,7 +107,7 @@ export function encoded(rgb: number[]): string {
   return `#${rgb.map(byte).join("")}`;
 }
 
-/** Three numbers of linear light for a colour of the page. */
+/** Converts a CSS colour to three numbers of linear RGB. */
 export function linear(color: string): number[] {
   return [1, 3, 5].map((at) => {
     const x = Number.parseInt(color.slice(at, at + 2), 16) / 255;
@@ -131,7 +131,7 @@ function swatches(state: EditorState, from: number, to: number): DecorationSet {
   return set.finish();
 }
 
-/** Swatches before colours, which open the browser's picker. */
+/** Shows a swatch before each colour, which opens the browser's colour picker. */
 export const colorPicking = ViewPlugin.fromClass(
   class {
     decorations: DecorationSet;

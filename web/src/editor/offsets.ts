@@ -1,4 +1,4 @@
-/** Turns places in bytes of UTF-8 into places in a string. */
+/** Returns a function that maps UTF-8 byte offsets to string offsets. */
 export function toOffsets(text: string): (bytes: number) => number {
   // biome-ignore lint/suspicious/noControlCharactersInRegex: all of ASCII is meant
   if (/^[\x00-\x7f]*$/.test(text)) return (bytes) => Math.min(bytes, text.length);

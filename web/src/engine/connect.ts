@@ -2,12 +2,12 @@ import { Engine } from "./engine";
 import { socket } from "./socket";
 import { worker } from "./worker";
 
-/** Whether a server is behind the page: it writes so into the page. */
+/** True if a server is behind the page. The server marks the page with a `meta` element. */
 export function hasServer(): boolean {
   return document.querySelector('meta[name="durer-server"]') !== null;
 }
 
-/** The engine behind the page. */
+/** Connects to the engine: the server if there is one, else a worker. */
 export function connect(): Engine {
   if (!hasServer()) return new Engine("WebAssembly", worker);
   const address = new URL("socket", location.href);

@@ -1,13 +1,13 @@
 import type { Answer, Ask, Event, Request } from "../protocol";
 import { decode } from "./wire";
 
-/** Carries messages to an engine: a server, or a worker. */
+/** Transport of messages to an engine: a server or a worker. */
 export interface Line {
   send(ask: Ask): void;
   close(): void;
 }
 
-/** What a line tells. */
+/** Callbacks of a transport. */
 export interface LineEvents {
   message(buffer: ArrayBuffer): void;
   closed(why: string): void;
@@ -22,7 +22,7 @@ interface Waiting {
   reject(error: Error): void;
 }
 
-/** The ray tracer, wherever it runs. */
+/** Connection to the ray tracer, native or WebAssembly. */
 export class Engine {
   readonly name: string;
   #line: Line;
@@ -41,7 +41,7 @@ export class Engine {
     });
   }
 
-  /** Makes a session: one scene, camera and picture. */
+  /** Opens a session: one scene, camera and picture. */
   session(): Session {
     const id = this.#next++;
     const session = new Session(id, this.#line, () => this.#sessions.delete(id));
@@ -49,7 +49,7 @@ export class Engine {
     return session;
   }
 
-  /** Calls back when the engine is gone. */
+  /** Registers a callback for the loss of the engine. */
   onLost(tell: (why: string) => void) {
     this.#lost.push(tell);
   }
@@ -75,17 +75,17 @@ export class Session {
     this.#forget = forget;
   }
 
-  /** Sends a request that nobody waits for. */
+  /** Sends a request without waiting for its answer. */
   tell(request: Request) {
     this.#line.send({ session: this.id, id: this.#next++, request });
   }
 
-  /** Sends a request and waits for an event of a kind. */
+  /** Sends a request and resolves with the first event of a kind that answers it. */
   ask<K extends Event["kind"]>(request: Request, kind: K): Promise<EventOf<K>> {
     return this.askBytes(request, kind).then(([event]) => event);
   }
 
-  /** The same with the bytes of the answer. */
+  /** Sends a request like `ask`, and resolves with the payload as well. */
   askBytes<K extends Event["kind"]>(
     request: Request,
     kind: K,
@@ -101,7 +101,7 @@ export class Session {
     });
   }
 
-  /** Calls back for all events; returns what ends that. */
+  /** Registers a handler for all events; returns a function that removes it. */
   on(handler: Handler): () => void {
     this.#handlers.add(handler);
     return () => this.#handlers.delete(handler);

@@ -1,7 +1,7 @@
 import type { Ask } from "../protocol";
 import type { Line, LineEvents } from "./engine";
 
-/** A line to the server that the page came from. The token is in the page's address. */
+/** Transport to the server of the page. The token is part of the page's address. */
 export function socket(address: string, events: LineEvents): Line {
   const socket = new WebSocket(address);
   const early: string[] = [];

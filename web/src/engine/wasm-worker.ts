@@ -1,4 +1,6 @@
-/** The worker's side: the library as WebAssembly, which works in steps and hears messages in between. */
+/**
+ * Code of the worker: runs the library as WebAssembly in steps, and handles messages in between.
+ */
 
 interface Wasm {
   default(source: { module_or_path: URL }): Promise<unknown>;
@@ -40,4 +42,4 @@ async function start() {
   for (const text of early) receive(text);
 }
 
-start().catch((error: unknown) => self.postMessage(`the library did not load: ${error}`));
+start().catch((error: unknown) => self.postMessage(`cannot load the library: ${error}`));

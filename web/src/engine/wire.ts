@@ -1,6 +1,6 @@
 import type { Answer } from "../protocol";
 
-/** An answer and the bytes that belong to it. */
+/** An answer and its payload. */
 export interface Message {
   answer: Answer;
   bytes: Uint8Array<ArrayBuffer>;
@@ -8,11 +8,11 @@ export interface Message {
 
 const decoder = new TextDecoder();
 
-/** Reads a message: the length of its JSON, the JSON, and bytes. */
+/** Decodes a message: the length of its JSON, the JSON, and the payload. */
 export function decode(buffer: ArrayBuffer): Message {
-  if (buffer.byteLength < 4) throw new Error("a message is too short");
+  if (buffer.byteLength < 4) throw new Error("message is too short");
   const length = new DataView(buffer).getUint32(0, true);
-  if (4 + length > buffer.byteLength) throw new Error("a message is cut off");
+  if (4 + length > buffer.byteLength) throw new Error("message is truncated");
   const answer = JSON.parse(decoder.decode(new Uint8Array(buffer, 4, length))) as Answer;
   return { answer, bytes: new Uint8Array(buffer, 4 + length) };
 }

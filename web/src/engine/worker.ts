@@ -1,7 +1,7 @@
 import type { Ask } from "../protocol";
 import type { Line, LineEvents } from "./engine";
 
-/** A line to the library as WebAssembly in a worker. */
+/** Transport to the library as WebAssembly in a worker. */
 export function worker(events: LineEvents): Line {
   const worker = new Worker(new URL("./wasm-worker.ts", import.meta.url), { type: "module", name: "durer" });
   worker.onmessage = ({ data }: MessageEvent<ArrayBuffer | string>) => {

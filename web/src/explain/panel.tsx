@@ -7,7 +7,7 @@ import { Stepper } from "./stepper";
 import { Tests } from "./tests";
 import { Tree } from "./tree";
 
-/** Why a pixel has its colour. */
+/** Panel that explains the colour of a pixel. */
 export function Explain({ store }: { store: Store }) {
   useStore(store);
   const [mode, setMode] = useState<"tree" | "steps">("tree");
@@ -26,7 +26,7 @@ export function Explain({ store }: { store: Store }) {
               </strong>
               <p>{pixel.color.map((x) => short(x)).join("  ")}</p>
             </div>
-            <div class="tabs" role="tablist" aria-label="How it is told">
+            <div class="tabs" role="tablist" aria-label="Form of the explanation">
               <Tab name="Tree" on={mode === "tree"} choose={() => setMode("tree")} />
               <Tab name="Step by step" on={mode === "steps"} choose={() => setMode("steps")} />
             </div>
@@ -46,8 +46,8 @@ export function Explain({ store }: { store: Store }) {
           <p>
             <strong>Click a pixel</strong> to see its ray, what the ray hits, and every term of its colour.
           </p>
-          <p>Drag to go around, scroll to come nearer, hold Shift to slide.</p>
-          <p>In the text, drag a number with Alt held, and click a square to pick its colour.</p>
+          <p>Drag to orbit, scroll to zoom, hold Shift to pan.</p>
+          <p>In the text, Alt-drag a number to change it, and click a square to pick a colour.</p>
         </div>
       )}
     </div>
@@ -74,7 +74,7 @@ function Samples({ store }: { store: Store }) {
       <button
         type="button"
         class="button icon plain"
-        aria-label="Sample before"
+        aria-label="Previous sample"
         disabled={pixel.sample === 0}
         onClick={() => go(pixel.sample - 1)}
       >

@@ -15,7 +15,7 @@ import {
   type Vec,
 } from "./space";
 
-/** The rays of a pixel in space, with the outlines of all objects. */
+/** 3D view of a pixel's rays, with the outlines of all objects. */
 export function RaysView({ store }: { store: Store }) {
   useStore(store);
   const canvas = useRef<HTMLCanvasElement>(null);
@@ -111,11 +111,11 @@ export function RaysView({ store }: { store: Store }) {
 
 function label(store: Store): string {
   const all = segments(store.pixel);
-  if (all.length === 0) return "The scene in lines.";
-  return `The rays of the pixel in space: ${all.map(({ segment }) => roles[segment.role]).join(", ")}.`;
+  if (all.length === 0) return "Outlines of the scene.";
+  return `The rays of the pixel in 3D: ${all.map(({ segment }) => roles[segment.role]).join(", ")}.`;
 }
 
-/** From the side of what the camera sees. */
+/** Returns a view from the side of the camera's view frustum. */
 function beside(store: Store): Eye {
   const { pixel, camera } = store;
   const seen = points(pixel, camera);
@@ -242,7 +242,7 @@ function stroke(
   context.globalAlpha = 1;
 }
 
-/** A head in the middle of a ray, which says where it goes. */
+/** Draws an arrowhead in the middle of a ray. */
 function arrow(
   context: CanvasRenderingContext2D,
   view: Projector,

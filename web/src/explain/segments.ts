@@ -8,41 +8,41 @@ export interface Place {
   term: Term;
 }
 
-/** All terms of a tree in the order of reading. */
+/** Returns all terms of a tree in depth-first order. */
 export function flat(term: Term | null | undefined, path = "0"): Place[] {
   if (!term) return [];
   return [{ path, term }, ...term.terms.flatMap((child, i) => flat(child, `${path}.${i}`))];
 }
 
-/** The segments of a tree, each with the path of its term. */
+/** Returns the segments of a tree, each with the path of its term. */
 export function segments(pixel: PixelAccount | null): { path: string; segment: Segment; term: Term }[] {
   return flat(pixel?.tree).flatMap(({ path, term }) =>
     term.segment ? [{ path, segment: term.segment, term }] : [],
   );
 }
 
-/** Names of rays for people. */
+/** Names of rays in legends. */
 export const roles: Record<Role, string> = {
   camera: "camera ray",
   reflected: "mirrored ray",
   transmitted: "transmitted ray",
   scattered: "scattered ray",
-  lit: "shadow ray, free",
-  shadowed: "shadow ray, blocked",
+  lit: "shadow ray, unoccluded",
+  shadowed: "shadow ray, occluded",
 };
 
-/** Points that an eye should see: hits, the camera, and lights that are not far away. */
+/** Points that the view should contain: hits, the camera, and nearby lights. */
 export function points(pixel: PixelAccount | null, camera: CameraState | null): Vec[] {
   const all: Vec[] = camera ? [camera.eye] : [];
   for (const { segment } of segments(pixel)) {
     all.push(segment.from);
-    // A far light would make all else small.
+    // Leave out far lights, which would make everything else small.
     if (!segment.escapes && segment.role !== "lit") all.push(segment.to);
   }
   return all;
 }
 
-/** The lines of a camera's pyramid up to a distance. */
+/** Edges of a camera's view pyramid up to a distance. */
 export function frustum(camera: CameraState, aspect: number, reach: number): [Vec, Vec][] {
   const [x, y] = aspect >= 1 ? [1, 1 / aspect] : [aspect, 1];
   const corner = (sx: number, sy: number): Vec => {

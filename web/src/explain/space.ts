@@ -16,26 +16,26 @@ export const unit = (a: Vec): Vec => {
 };
 export const mix = (a: Vec, b: Vec, t: number): Vec => add(a, mul(t, sub(b, a)));
 
-/** A point of the page, and its distance from the eye. */
+/** A projected point in page pixels, and its depth from the eye. */
 export interface Seen {
   x: number;
   y: number;
   depth: number;
 }
 
-/** An eye that goes around a target. */
+/** An eye that orbits a target. */
 export interface Eye {
   target: Vec;
   distance: number;
-  /** Around the vertical, in radians. */
+  /** Rotation around the vertical axis, in radians. */
   yaw: number;
-  /** Above the horizon, in radians. */
+  /** Elevation above the horizon, in radians. */
   pitch: number;
   /** Field of view across the larger side, in degrees. */
   angle: number;
 }
 
-/** Where an eye is and how it is turned. */
+/** Position and axes of an eye. */
 export interface Frame {
   eye: Vec;
   forward: Vec;
@@ -54,7 +54,7 @@ export function frame({ target, distance, yaw, pitch, angle }: Eye): Frame {
 
 const near = 1e-3;
 
-/** Maps points of the world to a page of some size, as the perspective camera of the library does. */
+/** Projects world space to a page of some size, like the library's perspective camera. */
 export function projector(view: Frame, width: number, height: number) {
   const larger = Math.max(width, height) / 2;
   const local = (p: Vec): Vec => {
@@ -67,12 +67,12 @@ export function projector(view: Frame, width: number, height: number) {
     depth: z,
   });
   return {
-    /** `null` behind the eye. */
+    /** Projects a point; `null` behind the eye. */
     point(p: Vec): Seen | null {
       const at = local(p);
       return at[2] > near ? page(at) : null;
     },
-    /** The part of a line before the eye. */
+    /** Projects the part of a line in front of the eye. */
     line(a: Vec, b: Vec): [Seen, Seen] | null {
       let [p, q] = [local(a), local(b)];
       if (p[2] <= near && q[2] <= near) return null;
@@ -80,7 +80,7 @@ export function projector(view: Frame, width: number, height: number) {
       else if (q[2] <= near) q = mix(p, q, (p[2] - 2 * near) / (p[2] - q[2]));
       return [page(p), page(q)];
     },
-    /** The ray through a place of the page. */
+    /** Returns the ray through a point of the page. */
     ray(x: number, y: number): { origin: Vec; direction: Vec } {
       const right = ((x - width / 2) / larger) * view.half;
       const up = ((height / 2 - y) / larger) * view.half;
@@ -92,7 +92,7 @@ export function projector(view: Frame, width: number, height: number) {
 
 export type Projector = ReturnType<typeof projector>;
 
-/** An eye that sees some points well. */
+/** Returns an eye that frames some points. */
 export function eyeAround(points: Vec[], yaw: number, pitch: number, angle = 34): Eye {
   if (points.length === 0) return { target: [0, 0, 0], distance: 5, yaw, pitch, angle };
   const least: Vec = [0, 1, 2].map((i) => Math.min(...points.map((p) => p[i] ?? 0))) as Vec;
@@ -102,7 +102,7 @@ export function eyeAround(points: Vec[], yaw: number, pitch: number, angle = 34)
   return { target: mix(least, most, 0.5), distance, yaw, pitch, angle };
 }
 
-/** Goes around, by a drag over the page. */
+/** Orbits the eye after a drag over the page. */
 export function orbit(eye: Eye, right: number, up: number): Eye {
   const limit = Math.PI / 2 - 0.02;
   return { ...eye, yaw: eye.yaw - right, pitch: Math.min(limit, Math.max(-limit, eye.pitch + up)) };

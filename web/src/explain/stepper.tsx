@@ -5,10 +5,10 @@ import type { Store } from "../viewer/store";
 import { flat } from "./segments";
 import { code, type Step, steps } from "./steps";
 
-/** At most so many rays are told in steps. */
+/** Maximum number of rays in the step-by-step view. */
 const most = 24;
 
-/** The algorithm for one pixel, step by step. */
+/** Step-by-step run of the algorithm for one pixel. */
 export function Stepper({ store }: { store: Store }) {
   const [all, setAll] = useState<Step[]>([]);
   const [at, setAt] = useState(0);
@@ -92,7 +92,7 @@ export function Stepper({ store }: { store: Store }) {
   );
 }
 
-/** Asks all objects about each ray of the pixel. */
+/** Intersects each ray of the pixel with all objects. */
 async function load(store: Store): Promise<Step[]> {
   const { pixel, session } = store;
   if (!pixel?.tree) return [];

@@ -2,7 +2,7 @@ import type { CastAccount, PixelAccount, Term } from "../protocol";
 import { short } from "../ui/slider";
 import { flat } from "./segments";
 
-/** Lines of the algorithm, as a lecture writes it. */
+/** Pseudocode of the algorithm. */
 export const code = [
   "for each pixel (x, y)",
   "    ray ← camera(x, y)",
@@ -15,30 +15,30 @@ export const code = [
   "    if closest = ∞: return background",
   "    color ← ambient",
   "    for each light",
-  "        if the shadow ray is free: color += shade(light)",
+  "        if the shadow ray is unoccluded: color += shade(light)",
   "    color += trace(mirrored ray) + trace(transmitted ray)",
   "    return color",
 ] as const;
 
-/** A moment of the algorithm. */
+/** A step of the algorithm. */
 export interface Step {
-  /** The line of the code that runs. */
+  /** Index of the current line of the pseudocode. */
   line: number;
-  /** What happens, with its numbers. */
+  /** Description with numbers. */
   words: string;
-  /** The term that it belongs to. */
+  /** Path of the term in the tree. */
   path: string;
-  /** Number of the object that is asked. */
+  /** Number of the object that is tested. */
   object?: number;
-  /** The least t so far. */
+  /** Least t so far. */
   closest?: number;
 }
 
-/** The moments of a pixel, in the order in which the algorithm lives them. */
+/** Returns the steps of a pixel in the order of execution. */
 export function steps(pixel: PixelAccount, casts: Map<string, CastAccount>): Step[] {
   const all: Step[] = [
     { line: 0, words: `pixel ${pixel.x}, ${pixel.y}`, path: "0" },
-    { line: 1, words: `a ray through place (${short(pixel.at[0])}, ${short(pixel.at[1])})`, path: "0" },
+    { line: 1, words: `a ray through position (${short(pixel.at[0])}, ${short(pixel.at[1])})`, path: "0" },
   ];
   if (pixel.tree) trace(pixel.tree, "0", casts, all);
   all.push({
@@ -70,7 +70,7 @@ function trace(term: Term, path: string, casts: Map<string, CastAccount>, all: S
         closest,
       });
     } else {
-      const words = `${test.name}: t = ${short(t)} lies behind ${short(closest)}`;
+      const words = `${test.name}: t = ${short(t)} is beyond ${short(closest)}`;
       all.push({ line: 6, words, path, object: test.object, closest });
     }
   }
@@ -88,7 +88,7 @@ function trace(term: Term, path: string, casts: Map<string, CastAccount>, all: S
       break;
     }
   }
-  all.push({ line: 13, words: `back with ${term.value.map((x) => short(x, 3)).join(", ")}`, path, closest });
+  all.push({ line: 13, words: `returns ${term.value.map((x) => short(x, 3)).join(", ")}`, path, closest });
 }
 
 function lineOf(term: Term): number {
@@ -99,6 +99,6 @@ function lineOf(term: Term): number {
 }
 
 function sentence(term: Term): string {
-  if (term.segment?.role === "shadowed") return `${term.title}: it adds nothing`;
+  if (term.segment?.role === "shadowed") return `${term.title}: contributes nothing`;
   return `${term.title} adds ${term.adds.map((x) => short(x, 3)).join(", ")}`;
 }

@@ -13,7 +13,9 @@ const words: Record<Verdict, string> = {
   missed: "missed",
 };
 
-/** What every object says of the chosen ray, and why it is not the one that is seen. */
+/**
+ * Intersection tests of the selected ray with every object, and why each is not the closest hit.
+ */
 export function Tests({ store }: { store: Store }) {
   const [open, setOpen] = useState<number | null>(null);
   const { cast } = store;

@@ -4,10 +4,10 @@ import { short } from "../ui/slider";
 import type { Store } from "../viewer/store";
 import { Rows } from "./rows";
 
-/** Terms that count for less are folded. */
+/** Terms with a smaller share of the pixel are folded. */
 const little = 0.01;
 
-/** The tree of a pixel, the largest terms first. */
+/** Tree of a pixel's terms, largest first. */
 export function Tree({ store }: { store: Store }) {
   const tree = store.pixel?.tree;
   if (!tree) return <p class="hint">The camera sees nothing through this pixel.</p>;

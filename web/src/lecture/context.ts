@@ -4,16 +4,16 @@ import type { Engine, Session } from "../engine/engine";
 import type { Vec } from "../explain/space";
 import type { CastAccount, PixelAccount, Setting } from "../protocol";
 
-/** The engine of all figures. */
+/** The engine that all figures share. */
 export const EngineContext = createContext<Engine | null>(null);
 
-/** Samples of figures, which are to be finished soon. */
+/** Options for figures: few samples, so that pictures finish soon. */
 const few: Setting[] = [{ name: "samples", value: "4" }];
 
-/** A session with a scene of a figure's own; the text may change. */
+/** Opens a session with the scene of a figure; the text may change. */
 export function useScene(text: string, options: Setting[] = few): Session {
   const engine = useContext(EngineContext);
-  if (!engine) throw new Error("a figure stands in a lecture");
+  if (!engine) throw new Error("figures need an `EngineContext`");
   const session = useMemo(() => engine.session(), [engine]);
   const opened = useRef(false);
   const key = JSON.stringify(options);
@@ -28,7 +28,7 @@ export function useScene(text: string, options: Setting[] = few): Session {
   useEffect(
     () =>
       session.on((event) => {
-        // A figure that writes a wrong scene would show an old one.
+        // Report errors: a figure with a wrong scene would silently show an old one.
         if (event.kind !== "scene" || event.contents) return;
         console.error(event.findings.map((finding) => finding.message).join("; "));
       }),
@@ -38,7 +38,9 @@ export function useScene(text: string, options: Setting[] = few): Session {
   return session;
 }
 
-/** What all objects of a scene say of a ray; asked anew when the ray or the scene changes. */
+/**
+ * Intersects a ray with all objects of a scene, again after each change of the ray or the scene.
+ */
 export function useCast(session: Session, origin: Vec, direction: Vec, scene: string): CastAccount | null {
   const [cast, setCast] = useState<CastAccount | null>(null);
   const latest = useRef(0);
@@ -52,7 +54,7 @@ export function useCast(session: Session, origin: Vec, direction: Vec, scene: st
   return cast;
 }
 
-/** Why a pixel of a session's picture has its colour. */
+/** Explains the colour of a pixel of a session's picture. */
 export function usePixel(session: Session, x: number, y: number, key: string): PixelAccount | null {
   const [pixel, setPixel] = useState<PixelAccount | null>(null);
   const latest = useRef(0);
@@ -66,7 +68,7 @@ export function usePixel(session: Session, x: number, y: number, key: string): P
   return pixel;
 }
 
-/** Why a ray has its colour: that of the only pixel of a camera that looks along it. */
+/** Explains the colour of a ray, as the single pixel of a camera that looks along it. */
 export function useTrace(session: Session, from: Vec, direction: Vec, key: string): PixelAccount | null {
   const [pixel, setPixel] = useState<PixelAccount | null>(null);
   const latest = useRef(0);
@@ -83,13 +85,13 @@ export function useTrace(session: Session, from: Vec, direction: Vec, key: strin
   return pixel;
 }
 
-/** The number that a test's row has, such as `Δ`. */
+/** Returns the value of a row of an object's test, such as `Δ`. */
 export function numberOf(cast: CastAccount | null, object: number, name: string): number | null {
   const test = cast?.tests.find((test) => test.object === object);
   return test?.rows.find((row) => row.name === name)?.value ?? null;
 }
 
-/** The colours of the page in linear light, for backgrounds of rendered figures. */
+/** Page background in linear RGB, for the background of rendered figures. */
 export function usePaper(): string {
   const [dark, setDark] = useState(isDark);
   useEffect(() => {

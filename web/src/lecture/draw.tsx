@@ -12,7 +12,7 @@ interface LineProps {
   arrow?: boolean;
 }
 
-/** A line in space. */
+/** A line in world space. */
 export function Line({ view, from, to, color, width = 2.5, dashed, arrow }: LineProps) {
   const seen = view.line(from, to);
   if (!seen) return null;
@@ -25,20 +25,20 @@ export function Line({ view, from, to, color, width = 2.5, dashed, arrow }: Line
   );
 }
 
-/** The head of an arrow on a page. */
+/** An arrowhead in page coordinates. */
 export function Head({ x, y, angle, size }: { x: number; y: number; angle: number; size: number }) {
   const corner = (turn: number) =>
     `${x + size * Math.cos(angle + turn)},${y + size * Math.sin(angle + turn)}`;
   return <polygon points={`${x},${y} ${corner(2.68)} ${corner(-2.68)}`} stroke="none" />;
 }
 
-/** A vector from a point. */
+/** A vector drawn from a point. */
 export function Arrow(props: Omit<LineProps, "to" | "arrow"> & { dir: Vec; length?: number }) {
   const { dir, length = 1, ...rest } = props;
   return <Line {...rest} to={add(props.from, mul(length, dir))} arrow />;
 }
 
-/** A closed or open row of lines. */
+/** A closed or open polyline. */
 export function Path({
   view,
   points,
@@ -67,7 +67,7 @@ export function Path({
   );
 }
 
-/** A name beside a point in space. */
+/** A label beside a point in world space. */
 export function Name({
   view,
   at,
@@ -92,7 +92,7 @@ export function Name({
   );
 }
 
-/** A point in space. */
+/** A point in world space. */
 export function Dot({
   view,
   at,
@@ -117,14 +117,14 @@ interface HandleProps {
   y: number;
   color: string;
   label: string;
-  /** Where the pointer is, on the page of the drawing. */
+  /** Handles a drag to a position in the drawing. */
   drag(x: number, y: number): void;
-  /** By arrow keys, in steps of a pixel. */
+  /** Handles arrow keys, with steps in pixels. */
   nudge?(dx: number, dy: number): void;
   end?(): void;
 }
 
-/** A point that is dragged, or moved by arrow keys. */
+/** A point that can be dragged, or moved by arrow keys. */
 export function Handle({ x, y, color, label, drag, nudge, end }: HandleProps) {
   const held = useRef<{ dx: number; dy: number } | null>(null);
   const place = (event: PointerEvent & { currentTarget: Element }) => {

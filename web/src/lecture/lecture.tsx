@@ -4,7 +4,7 @@ import { EngineContext } from "./context";
 import { Question } from "./parts";
 import { topics } from "./topics";
 
-/** The lecture: a book whose figures run the tracer, and slides of the same. */
+/** The lecture: a book whose figures run the ray tracer, and slides with the same content. */
 export function Lecture({ engine, topic }: { engine: Engine; topic: string }) {
   const [presents, setPresents] = useState(false);
   const place = useRef<HTMLElement>(null);

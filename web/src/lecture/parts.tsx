@@ -1,7 +1,7 @@
 import type { ComponentChildren } from "preact";
 import { useState } from "preact/hooks";
 
-/** A figure: a drawing, what moves it, and its equations. */
+/** A figure: a drawing, its controls, and its equations. */
 export function Figure({
   stage,
   controls,
@@ -20,7 +20,7 @@ export function Figure({
   );
 }
 
-/** An equation in symbols, and the same in the numbers of the figure. */
+/** An equation in symbols and in the numbers of the figure. */
 export function Equation({
   children,
   numbers,
@@ -36,7 +36,7 @@ export function Equation({
   );
 }
 
-/** A symbol, in the colour of what it names in the figure. */
+/** A symbol, in the colour of its counterpart in the figure. */
 export function Sym({
   children,
   color,
@@ -53,7 +53,7 @@ export function Sym({
   );
 }
 
-/** A switch, often for the usual mistake. */
+/** A switch, often for a common mistake. */
 export function Switch({ label, on, change }: { label: string; on: boolean; change(on: boolean): void }) {
   return (
     <label class="switch">
@@ -69,7 +69,7 @@ export function Switch({ label, on, change }: { label: string; on: boolean; chan
   );
 }
 
-/** Buttons of which one is chosen. */
+/** A group of buttons with one selected. */
 export function Choice<T extends string>({
   label,
   value,
@@ -98,7 +98,7 @@ export function Choice<T extends string>({
   );
 }
 
-/** A question whose answer the figure shows. */
+/** A question with an answer that can be unfolded. */
 export function Question({ ask, children }: { ask: string; children: ComponentChildren }) {
   const [open, setOpen] = useState(false);
   return (

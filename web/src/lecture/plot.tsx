@@ -1,20 +1,20 @@
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 
-/** Maps the plane of a figure to the page. */
+/** Maps the plane of a figure to page coordinates. */
 export interface Scale {
   x(x: number): number;
   y(y: number): number;
-  /** Back to the plane. */
+  /** Maps page coordinates back to the plane. */
   back(x: number, y: number): [number, number];
-  /** Pixels of a unit. */
+  /** Pixels per unit. */
   unit: number;
   width: number;
   height: number;
 }
 
 interface Props {
-  /** What is seen at least, in units: from -x to x and from -y to y around the middle. */
+  /** Visible range at least, in units: from -x to x and from -y to y around the middle. */
   reach: [number, number];
   middle?: [number, number];
   label: string;
@@ -91,7 +91,7 @@ export function PlaneArrow({
   );
 }
 
-/** A name on a drawing. */
+/** A label on a drawing. */
 export function PlaneName({
   scale,
   at,

@@ -8,12 +8,12 @@ interface Props {
   width: number;
   height: number;
   label: string;
-  /** Whether pixels are shown as squares. */
+  /** True to show pixels as squares. */
   squares?: boolean;
   told?(head: PictureHead): void;
 }
 
-/** The picture of a session's own camera. */
+/** The rendered picture of a session's camera. */
 export function Rendered({ session, width, height, label, squares = false, told }: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const tell = useRef(told);
@@ -22,7 +22,7 @@ export function Rendered({ session, width, height, label, squares = false, told 
     session.tell({ kind: "size", width, height });
     return session.on((event, bytes) => {
       if (event.kind !== "picture" || !canvas.current) return;
-      // A coarse picture of so few pixels would only flicker.
+      // Skip coarse pictures: with so few pixels they would only flicker.
       if (squares && event.head.width < width) return;
       draw(canvas.current, event.head.width, event.head.height, bytes);
       tell.current?.(event.head);

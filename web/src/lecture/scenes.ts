@@ -1,6 +1,6 @@
-/** Scenes of figures: few things, soft light, and the page's own colour behind them. */
+/** Parts of a figure's scene: few objects, soft light, and the page's background colour. */
 export interface Parts {
-  /** Colour behind all things: see `usePaper`. */
+  /** Background colour: see `usePaper`. */
   paper: string;
   materials: string[];
   group: string;
@@ -10,7 +10,7 @@ export interface Parts {
 
 const sun = "DirectionalLight { direction -0.55 -1 -0.45 color 0.72 0.71 0.68 }";
 
-/** The text of a scene, whose camera a figure replaces. */
+/** Returns the text of a scene. The figure replaces its camera. */
 export function sceneOf({
   paper,
   materials,
@@ -26,7 +26,7 @@ Group { ${group} }
 `;
 }
 
-/** Calm colours for things. */
+/** Muted colours for objects. */
 export const paint = {
   clay: "diffuseColor 0.72 0.30 0.18 specularColor 0.12 0.12 0.12 exponent 30",
   sky: "diffuseColor 0.20 0.38 0.62 specularColor 0.12 0.12 0.12 exponent 30",

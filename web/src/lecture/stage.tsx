@@ -14,7 +14,7 @@ interface Props {
   children(view: Projector, size: { width: number; height: number }): ComponentChildren;
 }
 
-/** A scene as the tracer renders it, with a drawing over it; a drag goes around. */
+/** A rendered scene with a drawing over it; dragging orbits the camera. */
 export function Stage({ session, eye, setEye, label, aspect = 16 / 9, children }: Props) {
   const box = useRef<HTMLDivElement>(null);
   const canvas = useRef<HTMLCanvasElement>(null);
@@ -35,7 +35,7 @@ export function Stage({ session, eye, setEye, label, aspect = 16 / 9, children }
       session.on((event, bytes) => {
         if (event.kind === "picture" && canvas.current)
           draw(canvas.current, event.head.width, event.head.height, bytes);
-        // Pictures of the scene's own camera are replaced at once.
+        // Replace the scene's own camera by the figure's.
         if (event.kind === "scene") look(session, eyeRef.current, false);
       }),
     [session],

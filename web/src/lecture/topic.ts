@@ -1,13 +1,13 @@
 import type { ComponentType } from "preact";
 
-/** A step of the lecture. */
+/** A topic of the lecture. */
 export interface Topic {
-  /** For the address. */
+  /** Part of the page's address. */
   id: string;
   title: string;
-  /** One sentence for slides. */
+  /** One sentence, shown on slides. */
   lead: string;
-  /** What is new, for one who has read what comes before. */
+  /** Paragraphs, for readers of the previous topics. */
   text: string[];
   Figure: ComponentType;
   questions: { ask: string; answer: string }[];

@@ -17,7 +17,7 @@ import { sphere } from "./figures/sphere";
 import { transform } from "./figures/transform";
 import type { Topic } from "./topic";
 
-/** All steps, in the order of the lecture. */
+/** All topics, in the order of the lecture. */
 export const topics: Topic[] = [
   machine,
   ray,

@@ -4,7 +4,7 @@ import { fixed, short } from "./slider";
 interface Props {
   label: string;
   value: number;
-  /** Change for each pixel of the pointer. */
+  /** Change per pixel of pointer motion. */
   step: number;
   decimals?: number;
   min?: number;
@@ -12,7 +12,7 @@ interface Props {
   change(value: number, moving: boolean): void;
 }
 
-/** A number that is dragged to the left and right, or changed by arrow keys. */
+/** A number that is changed by dragging sideways or by arrow keys. */
 export function Dragged({ label, value, step, decimals, min = -Infinity, max = Infinity, change }: Props) {
   const from = useRef<{ x: number; value: number } | null>(null);
   const clamp = (x: number) => Math.min(max, Math.max(min, x));

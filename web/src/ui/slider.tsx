@@ -6,12 +6,12 @@ interface Props {
   min: number;
   max: number;
   step?: number;
-  /** The value as it is shown. */
+  /** Value as displayed. */
   text?: string;
   change(value: number): void;
 }
 
-/** A slider with its name and its value. */
+/** A slider with its label and value. */
 export function Slider({ label, value, min, max, step, text, change }: Props) {
   const id = useId();
   return (
@@ -31,7 +31,7 @@ export function Slider({ label, value, min, max, step, text, change }: Props) {
   );
 }
 
-/** A number for people: four significant digits, with a true minus sign. */
+/** Formats a number with four significant digits and a true minus sign. */
 export function short(x: number, digits = 4): string {
   if (!Number.isFinite(x)) return Number.isNaN(x) ? "–" : x > 0 ? "∞" : "−∞";
   if (Math.abs(x) < 5e-6) return "0";
@@ -39,7 +39,7 @@ export function short(x: number, digits = 4): string {
   return text.replace("-", "−");
 }
 
-/** A number with a fixed count of decimals, for what changes while it is read. */
+/** Formats a number with a fixed number of decimals, for values that change continuously. */
 export function fixed(x: number, decimals = 2): string {
   if (!Number.isFinite(x)) return short(x);
   const text = x.toFixed(decimals);

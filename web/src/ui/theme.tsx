@@ -9,7 +9,7 @@ function stored(): Theme {
   return known === "light" || known === "dark" ? known : "system";
 }
 
-/** Chooses light, dark, or what the system has. */
+/** Button that selects a light, dark or system theme. */
 export function ThemeButton() {
   const [theme, setTheme] = useState<Theme>(stored);
   useEffect(() => {

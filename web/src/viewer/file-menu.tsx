@@ -58,7 +58,7 @@ export function FileMenu({ store }: { store: Store }) {
 
 const scenes = /\.(txt|json|gltf|glb|obj|ply|stl|pbrt|xml|3mf|rad|oct)$/i;
 
-/** Gives files to the scene: the last that is a scene or a model is opened, the others may be named by it. */
+/** Uploads files: opens the last scene or model among them; the scene may refer to the others. */
 export async function giveFiles(store: Store, files: File[]) {
   const main = files.findLast((file) => scenes.test(file.name));
   for (const file of files.filter((file) => file !== main)) {

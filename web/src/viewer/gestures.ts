@@ -5,7 +5,10 @@ interface Point {
   y: number;
 }
 
-/** Turns what mouse, fingers and keys do over a picture into motions of the camera; returns what ends it. */
+/**
+ * Translates mouse, touch and keyboard input over a picture to camera motions; returns a cleanup
+ * function.
+ */
 export function gestures(
   element: HTMLElement,
   store: Store,

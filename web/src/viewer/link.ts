@@ -1,11 +1,14 @@
 import whitted from "../../../scenes/whitted.txt?raw";
 
-/** The scene that the page opens with where nothing else is said. */
+/** The scene that the page opens by default. */
 export const firstScene: string = whitted;
 
 const mark = "#/scene/";
 
-/** A link that holds a whole scene: compressed, in the part of the address that no server sees. */
+/**
+ * Returns a link that contains a whole scene, compressed, in the fragment of the URL, which servers
+ * never receive.
+ */
 export async function linkOf(text: string): Promise<string> {
   const stream = new Blob([text]).stream().pipeThrough(new CompressionStream("deflate-raw"));
   const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
@@ -15,7 +18,7 @@ export async function linkOf(text: string): Promise<string> {
   return `${location.href.split("#")[0]}${mark}${code}`;
 }
 
-/** The scene in a link; `null` where there is none, or it is damaged. */
+/** Returns the scene of a link; `null` if there is none or it is damaged. */
 export async function openLink(hash: string): Promise<string | null> {
   if (!hash.startsWith(mark)) return null;
   try {

@@ -2,7 +2,7 @@ import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { gestures } from "./gestures";
 import { type Store, useStore } from "./store";
 
-/** The picture: dragged to go around, clicked to be explained. */
+/** The picture: drag to orbit, click to explain a pixel. */
 export function Picture({ store }: { store: Store }) {
   useStore(store);
   const box = useRef<HTMLDivElement>(null);
@@ -51,7 +51,7 @@ export function Picture({ store }: { store: Store }) {
         tabIndex={0}
         role="img"
         aria-label={
-          "The picture. Drag or use arrow keys to go around, w a s d to walk, plus and minus to come nearer, click to explain a pixel."
+          "The picture. Drag or use arrow keys to orbit, w a s d to walk, plus and minus to zoom, click to explain a pixel."
         }
         style={{ width: `${width}px`, height: `${height}px` }}
       />
@@ -64,7 +64,7 @@ function clamp(x: number, size: number): number {
   return Math.min(size - 1, Math.max(0, x));
 }
 
-/** Puts pixels onto a canvas of their size. */
+/** Draws pixels onto a canvas of their size. */
 export function draw(
   canvas: HTMLCanvasElement,
   width: number,

@@ -3,7 +3,7 @@ import { Dragged } from "../ui/dragged";
 import { Slider } from "../ui/slider";
 import { type Store, useStore } from "./store";
 
-/** The camera's fields, how the picture is shown, and how it is made. */
+/** Settings of the camera, the display and the renderer. */
 export function Settings({ store }: { store: Store }) {
   useStore(store);
   return (

@@ -1,6 +1,6 @@
 import { type Store, useStore } from "./store";
 
-/** How far the picture is, and its hash once it is finished. */
+/** Progress of the picture, and its hash when it is finished. */
 export function Status({ store }: { store: Store }) {
   useStore(store);
   const { head, refused } = store;
@@ -25,10 +25,7 @@ export function Status({ store }: { store: Store }) {
         <progress aria-label="Rendering" value={head.samples} max={head.all_samples} />
       )}
       {head.hash && (
-        <span
-          class="hash"
-          title={`Hash of the picture's sums, as durer render --hash prints it: ${head.hash}`}
-        >
+        <span class="hash" title={`Hash of the picture, as durer render --hash prints it: ${head.hash}`}>
           {head.hash.slice(0, 16)}
         </span>
       )}

@@ -17,12 +17,12 @@ import type {
 
 type Opened = Extract<Event, { kind: "opened" }>;
 
-/** Everything that the viewer knows, and what it can ask for. */
+/** State and operations of the viewer. */
 export class Store {
   readonly session: Session;
   opened: Opened | null = null;
   text = "";
-  /** Counts texts that did not come from the editor. */
+  /** Number of texts that did not come from the editor. */
   textVersion = 0;
   edited = false;
   diskText: string | null = null;
@@ -35,9 +35,9 @@ export class Store {
   pixels: Uint8Array<ArrayBuffer> | null = null;
   pixel: PixelAccount | null = null;
   cast: CastAccount | null = null;
-  /** Path of the chosen term in the tree. */
+  /** Path of the selected term in the tree. */
   chosen = "0";
-  /** Whether its formulas are shown. */
+  /** True if the formulas of the selected term are visible. */
   unfolded = false;
   hovered: string | null = null;
   outlines: Outline[] = [];
@@ -48,7 +48,7 @@ export class Store {
   stops = 0;
   tone = "none";
   options: Setting[] = [];
-  /** Line that is to be shown in the editor, by the bytes of its text. */
+  /** Byte range to show in the editor. */
   jump: { start: number; end: number; count: number } | null = null;
   #listeners = new Set<() => void>();
   #waiting: Motion[] = [];
@@ -86,7 +86,7 @@ export class Store {
     this.changed();
   }
 
-  /** Puts a text into the editor. */
+  /** Replaces the text in the editor. */
   replace(text: string) {
     this.textVersion++;
     this.edit(text);
@@ -107,7 +107,7 @@ export class Store {
     this.changed();
   }
 
-  /** Moves the camera; motions are joined until the next frame. */
+  /** Moves the camera; motions within a frame are merged. */
   move(motion: Motion, moving: boolean) {
     if (!moving) {
       this.session.tell({ kind: "move", motion, moving });
@@ -124,7 +124,7 @@ export class Store {
     });
   }
 
-  /** The motion has ended: the fine picture may come. */
+  /** Ends a motion, so that the full picture is rendered. */
   settle() {
     requestAnimationFrame(() =>
       this.session.tell({
@@ -150,7 +150,7 @@ export class Store {
     this.changed();
   }
 
-  /** Chooses a term of the tree, and asks all objects about its ray. */
+  /** Selects a term of the tree, and intersects its ray with all objects. */
   async choose(path: string) {
     this.chosen = path;
     const term = termAt(this.pixel, path);
@@ -170,7 +170,7 @@ export class Store {
     this.changed();
   }
 
-  /** Takes over the text that another program wrote. */
+  /** Accepts a text that another program wrote. */
   takeDisk(text: string) {
     this.diskText = null;
     this.replace(text);
@@ -267,7 +267,7 @@ export class Store {
   }
 }
 
-/** Motions of one kind after each other become one. */
+/** Merges consecutive motions of the same kind. */
 export function joined(motions: Motion[]): Motion[] {
   const all: Motion[] = [];
   for (const motion of motions) {
@@ -284,14 +284,14 @@ export function joined(motions: Motion[]): Motion[] {
   return all;
 }
 
-/** The term at a path such as `0.2.1` in the tree of a pixel. */
+/** Returns the term at a path such as `0.2.1` in the tree of a pixel. */
 export function termAt(pixel: PixelAccount | null, path: string) {
   let term = pixel?.tree ?? null;
   for (const step of path.split(".").slice(1)) term = term?.terms[Number(step)] ?? null;
   return term;
 }
 
-/** Renders again when the store changes. */
+/** Renders the component again when the store changes. */
 export function useStore(store: Store) {
   const [, again] = useReducer((count: number) => count + 1, 0);
   useEffect(() => store.subscribe(() => again(undefined as never)), [store]);

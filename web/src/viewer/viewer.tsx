@@ -10,7 +10,7 @@ import { type Store, useStore } from "./store";
 
 type Side = "explain" | "settings";
 
-/** The scene's text, its picture, and why a pixel has its colour. */
+/** The scene's text, its picture, and the explanation of a pixel. */
 export function Viewer({ store }: { store: Store }) {
   useStore(store);
   const [side, setSide] = useState<Side>("explain");
@@ -116,7 +116,7 @@ function PictureTabs({ store }: { store: Store }) {
   );
 }
 
-/** What a model holds that has no text. */
+/** Statistics of a model without text. */
 function Things({ store }: { store: Store }) {
   const { contents } = store;
   if (!contents) return null;
@@ -139,9 +139,9 @@ function DiskNotice({ store }: { store: Store }) {
     const text = store.diskText;
     return (
       <div class="notice" role="alert">
-        The file was changed on disk.
+        The file changed on disk.
         <button type="button" class="button" onClick={() => store.takeDisk(text)}>
-          Read it again
+          Reload
         </button>
         <button type="button" class="button plain" onClick={() => store.keepMine()}>
           Keep this text
@@ -152,12 +152,12 @@ function DiskNotice({ store }: { store: Store }) {
   if (!store.conflict) return null;
   return (
     <div class="notice" role="alert">
-      The file was changed by another program since it was read.
+      Another program changed the file since it was read.
       <button type="button" class="button" onClick={() => store.save(true)}>
-        Overwrite it
+        Overwrite
       </button>
       <button type="button" class="button plain" onClick={() => store.open("", null)}>
-        Read it again
+        Reload
       </button>
     </div>
   );

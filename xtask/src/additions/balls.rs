@@ -1,4 +1,4 @@
-//! `.balls`: four numbers a line, the centre and the radius of a sphere.
+//! `.balls`: four numbers per line, the centre and radius of a sphere.
 
 use super::model::{Input, SceneFormat};
 use durer_diag::{Diagnostic, Diagnostics, Span};

@@ -1,4 +1,4 @@
-//! `.tri`: nine numbers a line, the corners of a triangle.
+//! `.tri`: nine numbers per line, the vertices of a triangle.
 
 use super::report::Report;
 use super::{MeshFormat, as_it_is};

@@ -8,7 +8,7 @@ const NAME: &str = "farbfeld";
 
 fn sizes(bytes: &[u8]) -> Result<[u32; 2], ImageError> {
     let side = |at: usize| bytes.get(at..at + 4).and_then(|four| four.try_into().ok()).map(u32::from_be_bytes);
-    side(8).zip(side(12)).map(|(width, height)| [width, height]).ok_or_else(|| ImageError::malformed(NAME, "it is too short"))
+    side(8).zip(side(12)).map(|(width, height)| [width, height]).ok_or_else(|| ImageError::malformed(NAME, "the file is too short"))
 }
 
 pub const FORMAT: Format = Format {

@@ -7,13 +7,13 @@ use crate::math::{Color, Vec3};
 use glam::DVec3;
 
 described! {
-    /// Light from one point, as strong at any distance.
+    /// Point light without attenuation.
     GlowLight ["GlowLight" in set::DURER] {
-        /// Where it is.
+        /// Position in world space.
         position: Vec3 = Vec3::ZERO, required, Rule::Any, ["position" in set::DURER];
-        /// Its colour and strength.
+        /// Colour times strength, linear RGB.
         color: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::DURER];
-        /// Its measured spectrum, which `color` multiplies.
+        /// File with a measured spectrum, which `color` multiplies.
         spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
     }
 }

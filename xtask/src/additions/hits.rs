@@ -8,9 +8,9 @@ use durer_scene::sampler::SampleId;
 use crate::world::World;
 
 described! {
-    /// where anything is
+    /// white for hits within a distance, black elsewhere
     HitsParameters ["hits" in set::DURER] {
-        /// How far things are seen, in units of the world [default: all are]
+        /// Maximum distance of hits, in world units [default: unlimited]
         depth: Option<f32> = None, optional, Rule::Positive, ["hits-depth" in set::DURER];
     }
 }

@@ -8,17 +8,17 @@ use crate::math::{Ray, Vec2, Vec3};
 use glam::DVec2;
 
 described! {
-    /// A camera whose rays are parallel, and aslant.
+    /// Camera with parallel rays that are oblique to the picture.
     ObliqueCamera ["ObliqueCamera" in set::DURER] {
-        /// The middle of the picture.
+        /// Centre of the picture.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// Where the picture faces; of any length.
+        /// View direction, of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// What is up in the picture.
+        /// Up direction of the picture.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
         /// Length of the picture's larger side.
         size: f32 = 2.0, required, Rule::Positive, ["size" in set::DURER];
-        /// How far rays go to the left and down on their way of length 1 into the picture.
+        /// Offset of rays to the left and down per unit of depth.
         slant: f32 = 0.5, optional, Rule::Any, ["slant" in set::DURER];
     }
 }

@@ -9,9 +9,9 @@ use glam::DVec3;
 described! {
     /// A regular octahedron.
     Octahedron ["Octahedron" in set::DURER] {
-        /// Its middle.
+        /// Centre.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// From the middle to its corners, which lie along the axes.
+        /// Distance from the centre to the vertices, which lie on the axes.
         radius: f32 = 1.0, required, Rule::Positive, ["radius" in set::DURER];
     }
 }
@@ -22,7 +22,7 @@ impl Shape for Octahedron {
         Some(padded(center - radius, center + radius))
     }
 
-    /// The part of the line between all pairs of opposite faces.
+    /// Returns the interval of the line between all pairs of opposite faces.
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
         let (mut enters, mut leaves) = (f64::NEG_INFINITY, f64::INFINITY);
         for normal in [DVec3::new(1.0, 1.0, 1.0), DVec3::new(-1.0, 1.0, 1.0), DVec3::new(1.0, -1.0, 1.0), DVec3::new(1.0, 1.0, -1.0)] {

@@ -6,13 +6,13 @@ use crate::dialect::set;
 use crate::math::Vec3;
 
 described! {
-    /// Layers of two materials in turn, across the y axis.
+    /// Alternating layers of two materials, perpendicular to the y axis.
     Stripes ["Stripes" in set::DURER] {
-        /// The material of even layers.
+        /// Index of the material of even layers.
         material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::DURER];
-        /// That of odd layers.
+        /// Index of the material of odd layers.
         material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::DURER];
-        /// How high a layer is.
+        /// Height of a layer, in object units.
         height: f32 = 1.0, optional, Rule::Positive, ["height" in set::DURER];
     }
 }

@@ -1,14 +1,14 @@
-//! Small scenes whose official pictures our own once did not equal.
+//! Regression tests: small scenes whose pictures once differed from the official ones.
 
 use super::{ROUNDING, difference, read};
 use anyhow::{Context, Result};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// At most this share of the pixels, in percent, may differ by more than rounding.
+/// Largest percentage of pixels that may differ by more than rounding.
 const MOST: f64 = 0.1;
 
-/// Pixels that are known of pictures which are not there.
+/// Known pixels of missing official pictures: scene, position, colour.
 const PIXELS: [(&str, [usize; 2], [u8; 3]); 1] = [("glassplane", [10, 30], [41, 68, 116])];
 
 /// A scene of the folder, by its name.
@@ -59,7 +59,7 @@ impl Scene {
     }
 }
 
-/// Prints a table of the scenes in a folder; how many do not agree.
+/// Prints a table of the scenes in a folder; returns the number of failures.
 pub fn run(durer: &Path, folder: &Path, meshes: &Path, out: &Path, only: Option<&str>) -> Result<usize> {
     let mut names: Vec<String> = std::fs::read_dir(folder)?
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok()?.strip_suffix(".txt").map(String::from))
@@ -81,7 +81,7 @@ pub fn run(durer: &Path, folder: &Path, meshes: &Path, out: &Path, only: Option<
             .arg(&ours)
             .stdin(Stdio::null())
             .output()
-            .context("the program does not start")?;
+            .context("cannot start the program")?;
         let mut said = Vec::new();
         let mut agrees = output.status.success();
         if agrees {
@@ -102,7 +102,8 @@ pub fn run(durer: &Path, folder: &Path, meshes: &Path, out: &Path, only: Option<
         } else {
             said.push(String::from_utf8_lossy(&output.stderr).lines().next().unwrap_or("refused").into());
         }
-        // One pixel has no place between the first and the last, and a mesh is not there.
+        // Undefined: one pixel has no position between the first and the last; or a mesh is
+        // missing.
         let undefined = name.starts_with("size1x1") || said.iter().any(|line| line.contains("missing-file"));
         wrong += usize::from(!agrees && !undefined);
         let verdict = if agrees {

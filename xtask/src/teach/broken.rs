@@ -26,7 +26,7 @@ fn cases() -> Result<Vec<Case>> {
         } else if let Some(rest) = line.strip_prefix("case ") {
             let words = |options: &str| options.split_whitespace().map(String::from).collect::<Vec<_>>();
             if !std::mem::replace(&mut sound, true) {
-                let (name, options) = (format!("{base} as it is"), words(&options));
+                let (name, options) = (format!("{base} unchanged"), words(&options));
                 cases.push(Case { name, codes: Vec::new(), options, text: text.clone() });
             }
             let (rest, more) = rest.rsplit_once('+').filter(|(_, more)| more.starts_with("--")).unwrap_or((rest, ""));
@@ -107,7 +107,7 @@ pub fn judge(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resu
     }
     let all = first + second + later + missed;
     println!(
-        "\n| | first | among the first two | later | missed | sound scenes warned about |\n| --- | --- | --- | --- | --- | --- |"
+        "\n| | first | among the first two | later | missed | false alarms |\n| --- | --- | --- | --- | --- | --- |"
     );
     println!("| `check`, {all} broken scenes | {first} | {second} | {later} | {missed} | {alarms} |");
     let percent = |count: usize| 100.0 * count as f64 / all.max(1) as f64;

@@ -100,10 +100,10 @@ fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resul
     let [right, not_told, wrong, unseen] = [Told::Right, Told::Nothing, Told::Wrong, Told::Unseen].map(count);
     let seen = results.len() - unseen;
     println!(
-        "\n| | named rightly | not told | **named wrongly** | not seen in this scene |\n| --- | --- | --- | --- | --- |"
+        "\n| | identified | not identified | **misidentified** | invisible in this scene |\n| --- | --- | --- | --- | --- |"
     );
     println!("| `compare`, {seen} wrong pictures | {right} | {not_told} | **{wrong}** | {unseen} |");
-    println!("rightly: {:.1} %\n", 100.0 * right as f64 / seen.max(1) as f64);
+    println!("identified: {:.1} %\n", 100.0 * right as f64 / seen.max(1) as f64);
     Ok(wrong == 0 && right * 10 >= seen * 9)
 }
 
@@ -123,9 +123,9 @@ fn judged(json: &str, made: &[&str]) -> (Told, String) {
         .skip(1)
         .map(|set| set.split("\"name\": \"").skip(1).filter_map(|rest| rest.split('"').next()).collect())
         .collect();
-    // A mistake that is in no table cannot be named.
+    // A mistake outside the table cannot be named.
     if made.iter().any(|made| made.starts_with("x-")) && sets.is_empty() {
-        return (Told::Right, "not told".into());
+        return (Told::Right, "not identified".into());
     }
     if sets.is_empty() {
         return (Told::Nothing, String::new());
@@ -144,7 +144,7 @@ fn ppm((width, height): (usize, usize), picture: &Picture) -> Vec<u8> {
 
 /// Returns a program's output; exit codes above 1 are failures.
 fn output(command: &mut Command) -> Result<String> {
-    let output = command.stdin(Stdio::null()).output().context("the program does not start")?;
+    let output = command.stdin(Stdio::null()).output().context("cannot start the program")?;
     if output.status.code().is_none_or(|code| code > 1) {
         bail!("{command:?}: {}", String::from_utf8_lossy(&output.stderr));
     }

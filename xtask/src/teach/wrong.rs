@@ -364,8 +364,8 @@ const ALONE: [&[&str]; 12] = [
     &["normals-smooth", "normals-local", "no-falloff"],
 ];
 
-/// Mistakes that were in no table when the judge was written, made in these scenes: valid answers
-/// are their own name, or none.
+/// Mistakes that were missing from the table when the judge was written. Valid answers are their
+/// own name, or none.
 const UNKNOWN: [&str; 7] = [
     "x-ambient-brighter",
     "x-kd-squared",

@@ -1,4 +1,4 @@
-//! Scenes whose light is known.
+//! Scenes with known answers.
 
 use durer::math::{Vec3, fp};
 use durer::texture::CieSky;
@@ -170,7 +170,7 @@ fn lamps() -> Vec<Case> {
         Case {
             lights: format!("PointLight {{ position 1.5 2 0 {CANDELAS_100} }}"),
             ..case(
-                "[5.2] Point source of 100 cd, 2 m high, 1.5 m aside",
+                "[5.2] Point source of 100 cd, 2 m high, 1.5 m to the side",
                 "E = I cos³θ / h²",
                 floor(),
                 100.0 * cos3(2.0, 1.5),
@@ -195,7 +195,7 @@ fn lamps() -> Vec<Case> {
             PI * 1000.0 * parallel(1.5, 0.5),
         ),
         lamp(
-            "The same of two triangles",
+            "The same panel as two triangles",
             "Lambert 1760: any polygon",
             "Triangle { vertex0 0 2 0 vertex1 3 2 0 vertex2 3 2 1 } Triangle { vertex0 0 2 0 vertex1 3 2 1 vertex2 0 2 1 }",
             PI * 1000.0 * parallel(1.5, 0.5),
@@ -203,7 +203,7 @@ fn lamps() -> Vec<Case> {
         Case {
             what: What::Illuminance(Vec3::new(0.0, 0.7, 0.0), Vec3::X),
             ..lamp(
-                "[5.3] Panel of 1000 cd/m², 2 m x 1.5 m, on the floor before a wall, 0.7 m above its corner",
+                "[5.3] Panel of 1000 cd/m², 2 m x 1.5 m, on the floor at a wall, point 0.7 m above its corner",
                 "Howell C-12",
                 "Rectangle { corner 0 0 0 edge0 0 0 1.5 edge1 2 0 0 }",
                 PI * 1000.0 * upright(2.0, 1.5, 0.7),
@@ -227,7 +227,7 @@ fn skies() -> Vec<Case> {
         Case { group: format!("MaterialIndex 0 {} {lid}", around(opening)), ..open(name, formula, sky, answer) }
     };
     let mut all = vec![
-        open("Open field under an even sky of 1000 cd/m²", "E = π L", EVEN, PI * 1000.0),
+        open("Open field under a uniform sky of 1000 cd/m²", "E = π L", EVEN, PI * 1000.0),
         open(
             "Open field under the CIE's overcast sky of 9000 cd/m² at the zenith",
             "E = 7 π Lz / 9",
@@ -248,17 +248,17 @@ fn skies() -> Vec<Case> {
             group:
                 "MaterialIndex 0 Transform { UniformScale 1000 Disc { center 0 -0.000001 0 normal 0 -1 0 radius 1 } }"
                     .into(),
-            ..open("Wall before a dark field, even sky of 1000 cd/m²", "E = π L / 2", EVEN, PI * 500.0)
+            ..open("Wall at a dark field, uniform sky of 1000 cd/m²", "E = π L / 2", EVEN, PI * 500.0)
         },
         behind(
-            "[5.9] Open roof light of 3 m x 1 m, 2 m overhead, even sky",
+            "[5.9] Open roof light of 3 m x 1 m, 2 m overhead, uniform sky",
             "E = π L F, Howell C-11",
             EVEN,
             roof,
             PI * 1000.0 * parallel(1.5, 0.5),
         ),
         behind(
-            "[5.11] Open window of 1.6 m x 1.2 m, 2 m away, sill 1 m up, even sky",
+            "[5.11] Open window of 1.6 m x 1.2 m, 2 m away, sill 1 m up, uniform sky",
             "E = π L F, Howell C-12",
             EVEN,
             window,
@@ -276,7 +276,7 @@ fn skies() -> Vec<Case> {
         all.push(behind(name, "E = ∫ L cosθ dω, by quadrature", sky, roof, answer));
     }
     for (name, sky, number) in [
-        ("[5.11] The window, CIE sky 5, even above ground", "cieSky 5", 5),
+        ("[5.11] The window, CIE sky 5, uniform above the ground", "cieSky 5", 5),
         ("[5.11] The window, CIE sky 12, clear", "cieSky 12 sun 1 1 0.5", 12),
         ("[5.11] The window, CIE sky 16, overcast", "cieSky 16", 16),
     ] {
@@ -292,18 +292,18 @@ fn skies() -> Vec<Case> {
         through(part, Vec3::Y, |dir| f64::from(known.luminance(dir)))
     };
     let masked = |name, plate: &str, answer| {
-        let mut one = behind(name, "E = ∫ L cosθ dω over what is left, by quadrature", "cieSky 16", window, answer);
+        let mut one = behind(name, "E = ∫ L cosθ dω over the visible part, by quadrature", "cieSky 16", window, answer);
         one.group += plate;
         one
     };
     all.push(masked(
-        "[5.13] The window under a canopy that juts out 1 m, overcast",
+        "[5.13] The window under a canopy 1 m deep, overcast",
         "Rectangle { corner 2.001 2.4 -999 edge0 0.999 0 0 edge1 0 0 1998 }",
         // The canopy's edge at y = 2.4, x = 3 appears at 1.6 in the window.
         hidden(1.0, 1.6),
     ));
     all.push(masked(
-        "[5.14] The window before a dark wall 4 m away and 3.2 m high, overcast",
+        "[5.14] The window opposite a dark wall 4 m away and 3.2 m high, overcast",
         "Rectangle { corner 4 0 -999 edge0 0 3.2 0 edge1 0 0 1998 }",
         // The top at y = 3.2, x = 4 appears at 1.6 in the window.
         hidden(1.6, 2.2),
@@ -343,8 +343,8 @@ fn reflections() -> Vec<Case> {
                 around(roof)
             ),
             ..case(
-                "[5.4] Light that enters a dark room of 4 m x 4 m x 3 m by a roof light of 2 m², even sky",
-                "Φ = π L A: what comes in arrives on walls and floor",
+                "[5.4] Flux into a dark room of 4 m x 4 m x 3 m through a roof light of 2 m², uniform sky",
+                "Φ = π L A: all flux reaches the walls and the floor",
                 What::Flux(inside),
                 PI * 1000.0 * 2.0,
             )
@@ -373,7 +373,7 @@ fn reflections() -> Vec<Case> {
             &format!("{patch} MaterialIndex 1 Rectangle {{ corner 1 0 -5 edge0 0 1 0 edge1 0 0 10 }}"),
             1,
             "[5.7] The same behind a dark screen across the floor's middle, 1 m high",
-            "E = ρ E₀ F of the half that is seen",
+            "E = ρ E₀ F of the visible half",
             500.0 * parallel(0.5, 0.75),
         ),
         matte(
@@ -381,7 +381,7 @@ fn reflections() -> Vec<Case> {
             &lamp("0 0 0"),
             "Sphere { center 0 0 0 radius 2 }",
             60,
-            "[5.8] Integrating sphere, radius 2 m, ρ 0.5, a source of 100 cd in the middle",
+            "[5.8] Integrating sphere, radius 2 m, ρ 0.5, a source of 100 cd at the center",
             "E = I/r² + Φ/S · ρ/(1 − ρ)",
             100.0 / (1.999 * 1.999) + flux / (16.0 * PI),
         ),
@@ -390,7 +390,7 @@ fn reflections() -> Vec<Case> {
             &lamp("0.3 0.5 -0.4"),
             "Box { min -2 -2 -2 max 2 2 2 }",
             60,
-            "[5.8] All light inside a cube of 4 m, ρ 0.5, a source of 100 cd",
+            "[5.8] Flux inside a cube of 4 m, ρ 0.5, a source of 100 cd",
             "Φ = 4π I / (1 − ρ)",
             flux / 0.5,
         ),
@@ -405,8 +405,8 @@ fn panes() -> Vec<Case> {
         group: format!("MaterialIndex 0 {ball}"),
         bounces: 60,
         ..case(
-            "In a hollow glass ball under an even sky all around",
-            "E = π L: glass that absorbs nothing is not there",
+            "In a hollow glass ball under a uniform sky on all sides",
+            "E = π L: non-absorbing glass is invisible",
             floor(),
             PI * 1000.0,
         )
@@ -418,11 +418,11 @@ fn panes() -> Vec<Case> {
         format!("MaterialIndex 1 Disc {{ center {x} {y} 0 normal {nx} {ny} 0 radius 3 }} MaterialIndex 0 {pane}")
     };
     for (name, degrees, absorbed) in [
-        ("[5.5] Through a pane of clear glass, n 1.5, straight on", 0.0, false),
+        ("[5.5] Through a pane of clear glass, n 1.5, at 0°", 0.0, false),
         ("[5.5] The same at 40°", 40.0, false),
         ("[5.5] The same at 60°", 60.0, false),
         ("[5.5] The same at 80°", 80.0, false),
-        ("[5.5] Through tinted glass that leaves half at right angles, at 60°", 60.0, true),
+        ("[5.5] Through tinted glass that transmits half at 0°, at 60°", 60.0, true),
     ] {
         let (sine, cosine) = fp::sin_cos_degrees(degrees);
         let inside = (1.0 - sine * sine / 2.25).sqrt();
@@ -458,7 +458,7 @@ fn panes() -> Vec<Case> {
             group: lamp(sine, cosine, "Rectangle { corner -99 1 -99 edge0 198 0 0 edge1 0 0 198 }"),
             ..case(
                 name,
-                "the mean of T along and across the plane of incidence: light stays polarised",
+                "mean of T parallel and perpendicular to the plane of incidence: light stays polarised",
                 What::Luminance(Vec3::ZERO, Vec3::new(sine as f32, cosine as f32, 0.0)),
                 1000.0 * polarised_pane(cosine, kept),
             )

@@ -59,11 +59,11 @@ fn measured(case: &Case, samples: u32) -> Result<(f64, f64)> {
 pub fn light(table: &mut Table, samples: u32) -> Result<()> {
     table.head(
         "Light",
-        "Each row is a number that follows from first principles, and what the path tracer measures with its standard error (of\n\
-         independent samples: ours are spread more evenly). It is right within three standard errors and a thousandth. Where the\n\
-         formula is an integral without a closed form, it is computed by quadrature in double precision. Headings in brackets are the sections of CIE\n\
-         171:2006 whose analytical cases a row has the physics of, with dimensions and numbers of ours. Scenes and formulas are in `xtask/src/validate/cases.rs`.",
-        "case|formula|>answer|>measured|>off",
+        "Each row compares a known answer with the path tracer's measurement and its standard error (computed for independent\n\
+         samples; stratified samples have a smaller error). A row passes within three standard errors plus 0.1 %. Where the\n\
+         formula is an integral without a closed form, the answer is computed by quadrature in double precision. A number in brackets is the section of\n\
+         CIE 171:2006 with the analytical case of the same physics; dimensions and values differ. Scenes and formulas are in `xtask/src/validate/cases.rs`.",
+        "case|formula|>answer|>measured|>difference",
     );
     for case in cases() {
         let (mean, error) = measured(&case, samples)?;

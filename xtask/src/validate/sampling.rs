@@ -15,10 +15,10 @@ const COSINES: [f32; 5] = [0.999, 0.7, 0.4, 0.2, 0.1];
 
 pub fn furnaces(table: &mut Table) {
     table.head(
-        "Materials that absorb nothing, in even light",
-        "What a white material gives back of even light of strength 1, over seven roughnesses and five angles from 3 to 84 degrees: the least\n\
-         and the greatest. Right is 1 within 0.2 % and three standard errors. (2^18 samples each.)",
-        "material|>least|>greatest",
+        "Non-absorbing materials in uniform light",
+        "White furnace test: radiance reflected by a white material in uniform light of radiance 1, as minimum and maximum over seven roughnesses\n\
+         and five angles from 3 to 84 degrees. A row passes at 1 within 0.2 % plus three standard errors (2^18 samples each).",
+        "material|>minimum|>maximum",
     );
     let smooth = proof::filmed().into_iter().map(|(name, material)| (format!("{name}, smooth"), material, 1));
     let all = proof::lossless().into_iter().map(|(name, material)| (name.to_string(), material, ROUGHNESSES.len()));
@@ -38,7 +38,7 @@ pub fn furnaces(table: &mut Table) {
     brushed(table);
 }
 
-/// The same over anisotropy, azimuth and side, for materials that may be rougher along one axis.
+/// Adds furnace tests over anisotropy, azimuth and side, for anisotropic materials.
 fn brushed(table: &mut Table) {
     for (name, material) in proof::brushed() {
         let furnace = Furnace::new(&material);
@@ -96,7 +96,7 @@ pub fn densities(table: &mut Table) -> Result<()> {
     let finely = Cells { fine: 40, ..CELLS };
     for (name, group) in LAMPS {
         let world = world(name, "", lamp, "", &format!("MaterialIndex 0 {group}"))?;
-        rows.push((format!("lamp: {name}"), of_lights(&world, finely)));
+        rows.push((format!("light: {name}"), of_lights(&world, finely)));
     }
     for (name, background) in [("clear sky", "sun 1 1 0.3"), ("overcast sky", "cieSky 16")] {
         let world = world(name, background, lamp, "", "MaterialIndex 0 Sphere { center 0 -50 0 radius 0.001 }")?;
@@ -108,13 +108,13 @@ pub fn densities(table: &mut Table) -> Result<()> {
     // Sidak's correction: 1 - 0.99^(1/n), which is -ln 0.99 / n up to second order.
     let most = deviate_of(0.010_050_3 / rows.len() as f64);
     table.head(
-        "Directions that are chosen against their density",
+        "Sampled directions against their density",
         &format!(
-            "10^6 samples of each in 80 x 160 cells of equal solid angle: chi-square as a deviate of the normal distribution. Right is less than {most:.2}: a\n\
-             significance of 0.01 for all {} tests together, by Šidák. The density sums to 1, less the share of samples that end below the surface.",
+            "Chi-square test of 10^6 samples each in 80 x 160 cells of equal solid angle, as a standard normal deviate. A row passes below {most:.2}: a\n\
+             significance of 0.01 for all {} tests together, by Šidák. The density integrates to 1 minus the share of samples below the surface.",
             rows.len()
         ),
-        "what chooses|>density in all|>deviate",
+        "sampler|>integral of density|>deviate",
     );
     for (name, Verdict { deviate, density }) in rows {
         table.row(&format!("| {name} | {density:.4} | {deviate:+.2} |"), deviate < most && density < 1.002);

@@ -171,7 +171,7 @@ impl Builder<'_> {
                 (boxes, middle)
             }
         };
-        let (here, below) = nodes.split_first_mut().expect("there is room for a node");
+        let (here, below) = nodes.split_first_mut().expect("the list has space for a node");
         let (left, right) = room.references.split_at_mut(middle);
         let [left_all, right_all] = &boxes;
         let left = BuildRange { references: left, ..room };
@@ -247,7 +247,7 @@ mod tests {
     /// refer to, and other nodes are unused. Holds if splits are limited by their use or by space,
     /// and for parallel builds.
     #[test]
-    fn leaves_share_nothing_and_hold_everything() {
+    fn leaves_are_disjoint_and_complete() {
         let mut random = Random(11);
         let (mut cut, mut with_gaps, mut limited) = (0, 0, 0);
         for count in [1, 2, 5, 700, 4_096, 4_097, 20_000] {
@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn a_node_holds_the_greatest_numbers() {
+    fn node_stores_the_largest_numbers() {
         for number in [1, MAX_ITEMS] {
             let leaf = BinaryNode::leaf(Vec4::ZERO, Vec4::ONE, number as u32, number as u32);
             assert_eq!((leaf.is_leaf(), leaf.count(), leaf.first()), (true, number, number));

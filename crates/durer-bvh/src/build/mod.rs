@@ -45,7 +45,7 @@ pub(super) fn build_triangles(
     corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync),
     settings: &BuildSettings,
 ) -> Tree {
-    assert!(count <= MAX_ITEMS, "a tree holds less than 2^28 triangles");
+    assert!(count <= MAX_ITEMS, "a tree holds fewer than 2^28 triangles");
     if settings.splits == 0.0 {
         return build_of(triangle_references(count, settings, corners_of), settings, Vec::new());
     }

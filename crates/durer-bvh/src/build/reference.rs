@@ -46,7 +46,7 @@ pub fn lane_number(lane: f32) -> u32 {
 
 /// References to boxes 0, 1, 2, ..., without the empty ones.
 pub fn references(boxes: &[Aabb]) -> Vec<Reference> {
-    assert!(boxes.len() <= MAX_ITEMS, "a tree holds less than 2^28 things");
+    assert!(boxes.len() <= MAX_ITEMS, "a tree holds fewer than 2^28 primitives");
     let full = boxes.iter().enumerate().filter(|(_, b)| !b.is_empty());
     full.map(|(i, b)| Reference::new(*b, i as u32)).collect()
 }

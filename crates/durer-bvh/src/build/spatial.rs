@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn halves_of_a_triangle_hold_what_is_on_their_side() {
+    fn halves_of_a_triangle_cover_their_sides() {
         let (mut random, mut inside) = (Random(1), 0);
         for round in 0..rounds(20_000) {
             let scale = [1.0, 1e-30, 1e30, 1e-5][round % 4];

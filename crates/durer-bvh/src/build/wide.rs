@@ -304,7 +304,7 @@ impl SubtreeNodes {
             moved
         };
         let mut moved = other.nodes.iter().map(moved);
-        self.nodes[number] = moved.next().expect("a subtree begins with its node");
+        self.nodes[number] = moved.next().expect("a subtree starts with its root");
         self.nodes.extend(moved);
         self.order.extend_from_slice(&other.order);
     }
@@ -353,7 +353,7 @@ fn places(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
     }
     let ends = [0, bounds.len() - 1].map(|end| {
         let child = places.iter().position(|place| *place == end);
-        areas[child.expect("each place is taken")]
+        areas[child.expect("each slot is in use")]
     });
     (from_last(axis, ends), places)
 }
@@ -365,7 +365,7 @@ mod tests {
     /// If two children are separated along an axis, closest-hit rays visit the nearer one first.
     /// Any-hit rays visit the farther one first, unless it is less than half as large.
     #[test]
-    fn children_come_in_the_order_that_rays_want() {
+    fn children_are_in_traversal_order() {
         let child = |axis: usize, at: f32, size: f32| {
             let (mut min, mut max) = ([0.0; 3], [size; 3]);
             (min[axis], max[axis]) = (at, at + size);

@@ -29,7 +29,7 @@ pub struct UnknownSimdLevel {
 
 impl fmt::Display for UnknownSimdLevel {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "DURER_SIMD is `{}`, but here it can be: {}", self.word, self.known)
+        write!(f, "DURER_SIMD is `{}`, but this processor supports only: {}", self.word, self.known)
     }
 }
 

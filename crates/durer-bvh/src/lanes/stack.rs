@@ -61,7 +61,7 @@ impl<'a> Stack<'a> {
             match self.pop_near() {
                 Some((_, near)) if near > far => {}
                 Some((child, _)) => return child,
-                None => unreachable!("the lowest is entered in time"),
+                None => unreachable!("the lowest child is entered in time"),
             }
         }
     }

@@ -240,7 +240,7 @@ mod tests {
     use crate::math::random::Random;
 
     #[test]
-    fn angles_in_turns_are_those_of_libm_to_a_rounding() {
+    fn angles_in_turns_match_libm_up_to_rounding() {
         use std::f64::consts::TAU;
         for quarter in -8..=8 {
             let (sin, cos) = sin_cos_turn(0.25 * quarter as f32);
@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn powers_are_rounded_as_those_of_double_precision() {
+    fn powers_equal_rounded_double_precision_results() {
         let (mut random, mut off) = (Random(3), 0);
         for _ in 0..300_000 {
             let base = f32::from_bits((random.unit() * 0x7f00_0000 as f32) as u32 + 0x0080_0000);
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn powers_of_unusual_numbers_are_those_of_libm() {
+    fn powers_of_special_values_match_libm() {
         let numbers = [
             0.0,
             -0.0,

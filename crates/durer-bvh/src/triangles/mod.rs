@@ -172,7 +172,7 @@ impl TriangleBvh {
     ///
     /// If `rays` and `hits` have different lengths.
     pub fn closest_batch(&self, rays: &[Ray], hits: &mut [Option<TriangleHit>]) {
-        assert_eq!(rays.len(), hits.len(), "a place for each hit");
+        assert_eq!(rays.len(), hits.len(), "`rays` and `hits` must have the same length");
         let hits = Cell::from_mut(hits).as_slice_of_cells();
         self.packets::<false>(
             rays,
@@ -187,7 +187,7 @@ impl TriangleBvh {
     ///
     /// If `rays` and `answers` have different lengths.
     pub fn occluded_batch(&self, rays: &[Ray], answers: &mut [bool]) {
-        assert_eq!(rays.len(), answers.len(), "a place for each answer");
+        assert_eq!(rays.len(), answers.len(), "`rays` and `answers` must have the same length");
         let answers = Cell::from_mut(answers).as_slice_of_cells();
         self.packets::<true>(
             rays,
@@ -202,7 +202,7 @@ impl TriangleBvh {
     ///
     /// If `rays` and `counts` have different lengths.
     pub fn hit_count_batch(&self, rays: &[Ray], counts: &mut [u32]) {
-        assert_eq!(rays.len(), counts.len(), "a place for each count");
+        assert_eq!(rays.len(), counts.len(), "`rays` and `counts` must have the same length");
         rays.iter().zip(counts).for_each(|(ray, count)| *count = self.hit_count(ray) as u32);
     }
 

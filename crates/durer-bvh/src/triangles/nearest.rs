@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn points_of_a_torus_are_as_far_as_its_formula_says() {
+    fn distances_to_a_torus_match_its_formula() {
         let (vertices, triangles) = torus(200, 100);
         let tree = TriangleBvh::build(&vertices, &triangles, BuildQuality::default());
         let mut random = Random(32);
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_place_is_near_nothing() {
+    fn nan_points_have_no_nearest_point() {
         let tree = TriangleBvh::build(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]], BuildQuality::Fast);
         for point in [Vec3::NAN, Vec3::INFINITY] {
             assert_eq!(tree.nearest_point(point, f64::INFINITY), None);

@@ -88,7 +88,7 @@ impl TriangleBvh {
             return Err(LoadError::Damaged);
         }
         if !(0.0..f64::INFINITY).contains(&least_volume) {
-            return Err(LoadError::Invalid("its least volume is no size"));
+            return Err(LoadError::Invalid("its least volume is out of range"));
         }
         let mut from = Reader(rest);
         let nodes: Vec<WideNode> = (0..nodes).map(|_| from.node()).collect();
@@ -133,14 +133,14 @@ impl Reader<'_> {
 /// triangles.
 fn check(nodes: &[WideNode], leaves: &[f32], items: usize, count: usize) -> Result<(), &'static str> {
     if nodes.is_empty() != (items == 0) {
-        return Err("nodes and leaves do not go together");
+        return Err("nodes and leaves do not match");
     }
     // Depth of each node, known once its parent was visited; the root has no parent.
     let mut depths = vec![None; nodes.len()];
     depths.iter_mut().take(1).for_each(|depth| *depth = Some(0));
     let mut is_taken = vec![false; items];
     for (i, node) in nodes.iter().enumerate() {
-        let depth: usize = depths[i].ok_or("a node has no parent before it")?;
+        let depth: usize = depths[i].ok_or("a node precedes its parent")?;
         if depth >= MAX_DEPTH {
             return Err("it is too deep");
         }
@@ -150,23 +150,23 @@ fn check(nodes: &[WideNode], leaves: &[f32], items: usize, count: usize) -> Resu
                 continue;
             }
             if !(bounds.min.is_finite() && bounds.max.is_finite()) || bounds.is_empty() {
-                return Err("a box is none");
+                return Err("a box is invalid");
             }
             let rest = if child & LEAF == 0 { child.wrapping_sub(node.first) } else { IS_LEAF };
             if rest != IS_LEAF && rest & !node::BEHIND != 0 || u32::from(tag) != place as u32 | rest {
-                return Err("a node does not know its children");
+                return Err("the child tags of a node are wrong");
             }
             if child & LEAF == 0 {
                 let number = node::number(child);
                 if !(child as usize).is_multiple_of(UNITS) || number <= i || number >= nodes.len() {
-                    return Err("a child is no node behind its parent");
+                    return Err("a child does not follow its parent");
                 }
                 if depths[number].replace(depth + 1).is_some() {
                     return Err("a node has two parents");
                 }
             } else {
                 let (first, size) = node::items(child);
-                let places = is_taken.get_mut(first..first + size).ok_or("a leaf is beyond the last")?;
+                let places = is_taken.get_mut(first..first + size).ok_or("a leaf is out of range")?;
                 if places.iter_mut().any(|is_taken| std::mem::replace(is_taken, true)) {
                     return Err("two leaves have the same triangles");
                 }
@@ -174,7 +174,7 @@ fn check(nodes: &[WideNode], leaves: &[f32], items: usize, count: usize) -> Resu
             }
         }
     }
-    if is_taken.contains(&false) { Err("triangles are in no leaf") } else { Ok(()) }
+    if is_taken.contains(&false) { Err("some triangles are in no leaf") } else { Ok(()) }
 }
 
 /// Checks that the rows of a leaf hold triangles with numbers below `count`.
@@ -185,7 +185,7 @@ fn check_leaf(rows: &[f32], size: usize, count: usize) -> Result<(), &'static st
     }
     match numbers.iter().all(|number| ((number.to_bits() ^ TAG) as usize) < count) {
         true => Ok(()),
-        false => Err("a leaf has a triangle of no number"),
+        false => Err("a leaf has an invalid triangle number"),
     }
 }
 
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_saved_is_loaded() {
+    fn stored_trees_load_again() {
         let mut random = Random(41);
         for mesh in meshes(&mut random) {
             for (_, quality) in BuildQuality::NAMES {
@@ -291,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said() {
+    fn stored_errors_name_the_fault() {
         let bvh = TriangleBvh::build(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]], BuildQuality::Fast);
         let bytes = bvh.to_bytes();
         let with = |at: usize, byte: u8| {

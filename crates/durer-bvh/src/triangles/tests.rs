@@ -186,7 +186,7 @@ fn every_tree_at_every_level_finds_what_brute_force_finds() {
 }
 
 #[test]
-fn a_closed_mesh_is_crossed_evenly_from_outside_and_oddly_from_inside() {
+fn closed_mesh_has_even_crossings_from_outside_and_odd_from_inside() {
     let (mut random, mut counted) = (Random(2), 0);
     let shapes = [(torus(60, 30), Vec3::new(0.7, 0.0, 0.0)), (cube(8), Vec3::ZERO)];
     for distance in [0.0, 1e3, 1e6] {
@@ -209,11 +209,11 @@ fn a_closed_mesh_is_crossed_evenly_from_outside_and_oddly_from_inside() {
             }
         }
     }
-    println!("{counted} rays at vertices, edges and centroids: none is lost, no count is wrong");
+    println!("{counted} rays at vertices, edges and centroids: no ray is lost and all counts are right");
 }
 
 #[test]
-fn a_refitted_tree_finds_what_brute_force_finds() {
+fn refitted_tree_finds_what_brute_force_finds() {
     let mut random = Random(3);
     let mesh = torus(30, 15);
     for quality in [BuildQuality::Fast, BuildQuality::Best] {
@@ -241,7 +241,7 @@ fn a_refitted_tree_finds_what_brute_force_finds() {
 
 /// If sums of coordinates overflow, the result of a hit is still a valid triangle.
 #[test]
-fn the_greatest_numbers_lead_to_triangles() {
+fn largest_offsets_lead_to_triangles() {
     let mut random = Random(5);
     let mesh = torus(12, 6);
     let huge: Mesh = (mesh.0.iter().map(|v| *v / 1.5 * 3e38).collect(), mesh.1.clone());
@@ -287,7 +287,7 @@ fn bundle(mesh: &Mesh, random: &mut Random, scale: f32, offset: Vec3) -> Vec<Ray
 }
 
 #[test]
-fn batches_answer_as_single_rays_do() {
+fn batches_answer_like_single_rays() {
     let (mut random, mut met) = (Random(4), 0);
     for (name, mesh) in hard() {
         for (scale, offset) in [(1.0, Vec3::ZERO), (1.0, Vec3::new(1e4, -3e3, 7e4)), (1e-30, Vec3::ZERO)] {
@@ -331,7 +331,7 @@ fn batches_answer_as_single_rays_do() {
 }
 
 #[test]
-fn rays_along_an_axis_go_together_and_meet_what_is_there() {
+fn axis_parallel_rays_go_together_and_hit_correctly() {
     let mesh = torus(40, 20);
     let tree = TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Best);
     let trees: Vec<_> = SimdLevel::available().map(|level| tree.clone().at_level(level)).collect();
@@ -369,7 +369,7 @@ fn rays_along_an_axis_go_together_and_meet_what_is_there() {
 }
 
 #[test]
-fn zeros_of_either_sign_are_one_point_where_rays_begin() {
+fn zeros_of_either_sign_are_the_same_ray_origin() {
     // Around the origin, so that corners also have zeros of either sign, and rays run through edges
     // and vertices.
     let mut mesh = cube(8);
@@ -418,13 +418,13 @@ fn a_tree_is_a_function_of_its_triangles() {
         };
         assert!(build(1) == build(2), "{name}");
     }
-    assert!(TriangleBvh::build(&bars.0, &bars.1, BuildQuality::Best).items() > bars.1.len(), "no part of a triangle");
+    assert!(TriangleBvh::build(&bars.0, &bars.1, BuildQuality::Best).items() > bars.1.len(), "no triangle was split");
 }
 
 /// The panic reaches the caller, whichever thread found the error, and the next tree can be built.
 #[test]
 #[cfg_attr(target_family = "wasm", ignore = "a panic ends the program there")]
-fn an_index_that_leads_nowhere_panics() {
+fn out_of_range_index_panics() {
     let (vertices, mut triangles) = soup(&mut Random(3), 20_000, 0.1);
     for quality in BuildQuality::NAMES.map(|(_, quality)| quality) {
         for place in [0, 10_000, 19_999] {

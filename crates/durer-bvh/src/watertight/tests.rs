@@ -61,7 +61,7 @@ fn crossed(mesh: &Triangles, ray: &Ray) -> usize {
 }
 
 #[test]
-fn a_closed_mesh_is_crossed_evenly_from_outside_and_oddly_from_inside() {
+fn closed_mesh_has_even_crossings_from_outside_and_odd_from_inside() {
     let mut random = Random(9);
     for (mesh, convex, inside) in meshes() {
         let mut through = 0;
@@ -96,7 +96,7 @@ fn a_closed_mesh_is_crossed_evenly_from_outside_and_oddly_from_inside() {
 }
 
 #[test]
-fn one_triangle_of_a_fan_is_crossed_at_its_middle_and_at_its_spokes() {
+fn exactly_one_triangle_of_a_fan_is_hit_at_its_center_and_spokes() {
     let mut random = Random(10);
     for round in 0..20_000 {
         let count = 3 + round % 9;
@@ -119,7 +119,7 @@ fn one_triangle_of_a_fan_is_crossed_at_its_middle_and_at_its_spokes() {
 }
 
 #[test]
-fn triangles_of_all_sizes_are_met() {
+fn triangles_of_all_sizes_are_hit() {
     let mut random = Random(11);
     for power in -36..=36 {
         let size = libm::pow(10.0, f64::from(power)) as f32;
@@ -137,7 +137,7 @@ fn triangles_of_all_sizes_are_met() {
 }
 
 #[test]
-fn a_ray_in_the_plane_of_a_triangle_does_not_cross_it() {
+fn ray_in_the_plane_of_a_triangle_misses_it() {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::Z];
     for ray in [Ray::new(Vec3::NEG_X, Vec3::X), Ray::new(Vec3::NEG_X, Vec3::new(1.0, 0.0, 0.1))] {
         assert_eq!(WatertightRay::new(&ray).intersect(corners, f32::NEG_INFINITY, f32::INFINITY), None);

@@ -1,4 +1,4 @@
-//! The options of the course's programs, as one table, and the arguments sorted by it.
+//! Options of the course's programs as a table, and the parsed arguments.
 
 use crate::failure::{Failure, bad};
 use crate::terminal::{complain, say};
@@ -24,12 +24,12 @@ pub const PROGRAMS: [Program; 7] = [
     Program { name: "assignment4", dialect: Dialect::F23, compat: &[] },
 ];
 
-/// The official program of a name.
+/// Returns the official program with this name.
 pub fn program(name: &str) -> Option<&'static Program> {
     PROGRAMS.iter().find(|program| program.name == name)
 }
 
-/// One option: its name, its values, the years that have it, and what it does.
+/// An option: name, values, years that have it, help.
 pub struct Row(&'static str, &'static [&'static str], DialectSet, &'static str);
 
 const NOT_A4: DialectSet = set::ALL & !set::F12A4;
@@ -41,48 +41,48 @@ const OPTIONS: [Row; 32] = [
     Row("-output", &["FILE"], set::ALL, "the colour picture"),
     Row("-depth", &["MIN", "MAX", "FILE"], set::ALL, "the depth picture"),
     Row("-normals", &["FILE"], set::ALL, "the picture of normals"),
-    Row("-shadows", &[], NOT_A4, "lights cast shadows"),
-    Row("-bounces", &["N"], NOT_A4, "levels of mirrored and transmitted rays"),
-    Row("-shade_back", &[], set::OLD, "surfaces are shaded from behind too"),
-    Row("-weight", &["X"], set::OLD, "rays that count for less are left out"),
-    Row("-grid", &["NX", "NY", "NZ"], set::OLD, "a uniform grid finds the objects"),
+    Row("-shadows", &[], NOT_A4, "cast shadows"),
+    Row("-bounces", &["N"], NOT_A4, "maximum depth of mirrored and transmitted rays"),
+    Row("-shade_back", &[], set::OLD, "shade the back of surfaces too"),
+    Row("-weight", &["X"], set::OLD, "minimum weight of a ray"),
+    Row("-grid", &["NX", "NY", "NZ"], set::OLD, "use a uniform grid"),
     Row("-visualize_grid", &[], set::OLD, "show the grid's occupied cells"),
-    Row("-stats", &[], set::OLD, "print how much was computed"),
-    Row("-random_samples", &["N"], set::OLD, "samples a pixel, at random"),
-    Row("-uniform_samples", &["N"], set::OLD, "samples a pixel, in a regular pattern"),
-    Row("-jittered_samples", &["N"], set::OLD, "samples a pixel, one at random in each cell of a pattern"),
-    Row("-box_filter", &["R"], set::OLD, "weigh samples within a square"),
-    Row("-tent_filter", &["R"], set::OLD, "weigh samples by a cone"),
-    Row("-gaussian_filter", &["SIGMA"], set::OLD, "weigh samples by a Gaussian"),
-    Row("-render_samples", &["FILE", "ZOOM"], set::OLD, "show where the samples lie"),
+    Row("-stats", &[], set::OLD, "print the numbers of objects and rays"),
+    Row("-random_samples", &["N"], set::OLD, "samples per pixel, at random"),
+    Row("-uniform_samples", &["N"], set::OLD, "samples per pixel, in a regular pattern"),
+    Row("-jittered_samples", &["N"], set::OLD, "samples per pixel, one at random in each cell of a pattern"),
+    Row("-box_filter", &["R"], set::OLD, "box filter"),
+    Row("-tent_filter", &["R"], set::OLD, "tent filter"),
+    Row("-gaussian_filter", &["SIGMA"], set::OLD, "Gaussian filter"),
+    Row("-render_samples", &["FILE", "ZOOM"], set::OLD, "show the sample positions"),
     Row("-render_filter", &["FILE", "ZOOM"], set::OLD, "show the filter's weights"),
-    Row("-transparent_shadows", &[], set::OLD, "transparent things cast coloured shadows"),
-    Row("-gui", &[], set::OLD, "ignored: there is no window"),
-    Row("-tessellation", &["THETA", "PHI"], set::OLD, "ignored: it concerns the window only"),
-    Row("-gouraud", &[], set::OLD, "ignored: it concerns the window only"),
+    Row("-transparent_shadows", &[], set::OLD, "transparent objects cast coloured shadows"),
+    Row("-gui", &[], set::OLD, "ignored: Dürer has no window"),
+    Row("-tessellation", &["THETA", "PHI"], set::OLD, "ignored: for the window only"),
+    Row("-gouraud", &[], set::OLD, "ignored: for the window only"),
     Row("-jitter", &[], set::F12A5 | set::F16 | set::F23, "three by three jittered sub-pixels"),
     Row("-filter", &[], set::F12A5 | set::F16 | set::F23, "blur by five taps"),
-    Row("-reflection_off", &[], set::F12A5, "leave mirrored rays out"),
-    Row("-refraction_off", &[], set::F12A5, "leave transmitted rays out"),
-    Row("--program", &["NAME"], set::ALL, "be this official program"),
-    Row("--dialect", &["NAME"], set::ALL, "the scene's dialect; else guessed from scene and options"),
-    Row("--compat", &["NAMES"], set::ALL, "quirks by name, see `durer dialects`"),
-    Row("--assets", &["FOLDER"], set::ALL, "look for missing meshes and pictures here too"),
+    Row("-reflection_off", &[], set::F12A5, "omit mirrored rays"),
+    Row("-refraction_off", &[], set::F12A5, "omit transmitted rays"),
+    Row("--program", &["NAME"], set::ALL, "act as this official program"),
+    Row("--dialect", &["NAME"], set::ALL, "dialect of the scene [default: guessed from the scene and the options]"),
+    Row("--compat", &["NAMES"], set::ALL, "quirks by name; see `durer dialects`"),
+    Row("--assets", &["FOLDER"], set::ALL, "folder to search for missing meshes and pictures"),
 ];
 
-/// More rows of ours, which concern only how the work is done.
+/// Dürer's own options, which only affect execution.
 const CONTROL: [Row; 4] = [
     Row("--seed", &["N"], set::ALL, "seed of the random numbers"),
     Row("--threads", &["N"], set::ALL, "threads"),
-    Row("--quiet", &[], set::ALL, "say nothing but errors"),
-    Row("--allow-outside", &[], set::ALL, "let the scene name files anywhere"),
+    Row("--quiet", &[], set::ALL, "print only errors"),
+    Row("--allow-outside", &[], set::ALL, "allow files outside the scene's folder"),
 ];
 
 pub fn rows() -> impl Iterator<Item = &'static Row> {
     OPTIONS.iter().chain(&CONTROL)
 }
 
-/// The arguments, sorted.
+/// The parsed arguments.
 pub struct Given {
     options: Vec<(&'static Row, Vec<String>)>,
     unknown: Vec<String>,
@@ -98,7 +98,7 @@ impl Given {
                 continue;
             };
             let values: Vec<String> = rest.by_ref().take(row.1.len()).collect();
-            // An option in place of a value: the value was forgotten.
+            // An option in place of a value means that the value is missing.
             let option = values.iter().find(|value| rows().any(|row| row.0 == **value));
             if values.len() < row.1.len() || option.is_some() {
                 let found = option.map(|option| format!(", but found {option}")).unwrap_or_default();
@@ -113,7 +113,7 @@ impl Given {
         self.options.iter().any(|(row, _)| row.0 == name)
     }
 
-    /// The values of an option; the last counts.
+    /// Returns the values of an option; the last occurrence counts.
     pub fn values(&self, name: &str) -> Option<&[String]> {
         self.options.iter().rev().find(|(row, _)| row.0 == name).map(|(_, values)| values.as_slice())
     }
@@ -124,7 +124,7 @@ impl Given {
 
     pub fn numbers<T: std::str::FromStr>(&self, name: &str, count: usize) -> Result<Option<Vec<T>>, Failure> {
         let Some(values) = self.values(name) else { return Ok(None) };
-        let parse = |text: &String| text.parse().map_err(|_| bad(format!("{name}: `{text}` is not such a number")));
+        let parse = |text: &String| text.parse().map_err(|_| bad(format!("{name}: `{text}` is not a valid number")));
         values.iter().take(count).map(parse).collect::<Result<_, _>>().map(Some)
     }
 
@@ -132,20 +132,20 @@ impl Given {
         Ok(self.numbers(name, 1)?.and_then(|mut values| values.pop()))
     }
 
-    /// The zoom of a diagram, if it is wanted.
+    /// Returns the zoom of a diagram, if it is requested.
     pub fn zoom(&self, name: &str) -> Result<Option<u32>, Failure> {
         let Some(values) = self.values(name) else { return Ok(None) };
         let zoom = values[1].parse().ok().filter(|zoom| (1..=1000).contains(zoom));
         zoom.map(Some).ok_or_else(|| bad(format!("{name}: the zoom must be from 1 to 1000")))
     }
 
-    /// Unknown options: one year's program ignored them, the others stopped.
+    /// Reports unknown options: the program of f12a4 ignored them, the others stopped.
     pub fn check_unknown(&self, dialect: Option<Dialect>, quiet: bool) -> Result<(), Failure> {
         for word in &self.unknown {
             let near = did_you_mean(word, rows().map(|row| row.0));
             let message = match near {
-                Some(near) => format!("there is no option {word}; did you mean {near}?"),
-                None => format!("there is no option {word}; `durer course` lists them"),
+                Some(near) => format!("unknown option {word}; did you mean {near}?"),
+                None => format!("unknown option {word}; `durer course` lists all options"),
             };
             if dialect != Some(Dialect::F12a4) {
                 return Err(bad(message));
@@ -157,7 +157,7 @@ impl Given {
         Ok(())
     }
 
-    /// What the options tell of the dialect.
+    /// Returns hints about the dialect from the options.
     pub fn hints(&self) -> Vec<Hint> {
         let mut hints: Vec<Hint> = self
             .options
@@ -166,7 +166,7 @@ impl Given {
             .map(|(row, _)| Hint { set: row.2, why: format!("`{}` is an option of that year", row.0), weak: false })
             .collect();
         let extension = self.text("-output").and_then(|name| Path::new(name).extension()?.to_str());
-        let wanted = |set: DialectSet, format: &str| Hint { set, why: format!("it wants a {format} file"), weak: true };
+        let wanted = |set: DialectSet, format: &str| Hint { set, why: format!("the output is a {format} file"), weak: true };
         hints.extend(match extension {
             Some("bmp") => Some(wanted(set::F12A4 | set::F12A5, "BMP")),
             Some("png") => Some(wanted(set::F16 | set::F23, "PNG")),
@@ -178,7 +178,7 @@ impl Given {
 }
 
 pub fn usage() {
-    say("durer course: the arguments of the course's own programs, of any year\n");
+    say("durer course: accepts the arguments of the course's own programs, of any year\n");
     say(
         "  durer course -input scene.txt -size 200 200 -output o.tga -depth 9 10 d.tga -normals n.tga -shadows -bounces 4\n",
     );
@@ -191,5 +191,5 @@ pub fn usage() {
         say(&format!("  {left:<28}{doc}{years}"));
     }
     say(&format!("\nPrograms: {}.", PROGRAMS.map(|p| p.name).join(", ")));
-    say("A link to durer with one of these names is that program.");
+    say("A link to durer with one of these names acts as that program.");
 }

@@ -31,7 +31,7 @@ impl Folder {
         let new = !path.exists();
         let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
         if new && !parent.is_dir() {
-            return Err(bad(format!("there is no folder `{}`", parent.display())));
+            return Err(bad(format!("folder `{}` does not exist", parent.display())));
         }
         if !new {
             Destination::new(path.join(TEXT))?;

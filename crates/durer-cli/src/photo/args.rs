@@ -253,8 +253,8 @@ pub struct ConvertArgs {
 #[command(after_help = "Example:
   durer photo tour solved/ --pictures photos/ -o tour.html
 
-The page is one self-contained file. Drag to turn, scroll to approach, click a photograph to fly into it, click one of its
-points to see all photographs of that place.")]
+The page is one self-contained file. Drag to rotate, scroll to zoom, click a photograph to fly to it, click a point
+to list all photographs that show it.")]
 pub struct TourArgs {
     /// File or folder of cameras and points
     pub file: PathBuf,

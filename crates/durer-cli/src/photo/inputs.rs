@@ -29,7 +29,7 @@ pub fn photographs(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let mut paths = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, Failure>>()?;
     let known = |path: &PathBuf| {
         let end = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        // macOS puts a hidden file of its own beside each on other systems' disks.
+        // Skip the hidden files that macOS writes beside each file on other systems' disks.
         let hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
         ["jpg", "jpeg", "png"].contains(&&*end) && !hidden && path.is_file()
     };

@@ -199,7 +199,7 @@ mod tests {
     use super::{Vec3, composed};
 
     #[test]
-    fn shadows_darken_the_photograph_and_things_cover_it() {
+    fn shadows_darken_and_objects_cover_the_photograph() {
         let [plate, ground, thing] = [0.6, 0.4, 0.9].map(Vec3::splat);
         // Three lit pixels; one in half shadow; one half covered, half in shadow; one covered.
         let without = [ground; 6];

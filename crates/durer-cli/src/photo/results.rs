@@ -39,7 +39,7 @@ impl Results {
             if output.is_folder() && !path.exists() {
                 let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
                 if !parent.is_dir() {
-                    return Err(bad(format!("there is no folder `{}`", parent.display())));
+                    return Err(bad(format!("folder `{}` does not exist", parent.display())));
                 }
                 results.folders.push(path.clone());
                 results.outputs.push((output, path.clone(), Vec::new()));

@@ -1,4 +1,4 @@
-// No flight takes time, and nobody has to look for it to go on.
+// Animate without delay, also in windows that are not visible.
 window.requestAnimationFrame = step => setTimeout(() => step(performance.now()), 5);
 window.matchMedia = () => ({ matches: true });
 const wait = () => new Promise(resolve => setTimeout(resolve, 200));

@@ -55,7 +55,7 @@ mod tests {
     use crate::model::rotation_of;
 
     #[test]
-    fn derivatives_are_those_of_differences() {
+    fn derivatives_match_finite_differences() {
         let lens = Lens { aspect: 1.1, radial: [-0.2, 0.07], ..Lens::new([640, 480], 500.0) };
         let pose =
             Pose { rotation: rotation_of(&Vector3::new(0.3, -0.2, 0.5)), translation: Vector3::new(0.1, 0.2, 4.0) };

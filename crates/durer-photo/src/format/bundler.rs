@@ -13,7 +13,7 @@ use std::fmt::Write;
 pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let mut words = Words::new(file, bytes)?;
     if !words.next_line('#') {
-        return Err(words.error("there is nothing in this file"));
+        return Err(words.error("the file is empty"));
     }
     let cameras = words.count("the number of cameras", 30)?;
     let points = words.count("the number of points", 20)?;
@@ -22,12 +22,12 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
         let start = words.next_place();
         let [focal, k1, k2] = words.numbers("focal length and distortion")?;
         if focal < 0.0 {
-            return Err(Error::at(file, start, "a focal length must be positive, or 0 for a camera that nobody knows"));
+            return Err(Error::at(file, start, "a focal length must be positive, or 0 for an unknown camera"));
         }
         let start = words.next_place();
         let rotation = Matrix3::from_row_slice(&words.numbers::<9>("the rotation")?);
         if focal > 0.0 && !is_rotation(&rotation) {
-            return Err(Error::at(file, start, "these nine numbers are no rotation"));
+            return Err(Error::at(file, start, "these nine numbers are not a rotation"));
         }
         let translation = Vector3::from(words.numbers::<3>("the translation")?);
         let pose = (focal != 0.0).then(|| opposite(&Pose { rotation, translation }));

@@ -70,7 +70,7 @@ pub struct Tables {
 pub fn once<Id: Ord + Copy + Display, T>(into: &mut BTreeMap<Id, T>, id: Id, row: T) -> Result<(), String> {
     match into.insert(id, row) {
         None => Ok(()),
-        Some(_) => Err(format!("the id {id} was there before")),
+        Some(_) => Err(format!("the id {id} occurs twice")),
     }
 }
 
@@ -84,7 +84,7 @@ impl Tables {
         for (id, image) in &self.images {
             let lens = *lens_of
                 .get(&image.camera)
-                .ok_or_else(|| fail(format!("image {id} has camera {}, which is not there", image.camera)))?;
+                .ok_or_else(|| fail(format!("image {id} refers to camera {}, which does not exist", image.camera)))?;
             if image.quaternion.iter().all(|c| *c == 0.0) {
                 return Err(fail(format!("image {id} has a quaternion of length 0")));
             }

@@ -45,7 +45,7 @@ impl<'b> Bytes<'b> {
     /// Reads a finite number.
     pub fn f64(&mut self) -> Result<f64, Error> {
         let number = f64::from_le_bytes(self.array()?);
-        if number.is_finite() { Ok(number) } else { Err(self.error(format!("{number} is not a number"))) }
+        if number.is_finite() { Ok(number) } else { Err(self.error(format!("{number} is not finite"))) }
     }
 
     pub fn numbers<const N: usize>(&mut self) -> Result<[f64; N], Error> {

@@ -56,21 +56,21 @@ pub fn read_camera(file: &str, json: &[u8]) -> Result<Reconstruction, Error> {
 pub fn read_project<'b>(file: &'b str, content: &'b [u8]) -> Result<(VanishingLines, &'b [u8]), Error> {
     let mut bytes = Bytes::new(file, content);
     if bytes.take(4).ok() != Some(b"fspy") {
-        return Err(Error::of(file, "this is not a project of fSpy's"));
+        return Err(Error::of(file, "this is not an fSpy project"));
     }
     let version = bytes.u32()?;
     if version != 1 {
-        return Err(bytes.error(format!("the project's version is {version}; only version 1 is known")));
+        return Err(bytes.error(format!("the project's version is {version}; only version 1 is supported")));
     }
     let (state, photograph) = (bytes.u32()? as usize, bytes.u32()? as usize);
     let state = bytes.take(state)?;
     let photograph = bytes.take(photograph)?;
     let state: Value =
-        serde_json::from_slice(state).map_err(|error| Error::of(file, format!("its state is broken JSON: {error}")))?;
+        serde_json::from_slice(state).map_err(|error| Error::of(file, format!("invalid JSON in its state: {error}")))?;
     if state["globalSettings"]["calibrationMode"] != "TwoVanishingPoints" {
         return Err(Error::of(
             file,
-            "only projects with two vanishing points have a camera that follows from the lines alone",
+            "only projects with two vanishing points determine a camera from lines alone",
         ));
     }
     let size = crate::photo::size(file, photograph)?;

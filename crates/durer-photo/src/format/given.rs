@@ -26,7 +26,7 @@ pub fn read_lines(file: &str, bytes: &[u8], size: [u32; 2]) -> Result<VanishingL
     let center = Vector2::from(size.map(|side| f64::from(side) / 2.0));
     let (mut sets, mut origin): (Vec<(Axis, Vec<_>)>, _) = (Vec::new(), center);
     while words.next_line('#') {
-        let error = words.error("a row begins with x, y, z, -x, -y, -z or origin");
+        let error = words.error("a row must begin with x, y, z, -x, -y, -z or origin");
         let (name, _) = words.word("an axis")?;
         if name == "origin" {
             origin = words.numbers("one of u v")?.into();
@@ -44,7 +44,7 @@ pub fn read_lines(file: &str, bytes: &[u8], size: [u32; 2]) -> Result<VanishingL
     }
     let count = sets.len();
     let [one, two] = <[_; 2]>::try_from(sets)
-        .map_err(|_| Error::of(file, format!("lines of two axes are needed, and here are {count}")))?;
+        .map_err(|_| Error::of(file, format!("lines of two axes are needed, but the file has {count}")))?;
     Ok(VanishingLines { size, center, origin, axes: [one.0, two.0], lines: [one.1, two.1] })
 }
 
@@ -60,9 +60,9 @@ pub fn read_control(file: &str, bytes: &[u8], names: &[&str]) -> Result<Vec<Cont
             let (name, place) = words.word("a photograph")?;
             let fail = |why: &str| Error::at(file, place, format!("{why} `{name}`"));
             let view = names.iter().position(|known| *known == name);
-            let view = view.ok_or_else(|| fail("there is no photograph"))?;
+            let view = view.ok_or_else(|| fail("unknown photograph"))?;
             if seen.iter().any(|other| other.view == view) {
-                return Err(fail("this row names twice the photograph"));
+                return Err(fail("this row names a photograph twice:"));
             }
             seen.push(Observation { view, feature: 0, pixel: words.numbers("one of u v")?.into() });
         }

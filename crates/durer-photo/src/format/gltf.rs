@@ -119,7 +119,7 @@ struct Buffer {
 pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let fail = |why: String| Error::of(name, why);
     let (json, binary) =
-        chunks(bytes).ok_or_else(|| fail("this binary glTF file is cut off, or not of version 2".into()))?;
+        chunks(bytes).ok_or_else(|| fail("this binary glTF file is truncated, or not version 2".into()))?;
     let file: File = serde_json::from_slice(json)
         .map_err(|error| Error::at(name, (error.line(), error.column()), format!("glTF's JSON: {error}")))?;
     let mut all = Reconstruction::default();
@@ -128,12 +128,12 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
         let node = &file.nodes[i];
         if let Some(number) = node.camera {
             let camera =
-                file.cameras.get(number).ok_or_else(|| fail(format!("node {i}: there is no camera {number}")))?;
+                file.cameras.get(number).ok_or_else(|| fail(format!("node {i}: camera {number} does not exist")))?;
             // Orthographic cameras have no centre of projection.
             let Some(perspective) = &camera.perspective else { continue };
             let lens = lens(perspective, &camera.extras).map_err(|why| fail(format!("camera {number}: {why}")))?;
             let pose = pose(&world)
-                .ok_or_else(|| fail(format!("node {i}: a camera cannot be scaled to nothing, or mirrored")))?;
+                .ok_or_else(|| fail(format!("node {i}: a camera cannot be scaled to zero, or mirrored")))?;
             let named = node.name.as_ref().or(camera.name.as_ref());
             let name = named.cloned().unwrap_or_else(|| all.views.len().to_string());
             let known = all.lenses.iter().position(|known| *known == lens);
@@ -142,18 +142,18 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
         }
         let mesh = node
             .mesh
-            .map(|number| file.meshes.get(number).ok_or_else(|| fail(format!("node {i}: there is no mesh {number}"))));
+            .map(|number| file.meshes.get(number).ok_or_else(|| fail(format!("node {i}: mesh {number} does not exist"))));
         for primitive in mesh.transpose()?.iter().flat_map(|mesh| &mesh.primitives).filter(|one| one.mode == Some(0)) {
             let mut column = |number| column(&file, &mut buffers, binary, number).map_err(fail);
             let Some(positions) = primitive.attributes.position.map(&mut column).transpose()? else { continue };
             let colors = primitive.attributes.color.map(&mut column).transpose()?;
             if colors.as_ref().is_some_and(|colors| colors.len() != positions.len()) {
-                return Err(fail(format!("node {i}: there is not one colour for each point")));
+                return Err(fail(format!("node {i}: the numbers of colours and points differ")));
             }
             // A mesh may be instanced many times.
             if all.points.len() + positions.len() > bytes.len() {
                 return Err(fail(
-                    "there are more points than the file has bytes: the same ones, in too many places".into(),
+                    "there are more points than the file has bytes: meshes are used too often".into(),
                 ));
             }
             for (k, place) in positions.iter().enumerate() {
@@ -188,7 +188,7 @@ fn placed(file: &File) -> Result<Vec<(usize, Matrix4<f64>)>, String> {
     let mut is_child = vec![false; count];
     for child in file.nodes.iter().flat_map(|node| &node.children) {
         match is_child.get_mut(*child) {
-            None => return Err(format!("there is no node {child}")),
+            None => return Err(format!("node {child} does not exist")),
             Some(true) => return Err(format!("node {child} has two parents")),
             Some(known) => *known = true,
         }
@@ -227,7 +227,7 @@ fn lens(perspective: &Perspective, extras: &Value) -> Result<Lens, String> {
     let half = libm::tan(perspective.yfov / 2.0);
     let ratio = perspective.aspect_ratio.unwrap_or(1.0);
     if !(0.0..std::f64::consts::PI).contains(&perspective.yfov) || half <= 0.0 || !(ratio.is_finite() && ratio > 0.0) {
-        return Err("its `yfov` or its `aspectRatio` cannot be".into());
+        return Err("its `yfov` or its `aspectRatio` is out of range".into());
     }
     let beyond = match &extras["lens"] {
         Value::Null => None,
@@ -243,7 +243,7 @@ fn lens(perspective: &Perspective, extras: &Value) -> Result<Lens, String> {
     let aspect = if (aspect - 1.0).abs() < 1e-12 { 1.0 } else { aspect };
     let size = [beyond.width, beyond.height];
     if size.contains(&0) {
-        return Err("its `extras.lens` tells of photographs without pixels".into());
+        return Err("its `extras.lens` has a size of 0".into());
     }
     Ok(Lens { size, focal: vertical / aspect, aspect, center: beyond.center, radial: beyond.radial })
 }
@@ -256,17 +256,17 @@ fn column(
     number: usize,
 ) -> Result<Vec<Vector3<f64>>, String> {
     let fail = |why: &str| format!("accessor {number}: {why}");
-    let accessor = file.accessors.get(number).ok_or_else(|| fail("it is not there"))?;
+    let accessor = file.accessors.get(number).ok_or_else(|| fail("it does not exist"))?;
     let width = match &*accessor.shape {
         "VEC3" => 3,
         "VEC4" => 4,
-        _ => return Err(fail("places and colours should have three numbers, or four")),
+        _ => return Err(fail("positions and colours must have three or four numbers")),
     };
     let size = match accessor.component_type {
         5121 => 1,
         5123 => 2,
         5126 => 4,
-        _ => return Err(fail("this type of numbers is not one of glTF's places and colours")),
+        _ => return Err(fail("this component type is not allowed for positions and colours")),
     };
     let view =
         accessor.buffer_view.and_then(|view| file.buffer_views.get(view)).ok_or_else(|| fail("it has no bytes"))?;
@@ -276,14 +276,14 @@ fn column(
         Some(uri) => {
             let packed = uri.split_once(";base64,").filter(|(kind, _)| kind.starts_with("data:"));
             let packed =
-                packed.ok_or_else(|| fail("its bytes are in another file; only those of one file are read"))?.1;
+                packed.ok_or_else(|| fail("its bytes are in another file, which is not supported"))?.1;
             if buffers[view.buffer].is_none() {
                 buffers[view.buffer] = Some(STANDARD.decode(packed).map_err(|error| fail(&error.to_string()))?);
             }
             buffers[view.buffer].as_deref().unwrap_or_default()
         }
     };
-    let short = || fail("its bytes are not all there");
+    let short = || fail("its bytes are incomplete");
     let bytes = bytes.get(view.byte_offset..).and_then(|bytes| bytes.get(..view.byte_length)).ok_or_else(short)?;
     let bytes = bytes.get(accessor.byte_offset..).ok_or_else(short)?;
     let stride = view.byte_stride.unwrap_or(width * size).max(1);
@@ -304,7 +304,7 @@ fn column(
     }
     match rows.iter().flatten().all(|value| value.is_finite()) {
         true => Ok(rows),
-        false => Err(fail("some of it is not a number")),
+        false => Err(fail("it contains NaN or infinity")),
     }
 }
 
@@ -316,7 +316,7 @@ pub fn write(all: &Reconstruction) -> Result<Vec<u8>, Error> {
         let lens = &all.lenses[view.lens];
         let [width, height] = lens.size.map(f64::from);
         if width == 0.0 || height == 0.0 {
-            return Err(Error::new("glTF's cameras need the size of the photographs: name their folder"));
+            return Err(Error::new("glTF cameras need the size of the photographs: pass their folder"));
         }
         let yfov = 2.0 * libm::atan(height / (2.0 * lens.focal * lens.aspect));
         let aspect = width * lens.aspect / height;

@@ -126,13 +126,13 @@ fn square(lens: &Lens, format: &str) -> Result<(), Error> {
     if lens.aspect == 1.0 {
         return Ok(());
     }
-    Err(Error::new(format!("{format}'s files know square pixels only, and here is a lens of aspect {}", lens.aspect)))
+    Err(Error::new(format!("{format} supports square pixels only, but a lens has the aspect {}", lens.aspect)))
 }
 
 /// Reads a file and decompresses it if it was compressed by gzip or bzip2.
 fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
     let file = path.to_string_lossy();
-    let bytes = std::fs::read(path).map_err(|error| Error::of(&file, format!("cannot read it: {error}")))?;
+    let bytes = std::fs::read(path).map_err(|error| Error::of(&file, format!("cannot read the file: {error}")))?;
     packed::unpacked(&file, bytes)
 }
 
@@ -174,7 +174,7 @@ pub fn read(path: &Path) -> Result<Reconstruction, Error> {
         Some("ply") => ply::read(&file, &content),
         Some("gltf" | "glb") => gltf::read(&file, &content),
         Some("json") if is_matches(&content) => {
-            Err(Error::of(&file, "these are matches, which have no cameras yet: `durer photo solve` finds them"))
+            Err(Error::of(&file, "these are matches without cameras: compute the cameras with `durer photo solve`"))
         }
         Some("json") if content.trim_ascii_start().starts_with(b"{") => fspy::read_camera(&file, &content),
         Some("json") => {
@@ -184,7 +184,7 @@ pub fn read(path: &Path) -> Result<Reconstruction, Error> {
         }
         _ => Err(Error::of(
             &file,
-            "the name should end in .out (Bundler), .txt (BAL), .json (OpenSfM, fSpy), .gltf, .glb or .ply, or be COLMAP's folder",
+            "the name must end in .out (Bundler), .txt (BAL), .json (OpenSfM, fSpy), .gltf, .glb or .ply, or be a COLMAP folder",
         )),
     }
 }
@@ -228,7 +228,7 @@ impl Output {
             Some("gltf") => Output::Gltf,
             Some(_) => {
                 let file = path.to_string_lossy();
-                let why = "the name should end in .out, .txt, .json, .ply or .gltf, or be a folder's, for COLMAP";
+                let why = "the name must end in .out, .txt, .json, .ply or .gltf, or be a COLMAP folder";
                 return Err(Error::of(&file, why));
             }
         })

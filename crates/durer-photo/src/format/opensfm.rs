@@ -48,7 +48,7 @@ pub fn read(file: &str, json: &[u8], tracks: Option<(&str, &[u8])>) -> Result<Re
     let parts: Vec<Part> = serde_json::from_slice(json)
         .map_err(|error| Error::at(file, (error.line(), error.column()), format!("OpenSfM's JSON: {error}")))?;
     let part = parts.into_iter().reduce(|best, next| if next.shots.len() > best.shots.len() { next } else { best });
-    let part = part.ok_or_else(|| Error::of(file, "there is no reconstruction in this file"))?;
+    let part = part.ok_or_else(|| Error::of(file, "the file has no reconstruction"))?;
     let mut all = Reconstruction::default();
     let mut lens_of = BTreeMap::new();
     for (name, camera) in part.cameras {
@@ -58,7 +58,7 @@ pub fn read(file: &str, json: &[u8], tracks: Option<(&str, &[u8])>) -> Result<Re
         }
         let size = [camera.width, camera.height];
         if size.contains(&0) || !(camera.focal.is_finite() && camera.focal > 0.0) {
-            return Err(Error::of(file, format!("camera `{name}` has no width, height or focal length that could be")));
+            return Err(Error::of(file, format!("camera `{name}` has no valid width, height or focal length")));
         }
         let focal = camera.focal * f64::from(size[0].max(size[1]));
         lens_of.insert(name, all.lenses.len());
@@ -66,7 +66,7 @@ pub fn read(file: &str, json: &[u8], tracks: Option<(&str, &[u8])>) -> Result<Re
     }
     for (name, shot) in part.shots {
         let lens = lens_of.get(&shot.camera);
-        let lens = *lens.ok_or_else(|| Error::of(file, format!("there is no camera `{}`", shot.camera)))?;
+        let lens = *lens.ok_or_else(|| Error::of(file, format!("camera `{}` does not exist", shot.camera)))?;
         let rotation = rotation_of(&Vector3::from(shot.rotation));
         let pose = Some(Pose { rotation, translation: Vector3::from(shot.translation) });
         all.views.push(View { name, lens, pose });
@@ -124,7 +124,7 @@ pub fn write(all: &Reconstruction) -> Result<[String; 2], Error> {
         super::square(lens, "OpenSfM")?;
         let ([width, height], [k1, k2]) = (lens.size, lens.radial);
         if width == 0 || height == 0 {
-            return Err(Error::new("OpenSfM's files need the size of the photographs: name their folder"));
+            return Err(Error::new("OpenSfM files need the size of the photographs: pass their folder"));
         }
         let focal = lens.focal / lens.longer_side();
         part.cameras.insert(name(i), Camera { projection_type: "perspective".into(), width, height, focal, k1, k2 });

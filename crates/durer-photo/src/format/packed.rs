@@ -16,9 +16,9 @@ pub fn unpacked(file: &str, bytes: Vec<u8>) -> Result<Vec<u8>, Error> {
     };
     let mut plain = Vec::new();
     let read = reader.by_ref().take(LONGEST + 1).read_to_end(&mut plain);
-    read.map_err(|error| Error::of(file, format!("cannot be unpacked ({packed}): {error}")))?;
+    read.map_err(|error| Error::of(file, format!("cannot decompress it ({packed}): {error}")))?;
     if plain.len() as u64 > LONGEST {
-        return Err(Error::of(file, format!("it is longer than {} GiB when it is unpacked", LONGEST >> 30)));
+        return Err(Error::of(file, format!("it is longer than {} GiB after decompression", LONGEST >> 30)));
     }
     drop(reader);
     Ok(plain)

@@ -52,7 +52,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let lines = bytes.split_inclusive(|byte| *byte == b'\n').filter(|_| bytes.starts_with(b"ply"));
     let mut length = 0;
     let end = lines.inspect(|line| length += line.len()).find(is_end);
-    end.ok_or_else(|| Error::of(file, "this is not a PLY file: it should go from `ply` to `end_header`, and on"))?;
+    end.ok_or_else(|| Error::of(file, "this is not a PLY file: it needs a header from `ply` to `end_header`"))?;
     let head = head(file, &bytes[..length])?;
     let (size, rest) = (head.properties.iter().map(|(_, kind)| KINDS[*kind].2).sum::<usize>(), bytes.len() - length);
     // A number in text takes at least two bytes, including the separator.
@@ -124,7 +124,7 @@ fn head(file: &str, text: &[u8]) -> Result<Head, Error> {
                     "ascii" => Encoding::Text,
                     "binary_little_endian" => Encoding::Little,
                     "binary_big_endian" => Encoding::Big,
-                    other => return fail(format!("`{other}` is not a format of PLY's")),
+                    other => return fail(format!("`{other}` is not a PLY format")),
                 }
             }
             "comment" => {
@@ -137,7 +137,7 @@ fn head(file: &str, text: &[u8]) -> Result<Head, Error> {
                     head.place = words.next_place();
                     head.count = words.parse("a number of points")?;
                 } else if !has_points {
-                    return fail(format!("the points, `vertex`, should come before `{name}`"));
+                    return fail(format!("the element `vertex` must come before `{name}`"));
                 }
                 is_theirs = !has_points;
                 has_points = true;
@@ -146,17 +146,17 @@ fn head(file: &str, text: &[u8]) -> Result<Head, Error> {
                 let (kind, place) = words.word("a type")?;
                 let number = KINDS.iter().position(|(old, new, _)| [old, new].contains(&&kind));
                 let Some(number) = number else {
-                    return Err(Error::at(file, place, format!("`{kind}` is not the type of a number")));
+                    return Err(Error::at(file, place, format!("`{kind}` is not a number type")));
                 };
                 head.properties.push((words.word("a property's name")?.0.to_string(), number));
             }
             "property" | "obj_info" => {}
-            other => return fail(format!("`{other}` is not a word of PLY's header")),
+            other => return fail(format!("`{other}` is not a PLY header keyword")),
         }
         words.rest_of_line();
     }
     if head.properties.is_empty() {
-        return Err(Error::of(file, "there are no points in this file: it has no element `vertex` with properties"));
+        return Err(Error::of(file, "the file has no points: it has no element `vertex` with properties"));
     }
     head.cameras = head.cameras.min(head.count);
     Ok(head)

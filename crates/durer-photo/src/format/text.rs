@@ -24,7 +24,7 @@ impl<'t> Words<'t> {
             let before = &bytes[..error.valid_up_to()];
             let line = 1 + before.iter().filter(|b| **b == b'\n').count();
             let column = 1 + before.len() - before.iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
-            Error::at(file, (line, column), "this is not text")
+            Error::at(file, (line, column), "this is not a text file")
         })?;
         Ok(Words { file, text, at: 0, line: 1, start: 0, rows: false })
     }
@@ -145,7 +145,7 @@ impl<'t> Words<'t> {
         let fail = |why: String| Error::at(self.file, place, why);
         let count: usize = word.parse().map_err(|_| fail(format!("`{word}` is not {what}, a count")))?;
         if count > self.text.len() / bytes + 1 {
-            return Err(fail(format!("{what} is {count}, and the file is too short for that")));
+            return Err(fail(format!("{what} is {count}, but the file is too short for that")));
         }
         Ok(count)
     }
@@ -154,7 +154,7 @@ impl<'t> Words<'t> {
     pub fn index(&mut self, what: &str, end: usize) -> Result<usize, Error> {
         let (word, place) = self.word(what)?;
         let index: Option<usize> = word.parse().ok().filter(|index| *index < end);
-        index.ok_or_else(|| Error::at(self.file, place, format!("`{word}` is not {what}: there are {end}, from 0")))
+        index.ok_or_else(|| Error::at(self.file, place, format!("`{word}` is not {what}: there are {end}, numbered from 0")))
     }
 
     /// Returns an error if words are left in this row.

@@ -119,11 +119,11 @@ pub fn to_control(
     let count = from.len();
     if count < 3 {
         return Err(crate::Error::new(format!(
-            "control needs three points or more, each seen by two photographs whose place is known: {count} are"
+            "control needs at least three points, each observed by two photographs with a known pose; the file has {count}"
         )));
     }
     let found = similarity(&from, &to).ok_or_else(|| {
-        crate::Error::new("the control points lie in a line: how all is turned about it has no unique answer")
+        crate::Error::new("the control points lie on a line, so the rotation about it is undetermined")
     })?;
     let left = from.iter().zip(&to).map(|(a, b)| (found.apply(a) - b).norm()).collect();
     Ok((found, left))

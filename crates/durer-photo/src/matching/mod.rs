@@ -150,7 +150,7 @@ pub fn match_all(
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Matches, Error> {
     if photos.len() < 2 {
-        return Err(Error::new("two photographs or more are needed: one alone tells no depth"));
+        return Err(Error::new("at least two photographs are needed: a single one determines no depth"));
     }
     let keys: Vec<_> =
         photos.iter().map(|photo| (photo.camera.clone(), photo.picture.size, photo.picture.focal.to_bits())).collect();
@@ -186,11 +186,11 @@ pub fn match_all(
     };
     let found: Vec<_> = all.par_iter().map(one).collect::<Vec<_>>().into_iter().flatten().collect();
     if found.is_empty() {
-        return Err(Error::new("no two of the photographs show the same things: nothing agrees with one geometry"));
+        return Err(Error::new("no two photographs show the same objects: too few matches agree on one geometry"));
     }
     if found.iter().all(|(link, _)| link.moved < 0.5) {
         return Err(Error::new(
-            "the photographs are the same picture again: nothing moves from one to the next, and so nothing tells depth",
+            "the photographs are the same picture: without parallax, depth is undetermined",
         ));
     }
     let counts: Vec<usize> = photos.iter().map(|photo| photo.features.len()).collect();
@@ -230,7 +230,7 @@ impl Matches {
     /// Reads the output of [`Matches::to_json`].
     pub fn from_json(file: &str, json: &[u8]) -> Result<Self, Error> {
         let all: Matches = serde_json::from_slice(json).map_err(|error| {
-            Error::at(file, (error.line(), error.column()), format!("not of durer photo match: {error}"))
+            Error::at(file, (error.line(), error.column()), format!("not a file of durer photo match: {error}"))
         })?;
         let fail = |why: String| Err(Error::of(file, why));
         if all.format != FORMAT {
@@ -240,18 +240,18 @@ impl Matches {
         for (i, picture) in all.pictures.iter().enumerate() {
             let fine = picture.focal.is_finite() && picture.focal > 0.0 && picture.size.iter().all(|side| *side > 0);
             if !fine || picture.lens >= count {
-                return fail(format!("photograph {i} has no size, focal length or lens that could be"));
+                return fail(format!("photograph {i} has no valid size, focal length or lens"));
             }
         }
         for (i, track) in all.tracks.iter().enumerate() {
             let order = track.seen.windows(2).all(|pair| pair[0].0 < pair[1].0);
             let fine = |s: &Sighting| s.0 < all.pictures.len() && s.2.is_finite() && s.3.is_finite();
             if !order || !track.seen.iter().all(fine) {
-                return fail(format!("track {i} names photographs that are not there, twice or out of order"));
+                return fail(format!("track {i} names photographs that do not exist, occur twice or are out of order"));
             }
         }
         if all.links.iter().any(|link| link.pictures.iter().any(|i| *i >= all.pictures.len())) {
-            return fail("a link names photographs that are not there".into());
+            return fail("a link names photographs that do not exist".into());
         }
         Ok(all)
     }

@@ -36,7 +36,7 @@ impl Solver<'_> {
             }
         }
         let why = if turned > 0 {
-            "the photographs were taken from one place: the camera turned and did not move, and so nothing tells depth"
+            "the photographs were taken from one position: the camera only rotated, so depth is undetermined"
         } else {
             "no two photographs share enough points that agree on one geometry"
         };

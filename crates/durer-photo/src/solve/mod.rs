@@ -136,7 +136,7 @@ fn attempt(matches: &Matches, written: &Matches, options: &Options, progress: &d
     let mut solver = Solver::new(matches, options);
     let mut notes = Vec::new();
     let first = solver.initial(matches)?.map(|i| &matches.pictures[i].name);
-    notes.push(format!("began with {} and {}", first[0], first[1]));
+    notes.push(format!("started with {} and {}", first[0], first[1]));
     let mut refused = vec![false; solver.views.len()];
     let mut last_adjusted = 2;
     while let Some(view) = solver.next(&refused) {
@@ -159,8 +159,8 @@ fn attempt(matches: &Matches, written: &Matches, options: &Options, progress: &d
     solver.settle(6);
     for (i, view) in solver.views.iter().enumerate().filter(|(_, view)| view.pose.is_none()) {
         let why = match matches.links.iter().any(|link| link.pictures.contains(&i)) {
-            false => "it shows nothing that another photograph shows",
-            true => "too few of the points that are known agree on where it was taken",
+            false => "it shows no point that another photograph shows",
+            true => "too few known points agree on its pose",
         };
         notes.push(format!("{} is left out: {why}", view.name));
     }
@@ -171,7 +171,7 @@ fn attempt(matches: &Matches, written: &Matches, options: &Options, progress: &d
             told.push(view.lens);
             let (name, wrong) = (&picture.name, picture.focal);
             notes.push(format!(
-                "{name}: the focal length is {focal:.0} pixels, and EXIF says {wrong:.0}: EXIF is wrong"
+                "{name}: the focal length is {focal:.0} pixels, but EXIF says {wrong:.0}: EXIF is wrong"
             ));
         }
     }

@@ -1,56 +1,56 @@
-//! Accounts of a pixel and of a ray.
+//! Explanations of a pixel and of a ray.
 
 use super::scene::Place;
 use serde::{Deserialize, Serialize};
 #[cfg(test)]
 use ts_rs::TS;
 
-/// A formula, with names and with numbers.
+/// A formula in symbols and in numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Row {
     /// Name of the result.
     pub name: String,
-    /// How, in symbols.
+    /// Formula in symbols.
     pub formula: String,
-    /// The formula with numbers; may be empty.
+    /// Formula in numbers; may be empty.
     pub numbers: String,
-    /// The result as text.
+    /// Result as text.
     pub result: String,
-    /// The result as a number.
+    /// Result as a number, if it is a scalar.
     pub value: Option<f64>,
 }
 
-/// A part of a ray, for drawing.
+/// A segment of a ray, for drawing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Segment {
-    /// Meaning.
+    /// Kind of the ray.
     pub role: Role,
-    /// Start.
+    /// Start in world space.
     pub from: [f32; 3],
-    /// End.
+    /// End in world space.
     pub to: [f32; 3],
-    /// True if it has no end.
+    /// True if the ray leaves the scene.
     pub escapes: bool,
 }
 
-/// The kind of a ray.
+/// Kind of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
-    /// From the camera.
+    /// Camera ray.
     Camera,
-    /// From a mirror.
+    /// Mirrored ray.
     Reflected,
-    /// Through glass.
+    /// Refracted ray.
     Transmitted,
-    /// In a random direction.
+    /// Ray in a sampled direction.
     Scattered,
-    /// To a light that is seen.
+    /// Shadow ray that reaches its light.
     Lit,
-    /// To a light that is hidden.
+    /// Shadow ray that is blocked.
     Shadowed,
 }
 
@@ -60,33 +60,33 @@ pub enum Role {
 pub struct Term {
     /// Title.
     pub title: String,
-    /// Its formulas.
+    /// Formulas of the term.
     pub rows: Vec<Row>,
-    /// The colour that comes of it.
+    /// Value of the term, as linear RGB.
     pub value: [f32; 3],
-    /// Contribution to the pixel.
+    /// Contribution to the pixel, as linear RGB.
     pub adds: [f32; 3],
-    /// Its share of the pixel's luminance.
+    /// Share of the pixel's luminance, 0 to 1.
     pub share: f32,
-    /// The value in eight bits.
+    /// Value as 8-bit sRGB.
     pub swatch: [u8; 3],
-    /// Place of its object or light in the text.
+    /// Place of the object or light in the text.
     pub place: Option<Place>,
-    /// Its ray.
+    /// Segment to draw.
     pub segment: Option<Segment>,
-    /// Point and normal of what was hit.
+    /// Position and normal of the hit, in world space.
     pub normal: Option<[[f32; 3]; 2]>,
-    /// The ray in numbers, to ask all objects about it: origin, direction.
+    /// Origin and direction of the ray, for `Request::Cast`.
     pub ray: Option<[[f32; 3]; 2]>,
-    /// End of the ray.
+    /// End of the ray, if finite.
     pub t_max: Option<f32>,
-    /// Number of the object that it is about.
+    /// Number of the hit or blocking object.
     pub object: Option<u32>,
-    /// Terms that sum to it.
+    /// Terms that sum to this one.
     pub terms: Vec<Term>,
 }
 
-/// A pixel and all that made it.
+/// Explanation of a pixel.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct PixelAccount {
@@ -94,72 +94,72 @@ pub struct PixelAccount {
     pub x: u32,
     /// Row from the top.
     pub y: u32,
-    /// The colour, in linear light.
+    /// Colour as linear RGB.
     pub color: [f32; 3],
-    /// In eight bits.
+    /// Colour as 8-bit sRGB.
     pub bytes: [u8; 3],
     /// Number of samples.
     pub samples: u32,
-    /// Which of them the tree is of.
+    /// Index of the sample that `tree` explains.
     pub sample: u32,
-    /// Place in the picture, in pixels from the upper left corner.
+    /// Position of the sample in the picture, in pixels from the upper left corner.
     pub at: [f32; 2],
-    /// The weight of that sample, divided by those of all.
+    /// Filter weight of the sample, divided by the sum of all weights.
     pub weight: f32,
-    /// The tree; `None` where the camera sees nothing.
+    /// Tree of terms; `None` if the camera has no ray for this pixel.
     pub tree: Option<Term>,
 }
 
-/// How an object answers a ray.
+/// Result of an intersection test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// It is the first that is hit.
+    /// The object is the closest hit.
     Closest,
-    /// It is hit behind another.
+    /// The ray hits the object behind another one.
     Farther,
-    /// The line meets it behind the ray's start only.
+    /// The line meets the object only before the ray's start.
     Behind,
-    /// The line meets it behind the ray's end only.
+    /// The line meets the object only beyond the ray's end.
     Beyond,
-    /// The line does not meet it.
+    /// The line misses the object.
     Missed,
 }
 
-/// Test of a ray against an object.
+/// Intersection test of a ray with an object.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ObjectTest {
     /// Number of the object.
     pub object: u32,
-    /// Its keyword and line.
+    /// Keyword and line of the object.
     pub name: String,
-    /// Place in the text.
+    /// Place of the object in the text.
     pub place: Option<Place>,
-    /// The answer.
+    /// Result of the test.
     pub verdict: Verdict,
-    /// The answer in words.
+    /// Result in words.
     pub why: String,
-    /// First crossing along the line.
+    /// First crossing along the line, in lengths of the direction.
     pub t: Option<f32>,
-    /// The formulas, with numbers.
+    /// Formulas with numbers.
     pub rows: Vec<Row>,
 }
 
-/// Tests of a ray against the objects.
+/// Intersection tests of a ray with the objects.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct CastAccount {
-    /// Origin of the ray.
+    /// Origin of the ray in world space.
     pub origin: [f32; 3],
-    /// Its direction.
+    /// Direction of the ray.
     pub direction: [f32; 3],
-    /// Tests of the objects in the order of the text, up to a limit.
+    /// Tests in the order of the text, up to a limit.
     pub tests: Vec<ObjectTest>,
     /// Number of objects beyond the limit.
     pub left_out: u32,
-    /// The first hit.
+    /// The closest hit.
     pub hit: Option<HitAccount>,
 }
 
@@ -169,29 +169,29 @@ pub struct CastAccount {
 pub struct HitAccount {
     /// Number of the object.
     pub object: u32,
-    /// Number of the triangle in a mesh, else 0.
+    /// Index of the triangle in a mesh, else 0.
     pub part: u32,
-    /// Position along the ray.
+    /// Position along the ray, in lengths of its direction.
     pub t: f32,
-    /// The point.
+    /// Position in world space.
     pub point: [f32; 3],
-    /// Normal of the surface.
+    /// Geometric normal in world space, unit length.
     pub normal: [f32; 3],
-    /// Normal for shading.
+    /// Shading normal in world space, unit length.
     pub shading_normal: [f32; 3],
-    /// Texture coordinates.
+    /// Texture coordinates, if the surface has any.
     pub uv: Option<[f32; 2]>,
     /// Barycentric coordinates on a triangle.
     pub barycentric: [f32; 3],
 }
 
-/// An object in lines.
+/// Outline of an object.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Outline {
     /// Number of the object.
     pub object: u32,
-    /// Lines, each a row of points, three numbers each.
+    /// Polylines in world space, each as x, y, z of its points.
     pub lines: Vec<Vec<f32>>,
 }
 
@@ -199,10 +199,11 @@ pub struct Outline {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Lamp {
-    /// Position; of directional lights, a point from where they shine.
+    /// Position in world space; for a directional light, a point in the direction from which it
+    /// shines.
     pub at: [f32; 3],
-    /// True if it is infinitely far.
+    /// True for a directional light.
     pub far: bool,
-    /// Its keyword and line.
+    /// Keyword and line of the light.
     pub name: String,
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 #[cfg(test)]
 use ts_rs::TS;
 
-/// An option of a job.
+/// An option of a render job.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Setting {
@@ -14,31 +14,31 @@ pub struct Setting {
     pub value: String,
 }
 
-/// A motion of the camera.
+/// A camera motion.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Motion {
-    /// Around what it looks at, in radians: to the right and upwards.
+    /// Orbits around the target, in radians.
     Orbit {
         /// To the right.
         right: f32,
         /// Upwards.
         up: f32,
     },
-    /// Sideways, in heights of what is seen.
+    /// Moves sideways, in units of the visible height at the target.
     Pan {
         /// To the right.
         right: f32,
         /// Upwards.
         up: f32,
     },
-    /// Towards what it looks at: the distance is multiplied by this.
+    /// Moves towards the target.
     Dolly {
-        /// The factor.
+        /// Factor on the distance to the target, 0.01 to 100.
         factor: f32,
     },
-    /// On foot, in shares of the distance to what it looks at.
+    /// Walks, in units of the distance to the target.
     Walk {
         /// Forwards.
         forward: f32,
@@ -47,26 +47,26 @@ pub enum Motion {
         /// Upwards.
         up: f32,
     },
-    /// Looks around from where it is, in radians.
+    /// Turns around the eye, in radians.
     Turn {
         /// To the right.
         right: f32,
         /// Upwards.
         up: f32,
     },
-    /// Back to the camera of the text.
+    /// Restores the camera of the text.
     Home,
-    /// Away along its direction, until all of the scene is seen.
+    /// Moves back along the view direction until the whole scene is visible.
     Frame,
 }
 
-/// One of several.
+/// An item of a list of choices.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Choice {
-    /// Its name.
+    /// Name of the item.
     pub name: String,
-    /// Its meaning.
+    /// Meaning of the item.
     pub doc: String,
 }
 
@@ -74,48 +74,48 @@ pub struct Choice {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Place {
-    /// Line from 1.
+    /// Line, from 1.
     pub line: u32,
-    /// Column from 1, in characters.
+    /// Column in characters, from 1.
     pub column: u32,
-    /// First byte.
+    /// Byte offset of the start.
     pub start: u32,
-    /// One past the last byte.
+    /// Byte offset of the end, exclusive.
     pub end: u32,
 }
 
-/// How bad a finding is.
+/// Severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Severity {
-    /// Worth knowing.
+    /// Information.
     Note,
-    /// The picture may not be what was meant.
+    /// The picture may differ from the author's intent.
     Warning,
-    /// No picture can be made.
+    /// The scene cannot be rendered.
     Error,
 }
 
-/// Finding in a text.
+/// A finding in a text.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Finding {
-    /// How bad it is.
+    /// Severity of the finding.
     pub severity: Severity,
-    /// Its kind, or nothing.
+    /// Kind of the finding; may be empty.
     pub code: String,
-    /// In a sentence.
+    /// Message in one sentence.
     pub message: String,
-    /// Advice.
+    /// Help: how to fix it.
     pub help: Option<String>,
     /// Effect on the picture.
     pub effect: Option<String>,
-    /// The file, if it is not the scene's.
+    /// Name of the file, if it is not the scene's own.
     pub file: Option<String>,
-    /// Place in it.
+    /// Place in the file.
     pub place: Option<Place>,
-    /// Edits that fix it.
+    /// Edits that fix the fault.
     pub fix: Vec<Change>,
 }
 
@@ -123,11 +123,11 @@ pub struct Finding {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Change {
-    /// First byte that is replaced.
+    /// Byte offset of the start of the replaced range.
     pub start: u32,
-    /// One past the last.
+    /// Byte offset of its end, exclusive.
     pub end: u32,
-    /// By what.
+    /// Replacement.
     pub text: String,
 }
 
@@ -137,71 +137,71 @@ pub struct Change {
 pub struct Contents {
     /// Name of the dialect.
     pub dialect: String,
-    /// The camera.
+    /// The current camera.
     pub camera: CameraState,
-    /// Objects, by number, up to a limit.
+    /// Objects by number, up to a limit.
     pub objects: Vec<Thing>,
     /// Number of objects.
     pub object_count: u32,
     /// Number of triangles.
     pub triangles: f64,
-    /// Lights, by number.
+    /// Lights by number.
     pub lights: Vec<Thing>,
-    /// Two opposite corners of the box around all that has an end.
+    /// Minimum and maximum corner of the bounding box of all bounded objects, in world space.
     pub bounds: [[f32; 3]; 2],
-    /// The job, as on the command line, but for its size.
+    /// Options of the job, without its size.
     pub job: JobState,
 }
 
-/// Job of a picture.
+/// Options of a render job.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct JobState {
-    /// The size that the scene has by default.
+    /// Default size of the scene, in pixels.
     pub size: [u32; 2],
     /// Name of the integrator.
     pub integrator: String,
-    /// Samples a pixel.
+    /// Samples per pixel.
     pub samples: u32,
-    /// Levels of mirrored and transmitted rays.
+    /// Maximum depth of mirrored and transmitted rays.
     pub bounces: u32,
-    /// Options that differ from the scene's defaults, as words of a command line.
+    /// Options that differ from the scene's defaults, as command-line arguments.
     pub words: Vec<String>,
 }
 
-/// Something that is written in a scene.
+/// A statement of a scene.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Thing {
-    /// Its keyword and line.
+    /// Keyword and line.
     pub name: String,
     /// Place in the scene's text.
     pub place: Option<Place>,
 }
 
-/// A camera.
+/// State of a camera.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct CameraState {
-    /// Its keyword.
+    /// Keyword of the camera.
     pub keyword: String,
-    /// The eye.
+    /// Position of the eye in world space.
     pub eye: [f32; 3],
-    /// View direction, of length 1.
+    /// View direction in world space, unit length.
     pub forward: [f32; 3],
-    /// To the right in the picture.
+    /// Right direction of the picture in world space.
     pub right: [f32; 3],
-    /// Upwards in the picture.
+    /// Up direction of the picture in world space.
     pub up: [f32; 3],
-    /// Half the width of what is seen at distance 1, by the larger side.
+    /// Half the visible width at distance 1, along the larger side.
     pub half_width: f64,
-    /// Distance of what it looks at.
+    /// Distance from the eye to the target.
     pub distance: f32,
-    /// Its fields.
+    /// Fields of the camera.
     pub fields: Vec<FieldState>,
-    /// How it is written.
+    /// Statement of the camera in the scene language.
     pub statement: String,
-    /// True if it differs from the text.
+    /// True if it differs from the camera of the text.
     pub moved: bool,
 }
 
@@ -209,73 +209,73 @@ pub struct CameraState {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct FieldState {
-    /// Its word in the scene language.
+    /// Keyword in the scene language.
     pub name: String,
     /// Meaning and unit.
     pub doc: String,
-    /// Its numbers; none for words and files.
+    /// Numbers of the value; empty for words and files.
     pub values: Vec<f32>,
-    /// Its value if that is a word or a file name.
+    /// Value, if it is a word or a file name.
     pub text: String,
-    /// Least value, if there is one.
+    /// Minimum value, if limited.
     pub least: Option<f32>,
-    /// Greatest value, if there is one.
+    /// Maximum value, if limited.
     pub most: Option<f32>,
 }
 
-/// Description of a picture.
+/// Description of a rendered picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct PictureHead {
-    /// `color`, or the name of another picture.
+    /// `color`, or the name of an auxiliary picture.
     pub picture: String,
-    /// Columns of what follows.
+    /// Width of the payload in pixels.
     pub width: u32,
-    /// Rows of what follows.
+    /// Height of the payload in pixels.
     pub height: u32,
-    /// Columns of the whole picture: more than `width` where it is coarse.
+    /// Width of the full picture in pixels; more than `width` for a coarse picture.
     pub full_width: u32,
-    /// Rows of the whole picture.
+    /// Height of the full picture in pixels.
     pub full_height: u32,
-    /// Samples that each pixel has.
+    /// Samples per pixel so far.
     pub samples: u32,
-    /// Samples that each pixel gets.
+    /// Samples per pixel of the finished picture.
     pub all_samples: u32,
-    /// Rays traced for it.
+    /// Number of rays traced.
     pub rays: f64,
-    /// Milliseconds since the change that it shows.
+    /// Time since the change that the picture shows, in milliseconds.
     pub ms: f64,
-    /// The hash of its sums, once it is finished: that of `durer render --hash`.
+    /// Hash of the finished picture, as `durer render --hash` prints it.
     pub hash: Option<String>,
 }
 
-/// A word that begins something in the scene language.
+/// A keyword of the scene language.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Word {
-    /// The word.
+    /// The keyword.
     pub word: String,
-    /// Its chapter in the manual.
+    /// Chapter of the manual.
     pub chapter: String,
     /// Meaning.
     pub doc: String,
-    /// Its fields.
+    /// Fields of its block.
     pub fields: Vec<WordField>,
-    /// How it is written.
+    /// Example.
     pub example: String,
 }
 
-/// A field of a word's block.
+/// A field of a keyword's block.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct WordField {
-    /// The word.
+    /// The keyword.
     pub word: String,
     /// Type and range.
     pub value: String,
     /// Default value.
     pub default: Option<String>,
-    /// True if it must be given.
+    /// True if the field is required.
     pub required: bool,
     /// Meaning and unit.
     pub doc: String,

@@ -2,7 +2,7 @@ use super::*;
 use std::path::Path;
 use ts_rs::TS;
 
-/// The types in TypeScript, in the order of this file.
+/// Returns the types in TypeScript, in the order of the protocol's files.
 fn typescript() -> String {
     macro_rules! declarations {
         ($($type:ty),+ $(,)?) => { [$(<$type>::decl()),+] };
@@ -45,7 +45,7 @@ fn typescript() -> String {
 }
 
 #[test]
-fn the_types_of_the_page_are_those_of_the_session() {
+fn typescript_types_match_the_protocol() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/src/protocol.ts");
     let wanted = typescript();
     if std::env::var_os("DURER_WRITE").is_some() {
@@ -56,7 +56,7 @@ fn the_types_of_the_page_are_those_of_the_session() {
 }
 
 #[test]
-fn an_answer_is_its_length_its_json_and_its_bytes() {
+fn answer_is_encoded_as_length_json_and_payload() {
     let answer = Answer { session: 3, id: 7, event: Event::Saved };
     let bytes = answer.encode(&[1, 2, 3]);
     let length = u32::from_le_bytes(bytes[..4].try_into().unwrap()) as usize;

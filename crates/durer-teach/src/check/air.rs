@@ -37,14 +37,14 @@ pub(super) fn thick_fog(scout: &SceneProbe) -> Vec<Finding> {
         let middle = ways[ways.len() / 2];
         let some = number(0.5 / middle);
         let diagnostic =
-            Diagnostic::warning(format!("this fog lets nothing through: its extinction is {}", number(extinction)))
+            Diagnostic::warning(format!("this fog is opaque: its extinction is {}", number(extinction)))
                 .effect(format!(
-                    "of light that goes straight on, a hundredth is left after {}; what is seen is {} away",
+                    "a hundredth of the light remains after a distance of {}; the visible surfaces are {} away",
                     number(4.6 / extinction),
                     number(middle)
                 ))
-                .label(format!("hides {} of what is seen", percent(swallowed, scout.seen().count())))
-                .help(format!("`extinction` is per unit of the scene: `extinction {some}`, say"));
+                .label(format!("hides {} of the visible surfaces", percent(swallowed, scout.seen().count())))
+                .help(format!("`extinction` is per unit of the scene: try `extinction {some}`"));
         let value = scout.value(span, &["extinction"]);
         let diagnostic = diagnostic.fix_at(value, some);
         found.push(Finding::from(scout.at_value(diagnostic, span, &["extinction"])).whole(true));
@@ -59,13 +59,13 @@ pub(super) fn thick_fog(scout: &SceneProbe) -> Vec<Finding> {
             let bounds = world.bounds();
             let size = bounds.size().max_element().max(1.0);
             let (min, max) = (bounds.min - size, bounds.max + size);
-            let diagnostic = Diagnostic::warning("this fog has no end: no light of sun or sky comes through")
+            let diagnostic = Diagnostic::warning("this fog is unbounded: no light of the sun or sky passes through it")
                 .effect(match near {
-                    true => "lights without a place and the background are black",
-                    false => "the picture is black: light would have to come through fog without end",
+                    true => "lights at infinity and the background are black",
+                    false => "the picture is black: light would have to cross unbounded fog",
                 })
                 .help(format!(
-                    "give it a box: `min {} max {}`, say",
+                    "add a box, such as `min {} max {}`",
                     super::finding::vector(min.round()),
                     super::finding::vector(max.round())
                 ));

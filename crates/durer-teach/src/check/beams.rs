@@ -20,15 +20,15 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
         let all = if things.is_empty() { places(scout) } else { things };
         let middle = all.iter().sum::<Vec3>() / all.len().max(1) as f32;
         let (Some(direction), Some(_)) = (light.value.direction(), light.value.cone()) else { return diagnostic };
-        let word = if light.value.profile().is_some() { "this measured lamp" } else { "this spotlight" };
+        let word = if light.value.profile().is_some() { "this photometric light" } else { "this spotlight" };
         // The opposite direction is most often the intended one.
         let turned = -direction.normalize_or(Vec3::NEG_Y);
         let to = (middle - place).normalize_or(Vec3::NEG_Y);
         let aimed = if turned.dot(to) > 0.7 { -direction } else { middle - place };
         let text = vector(aimed);
         let help =
-            format!("`direction` is where its light goes: `direction {text}` goes to the middle of what is seen");
-        let diagnostic = Diagnostic { message: format!("{word} shines past all that is seen"), ..diagnostic };
+            format!("`direction` is where its light goes: `direction {text}` points at the center of the visible objects");
+        let diagnostic = Diagnostic { message: format!("{word} misses everything that is visible"), ..diagnostic };
         match scout.value(light.span, &["direction"]) {
             Some(value) => diagnostic.at(value).help(help).fix(value, text),
             // The default direction is straight down.
@@ -42,9 +42,9 @@ pub(super) fn narrow(scout: &SceneProbe) -> Vec<Finding> {
     missing(scout, Aim::Narrow, |diagnostic, light| {
         let Some(spot) = spot(&light.value) else { return diagnostic };
         let degrees = number(spot.angle.to_degrees().round().clamp(1.0, 180.0));
-        let message = format!("the cone of this spotlight is {} degrees wide only", number(spot.angle));
+        let message = format!("the cone of this spotlight is only {} degrees wide", number(spot.angle));
         let diagnostic = Diagnostic { message, ..diagnostic };
-        let help = format!("`angle` is in degrees, from the middle to the edge: write `angle {degrees}`, say");
+        let help = format!("`angle` is in degrees, from the axis to the edge: try `angle {degrees}`");
         let Some(value) = scout.value(light.span, &["angle"]) else { return diagnostic.help(help) };
         let mut diagnostic = diagnostic.at(value).help(help).fix(value, degrees);
         if let Some(inner) = scout.value(light.span, &["innerAngle"]).filter(|_| spot.inner_angle <= spot.angle) {
@@ -65,7 +65,7 @@ fn missing(scout: &SceneProbe, wanted: Aim, say: impl Fn(Diagnostic, &Spanned<Li
         let held = percent((1e4 * within(scout, number, &places(scout))) as usize, 10_000);
         let mut diagnostic = say(diagnostic.at(span), light);
         if wanted == Aim::Narrow {
-            diagnostic = diagnostic.label(format!("{held} of what is seen is in its cone"));
+            diagnostic = diagnostic.label(format!("{held} of the visible points are in its cone"));
         }
         found.push(Finding::from(diagnostic).whole(all_fail(scout)));
     }
@@ -83,7 +83,7 @@ pub(super) fn inner_angle(scout: &SceneProbe) -> Vec<Finding> {
         let (angle, inner) = (number(spot.angle), number(spot.inner_angle));
         let diagnostic =
             Diagnostic::warning(format!("the `innerAngle` of {inner} is more than the `angle` of {angle}"))
-                .effect(format!("the cone ends at {angle} degrees, at once and not softly"))
+                .effect(format!("the cone ends abruptly at {angle} degrees"))
                 .help(format!("light fades between the two: `angle {inner} innerAngle {angle}`"));
         Some(Finding::from(match (scout.value(light.span, &["angle"]), scout.value(light.span, &["innerAngle"])) {
             (Some(a), Some(b)) => diagnostic.at(b).fix(a, inner).fix(b, angle),
@@ -139,9 +139,9 @@ pub(super) fn near(scout: &SceneProbe) -> Vec<Finding> {
         let middle = away[away.len() / 2];
         let diagnostic =
             Diagnostic::warning(format!("this light is {} from the {}", number(near), scout.object(object)))
-                .related(scout.object_span(object), "so near")
-                .effect("one bright spot is below it, and hardly anything else is lit")
-                .help(format!("what is seen is {} from it on the mean: move it away from there", number(middle)));
+                .related(scout.object_span(object), "this object")
+                .effect("it lights a bright spot below it and hardly anything else")
+                .help(format!("the mean distance of the visible points is {}: move the light away from the object", number(middle)));
         let only = scout.world().lights().len() == 1;
         found.push(Finding::from(scout.at_value(diagnostic, lamp.span, &["position"])).whole(only));
     }

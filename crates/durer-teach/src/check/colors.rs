@@ -58,10 +58,10 @@ pub(super) fn black(scout: &SceneProbe) -> Vec<Finding> {
     let shown = |i: u32| if whole { rays(scout, i) > 0 } else { scout.seen().any(|(_, seen)| seen.material == i) };
     let black: Vec<_> = phongs(scout).filter(|(i, _, phong)| is_black(phong) && shown(*i)).collect();
     let say = |(i, written, _): &(u32, &Spanned<Written>, &Phong)| {
-        let diagnostic = Diagnostic::warning(format!("material {i} is black: it gives back no light"))
-            .label(format!("on {} of what is seen", percent(rays(scout, *i), all)))
-            .effect("what is made of it is black, however much light there is")
-            .help("`diffuseColor` is the share of light that it gives back: `0.8 0.8 0.8` is a light grey");
+        let diagnostic = Diagnostic::warning(format!("material {i} is black: it reflects no light"))
+            .label(format!("on {} of the visible surfaces", percent(rays(scout, *i), all)))
+            .effect("its objects are black under any light")
+            .help("`diffuseColor` is the share of light that it reflects: `0.8 0.8 0.8` is a light grey");
         let diagnostic = scout.at_value(diagnostic, written.span, &["diffuseColor", "diffuse"]);
         Finding::from(diagnostic).whole(whole)
     };
@@ -87,24 +87,24 @@ pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
         return switched_off(scout, &all);
     };
     let diffuse = phong.diffuse.max_element();
-    let what = if phong.transparent == Color::ZERO { "mirrors" } else { "lets light through" };
+    let what = if phong.transparent == Color::ZERO { "mirrors" } else { "transmits light" };
     let (message, help) = match none {
         true => (
-            format!("material {i} {what}, but there are 0 levels of secondary rays"),
-            "ask for some: `--bounces 4` (in the course's programs `-bounces 4`)".to_string(),
+            format!("material {i} {what}, but the maximum depth of secondary rays is 0"),
+            "set `--bounces 4` (in the course's programs `-bounces 4`)".to_string(),
         ),
         false => (
             format!(
-                "material {i} {what}, but its rays count for {} and those below {} are left out",
+                "material {i} {what}, but its rays have a throughput of {} and those below {} are not traced",
                 super::finding::number(counts(phong.reflective).max(counts(phong.transparent))),
                 super::finding::number(settings.least_weight)
             ),
-            "ask for a smaller one: `--min-throughput 0.01` (in the course's programs `-weight 0.01`)".to_string(),
+            "set a smaller one: `--min-throughput 0.01` (in the course's programs `-weight 0.01`)".to_string(),
         ),
     };
     let diagnostic = Diagnostic::warning(message)
         .at(written.span)
-        .effect(if diffuse < 0.15 { "it is black, or nearly so" } else { "only its own colour is seen" })
+        .effect(if diffuse < 0.15 { "it is black, or nearly black" } else { "only its diffuse colour is visible" })
         .help(help);
     // If that year's program traces no secondary rays by default, their absence is intended.
     let seen: usize = all.iter().map(|(i, ..)| rays(scout, *i)).sum();
@@ -124,22 +124,22 @@ fn switched_off(scout: &SceneProbe, all: &[(u32, &Spanned<Written>, &Phong)]) ->
     let say = |(i, written, phong): &(u32, &Spanned<Written>, &Phong)| {
         let (message, help) = match is_glass(phong) {
             false if !settings.reflection => {
-                (format!("material {i} mirrors, but mirrored rays are left out"), "leave `--no-reflection` away")
+                (format!("material {i} mirrors, but mirrored rays are disabled"), "remove `--no-reflection`")
             }
             true if !settings.refraction => (
-                format!("material {i} lets light through, but refracted rays are left out"),
-                "leave `--no-refraction` away",
+                format!("material {i} transmits light, but refracted rays are disabled"),
+                "remove `--no-refraction`",
             ),
             // Light needs one bounce to enter and one to leave.
             true if settings.bounces == 1 && phong.ior != 1.0 && dark(phong) => (
                 format!(
-                    "material {i} is of glass, but there is 1 level of secondary rays: light does not come out again"
+                    "material {i} is glass, but the maximum depth of secondary rays is 1: light cannot leave it"
                 ),
-                "ask for more: `--bounces 4` (in the course's programs `-bounces 4`)",
+                "set `--bounces 4` (in the course's programs `-bounces 4`)",
             ),
             _ => return None,
         };
-        let effect = if dark(phong) { "it is black, or nearly so" } else { "only its own colour is seen" };
+        let effect = if dark(phong) { "it is black, or nearly black" } else { "only its diffuse colour is visible" };
         Some(Finding::from(Diagnostic::warning(message).at(written.span).effect(effect).help(help)))
     };
     all.iter().filter_map(say).take(1).collect()
@@ -154,8 +154,8 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
         let dark = phong.diffuse.max_element() < 0.3 && phong.texture.is_none();
         if own.refraction_index == Some(0.0) && dark && scout.value(written.span, &["refractionIndex"]).is_some() {
             let diagnostic = Diagnostic::warning(format!("material {i} has an index of refraction of 0"))
-                .effect("this year's program takes that for no glass: it lets nothing through, and mirrors by its `specularColor`")
-                .help("glass has 1.5, water 1.33; for a mirror leave `refractionIndex` away");
+                .effect("this year's program does not treat it as glass: it transmits nothing, and mirrors by its `specularColor`")
+                .help("glass has 1.5, water 1.33; for a mirror remove `refractionIndex`");
             found.push(Finding::from(scout.at_value(diagnostic, written.span, &fields)));
         }
         if phong.transparent.max_element() <= 0.0 {
@@ -167,11 +167,11 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic::warning(format!("material {i} has an index of refraction of {index}"));
         let diagnostic = match given {
             _ if phong.ior > 4.0 || phong.ior < 0.5 => diagnostic
-                .effect("light is bent as by nothing that there is, and hardly gets through")
-                .help("water has 1.33, glass 1.5, diamond 2.4; it is the index inside, with 1 outside"),
+                .effect("no real material refracts like this, and it transmits hardly any light")
+                .help("water has 1.33, glass 1.5, diamond 2.4; the value is the index inside, with 1 outside"),
             Some(_) if phong.ior < 0.95 => {
-                diagnostic.effect("light is bent the wrong way, as in a bubble of air in glass").help(format!(
-                    "it is the index inside, with 1 outside: 1 / {index} is {}; water has 1.33, glass 1.5",
+                diagnostic.effect("light is refracted the wrong way, as in an air bubble in glass").help(format!(
+                    "the value is the index inside, with 1 outside: 1 / {index} is {}; water has 1.33, glass 1.5",
                     super::finding::number(1.0 / phong.ior)
                 ))
             }
@@ -180,17 +180,17 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
                 let severity = if unseen { Severity::Warning } else { Severity::Note };
                 Diagnostic { severity, ..diagnostic }
                     .effect(match unseen {
-                        true => "light goes straight through and nothing is mirrored: it is hardly seen",
-                        false => "light goes straight through, and is not bent",
+                        true => "light passes straight through without reflection, so the object is hardly visible",
+                        false => "light passes straight through without refraction",
                     })
                     .help("water has 1.33, glass 1.5, diamond 2.4")
             }
             // This is correct for coloured foil.
             None if phong.ior == 1.0 && !phong.fresnel => Diagnostic::note(format!(
-                "material {i} lets light through and has no `{}`",
+                "material {i} transmits light and has no `{}`",
                 if scout.world().rules().secondary == Secondary::Colors { fields[0] } else { fields[1] }
             ))
-            .effect("light goes straight through, as through foil, and is not bent")
+            .effect("light passes straight through without refraction, as through foil")
             .help("glass has 1.5, water 1.33"),
             _ => continue,
         };
@@ -259,20 +259,20 @@ pub(super) fn too_large(scout: &SceneProbe) -> Vec<Finding> {
         let percent = bytes && color.max_element() <= 100.0 && color.to_array().iter().all(|c| c % 5.0 == 0.0);
         let mended = if bytes { color / 255.0 } else { color / color.max_element() };
         let far = color.max_element() > 2.0;
-        let message = format!("the colour {} is {}beyond 1", vector(color), if far { "far " } else { "" });
+        let message = format!("the colour {} is {}above 1", vector(color), if far { "far " } else { "" });
         let diagnostic = Diagnostic::warning(message)
             .effect(match far {
-                true => "it is white, or of a pure colour, whatever the light",
-                false => "more light comes back than arrives: bright parts are cut off, and lose their shading",
+                true => "it is white or a saturated colour under any light",
+                false => "it reflects more light than it receives: bright parts are clipped and lose their shading",
             })
             .help(match bytes {
                 true if percent => format!(
-                    "colours go from 0 to 1: `{}` if this is in percent, `{}` if it is of 255",
+                    "colours go from 0 to 1: `{}` if this is in percent, `{}` if it is in bytes",
                     vector(color / 100.0),
                     vector(mended)
                 ),
                 true => format!("colours go from 0 to 1, not to 255: `{}`", vector(mended)),
-                false => format!("colours go from 0 to 1: `{}`, say", vector(mended)),
+                false => format!("colours go from 0 to 1: try `{}`", vector(mended)),
             });
         let diagnostic = match place {
             // Only bytes have an obvious correction.
@@ -310,11 +310,11 @@ pub(super) fn gives_too_much(scout: &SceneProbe) -> Option<Diagnostic> {
     let too_much = phongs(scout).filter(|(_, _, phong)| bounces && adds(phong) && sum(phong) > 1.05);
     let (i, written, phong) = too_much.max_by_key(|(i, ..)| rays(scout, *i)).filter(|(i, ..)| rays(scout, *i) > 0)?;
     let message = format!(
-        "material {i} gives back {} times what it gets: its diffuse colour and what it mirrors and lets through are more \
-         than 1 together",
+        "material {i} reflects and transmits {} times the light that it receives: its diffuse, mirrored and transmitted \
+         shares add up to more than 1",
         super::finding::number(sum(phong))
     );
-    let diagnostic = Diagnostic::warning(message).help("make them smaller, so that they sum to 1 at most");
+    let diagnostic = Diagnostic::warning(message).help("reduce them until their sum is at most 1");
     Some(scout.at_value(
         diagnostic,
         written.span,
@@ -340,8 +340,8 @@ pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
         _ => false,
     };
     let say = |(i, written, _): (u32, &Spanned<Written>, &Phong)| {
-        let diagnostic = Diagnostic::warning(format!("material {i} is of glass, and lets nothing through"))
-            .effect("this year's program weighs what glass mirrors and lets through by `specularColor`, which is black")
+        let diagnostic = Diagnostic::warning(format!("material {i} is glass that transmits no light"))
+            .effect("this year's program scales reflection and transmission of glass by `specularColor`, which is black")
             .help("write `specularColor 1 1 1` for clear glass");
         Finding::from(scout.at_value(diagnostic, written.span, &["specularColor", "refractionIndex"]))
     };
@@ -364,9 +364,9 @@ fn dull_by_color(scout: &SceneProbe) -> Vec<Finding> {
         _ => false,
     };
     let say = |(i, written, _): (u32, &Spanned<Written>, &Phong)| {
-        let diagnostic = Diagnostic::warning(format!("material {i} has the index of glass, and lets nothing through"))
-            .effect("its `transparentColor` is black: what is made of it is dark, and nothing is seen through it")
-            .help("`transparentColor` is the share of light that goes through: `0.9 0.9 0.9` is clear");
+        let diagnostic = Diagnostic::warning(format!("material {i} has the index of glass, but transmits no light"))
+            .effect("its `transparentColor` is black: its objects are dark and opaque")
+            .help("`transparentColor` is the share of light that it transmits: `0.9 0.9 0.9` is clear");
         Finding::from(scout.at_value(diagnostic, written.span, &["transparentColor", "indexOfRefraction"]))
     };
     phongs(scout).filter(dull).take(MAX_SOUGHT).map(say).collect()
@@ -384,7 +384,7 @@ pub(super) fn negative(scout: &SceneProbe) -> Vec<Finding> {
     let say = |Named { color, block, fields, .. }: Named| {
         let mended = color.abs();
         let diagnostic = Diagnostic::warning(format!("the colour {} is below zero", vector(color)))
-            .effect("it takes light away: what it touches is darker, or black")
+            .effect("it subtracts light: surfaces become darker, or black")
             .help(format!("colours go from 0 to 1: `{}`", vector(mended)));
         let diagnostic = match scout.value(block, &fields) {
             Some(place) => diagnostic.at(place).fix(place, vector(mended)),
@@ -414,14 +414,14 @@ pub(super) fn camouflaged(scout: &SceneProbe) -> Vec<Finding> {
         return lost_in_background(scout, &alike);
     }
     let black = shown(world.background()).max_element() < ALIKE;
-    let diagnostic = Diagnostic::warning("all that is seen has the colour of the background");
+    let diagnostic = Diagnostic::warning("everything visible has the colour of the background");
     let diagnostic = match background_span(scout) {
         Some(block) => scout.at_value(diagnostic, block, &["color"]),
         None => diagnostic,
     };
-    let diagnostic = diagnostic.effect("nothing can be told from it").help(match black {
+    let diagnostic = diagnostic.effect("nothing stands out from it").help(match black {
         true => "nothing is lit; another background colour would at least show the outlines",
-        false => "take another `color` for the background, or for the materials",
+        false => "choose another `color` for the background, or for the materials",
     });
     let finding = Finding::from(diagnostic);
     // If no light arrives, that is the cause, and this only follows from it.
@@ -449,8 +449,8 @@ fn lost_in_background(scout: &SceneProbe, alike: &dyn Fn(Color) -> bool) -> Vec<
             Diagnostic::warning(format!("the {} has the colour of the background", scout.object(number as u32)))
                 .at(scout.object_span(number as u32))
                 .related(written.span, "its material")
-                .effect("it cannot be told from it")
-                .help("take another `color` for the background, or for the material");
+                .effect("it does not stand out from it")
+                .help("choose another `color` for the background, or for the material");
         Some(Finding::from(diagnostic))
     };
     world.objects().iter().enumerate().filter_map(say).take(super::finding::MAX_ALIKE).collect()
@@ -466,15 +466,15 @@ pub(super) fn no_coordinates(scout: &SceneProbe) -> Vec<Finding> {
         if let Some((_, seen)) = bare {
             let name = scout.object(seen.object);
             let diagnostic =
-                Diagnostic::warning(format!("material {i} has a texture, but the {name} has no coordinates for it"))
-                    .related(scout.object_span(seen.object), "this has the material")
-                    .effect("the texture is not seen; `diffuseColor` is")
+                Diagnostic::warning(format!("material {i} has a texture, but the {name} has no texture coordinates"))
+                    .related(scout.object_span(seen.object), "uses the material")
+                    .effect("the texture is invisible; `diffuseColor` is used instead")
                     .help(match (&scout.world().objects()[seen.object as usize].geometry, meshes_only) {
                         (Geometry::Mesh(_), _) => "the mesh file needs `vt` lines, and faces as `f 1/1 2/2 3/3`",
                         (_, true) => {
-                            "this year's program shows textures on meshes alone: take a `TriangleMesh` with `vt` lines"
+                            "this year's program shows textures on meshes only: use a `TriangleMesh` with `vt` lines"
                         }
-                        (_, false) => "take a shape that has coordinates, or a `TriangleMesh` with `vt` lines",
+                        (_, false) => "use a shape with texture coordinates, or a `TriangleMesh` with `vt` lines",
                     });
             found.push(Finding::from(scout.at_value(diagnostic, written.span, &["texture"])));
         }
@@ -503,15 +503,15 @@ pub(super) fn unused(scout: &SceneProbe) -> Vec<Finding> {
     let Some(&first) = unused.first() else { return Vec::new() };
     let list: Vec<String> = unused.iter().take(8).map(ToString::to_string).collect();
     let message = match unused.len() {
-        1 => format!("nothing is made of material {first}"),
-        n => format!("nothing is made of {}: {}", counted(n, "material", "materials"), list.join(", ")),
+        1 => format!("no object uses material {first}"),
+        n => format!("no object uses {}: {}", counted(n, "material", "materials"), list.join(", ")),
     };
     let diagnostic = Diagnostic::note(message)
         .at(written[first].span)
-        .effect("it changes nothing in the picture")
+        .effect("it has no effect on the picture")
         .help(match scout.subject.dialect {
-            Dialect::F23 => "is the `index` of a `Component<Material>` wrong? They count from 0",
-            _ => "is a `MaterialIndex` wrong? They count from 0",
+            Dialect::F23 => "is the `index` of a `Component<Material>` wrong? Indices start at 0",
+            _ => "is a `MaterialIndex` wrong? Indices start at 0",
         });
     vec![Finding::from(diagnostic)]
 }

@@ -52,7 +52,7 @@ fn white(scout: &SceneProbe) -> Vec<Finding> {
     let exposure = number(stops + stops_of(scout.subject.exposure));
     let help = match sky {
         true => format!("this sky is in cd/m^2, as outdoors: its pictures need `--exposure {exposure}`"),
-        false => format!("light is in cd/m^2: ask for `--exposure {exposure}`, or multiply what shines by {factor}"),
+        false => format!("light is in cd/m^2: set `--exposure {exposure}`, or multiply the emission by {factor}"),
     };
     let diagnostic = diagnostic.help(help);
     let diagnostic = match lamp {
@@ -81,7 +81,7 @@ pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
     let (most, ambient) = (brightest.max_element(), world.ambient().max_element().min(0.5));
     let factor = (1.0 - ambient) / (most - ambient).max(1e-6);
     let effect = format!(
-        "{} of what is seen is cut at 1, and loses its shading; {} is white",
+        "{} of the visible surfaces is clipped at 1 and loses its shading; {} is white",
         percent(cut, lit.len()),
         percent(white, lit.len())
     );
@@ -89,7 +89,7 @@ pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
         Diagnostic::warning(format!("there is too much light: the brightest colour is {}", vector(brightest)))
             .effect(effect)
             .help(format!(
-                "multiply the colours of the lights by {}, or write a picture that keeps them (.exr, .hdr)",
+                "multiply the colours of the lights by {}, or write a format that stores them (.exr, .hdr)",
                 number(factor)
             ));
     // If the lights alone are too strong, blame no material.
@@ -108,8 +108,8 @@ pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
             let single = scout.text(value).split_whitespace().count() == 1;
             let text = if single { number(a.z / factor) } else { vector(a / factor) };
             let diagnostic =
-                diagnostic.help(format!("it fades too little: `{text}`, say, for `{}`", scout.text(value)));
-            let diagnostic = diagnostic.at(value).label("this light arrives that strong").fix(value, text);
+                diagnostic.help(format!("it fades too little: try `{text}` instead of `{}`", scout.text(value)));
+            let diagnostic = diagnostic.at(value).label("this light is too strong").fix(value, text);
             return vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())];
         }
         let unit = scout.value(span, &["candela", "lumens", "lux"]);
@@ -136,7 +136,7 @@ pub(super) fn one_color(scout: &SceneProbe) -> Vec<Finding> {
     let name = match (first.max_element() < VISIBLE, first.min_element() > 1.0 - VISIBLE) {
         (true, _) => "black".to_string(),
         (_, true) => "white".to_string(),
-        _ => format!("of the one colour {}", vector(first)),
+        _ => format!("uniformly {}", vector(first)),
     };
     let empty = scout.seen().next().is_none();
     // Small objects between the probes are still visible.
@@ -145,10 +145,10 @@ pub(super) fn one_color(scout: &SceneProbe) -> Vec<Finding> {
     }
     let diagnostic = Diagnostic::warning(format!("the whole picture is {name}"));
     let diagnostic = match empty {
-        true => diagnostic.effect("every ray misses: it is the background"),
-        false => diagnostic.effect("no shading is seen"),
+        true => diagnostic.effect("every ray misses; only the background is visible"),
+        false => diagnostic.effect("no shading is visible"),
     };
-    vec![Finding::from(diagnostic.help("`durer explain SCENE --pixel X,Y` tells of what a pixel is made")).last()]
+    vec![Finding::from(diagnostic.help("`durer explain SCENE --pixel X,Y` explains the colour of a pixel")).last()]
 }
 
 /// Reports a picture that is almost black wherever it shows an object.
@@ -161,9 +161,9 @@ pub(super) fn too_dark(scout: &SceneProbe) -> Vec<Finding> {
     if scout.seen().next().is_none() || most > 0.06 || lights.is_empty() {
         return Vec::new();
     }
-    let diagnostic = Diagnostic::warning(format!("the brightest thing in the picture is {} only", number(most)))
-        .effect("all that is seen is black, or nearly so")
-        .help(format!("it takes about {} times as much light", number(0.8 / most.max(1e-4))));
+    let diagnostic = Diagnostic::warning(format!("the brightest value in the picture is only {}", number(most)))
+        .effect("everything visible is black, or nearly black")
+        .help(format!("the scene needs about {} times as much light", number(0.8 / most.max(1e-4))));
     let diagnostic = match place(scout, 0) {
         Some(span) => scout.at_value(diagnostic, span, &["color"]),
         None => diagnostic,
@@ -178,22 +178,22 @@ fn dark_paths(scout: &SceneProbe) -> Vec<Finding> {
     }
     let most = brightest(scout.light());
     let message = match most < 1e-6 {
-        true => "the whole picture is black: no light finds its way to the camera".to_string(),
-        false => format!("the brightest thing in the picture is {} only", number(most)),
+        true => "the whole picture is black: no light reaches the camera".to_string(),
+        false => format!("the brightest value in the picture is only {}", number(most)),
     };
     let factor = 0.6 / most.max(1e-9);
-    let diagnostic = Diagnostic::warning(message).effect("all that is seen is black, or nearly so");
+    let diagnostic = Diagnostic::warning(message).effect("everything visible is black, or nearly black");
     let lamp = super::lamps::brightest(scout).filter(|_| most > 1e-6);
     let diagnostic = match lamp {
         Some((place, value)) => {
             let stops = number(stops_of(factor).round() + stops_of(scout.subject.exposure));
             let text = number(value * factor);
             diagnostic.at(place).fix(place, text.clone()).help(format!(
-                "it takes about {} times as much light: write `{text}`, say, or ask for `--exposure {stops}`",
+                "the scene needs about {} times as much light: try `{text}`, or set `--exposure {stops}`",
                 number(factor)
             ))
         }
-        None => diagnostic.help("is a lamp enclosed, turned away, or too weak? Does fog swallow its light?"),
+        None => diagnostic.help("is a light enclosed, turned away, or too weak? Does fog absorb its light?"),
     };
     vec![Finding::from(diagnostic).last()]
 }
@@ -207,10 +207,10 @@ pub(super) fn depth_range(scout: &SceneProbe) -> Vec<Finding> {
     let (low, high) = (min.min(max), min.max(max));
     if min > max {
         let turned = format!("{} {}", number(max), number(min));
-        let message = format!("the range of depths goes backwards, from {} to {}", number(min), number(max));
+        let message = format!("the depth range is reversed, from {} to {}", number(min), number(max));
         let help =
-            format!("the nearer comes first: `--depth-range {turned}` (in the course's programs `-depth {turned}`)");
-        let diagnostic = Diagnostic::warning(message).effect("near and far are exchanged in the picture of depths");
+            format!("write the nearer value first: `--depth-range {turned}` (in the course's programs `-depth {turned}`)");
+        let diagnostic = Diagnostic::warning(message).effect("near and far are swapped in the depth picture");
         return vec![Finding::from(diagnostic.help(help))];
     }
     let outside = depths.iter().filter(|t| **t <= low || **t >= high).count();
@@ -219,14 +219,14 @@ pub(super) fn depth_range(scout: &SceneProbe) -> Vec<Finding> {
     if depths.is_empty() || outside * 20 < depths.len() * 19 && !flat {
         return Vec::new();
     }
-    let words = format!("depths in the picture go from {} to {}", number(least), number(most));
+    let words = format!("the picture has depths from {} to {}", number(least), number(most));
     let fitting = format!("{} {}", number(least), number(most));
     let diagnostic =
-        Diagnostic::warning(format!("the range of depths, {} to {}, does not fit: {words}", number(min), number(max)))
+        Diagnostic::warning(format!("the depth range {} to {} does not fit: {words}", number(min), number(max)))
             .effect(if flat {
-                "the picture of depths is of nearly one grey"
+                "the depth picture is nearly uniform grey"
             } else {
-                "the picture of depths is all black or all white"
+                "the depth picture is all black or all white"
             })
             .help(format!("`--depth-range {fitting}` (in the course's programs `-depth {fitting}`) shows them"));
     vec![Finding::from(diagnostic).whole(true)]

@@ -42,23 +42,23 @@ pub(super) fn too_small(scout: &SceneProbe) -> Vec<Finding> {
     let (span, larger) = (scout.subject.scene.camera_span, scout.larger());
     let wanted = 0.6 * larger / size.max(1e-6);
     let diagnostic =
-        Diagnostic::warning(format!("all things together are {} pixels wide in a picture of {larger}", number(size)))
+        Diagnostic::warning(format!("all objects together are {} pixels wide in a picture of {larger}", number(size)))
             .effect(if empty && size < FEWEST_PIXELS {
                 "every ray misses them; the whole picture is background"
             } else {
-                "next to nothing is seen of them"
+                "they are hardly visible"
             });
     let (diagnostic, field) = match scout.world().camera() {
         Camera::Perspective(camera) if camera.angle > 90.0 => {
-            (diagnostic.help("take a smaller field of view, 40 degrees, say, or go nearer"), "angle")
+            (diagnostic.help("use a smaller field of view, such as 40 degrees, or move closer"), "angle")
         }
         Camera::Orthographic(camera) => {
-            let help = format!("take a smaller picture: `size {}`, say", number(camera.size / wanted));
+            let help = format!("use a smaller picture size, such as `size {}`", number(camera.size / wanted));
             let diagnostic = diagnostic.fix_at(scout.value(span, &["size"]), number(camera.size / wanted));
             (diagnostic.help(help), "size")
         }
         _ => {
-            let help = format!("go about {} times nearer, or make them that much larger", number(wanted));
+            let help = format!("move about {} times closer, or scale the objects up by that factor", number(wanted));
             (diagnostic.help(help), "center")
         }
     };
@@ -87,13 +87,13 @@ pub(super) fn too_narrow(scout: &SceneProbe) -> Vec<Finding> {
             let Some(size) = pixels(scout, bounds).filter(|size| *size > 8.0 * larger) else { return Vec::new() };
             let degrees = camera.angle.to_degrees();
             let mut diagnostic =
-                Diagnostic::warning(format!("the field of view is {} degrees only", number(camera.angle)))
-                    .effect(format!("less than a {}th of the scene's width is seen", number((size / larger).floor())))
+                Diagnostic::warning(format!("the field of view is only {} degrees", number(camera.angle)))
+                    .effect(format!("less than a {}th of the scene's width is visible", number((size / larger).floor())))
                     .help("angles are in degrees: 30 to 60 are usual");
             if let Some(place) = scout.value(span, &["angle", "fov"]).filter(|_| radians(camera.angle)) {
                 let whole = degrees.round().clamp(20.0, 100.0);
                 diagnostic = diagnostic.fix(place, number(whole)).help(format!(
-                    "angles are in degrees; in radians it would be {}: write `{whole}`, say",
+                    "angles are in degrees; in radians it would be {}: try `{whole}`",
                     number(degrees)
                 ));
             }
@@ -107,8 +107,8 @@ pub(super) fn too_narrow(scout: &SceneProbe) -> Vec<Finding> {
             let most = if seen.len() == 1 { 8.0 } else { 30.0 };
             let Some(size) = pixels(scout, bounds).filter(|size| *size > most * larger) else { return Vec::new() };
             let wanted = number(1.2 * camera.size * size / larger);
-            let diagnostic = Diagnostic::warning(format!("the picture is {} wide only", number(camera.size)))
-                .effect(format!("less than a {}th of the scene's width is seen", number((size / larger).floor())))
+            let diagnostic = Diagnostic::warning(format!("the picture is only {} wide", number(camera.size)))
+                .effect(format!("less than a {}th of the scene's width is visible", number((size / larger).floor())))
                 .help(format!("`size {wanted}` shows all of it"));
             let diagnostic = diagnostic.fix_at(scout.value(span, &["size"]), wanted);
             vec![Finding::from(scout.at_value(diagnostic, span, &["size"])).whole(true)]
@@ -127,10 +127,10 @@ fn one_fills(scout: &SceneProbe, sizes: &[f32]) -> Option<Finding> {
     if camera.angle > 12.0 || sizes.is_empty() || !filled || out < 2 || out < sizes.len() {
         return None;
     }
-    let diagnostic = Diagnostic::warning(format!("the field of view is {} degrees only", number(camera.angle)))
+    let diagnostic = Diagnostic::warning(format!("the field of view is only {} degrees", number(camera.angle)))
         .effect(match sizes.len() {
-            1 => format!("one thing fills the picture, and {out} are beside it"),
-            n => format!("{n} things fill the picture, and {out} are beside it"),
+            1 => format!("one object fills the picture, and {out} are outside it"),
+            n => format!("{n} objects fill the picture, and {out} are outside it"),
         })
         .help("30 to 60 degrees are usual: is a digit missing?");
     let span = scout.subject.scene.camera_span;
@@ -186,8 +186,8 @@ pub(super) fn out_of_scale(scout: &SceneProbe) -> Vec<Finding> {
         .map(|&(object, size)| {
             let diagnostic = Diagnostic::warning(format!("the {} is {} wide", scout.object(object), number(size)))
                 .at(scout.object_span(object))
-                .effect("numbers of this size have not enough digits: it is not seen, or all is inside it")
-                .help("look at its size and the `Scale` around it");
+                .effect("numbers of this size lack precision: the object is invisible, or contains everything")
+                .help("check its size and the `Scale` around it");
             Finding::from(diagnostic).whole(size > 1.0)
         })
         .collect();
@@ -231,19 +231,19 @@ pub(super) fn out_of_scale(scout: &SceneProbe) -> Vec<Finding> {
         }
         let word = if size > middle { "larger" } else { "smaller" };
         let diagnostic = Diagnostic::warning(format!(
-            "the {} is {} times {word} than most things here",
+            "the {} is {} times {word} than most objects here",
             scout.object(object),
             number(ratio)
         ))
         .at(scout.object_span(object))
         .effect(match scout.visibilities()[object as usize] {
-            Visibility::Seen if size > middle => "it hides or holds the others",
+            Visibility::Seen if size > middle => "it hides or contains the others",
             Visibility::Seen => "hardly a pixel shows it",
-            _ if size > middle => "it reaches over all, and what of it would be seen is not in the picture",
-            _ => "it is not seen",
+            _ if size > middle => "it spans the whole scene, but its surface is outside the picture",
+            _ => "it is invisible",
         })
         .help(format!(
-            "its largest side is {}, that of most things {}: is it in another unit, as millimetres? ProbeGrid at its size and the \
+            "its largest side is {}, that of most objects {}: is it in another unit, such as millimetres? Check its size and the \
              `{}` around it",
             number(size),
             number(middle),
@@ -267,8 +267,8 @@ pub(super) fn radians(scout: &SceneProbe) -> Vec<Finding> {
     };
     let Some((span, words, angle)) = angles.into_iter().find(|(.., angle)| fraction(*angle)) else { return Vec::new() };
     let degrees = number(angle.to_degrees().round());
-    let diagnostic = Diagnostic::warning(format!("a rotation by {angle} degrees looks like radians"))
-        .effect("this object is hardly turned")
+    let diagnostic = Diagnostic::warning(format!("the rotation by {angle} degrees may be in radians"))
+        .effect("the object is hardly rotated")
         .help(format!("angles are in degrees: {degrees}"));
     let value = scout.value(span, &words).filter(|value| scout.text(*value).parse() == Ok(angle));
     vec![Finding::from(match value {

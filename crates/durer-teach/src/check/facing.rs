@@ -13,11 +13,11 @@ use durer_scene::shape::{Flip, Shape as _};
 /// Describes the edit that makes a flat shape face the other way.
 pub(super) fn flip_text(flip: Flip) -> String {
     match flip {
-        Flip::Corners([a, b]) | Flip::Edges([a, b]) => format!("exchange `{a}` and `{b}`"),
-        Flip::Negate([normal]) => format!("turn its `{normal}`"),
+        Flip::Corners([a, b]) | Flip::Edges([a, b]) => format!("swap `{a}` and `{b}`"),
+        Flip::Negate([normal]) => format!("negate its `{normal}`"),
         Flip::Negate(fields) => {
             let [normal, rest] = [&fields[..1], &fields[1..]].map(|fields| fields.join("` and `"));
-            format!("turn its `{normal}`, and the sign of its `{rest}` with it")
+            format!("negate its `{normal}` and its `{rest}`")
         }
     }
 }
@@ -84,11 +84,11 @@ pub(super) fn from_behind(scout: &SceneProbe) -> Vec<Finding> {
         seen[i] > 0 && backs[i] == seen[i] && (!shaded || is_flat(i)) && !super::mesh::shows_inside_out(scout, i as u32)
     });
     let say = |i: usize| {
-        let message = format!("the {} is seen from behind", scout.object(i as u32));
+        let message = format!("the {} is visible from behind", scout.object(i as u32));
         if shaded {
             let note = Diagnostic::note(message)
                 .at(scout.object_span(i as u32))
-                .effect("a tracer that does not shade backs, as the course's without `-shade_back`, leaves it black");
+                .effect("a ray tracer that does not shade back faces, such as the course's without `-shade_back`, leaves it black");
             // Flipping a plane's normal and offset gives the same plane, and it looks the same if
             // backs are shaded.
             return Finding::from(if plane(&scout.world().objects()[i]).is_some() {
@@ -100,11 +100,11 @@ pub(super) fn from_behind(scout: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic::warning(message)
             .at(scout.object_span(i as u32))
             .effect(if black {
-                "its back is left black"
+                "its back stays black"
             } else {
-                "its normal points away: no light falls on what is seen of it"
+                "its normal points away: the visible side gets no light"
             })
-            .help("ask for `--shade-back` (in the course's programs `-shade_back`)");
+            .help("set `--shade-back` (in the course's programs `-shade_back`)");
         Finding::from(turned(scout, diagnostic, i as u32)).whole(backs[i] * 10 > all * 9)
     };
     turned_away.take(MAX_SOUGHT).map(say).collect()
@@ -132,23 +132,23 @@ fn turned_of(scout: &SceneProbe, soup: &[u32]) -> Vec<Finding> {
     let inside_out = topology.is_closed() && topology.turned.is_empty() && topology.volume < 0.0;
     if inside_out {
         let diagnostic = Diagnostic::warning(format!(
-            "{} that enclose something face inwards",
+            "{} of a closed surface face inwards",
             counted(soup.len(), "triangle", "triangles")
         ))
         .at(scout.object_span(soup[0]))
         .label("the first of them")
-        .effect("a tracer that does not turn normals shades them as from inside, black");
+        .effect("a ray tracer that does not flip normals shades them as inner sides, black");
         let diagnostic = soup.iter().fold(diagnostic, |diagnostic, &i| turned(scout, diagnostic, i));
-        return vec![Finding::from(diagnostic.help("let their corners go round counter-clockwise, seen from outside"))];
+        return vec![Finding::from(diagnostic.help("order their corners counter-clockwise, as seen from outside"))];
     }
     let Some(&first) = topology.turned.first() else { return Vec::new() };
     let count = topology.turned.len();
     let mut diagnostic = Diagnostic::warning(match count {
-        1 => "this triangle faces the other way than its neighbours".to_string(),
-        n => format!("{n} triangles face the other way than their neighbours"),
+        1 => "this triangle faces the opposite way of its neighbours".to_string(),
+        n => format!("{n} triangles face the opposite way of their neighbours"),
     })
     .at(scout.object_span(soup[first as usize]))
-    .effect("its normal points inwards: black or wrongly lit in a tracer that does not turn it");
+    .effect("its normal points inwards: black or wrongly lit in a ray tracer that does not flip normals");
     if count > 1 {
         diagnostic = diagnostic.label("the first of them");
     }

@@ -14,7 +14,7 @@ pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
     each(scout, |light, verdict| {
         let Verdict::Faint(most) = verdict else { return None };
         let message = match written(scout, light)?.value.position() {
-            None => format!("this light adds {} at most", number(most)),
+            None => format!("this light contributes {} at most", number(most)),
             Some(_) => format!("this light fades to {} before it arrives", number(most)),
         };
         let (diagnostic, span) = useless(scout, light, message)?;
@@ -22,7 +22,7 @@ pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
         let written = &written(scout, light)?.value;
         let Some(point) = point(written) else {
             let color = written.color() * factor;
-            let help = format!("it is {} times too weak: `color {}`, say", number(factor), vector(color));
+            let help = format!("it is {} times too weak: try `color {}`", number(factor), vector(color));
             return Some(scout.at_value(diagnostic, span, &["color"]).help(help));
         };
         // If the colour is plausible for a light, the attenuation is wrong.
@@ -48,13 +48,13 @@ pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
                     let after = Span { start: color.end, ..color };
                     let text = format!(" attenuation {}", number(a.z / factor));
                     let help =
-                        format!("without `attenuation` it is {} here: write `{}`, say", number(a.z), text.trim());
+                        format!("the default is {} here: try `{}`", number(a.z), text.trim());
                     return Some(diagnostic.at(color).fix(after, text).help(help));
                 }
                 (color, _) => (color, vector(point.color * factor), "color".into()),
             },
         };
-        let help = format!("it is about {} times too weak: `{field} {text}`, say", number(factor));
+        let help = format!("it is about {} times too weak: try `{field} {text}`", number(factor));
         Some(diagnostic.at(value).fix(value, text).help(help))
     })
 }
@@ -95,23 +95,23 @@ pub(super) fn divides(scout: &SceneProbe) -> Vec<Finding> {
                             scout.text(value)
                         )
                     }
-                    None => "this light divides by zero: nothing is written of how it fades".to_string(),
+                    None => "this light divides by zero: it has no attenuation".to_string(),
                 },
-                false => format!("this light is divided by numbers that are not above zero: {}", vector(divisor)),
+                false => format!("this light is divided by numbers that are not positive: {}", vector(divisor)),
             };
             let value = scout.value(span, &["attenuation", "falloff"]);
             let diagnostic = Diagnostic::warning(message)
                 .effect(match zero {
-                    true => "what it shines on is no number, and is left out of the picture: black, or specks",
-                    false => "it takes light away, or what it shines on is no number: black",
+                    true => "its light is NaN or infinite and is left out: surfaces are black or have specks",
+                    false => "it subtracts light, or its light is NaN: surfaces are black",
                 })
                 .help(match scout.value(span, &["falloff"]) {
-                    Some(_) => "write a `falloff` above 0, as `falloff 0.05`",
+                    Some(_) => "write a `falloff` above 0, such as `falloff 0.05`",
                     None if scout.subject.dialect == Dialect::F23 => {
-                        "write an `attenuation` above 0, as `attenuation 0.05`"
+                        "write an `attenuation` above 0, such as `attenuation 0.05`"
                     }
-                    None if scout.subject.dialect == Dialect::F16 => "write a `falloff`, as `falloff 0.05`",
-                    None => "`attenuation 1 0 0` is light that does not fade",
+                    None if scout.subject.dialect == Dialect::F16 => "write a `falloff`, such as `falloff 0.05`",
+                    None => "use `attenuation 1 0 0` for a light that does not fade",
                 });
             let triple = written(scout, light).is_some_and(|l| {
                 point(&l.value).is_some_and(|point| point.attenuation.is_some() && point.falloff.is_none())

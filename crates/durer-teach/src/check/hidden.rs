@@ -49,23 +49,23 @@ pub(super) fn hidden(scout: &SceneProbe) -> Vec<Finding> {
     let turned = (is_plane && !behind).then(|| offset_turned(scout, front)).flatten();
     let help = match (is_plane, behind) {
         _ if backwards => {
-            "it is behind the camera's `center`, but this camera's rays have no beginning and see what is behind it first: move \
-             it away, or turn its `offset`"
+            "it is behind the camera's `center`, but this camera's rays are infinite lines and hit objects behind it first: move \
+             it away, or negate its `offset`"
         }
         _ if is_plane && turned.is_none() && !behind => {
-            "the camera and the things behind the plane are on different sides of it: move one of them"
+            "the camera and the hidden objects are on different sides of the plane: move one of them"
         }
         (true, true) => {
-            "the camera is behind the plane, which stands where p · normal = offset: move the camera, or look at `offset` \
-             and at the direction of `normal`"
+            "the camera is behind the plane, which is at p · normal = offset: move the camera, or check `offset` \
+             and the direction of `normal`"
         }
-        (true, false) => "the plane stands where p · normal = offset: is the sign of `offset` right?",
+        (true, false) => "the plane is at p · normal = offset: is the sign of `offset` right?",
         _ => "move it, make it smaller, or move the camera",
     };
     let diagnostic = Diagnostic::warning(format!("the {name} hides everything else"))
         .at(scout.object_span(front))
         .label(format!("covers {} of the picture", percent(covered, scout.probes.len())))
-        .effect(format!("{} behind it cannot be seen", counted(hidden, "object", "objects")))
+        .effect(format!("{} behind it are invisible", counted(hidden, "object", "objects")))
         .help(help);
     let diagnostic = match turned {
         Some((place, text)) => diagnostic.fix(place, text),
@@ -111,9 +111,9 @@ fn in_the_way(scout: &SceneProbe) -> Vec<Finding> {
     let diagnostic = Diagnostic::note(format!("the {} covers most of the picture", scout.object(front as u32)))
         .at(scout.object_span(front as u32))
         .label(format!("{} of it", percent(counts[front], scout.probes.len())))
-        .effect(format!("of the others, next to nothing is seen: it covers {} of them", percent(covered, looked)))
+        .effect(format!("the others are hardly visible: it covers {} of them", percent(covered, looked)))
         .help(format!(
-            "it is {} before the camera: move it away or make it smaller, or go back",
+            "it is {} in front of the camera: move it away, make it smaller, or move the camera back",
             number(nearest[front])
         ));
     vec![Finding::from(diagnostic).whole(true)]
@@ -148,13 +148,13 @@ pub(super) fn below_plane(scout: &SceneProbe) -> Vec<Finding> {
     let Some(front) = front else { return Vec::new() };
     let lid = ceiling(scout) == Some(front);
     let what =
-        if lid { "everything, the camera too, is below the" } else { "all other things are on the far side of the" };
+        if lid { "everything, the camera too, is below the" } else { "all other objects are on the far side of the" };
     if let Some(raised) = raised(scout, front).filter(|_| !lid) {
         let pose = scout.world().camera().pose();
         let diagnostic = Diagnostic::warning(format!("the camera is below the {}", scout.object(front)))
-            .related(scout.object_span(front), "the other things stand on it")
-            .effect("nothing but the plane and the background is seen")
-            .help(format!("move it to the side of the things: `center {}`, say", vector(raised)));
+            .related(scout.object_span(front), "the other objects stand on it")
+            .effect("only the plane and the background are visible")
+            .help(format!("move it to the side of the objects: try `center {}`", vector(raised)));
         let span = scout.subject.scene.camera_span;
         let value = scout.value(span, &["center"]).filter(|_| raised != pose.center);
         let diagnostic = scout.at_value(diagnostic.fix_at(value, vector(raised)), span, &["center"]);
@@ -163,10 +163,10 @@ pub(super) fn below_plane(scout: &SceneProbe) -> Vec<Finding> {
     let diagnostic = Diagnostic::warning(format!("{what} {}", scout.object(front)))
         .at(scout.object_span(front))
         .effect(match lid {
-            true => "it is a ceiling that is seen from its back, and keeps off the light from above",
-            false => "nothing but the plane and the background is seen",
+            true => "it acts as a ceiling, visible from its back, and blocks the light from above",
+            false => "only the plane and the background are visible",
         })
-        .help("a plane stands where p · normal = offset: look at its `offset`, or at the height of the things");
+        .help("a plane is at p · normal = offset: check its `offset`, or the height of the objects");
     let diagnostic = match offset_turned(scout, front) {
         Some((place, text)) => diagnostic.fix(place, text),
         None => diagnostic,

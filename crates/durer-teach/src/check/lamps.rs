@@ -144,17 +144,17 @@ pub(super) fn turned(scout: &SceneProbe) -> Vec<Finding> {
             return None;
         }
         let turn = match shape(object).and_then(Shape::flip) {
-            Some(Flip::Corners(_)) => "exchange two of its corners".into(),
+            Some(Flip::Corners(_)) => "swap two of its corners".into(),
             Some(flip) => flip_text(flip),
-            None => "turn its `normal`".into(),
+            None => "negate its `normal`".into(),
         };
-        let message = format!("the {} shines away from all that is seen", scout.object(number));
+        let message = format!("the {} emits away from everything that is visible", scout.object(number));
         let diagnostic = Diagnostic::warning(message)
             .at(scout.object_span(number))
-            .effect("it lights nothing that is seen, and is black from behind")
+            .effect("it lights nothing visible, and is black from behind")
             .help(format!(
-                "a surface shines to the side of its normal: {turn}, or give its material `walls thin`, with which both sides \
-                 shine"
+                "a surface emits on the side of its normal: {turn}, or set `walls thin` in its material, so that both sides \
+                 emit"
             ));
         let whole = scout.is_dark() || scout.world().lights().is_empty();
         Some(Finding::from(turned_round(scout, diagnostic, number)).whole(whole))
@@ -162,7 +162,7 @@ pub(super) fn turned(scout: &SceneProbe) -> Vec<Finding> {
     one_sided.filter_map(say).collect()
 }
 
-/// Adds the edit that flips a flat area light. Which corners of a triangle to exchange is for the
+/// Adds the edit that flips a flat area light. Which corners of a triangle to swap is for the
 /// author to decide.
 fn turned_round(scout: &SceneProbe, diagnostic: Diagnostic, number: u32) -> Diagnostic {
     match shape(&scout.world().objects()[number as usize]).and_then(Shape::flip) {
@@ -187,13 +187,13 @@ pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
         let whole = scout.is_dark() || lamps.len() == 1 && scout.world().lights().is_empty();
         let name = scout.object(number);
         let diagnostic = Diagnostic::warning(format!(
-            "the {name} shines, but the {} keeps its light off all that is seen",
+            "the {name} emits light, but the {} occludes it from everything that is visible",
             scout.object(blocker)
         ))
         .at(scout.object_span(number))
-        .related(scout.object_span(blocker), "in the way")
-        .effect(if scout.is_dark() { "the picture is black" } else { "no light of it comes straight to what is seen" })
-        .help("is it on the wrong side, or inside? Move the lamp to the side that is seen");
+        .related(scout.object_span(blocker), "the occluder")
+        .effect(if scout.is_dark() { "the picture is black" } else { "none of its light reaches the visible surfaces directly" })
+        .help("is it on the wrong side, or inside? Move the light to the visible side");
         // If the picture is not dark, the light arrives indirectly.
         let dark = scout.is_dark();
         let severity = if dark { Severity::Warning } else { Severity::Note };
@@ -229,12 +229,12 @@ pub(super) fn in_glass(scout: &SceneProbe) -> Vec<Finding> {
         if given(scout, number).is_some_and(|(given, _)| given.glass * 2 <= given.rays) {
             continue;
         }
-        let message = format!("the {} shines inside of the {}", scout.object(number), scout.object(glass));
+        let message = format!("the {} emits light inside the {}", scout.object(number), scout.object(glass));
         let diagnostic = Diagnostic::warning(message)
             .at(scout.object_span(number))
-            .related(scout.object_span(glass), "glass around it")
-            .effect("paths come upon it by chance alone: little light, and bright specks")
-            .help("take `--integrator photons`, or leave the glass away");
+            .related(scout.object_span(glass), "the glass around it")
+            .effect("paths hit it only by chance: little light, and bright specks")
+            .help("use `--integrator photons`, or remove the glass");
         found.push(Finding::from(diagnostic));
     }
     found

@@ -51,12 +51,12 @@ pub(super) fn black(scout: &SceneProbe) -> Vec<Finding> {
             (base <= BLACK && !textured && !skin).then_some("baseColor")?
         };
         let what = match word {
-            "subsurfaceColor" => "the colour that the body shows",
-            _ if m.base_metalness > 0.9 => "what a metal mirrors",
-            _ => "the share of light that it gives back",
+            "subsurfaceColor" => "the visible colour of the body",
+            _ if m.base_metalness > 0.9 => "the reflectance of the metal",
+            _ => "the share of light that it reflects",
         };
-        let diagnostic = Diagnostic::warning(format!("material {number} is black: it gives back no light"))
-            .effect("what is made of it is black, however much light there is")
+        let diagnostic = Diagnostic::warning(format!("material {number} is black: it reflects no light"))
+            .effect("its objects are black under any light")
             .help(format!("`{word}` is {what}: `{word} 0.8 0.8 0.8` is light"));
         let words = [word, "baseWeight"];
         Some(Finding::from(scout.at_value(diagnostic, written.span, &words)))
@@ -71,12 +71,12 @@ pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
         if m.transmission_weight < 0.5 || m.transmission_scatter.max_element() > 0.0 || color >= 1.0 {
             return None;
         }
-        let message = format!("material {number} is of glass, and lets nothing through");
+        let message = format!("material {number} is glass that transmits no light");
         let diagnostic = Diagnostic::warning(message);
         let (diagnostic, word) = if m.transmission_depth == 0.0 || m.walls == Walls::Thin {
             (color <= BLACK).then(|| {
-                let help = "`transmissionColor` is the share of light that passes: `1 1 1` is clear";
-                (diagnostic.effect("its colour swallows all light: it is black").help(help), "transmissionColor")
+                let help = "`transmissionColor` is the share of light that it transmits: `1 1 1` is clear";
+                (diagnostic.effect("its colour absorbs all light: it is black").help(help), "transmissionColor")
             })?
         } else {
             // Paths through a round body are about this long.
@@ -85,12 +85,12 @@ pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
             (left < BLACK).then(|| {
                 let depth = number_word(thick);
                 let effect = format!(
-                    "light has its colour, {}, after {} already; what is made of it is {} thick: it is black",
+                    "light has its colour, {}, after a distance of {} already; its objects are {} thick and look black",
                     vector(m.transmission_color),
                     number_word(m.transmission_depth),
                     number_word(thick)
                 );
-                let help = format!("`transmissionDepth` is in units of the scene: `transmissionDepth {depth}`, say");
+                let help = format!("`transmissionDepth` is in units of the scene: try `transmissionDepth {depth}`");
                 (
                     diagnostic
                         .effect(effect)
@@ -115,13 +115,13 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
             return None;
         }
         let index = number_word(m.specular_ior);
-        let message = format!("material {number} is of glass with an index of refraction of {index}");
+        let message = format!("material {number} is glass with an index of refraction of {index}");
         let effect = match m.specular_ior {
             // A body of smoke has no surface reflection on purpose.
             ior if (ior - 1.0).abs() < 1e-3 && clear && plain && m.transmission_weight > 0.99 => {
-                "light goes straight through and nothing is mirrored: what is made of it is not seen"
+                "light passes straight through without reflection, so its objects are invisible"
             }
-            ior if !(0.4..=4.5).contains(&ior) => "light is bent as by nothing that there is",
+            ior if !(0.4..=4.5).contains(&ior) => "no real material refracts like this",
             _ => return None,
         };
         let help = "water has 1.33, glass 1.5, diamond 2.4: `specularIor 1.5`";
@@ -139,8 +139,8 @@ pub(super) fn not_there(scout: &SceneProbe) -> Vec<Finding> {
             return None;
         }
         let diagnostic = Diagnostic::warning(format!("material {number} has the `opacity` {}", number_word(m.opacity)))
-            .effect("what is made of it is not there: light goes through as if nothing were")
-            .help("`opacity` is the share of the surface that is there; 1 is all of it");
+            .effect("its objects are invisible: light passes through unchanged")
+            .help("`opacity` is the share of the surface that is present, from 0 to 1");
         let value = scout.value(written.span, &["opacity"]);
         Some(Finding::from(scout.at_value(diagnostic.fix_at(value, "1"), written.span, &["opacity"])))
     };

@@ -45,13 +45,13 @@ pub(super) fn out_of_focus(scout: &SceneProbe) -> Vec<Finding> {
     sorted.sort_by(f32::total_cmp);
     let middle = number(sorted[sorted.len() / 2]);
     let message = format!(
-        "nothing is sharp: the lens is sharp at {}, and all that is seen is {} and more away",
+        "nothing is in focus: the lens focuses at {}, and everything visible is at least {} away",
         number(camera.focus_distance),
         number(sorted[0])
     );
     let diagnostic = Diagnostic::warning(message)
-        .effect(format!("every point is a disc of at least {:.0} % of the picture's width", 100.0 * least))
-        .help(format!("`focusDistance {middle}` is where most things are; a smaller `aperture` blurs less"));
+        .effect(format!("every point becomes a disc of at least {:.0} % of the picture's width", 100.0 * least))
+        .help(format!("`focusDistance {middle}` is the distance of most objects; a smaller `aperture` blurs less"));
     let span = scout.subject.scene.camera_span;
     vec![Finding::from(scout.at_value(diagnostic, span, &["focusDistance", "aperture"])).whole(true)]
 }
@@ -73,18 +73,18 @@ pub(super) fn wide_aperture(scout: &SceneProbe) -> Vec<Finding> {
     sizes.sort_by(f32::total_cmp);
     let usual = number(0.02 * camera.focus_distance);
     let message = format!(
-        "the `aperture` is {}, and the lens is sharp at {}",
+        "the `aperture` is {}, and the lens focuses at {}",
         number(camera.aperture),
         number(camera.focus_distance)
     );
     let diagnostic = Diagnostic::warning(message)
         .effect(format!(
-            "a point becomes a disc of {:.0} % of the picture's width: all is a blur",
+            "a point becomes a disc of {:.0} % of the picture's width: everything is blurred",
             100.0 * sizes[sizes.len() / 2]
         ))
         .help(format!(
-            "it is the diameter of the opening in units of the scene, and no f-number: the focal length over that. \
-             `aperture {usual}`, say"
+            "`aperture` is the diameter of the lens in world units, not an f-number; a usual value is \
+             `aperture {usual}`"
         ));
     let span = scout.subject.scene.camera_span;
     let diagnostic = diagnostic.fix_at(scout.value(span, &["aperture"]), usual);
@@ -104,11 +104,11 @@ pub(super) fn shifted(scout: &SceneProbe, middle: Vec3) -> Option<Diagnostic> {
     let across = (to - forward * scout.world().camera_frame().forward).length() / forward.max(1e-6);
     (forward > 0.0 && across < (sine / cosine) as f32).then(|| {
         let diagnostic = Diagnostic::warning(format!(
-            "the film is shifted past everything: `{word} {}`",
+            "the film shift misses everything: `{word} {}`",
             number(shift)
         ))
-        .effect("what the lens looks at is beside the picture")
-        .help("it is a part of half the picture's larger side: 1 moves the middle to the edge; write 0, or 0.3, say");
+        .effect("the objects in front of the lens are outside the picture")
+        .help("its unit is half the picture's larger side, so 1 moves the center to the edge: try 0 or 0.3");
         let value = scout.value(span, &[word]);
         scout.at_value(diagnostic.fix_at(value, "0"), span, &[word])
     })
@@ -140,14 +140,14 @@ pub(super) fn eyes_apart(scout: &SceneProbe) -> Vec<Finding> {
     let millimetres = (50.0..=80.0).contains(&separation);
     let usual = number(if millimetres { separation / 1000.0 } else { middle / 30.0 });
     let diagnostic = Diagnostic::warning(format!(
-        "the eyes are {} apart, and look at what is {} away",
+        "the eyes are {} apart and look at objects at a distance of {}",
         number(separation),
         number(middle)
     ))
-    .effect("each sees something else: no two pictures of it make one")
+    .effect("each eye sees something else, so the two pictures do not fuse")
     .help(format!(
-        "`separation` is in units of the scene{}; a 30th of the distance is usual: `separation {usual}`, say",
-        if millimetres { ", and this looks like millimetres" } else { "" }
+        "`separation` is in units of the scene{}; a 30th of the distance is usual: try `separation {usual}`",
+        if millimetres { ", and this value may be in millimetres" } else { "" }
     ));
     let diagnostic = diagnostic.fix_at(scout.value(span, &["separation"]), usual);
     vec![Finding::from(scout.at_value(diagnostic, span, &["separation"])).whole(true)]
@@ -177,18 +177,18 @@ pub(super) fn edge_on(scout: &SceneProbe) -> Vec<Finding> {
         let name = scout.object(number as u32);
         let diagnostic = match orthographic {
             true => Diagnostic::note(format!("the camera looks along the {name}"))
-                .help("it is a line at most, seen so: tilt the camera's `direction` towards it"),
+                .help("from there it is a line at most: tilt the camera's `direction` towards it"),
             false => {
                 // Towards the side with the objects.
                 let side = if (things.center() - on).dot(n) < 0.0 { -n } else { n };
                 let raised = super::finding::vector(eye + 0.2 * size * side);
                 let value = scout.value(scout.subject.scene.camera_span, &["center"]);
                 Diagnostic::warning(format!("the camera lies in the {name}"))
-                    .help(format!("raise it: `center {raised}`, say"))
+                    .help(format!("move it to one side: try `center {raised}`"))
                     .fix_at(value, raised)
             }
         };
-        let diagnostic = diagnostic.effect("the plane is seen from its edge, which is to say not at all");
+        let diagnostic = diagnostic.effect("the plane is seen edge-on, so it is invisible");
         let diagnostic = diagnostic.related(scout.object_span(number as u32), "this plane");
         found.push(Finding::from(scout.at_value(diagnostic, scout.subject.scene.camera_span, &["center"])));
     }
@@ -217,15 +217,15 @@ pub(super) fn far_origin(scout: &SceneProbe) -> Vec<Finding> {
         return Vec::new();
     }
     let diagnostic = Diagnostic::warning(format!(
-        "the scene lies {} from the origin, and its things are {} wide",
+        "the scene is {} from the origin, and its objects are {} wide",
         number(far),
         number(size)
     ))
     .effect(format!(
-        "numbers of that size have steps of {}: shapes are rounded away, and surfaces are rough",
+        "numbers of that size have steps of {}: rounding destroys shapes and roughens surfaces",
         number(far * f32::EPSILON)
     ))
-    .help("take the same number off all coordinates, the camera's too, so that the scene lies about the origin");
+    .help("subtract one vector from all coordinates, the camera's too, to move the scene to the origin");
     vec![Finding::from(scout.at_value(diagnostic, scout.subject.scene.camera_span, &["center"])).whole(true)]
 }
 
@@ -246,11 +246,11 @@ pub(super) fn below_epsilon(scout: &SceneProbe) -> Vec<Finding> {
         return Vec::new();
     }
     let factor = number([1e2, 1e3, 1e4, 1e5, 1e6].into_iter().find(|factor| factor * middle > 0.5).unwrap_or(1e7));
-    let diagnostic = Diagnostic::warning(format!("the things in this scene are {} wide", number(middle)))
+    let diagnostic = Diagnostic::warning(format!("the objects in this scene are {} wide", number(middle)))
         .effect(format!(
-            "this year's program lets shadow rays and mirrored rays begin {} from the surface: shadows and mirrors are lost",
+            "this year's program starts shadow rays and mirrored rays {} from the surface: shadows and reflections are lost",
             number(epsilon)
         ))
-        .help(format!("make the whole scene larger, about {factor} times, with camera and lights"));
+        .help(format!("scale the whole scene by about {factor}, with camera and lights"));
     vec![Finding::from(diagnostic.at(scout.subject.scene.camera_span)).whole(true)]
 }

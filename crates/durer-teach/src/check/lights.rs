@@ -34,9 +34,9 @@ pub(super) fn all_fail(scout: &SceneProbe) -> bool {
 pub(super) fn useless(scout: &SceneProbe, light: usize, message: String) -> Option<(Diagnostic, Span)> {
     let span = place(scout, light)?;
     let effect = match (all_fail(scout), scout.world().ambient().max_element() > VISIBLE) {
-        (true, false) => "no light reaches what is seen: all surfaces are black",
-        (true, true) => "no light reaches what is seen: surfaces show ambient light alone, flat and dark",
-        (false, _) => "it adds nothing to the picture",
+        (true, false) => "no light reaches the visible surfaces: all are black",
+        (true, true) => "no light reaches the visible surfaces: they show only ambient light, flat and dark",
+        (false, _) => "it contributes nothing to the picture",
     };
     Some((Diagnostic::warning(message).at(span).effect(effect), span))
 }
@@ -60,9 +60,9 @@ fn enclosed(scout: &SceneProbe) -> Vec<Finding> {
         let object = *around(scout.world(), point.position).first()?;
         let span = place(scout, light)?;
         let note = Diagnostic::note(format!("this light is inside the {}", scout.object(object)))
-            .effect("that object has no light from it, and with shadows nothing else has")
+            .effect("it does not light that object, and with shadows it lights nothing else")
             .related(scout.object_span(object), "around the light")
-            .help("move one of them, unless the object stands for a lamp");
+            .help("move one of them, unless the object represents a light");
         Some(Finding::from(scout.at_value(note, span, &["position"])))
     };
     lights.filter_map(say).collect()
@@ -82,7 +82,7 @@ pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
         let above = Vec3::new(bounds.center().x, bounds.max.y + bounds.size().max_element(), bounds.center().z);
         let diagnostic =
             scout.at_value(diagnostic, span, &["position"]).related(scout.object_span(object), "around the light");
-        Some(diagnostic.help(format!("move it out: `position {}` is above it, say", vector(above))))
+        Some(diagnostic.help(format!("move it out: `position {}`, for example, is above the object", vector(above))))
     }));
     found
 }
@@ -100,16 +100,16 @@ pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
     each(scout, |light, verdict| {
         let Verdict::Blocked(object) = verdict else { return None };
         let name = scout.object(object);
-        let message = format!("the {name} keeps this light off all that is seen");
+        let message = format!("the {name} blocks this light from all visible surfaces");
         let (diagnostic, _) = useless(scout, light, message)?;
         let has_position = scout.world().lights()[light].position().is_some();
         let help = match (scout.world().objects()[object as usize].bounds(), has_position) {
-            (None, false) => "the light comes from behind the plane: turn its `direction`, which is where light goes",
+            (None, false) => "the light comes from behind the plane: negate its `direction`, which is where light goes",
             (None, true) => "the light is behind the plane: move it to the other side",
-            (Some(_), false) => "turn the light, or move what is in its way",
-            (Some(_), true) => "move the light, or what is in its way",
+            (Some(_), false) => "turn the light, or move the occluder",
+            (Some(_), true) => "move the light or the occluder",
         };
-        Some(diagnostic.related(scout.object_span(object), "in the way").help(help))
+        Some(diagnostic.related(scout.object_span(object), "the occluder").help(help))
     })
 }
 
@@ -160,13 +160,13 @@ fn mostly_dark(scout: &SceneProbe) -> Vec<Finding> {
         return grazing(scout, &working).into_iter().map(|diagnostic| Finding::from(diagnostic).whole(true)).collect();
     }
     let which = if working.len() == 1 { "this light" } else { "the lights" };
-    let message = format!("{} of what is seen faces away from {which}", percent(away, all));
+    let message = format!("{} of the visible surfaces face away from {which}", percent(away, all));
     let mut diagnostic = Diagnostic::warning(message)
         .effect(match scout.world().ambient().max_element() > VISIBLE {
-            true => "most of the picture shows ambient light alone, flat and dark",
+            true => "most of the picture shows only ambient light, flat and dark",
             false => "most of the picture is black",
         })
-        .help("the light is behind what is seen: `direction` is where light goes, `position` where it is");
+        .help("the light is behind the visible surfaces: `direction` is where light goes, `position` where it is");
     diagnostic = scout.at_value(diagnostic, span, &["direction", "position"]);
     // If the lights face away together, each `direction` probably points towards its source.
     for &light in &working {
@@ -202,11 +202,11 @@ fn grazing(scout: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
             all.fold((0, 0), |(grazed, count), lit| (grazed + usize::from(is_grazing(lit)), count + 1));
         grazed * 4 > count
     })?;
-    let (diagnostic, span) = useless(scout, light, "this light only grazes what is seen: N · L is 0 there".into())?;
+    let (diagnostic, span) = useless(scout, light, "this light only grazes the visible surfaces: N · L is 0 there".into())?;
     let objects: Vec<u32> =
         scout.seen().filter(|(_, seen)| seen.by(light).is_some_and(is_grazing)).map(|(_, seen)| seen.object).collect();
     let surface = most_common(&objects)?;
-    let diagnostic = diagnostic.related(scout.object_span(surface), "it goes along this");
+    let diagnostic = diagnostic.related(scout.object_span(surface), "it is parallel to this");
     let (probe, _) = scout.seen().find(|(_, seen)| seen.object == surface && seen.by(light).is_some_and(is_grazing))?;
     let at = scout.world().intersect(&probe.ray, &mut ())?;
     let n = if at.inside() { -at.surface.n_geo } else { at.surface.n_geo };
@@ -216,14 +216,14 @@ fn grazing(scout: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
             let direction = lamp.direction()?;
             let tilted = vector(direction - 0.7 * direction.length() * n);
             let value = scout.value(span, &["direction"]);
-            let help = format!("`direction` is where light goes: `direction {tilted}` falls on the surface");
+            let help = format!("`direction` is where light goes: `direction {tilted}` reaches the surface");
             Some(scout.at_value(diagnostic.fix_at(value, tilted), span, &["direction"]).help(help))
         }
         Some(from) => {
             let eye = scout.world().camera().pose().center;
             let raised = vector(from + 0.5 * (eye - from).length().max(1e-3) * n);
             let value = scout.value(span, &["position"]);
-            let help = format!("the light lies in the plane of that surface: raise it, to `position {raised}`, say");
+            let help = format!("the light lies in the plane of that surface: raise it, for example to `position {raised}`");
             Some(scout.at_value(diagnostic.fix_at(value, raised), span, &["position"]).help(help))
         }
     }
@@ -260,14 +260,14 @@ pub(super) fn behind(scout: &SceneProbe) -> Vec<Finding> {
         if turned * 2 < away {
             return grazing(scout, &[light]);
         }
-        let message = format!("this light is behind what is seen: {} of it faces away", percent(away, lit.len()));
+        let message = format!("this light is behind the visible surfaces: {} of them face away", percent(away, lit.len()));
         let (diagnostic, span) = useless(scout, light, message)?;
         let lamp = &written(scout, light)?.value;
         let diagnostic = match lamp.position() {
             None => {
                 let turned = vector(-lamp.direction()?);
                 let help = format!(
-                    "`direction` is where the light goes, not where it is: `direction {turned}` lights this side"
+                    "`direction` is where the light goes, not where it is: `direction {turned}` lights the visible side"
                 );
                 let fixed = diagnostic.fix_at(scout.value(span, &["direction"]), turned);
                 scout.at_value(fixed, span, &["direction"]).help(help)
@@ -289,13 +289,13 @@ pub(super) fn cancelled(scout: &SceneProbe) -> Vec<Finding> {
         if verdict != Verdict::Cancelled || super::colors::all_black(scout) {
             return None;
         }
-        let message = "what this light shines on gives back none of its colour".to_string();
+        let message = "the surfaces that this light reaches reflect none of its colour".to_string();
         let (diagnostic, span) = useless(scout, light, message)?;
         let color = vector(scout.world().lights()[light].color());
-        let help = format!("light and surface are multiplied, channel by channel: this light is {color}");
+        let help = format!("light and surface colours are multiplied per channel: this light is {color}");
         let material = scout.seen().next().map(|(_, seen)| seen.material)?;
         let diagnostic = match scout.subject.scene.materials.get(material as usize) {
-            Some(material) => diagnostic.related(material.span, "a material that it shines on"),
+            Some(material) => diagnostic.related(material.span, "a material that it reaches"),
             None => diagnostic,
         };
         Some(scout.at_value(diagnostic, span, &["color"]).help(help))
@@ -307,11 +307,11 @@ pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
     let lights = scout.subject.scene.lights.as_deref().unwrap_or_default();
     let pairs = lights.iter().enumerate().filter_map(|(i, light)| {
         let first = lights[..i].iter().find(|first| first.value == light.value)?;
-        Some(Diagnostic::warning("this light is written twice").at(light.span).related(first.span, "the same"))
+        Some(Diagnostic::warning("this light is written twice").at(light.span).related(first.span, "the first one"))
     });
     let say = |diagnostic: Diagnostic| {
-        let diagnostic = diagnostic.effect("both add up: its light counts twice");
-        Finding::from(without(scout, diagnostic.help("leave one out")))
+        let diagnostic = diagnostic.effect("its light is added twice");
+        Finding::from(without(scout, diagnostic.help("remove one of them")))
     };
     pairs.map(say).collect()
 }

@@ -24,8 +24,8 @@ pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
             diagnostic.severity = durer_diag::Severity::Note;
         }
         let diagnostic = diagnostic
-            .effect("they are not seen; where they should fill something there is a hole")
-            .help("do two corners have the same number, or the same place? Take them out, or mend their corners");
+            .effect("they are invisible and leave holes where they should cover something")
+            .help("do two corners have the same index or position? Remove these triangles, or fix their corners");
         found.push(Finding::from(diagnostic).whole(flat.len() == all));
     }
     found
@@ -43,9 +43,9 @@ pub(super) fn open_glass(scout: &SceneProbe) -> Vec<Finding> {
             (n, 0) => format!("is open: {} with one triangle only", counted(*n, "edge", "edges")),
             (n, m) => format!("is open: {} with one triangle, {m} with more than two", counted(*n, "edge", "edges")),
         };
-        let diagnostic = Diagnostic::warning(format!("the mesh `{}` is of glass, but {what}", mesh.name.path))
+        let diagnostic = Diagnostic::warning(format!("the mesh `{}` is glass, but {what}", mesh.name.path))
             .at(glass.span)
-            .effect("a ray that goes in through a hole never comes out: refraction is wrong behind it")
+            .effect("a ray that enters through a hole never leaves: refraction is wrong behind it")
             .help(format!("close it; one such edge goes from {p} to {q}"));
         found.push(Finding::from(diagnostic));
     }
@@ -66,7 +66,7 @@ pub(super) fn holes(scout: &SceneProbe) -> Vec<Finding> {
         let message = format!("`{}` has holes: {edges} with one triangle only", mesh.name.path);
         let diagnostic = Diagnostic::note(message)
             .at(mesh.name.span)
-            .effect("its inside is seen through them, from behind")
+            .effect("its inside is visible through them")
             .help("are faces missing in the file?");
         found.push(Finding::from(diagnostic));
     }
@@ -99,12 +99,12 @@ pub(super) fn flat_glass(scout: &SceneProbe) -> Vec<Finding> {
     let body = triangles.len() > 3 && Topology::of(&positions, &triangles).open == 0;
     let open = |(_, what): &&(&Placed, String)| !(body && *what == "triangle");
     let say = |(object, what): &(&Placed, String)| {
-        let mut diagnostic = Diagnostic::warning(format!("this {what} is of glass, and has no inside"))
+        let mut diagnostic = Diagnostic::warning(format!("this {what} is glass, but has no inside"))
             .at(object.span)
             .effect(
-                "a ray that goes in never comes out: it is bent once, and all behind is seen as from within the glass",
+                "a ray that enters never leaves: it is refracted once, and everything behind appears as if inside the glass",
             )
-            .help("glass needs a body: a sphere, a closed mesh; or give it the index 1");
+            .help("glass needs a closed body, such as a sphere or a closed mesh; or set its index to 1");
         // The surface of a lake is flat on purpose.
         if *what != "triangle" && !world.rules().is_official() {
             diagnostic.severity = durer_diag::Severity::Note;
@@ -150,23 +150,23 @@ pub(super) fn misread(scout: &SceneProbe) -> Vec<Finding> {
             let start = (bytes.len() - last.len()) as u32;
             let span = Span { file: mesh.file, start, end: bytes.len() as u32 };
             let end = Span { start: span.end, ..span };
-            let diagnostic = Diagnostic::warning(format!("the last line of `{}` has no end", mesh.name.path))
+            let diagnostic = Diagnostic::warning(format!("the last line of `{}` does not end with a newline", mesh.name.path))
                 .at(span)
-                .related(mesh.name.span, "the mesh is shown here")
-                .effect("this year's program loses that line: a face is missing, and there is a hole")
-                .help("end the file with an end of line")
+                .related(mesh.name.span, "the mesh is used here")
+                .effect("this year's program loses that line: a face is missing, which leaves a hole")
+                .help("end the file with a newline")
                 .fix(end, "\n");
             found.push(Finding::from(diagnostic));
         }
         if rules.has(Compat::NormalsByVertex)
             && let Some(span) = other_normal(bytes, mesh.file)
         {
-            let diagnostic = Diagnostic::warning(format!("faces of `{}` give corners normals of other numbers than their vertices", mesh.name.path))
+            let diagnostic = Diagnostic::warning(format!("faces of `{}` use normal indices that differ from the vertex indices", mesh.name.path))
                 .at(span)
                 .label("the first of them")
-                .related(mesh.name.span, "the mesh is shown here")
-                .effect("this year's program takes normal i for vertex i, whatever faces say: the shading is wrong")
-                .help("write one `vn` for each `v`, in the same order, and faces as `f 1//1 2//2 3//3`; or leave the `vn` out");
+                .related(mesh.name.span, "the mesh is used here")
+                .effect("this year's program uses normal i for vertex i and ignores the faces: the shading is wrong")
+                .help("write one `vn` for each `v`, in the same order, and faces as `f 1//1 2//2 3//3`; or remove the `vn` lines");
             found.push(Finding::from(diagnostic));
         }
     }
@@ -200,14 +200,14 @@ pub(super) fn winding(scout: &SceneProbe) -> Vec<Finding> {
         let (turned, all) = (&mesh.topology.turned, mesh.data.triangles.len());
         let Some(&first) = turned.first().filter(|_| !mesh.is_beyond_notice(turned.len())) else { continue };
         let message = format!(
-            "{} of {all} of `{}` wind the other way than their neighbours",
+            "{} of {all} of `{}` wind the opposite way of their neighbours",
             counted(turned.len(), "triangle", "triangles"),
             mesh.name.path
         );
         let diagnostic = mesh
             .at_triangle(scout, Diagnostic::warning(message), first)
-            .effect("their normals point to the other side: dark or wrongly shaded patches")
-            .help("exchange two corners of each of them");
+            .effect("their normals point to the other side: patches are dark or wrongly shaded")
+            .help("swap two corners of each of them");
         found.push(Finding::from(diagnostic));
     }
     found
@@ -226,8 +226,8 @@ pub(super) fn inside_out(scout: &SceneProbe) -> Vec<Finding> {
         let most = seen.count() * 2 > scout.seen().count();
         let diagnostic = Diagnostic::warning(format!("the normals of `{}` point inwards", mesh.name.path))
             .at(mesh.name.span)
-            .effect("a tracer that does not turn them shades it as from inside, black; as glass it bends light the wrong way")
-            .help(if by_file { "turn its `vn` vectors round" } else { "let its faces go round counter-clockwise, seen from outside" });
+            .effect("a ray tracer that does not flip them shades the inner side, black; as glass it refracts light the wrong way")
+            .help(if by_file { "negate its `vn` vectors" } else { "order the corners of its faces counter-clockwise, as seen from outside" });
         found.push(Finding::from(diagnostic).whole(most));
     }
     found
@@ -257,18 +257,18 @@ pub(super) fn given_normals(scout: &SceneProbe) -> Vec<Finding> {
             say(
                 &given.against,
                 first,
-                "have normals that point to the other side than their corners say",
-                "they are shaded as if seen from behind: dark, or lit from the wrong side",
-                "turn those `vn` round, or exchange two corners of the faces",
+                "have normals that contradict the order of their corners",
+                "they are shaded as back faces: dark, or lit from the wrong side",
+                "negate those `vn`, or swap two corners of the faces",
             );
         }
         if let Some(first) = some(&given.missing) {
             say(
                 &given.missing,
                 first,
-                "have no normals in the file, though others have",
+                "have no normals in the file, although others have some",
                 "they look faceted, or differ from their neighbours",
-                "write faces as `f 1//1 2//2 3//3`, all of them or none",
+                "write all faces as `f 1//1 2//2 3//3`, or none",
             );
         }
         if let Some(first) = some(&given.zero) {
@@ -276,8 +276,8 @@ pub(super) fn given_normals(scout: &SceneProbe) -> Vec<Finding> {
                 &given.zero,
                 first,
                 "have a normal of length 0",
-                "it is no direction: the shading there is wrong",
-                "a normal has length 1; write its direction",
+                "it has no direction: the shading there is wrong",
+                "a normal needs length 1",
             );
         }
     }

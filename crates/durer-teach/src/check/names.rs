@@ -18,8 +18,8 @@ pub(super) fn unused_define(scout: &SceneProbe) -> Vec<Finding> {
         let name = scout.text(**span);
         let mut diagnostic = Diagnostic::note(format!("`{name}` is defined and never used"))
             .at(**span)
-            .effect("nothing of it is in the picture: `define` only gives it a name")
-            .help(format!("write `use {name}` in the `Group`, where it is wanted"));
+            .effect("it is not in the picture: `define` only gives it a name")
+            .help(format!("write `use {name}` in the `Group` where it should appear"));
         // If no definition is used at all, that is probably a mistake.
         if unused.len() == defined.len() {
             diagnostic.severity = Severity::Warning;

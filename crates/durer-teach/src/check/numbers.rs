@@ -34,12 +34,12 @@ pub(super) fn not_finite(scout: &SceneProbe) -> Vec<Finding> {
         path(scout, &tree.root, &mut steps, &mut place);
     }
     let share = match bad {
-        0 => "such samples are left out: specks, or black".to_string(),
-        n => format!("{} of the picture is left out, and stays black", super::finding::percent(n, scout.probes.len())),
+        0 => "such samples are left out: specks or black pixels".to_string(),
+        n => format!("{} of the picture is left out and stays black", super::finding::percent(n, scout.probes.len())),
     };
-    let mut diagnostic = Diagnostic::warning(format!("the light of {name} is no finite number")).effect(share);
+    let mut diagnostic = Diagnostic::warning(format!("the light of {name} is NaN or infinite")).effect(share);
     if !steps.is_empty() {
-        diagnostic = diagnostic.help(format!("it comes about so: {}", steps.join(" -> ")));
+        diagnostic = diagnostic.help(format!("the cause: {}", steps.join(" -> ")));
     }
     diagnostic.span = place;
     vec![Finding::from(diagnostic).whole(bad * 4 > scout.probes.len())]
@@ -57,7 +57,7 @@ fn path(scout: &SceneProbe, node: &TraceNode, steps: &mut Vec<String>, place: &m
         TermKind::Light { light, distance, .. } => {
             *place = super::lights::place(scout, *light).or(*place);
             let arrives =
-                if finite(node.scale) { String::new() } else { format!(", of which {} arrives", shown(node.scale)) };
+                if finite(node.scale) { String::new() } else { format!(", {} of it arrives", shown(node.scale)) };
             steps.push(format!("{}, {distance} away{arrives}", names.light(*light)));
         }
         TermKind::Ambient { .. } => {

@@ -27,8 +27,8 @@ pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
     let say = |object: &Object| {
         let diagnostic = Diagnostic::warning("this triangle has no area: its corners lie on one line")
             .at(object.span)
-            .effect("it is not seen")
-            .help("are two of its corners the same?");
+            .effect("it is invisible")
+            .help("are two of its corners equal?");
         Finding::from(diagnostic).whole(scout.world().objects().len() == 1)
     };
     scout.world().objects().iter().filter(flat).map(say).collect()
@@ -61,10 +61,10 @@ pub(super) fn empty_solids(scout: &SceneProbe) -> Vec<u32> {
 /// Reports solids that are empty.
 pub(super) fn empty_solid(scout: &SceneProbe) -> Vec<Finding> {
     let say = |object: u32| {
-        let diagnostic = Diagnostic::warning(format!("nothing is left of the {}", scout.object(object)))
+        let diagnostic = Diagnostic::warning(format!("the {} is empty", scout.object(object)))
             .at(scout.object_span(object))
-            .effect("it is not seen")
-            .help("a part that is taken away covers all of the first, or the parts of an intersection do not meet");
+            .effect("it is invisible")
+            .help("a subtracted part covers the whole first part, or the parts of an intersection do not overlap");
         Finding::from(diagnostic).whole(scout.seen().next().is_none())
     };
     empty_solids(scout).into_iter().map(say).collect()
@@ -83,11 +83,11 @@ pub(super) fn squashed(scout: &SceneProbe) -> Vec<Finding> {
             continue;
         }
         let what =
-            if thin { format!("{} times thinner than wide", number(most / least)) } else { "next to nothing".into() };
+            if thin { format!("{} times thinner than wide", number(most / least)) } else { "almost a point".into() };
         let diagnostic = Diagnostic::warning(format!("the transforms around this object make it {what}"))
             .at(object.span)
-            .effect("it is seen as a line, or not at all")
-            .help("look at the `Scale` and `UniformScale` around it");
+            .effect("it looks like a line, or is invisible")
+            .help("check the `Scale` and `UniformScale` around it");
         found.push(Finding::from(diagnostic));
     }
     found.extend(
@@ -109,10 +109,10 @@ fn squashed_parts(object: &Written, within: bool) -> Vec<Finding> {
         Node::Transform(ops, inner) => {
             let mut found = squashed_parts(inner, within);
             if within && ops.iter().map(least).product::<f32>() < SQUASHED {
-                let diagnostic = Diagnostic::warning("a scale makes this part of a solid next to nothing")
+                let diagnostic = Diagnostic::warning("a scale makes this part of a solid almost vanish")
                     .at(object.span)
-                    .effect("what is left of the solid is not seen, or the part changes nothing")
-                    .help("look at the `Scale` and `UniformScale` in it");
+                    .effect("the solid is invisible, or the part has no effect")
+                    .help("check the `Scale` and `UniformScale` in it");
                 found.push(Finding::from(diagnostic));
             }
             found
@@ -207,16 +207,16 @@ fn pair(scout: &SceneProbe, first: usize, second: usize) -> Finding {
     let [a, b]: [Span; 2] = [objects[first].span, objects[second].span];
     let alike = objects[first].material == objects[second].material;
     let diagnostic = Diagnostic::warning(format!(
-        "the {} is where the {} is already",
+        "the {} coincides with the {}",
         scout.object(second as u32),
         scout.object(first as u32)
     ))
     .at(b)
     .related(a, "the same surface")
     .effect(match alike {
-        true => "it adds nothing; light through it, if it is of glass, is wrong",
-        false => "of two surfaces at one place, one is seen at random: specks, or the one material only",
+        true => "it contributes nothing; if it is glass, refraction through it is wrong",
+        false => "which of the two surfaces is visible is random: specks, or only one of the materials",
     })
-    .help("leave one out, or move it");
+    .help("remove or move one of them");
     Finding::from(diagnostic)
 }

@@ -75,31 +75,31 @@ pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
         };
         let fine = places.iter().filter(|place| noisy(place)).count();
         let (message, effect, help) = if let Some((message, help)) = without_change(scout, &look, &written.value) {
-            (message, "no pattern is seen: it is of one colour, or of few large patches", help)
+            (message, "the pattern is invisible: one colour, or a few large patches", help)
         } else if matches!(look, Look::Solid(Solid::Mix(_) | Solid::TwoSided(_), ..)) {
             continue;
         } else if most - least < 1e-3 {
             (
                 "only one part of this pattern is in the picture".to_string(),
-                "no pattern is seen: it is of one colour",
+                "the pattern is invisible: a single colour",
                 match &written.value {
                     Written::Solid(Solid::Checkerboard(_), _) => {
-                        "its cells are larger than all that is seen: look at the `Scale` of its `Transform`"
+                        "its cells are larger than the visible scene: check the `Scale` of its `Transform`"
                     }
-                    _ => "look at its `frequency`, `amplitude` and `Transform`",
+                    _ => "check its `frequency`, `amplitude` and `Transform`",
                 },
             )
         } else if fine * 10 > places.len() * 9 {
             (
                 "this pattern is finer than a pixel".to_string(),
-                "it is noise, or of one colour on the mean",
-                "look at the `Scale` of its `Transform`, or its `frequency`: sizes are in units of the scene",
+                "it looks like noise or averages to one colour",
+                "check the `Scale` of its `Transform`, or its `frequency`: sizes are in units of the scene",
             )
         } else {
             continue;
         };
         let mut diagnostic = Diagnostic::warning(message).at(written.span).effect(effect).help(help);
-        diagnostic = diagnostic.label(format!("on {} of what is seen", percent(places.len(), scout.seen().count())));
+        diagnostic = diagnostic.label(format!("on {} of the visible surfaces", percent(places.len(), scout.seen().count())));
         found.push(Finding::from(diagnostic));
     }
     found
@@ -110,7 +110,7 @@ fn without_change(scout: &SceneProbe, look: &Look, written: &Written) -> Option<
     let Look::Solid(solid, to_pattern, _) = look else { return None };
     if let Solid::Mix(mix) = solid {
         let message = format!("the `share` of this mix is {}", number(mix.share));
-        let help = "the other has no part in it: a `share` between 0 and 1 shows both";
+        let help = "the other material is invisible: a `share` between 0 and 1 shows both";
         let shows_one = mix.share <= 0.0 || mix.share >= 1.0 && mix.share_texture.is_none();
         return shows_one.then_some((message, help));
     }
@@ -125,8 +125,8 @@ fn without_change(scout: &SceneProbe, look: &Look, written: &Written) -> Option<
         bounds => bounds.size().max_element(),
     };
     let message =
-        format!("the cells of this pattern are {} wide, and all things together {}", number(cell), number(size));
-    let help = "its cells are larger than all that is seen: look at the `Scale` of its `Transform`";
+        format!("the cells of this pattern are {} wide, and all objects together {}", number(cell), number(size));
+    let help = "its cells are larger than the visible scene: check the `Scale` of its `Transform`";
     (cell > COARSEST * size).then_some((message, help))
 }
 
@@ -144,15 +144,15 @@ pub(super) fn flat_texture(scout: &SceneProbe) -> Vec<Finding> {
         let (message, help) = if scout.material_rays()[number] == 0 {
             continue;
         } else if texture.is_flat() {
-            (format!("the texture of material {number} is of one colour"), "is it the right picture?")
+            (format!("the texture of material {number} has only one colour"), "is it the right picture?")
         } else if let Some(object) = one_place {
             let name = scout.text(object.span);
-            let message = format!("all corners of the `{name}` lie at one place of its texture");
-            (message, "the `vt` lines of its file are all the same: export its texture coordinates")
+            let message = format!("all corners of the `{name}` have the same texture coordinates");
+            (message, "the `vt` lines of its file are all equal: export its texture coordinates")
         } else {
             continue;
         };
-        let diagnostic = Diagnostic::warning(message).effect("nothing of a picture is seen on it").help(help);
+        let diagnostic = Diagnostic::warning(message).effect("its texture is invisible").help(help);
         found.push(Finding::from(scout.at_value(diagnostic, written.span, &["texture"])));
     }
     found

@@ -63,31 +63,31 @@ pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
     if let Some((number, material)) = lamp {
         let black = of(number as u32) == Color::ZERO;
         let message = match black {
-            true => format!("nothing shines: the `emissionColor` of material {number} is black"),
-            false => format!("nothing shines: material {number} does, but nothing is made of it"),
+            true => format!("nothing emits light: the `emissionColor` of material {number} is black"),
+            false => format!("nothing emits light: no object uses the emissive material {number}"),
         };
         let diagnostic = Diagnostic::warning(message).effect("the picture is black").help(match black {
             true => "it multiplies `emissionLuminance`: `emissionColor 1 1 1` is white light",
-            false => "is a `MaterialIndex` wrong? They count from 0",
+            false => "is a `MaterialIndex` wrong? Indices start at 0",
         });
         let diagnostic = scout.at_value(diagnostic, material.span, &["emissionColor", "emissionLuminance"]);
         return vec![Finding::from(diagnostic).whole(true)];
     }
     let ambient = match world.ambient() == Color::ZERO {
         true => "",
-        false => "; `ambientLight` means nothing to paths",
+        false => "; `ambientLight` has no effect on paths",
     };
     let format = scout.subject.files.name(0).and_then(scene_format_for);
     let (surface, help) = match format.and_then(|format| format.shines) {
-        Some(words) => ("surface that shines", format!("{words}; lights that are said to be left out do not shine")),
+        Some(words) => ("emissive surface", format!("{words}; lights that are reported as left out emit nothing")),
         None => (
             "material with `emissionLuminance`",
             format!(
-                "give a material `emissionLuminance 10`, add a light, or write `Background {{ color 1 1 1 }}`: what is all around is light too{ambient}"
+                "give a material `emissionLuminance 10`, add a light, or write `Background {{ color 1 1 1 }}`: the background emits light too{ambient}"
             ),
         ),
     };
-    let message = format!("nothing shines in this scene: no light, no {surface}, and the background is black");
+    let message = format!("nothing emits light in this scene: it has no light and no {surface}, and the background is black");
     let diagnostic = Diagnostic::warning(message).effect("the picture is black").help(help);
     vec![Finding::from(diagnostic).whole(true)]
 }
@@ -102,12 +102,12 @@ pub(super) fn lamp_in_glass(scout: &SceneProbe) -> Vec<Finding> {
     let enclosed = lights.filter_map(|(number, place)| {
         let glass = world.glass_around(place).find(|&(_, ior)| ior != 1.0)?.0;
         let message =
-            format!("light {number} is inside the {}: its light comes out by refraction alone", scout.object(glass));
+            format!("light {number} is inside the {}: its light leaves only by refraction", scout.object(glass));
         let diagnostic = Diagnostic::warning(message)
             .at(scout.object_span(glass))
-            .effect("paths do not find it: outside it is as if it were not there")
+            .effect("paths cannot find it: it lights nothing outside")
             .help(
-                "take `--integrator photons`, or a material with `emissionLuminance` on a sphere instead of the light",
+                "use `--integrator photons`, or replace the light by a sphere with `emissionLuminance`",
             );
         Some(Finding::from(diagnostic))
     });
@@ -126,16 +126,16 @@ pub(super) fn without_effect(scout: &SceneProbe) -> Vec<Finding> {
             Some((
                 "transmissionScatter",
                 "nothing is scattered inside: `transmissionDepth` is 0",
-                "write `transmissionDepth 1`, say: how deep light goes until it has `transmissionColor`",
+                "try `transmissionDepth 1`: the distance after which light has `transmissionColor`",
             ))
         } else if m.transmission_scatter != Vec3::ZERO && m.transmission_weight == 0.0 {
             Some((
                 "transmissionScatter",
-                "no light comes inside: `transmissionWeight` is 0",
-                "write `transmissionWeight 1`, or `subsurfaceWeight 1` for what is not clear",
+                "no light enters: `transmissionWeight` is 0",
+                "write `transmissionWeight 1`, or `subsurfaceWeight 1` for a translucent body",
             ))
         } else if m.subsurface_weight > 0.0 && m.transmission_weight == 1.0 {
-            Some(("subsurfaceWeight", "all light is refracted: `transmissionWeight` is 1", "leave one of them out"))
+            Some(("subsurfaceWeight", "all light is refracted: `transmissionWeight` is 1", "remove one of them"))
         } else {
             None
         };

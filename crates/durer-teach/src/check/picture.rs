@@ -25,10 +25,10 @@ impl Oddity {
     /// Returns the fault as words to follow `the picture`.
     pub fn words(self) -> &'static str {
         match self {
-            Oddity::Black => "is wholly black",
-            Oddity::OneColor => "is of one colour",
+            Oddity::Black => "is completely black",
+            Oddity::OneColor => "has only one colour",
             Oddity::White => "is mostly white",
-            Oddity::NotFinite => "lacks samples that were no finite numbers",
+            Oddity::NotFinite => "lacks samples that were NaN or infinite",
         }
     }
 }
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn odd_pictures_are_told_from_sound_ones() {
+    fn faulty_pictures_are_recognized() {
         let judged = |pixels: &[f32]| oddity(pixels, 1.0, &Statistics::default());
         assert_eq!(judged(&[0.0; 9]), Some(Oddity::Black));
         assert_eq!(judged(&[0.3; 9]), Some(Oddity::OneColor));

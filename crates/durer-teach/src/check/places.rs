@@ -28,13 +28,13 @@ fn of(scout: &SceneProbe, object: &Object) -> Option<(Span, String)> {
     let other = by(&reversed);
     if ops.len() > 1 && aims(other) {
         let words = format!(
-            "its transforms put it at {place}; in the reverse order it would be at {}, in the picture: what is written last \
-             is done first",
+            "its transforms move it to {place}; in the reverse order it would be at {}, in the picture: the transform written \
+             last is applied first",
             super::finding::vector(other)
         );
         return Some((object.span, words));
     }
     aims(local).then(|| {
-        (object.span, format!("its transforms put it at {place}, and without them it would be in the picture"))
+        (object.span, format!("its transforms move it to {place}; without them it would be in the picture"))
     })
 }

@@ -27,11 +27,11 @@ pub(super) fn idle_part(scout: &SceneProbe) -> Vec<Finding> {
                 };
                 let apart = |b: &Aabb| b.min.cmpgt(first.max).any() || b.max.cmplt(first.min).any();
                 for part in parts[1..].iter().filter(|part| bounds(part).is_some_and(|b| apart(&b))) {
-                    let diagnostic = Diagnostic::warning("this part is taken away from where nothing is")
+                    let diagnostic = Diagnostic::warning("this part is subtracted from empty space")
                         .at(part.span)
-                        .related(parts[0].span, "it does not touch this")
-                        .effect("it changes nothing: there is no hole")
-                        .help("move it into the first part: look at its place and the transforms around it");
+                        .related(parts[0].span, "it does not overlap this")
+                        .effect("it has no effect: it cuts no hole")
+                        .help("move it into the first part: check its position and the transforms around it");
                     found.push(Finding::from(diagnostic));
                 }
             }

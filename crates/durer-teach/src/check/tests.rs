@@ -28,7 +28,7 @@ fn torus(rows: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
 }
 
 #[test]
-fn a_sound_mesh_is_closed_and_faces_outwards() {
+fn sound_mesh_is_closed_and_faces_outwards() {
     let (positions, triangles) = torus(24);
     let topology = Topology::of(&positions, &triangles);
     assert!(topology.is_closed() && topology.turned.is_empty() && topology.degenerate.is_empty());
@@ -46,7 +46,7 @@ fn a_sound_mesh_is_closed_and_faces_outwards() {
 }
 
 #[test]
-fn turned_triangles_are_told_from_the_others() {
+fn reversed_triangles_are_found() {
     let mut random = Random(1);
     let (positions, sound) = torus(16);
     for _ in 0..20 {
@@ -61,7 +61,7 @@ fn turned_triangles_are_told_from_the_others() {
 }
 
 #[test]
-fn holes_and_crowds_are_counted() {
+fn open_and_shared_edges_are_counted() {
     let (positions, mut triangles) = torus(12);
     // Each removed triangle leaves three open edges if no neighbour was removed.
     for taken in 1..4 {
@@ -79,7 +79,7 @@ fn holes_and_crowds_are_counted() {
 }
 
 #[test]
-fn points_are_found_inside_what_is_around_them() {
+fn points_are_inside_the_objects_around_them() {
     let shapes: [Primitive; 6] = [
         Sphere { center: Vec3::new(0.2, 0.1, 0.0), radius: 0.8 }.into(),
         Cuboid { min: Vec3::splat(-0.7), max: Vec3::new(0.9, 0.5, 0.6) }.into(),
@@ -110,7 +110,7 @@ fn points_are_found_inside_what_is_around_them() {
 }
 
 #[test]
-fn values_are_found_where_they_are_written() {
+fn values_are_found_in_their_blocks() {
     let text =
         b"# center 9\nSphere { center 1 2.5 -3 radius 4 }\nSphere { radius 5 center 0 0 0 radius 6 { radius 7 } }";
     let keyword = |nth: usize| {
@@ -131,7 +131,7 @@ fn values_are_found_where_they_are_written() {
 }
 
 #[test]
-fn edits_are_put_in_together_unless_they_meet() {
+fn edits_are_applied_unless_they_overlap() {
     let text = b"numObjects 3 radius -1 center 0";
     let span = |start, end| Span { file: 0, start, end };
     let finding = |edits: &[(u32, u32, &str)]| {
@@ -153,7 +153,7 @@ fn edits_are_put_in_together_unless_they_meet() {
 }
 
 #[test]
-fn causes_stand_before_what_comes_of_them() {
+fn causes_come_before_consequences() {
     let finding =
         |severity: fn(&'static str) -> Diagnostic, code, whole| Finding::from(severity("odd").code(code)).whole(whole);
     let (error, warning, note) = (|m| Diagnostic::error(m), |m| Diagnostic::warning(m), |m| Diagnostic::note(m));

@@ -60,8 +60,8 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
         let severity = if left < scout.probes.len() { severity(out.len()) } else { Severity::Note };
         let diagnostic = Diagnostic { severity, ..Diagnostic::note(message) }
             .at(scout.object_span(first))
-            .effect("the camera does not look where it is")
-            .help("look at its place and the transforms around it");
+            .effect("the camera looks elsewhere")
+            .help("check its position and the transforms around it");
         found.push(Finding::from(diagnostic));
     }
     if let Some(&(first, by)) = hidden.first() {
@@ -76,10 +76,10 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
         let plane = plane(&scout.world().objects()[by as usize]).is_some();
         let help = match (plane, inside) {
             (true, _) => {
-                "it is behind the plane, which stands where p · normal = offset: is the sign of `offset` right?"
+                "it is behind the plane, which is at p · normal = offset: is the sign of `offset` right?"
             }
-            (false, true) => "move it out, or make the other smaller, or move that",
-            (false, false) => "is it on the wrong side of the other, or the other in the way?",
+            (false, true) => "move it out, or move or shrink the other object",
+            (false, false) => "is it on the wrong side of the other object, or is that in the way?",
         };
         // An object may stand behind another on purpose.
         let one = hidden.iter().all(|(_, other)| *other == by);
@@ -87,13 +87,13 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic { severity, ..Diagnostic::note(message) }
             .at(scout.object_span(first))
             .related(scout.object_span(by), if inside { "around it" } else { "in front of it" })
-            .effect("nothing of it is seen")
+            .effect("it is invisible")
             .help(help);
         let diagnostic = match mirrored(scout, first) {
             Some((place, text)) => diagnostic
                 .at(place)
                 .help(format!(
-                    "a scale below zero, `{text}`, turns it inside out through its origin: take the sign away"
+                    "a negative scale, `{text}`, mirrors it through its origin: remove the sign"
                 ))
                 .fix(place, text.replace('-', "")),
             None => diagnostic,
@@ -171,9 +171,9 @@ pub(super) fn tiny(scout: &SceneProbe) -> Vec<Finding> {
     let say = |(index, size, bounds): (u32, f32, Aabb)| {
         let diagnostic = Diagnostic::warning(format!("the {} is {} pixels wide", scout.object(index), number(size)))
             .at(scout.object_span(index))
-            .effect("nothing of it is seen, or a speck")
+            .effect("it is invisible, or a speck")
             .help(format!(
-                "its largest side is {}: look at its size and the `{}` around it",
+                "its largest side is {}: check its size and the `{}` around it",
                 number(bounds.size().max_element()),
                 scout.word("Scale", "scale")
             ));
@@ -200,9 +200,9 @@ pub(super) fn flat_field(scout: &SceneProbe) -> Vec<Finding> {
                 }
                 let max = vector(Vec3::new(field.max.x, field.min.y + 0.2 * wide, field.max.z));
                 let diagnostic =
-                    Diagnostic::warning(format!("this landscape is {} wide and {} high", number(wide), number(size.y)))
-                        .effect("it is flat: nothing is seen of its hills")
-                        .help(format!("heights go from `min` to `max` along y: `max {max}`, say"));
+                    Diagnostic::warning(format!("this height field is {} wide and {} high", number(wide), number(size.y)))
+                        .effect("it looks flat")
+                        .help(format!("heights go from `min` to `max` along y: try `max {max}`"));
                 let diagnostic = diagnostic.fix_at(scout.value(object.span, &["max"]), max);
                 found.push(Finding::from(scout.at_value(diagnostic, object.span, &["max"])));
             }
@@ -230,7 +230,7 @@ fn far_away(scout: &SceneProbe) -> Vec<Finding> {
     let diagnostic =
         Diagnostic::warning(format!("the {} is far from everything else, at {place}", scout.object(index as u32)))
             .at(object.span)
-            .effect("it is not seen")
-            .help("look at its place and the transforms around it");
+            .effect("it is invisible")
+            .help("check its position and the transforms around it");
     vec![Finding::from(diagnostic)]
 }

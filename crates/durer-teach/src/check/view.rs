@@ -25,8 +25,8 @@ pub(super) fn no_objects(scout: &SceneProbe) -> Vec<Finding> {
     let file = scout.subject.scene.camera_span.file;
     let group = scout.subject.files.bytes(file).is_some_and(|bytes| section(bytes, file, "Group").is_some());
     let diagnostic = match group && root.objects.is_empty() {
-        true => Diagnostic::warning("the scene has no objects: its group is empty").help("write some into the `Group`"),
-        false => Diagnostic::warning("nothing is to be seen: there are no surfaces"),
+        true => Diagnostic::warning("the scene has no objects: its group is empty").help("add objects to the `Group`"),
+        false => Diagnostic::warning("the scene has no surfaces"),
     };
     vec![Finding::from(diagnostic.effect("every ray misses; the whole picture is background")).whole(true)]
 }
@@ -53,21 +53,21 @@ pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
         let name = scout.object(object);
         let outside = leave(bounds, pose.center, -pose.direction);
         let diagnostic = Diagnostic::warning(format!("the camera is inside the {name}"))
-            .label("this place is inside it")
+            .label("this point is inside it")
             .related(scout.object_span(object), "around the camera")
             .effect(match dark {
-                _ if walls && own * 100 < rays * 99 => "its walls are seen from behind: no light falls on that side",
-                true => "it keeps the light out; all that is seen is in its shadow",
-                false => "all that is seen is the inside of it",
+                _ if walls && own * 100 < rays * 99 => "its walls are visible from behind: that side gets no light",
+                true => "it blocks the light; everything visible is in its shadow",
+                false => "only its inside is visible",
             })
             .help(match super::extent::times_larger(scout, object) {
                 Some(times) => format!(
-                    "it is {} times larger than what else there is: make it smaller, or move the camera out, to `center {}`",
+                    "it is {} times larger than all other objects: make it smaller, or move the camera out to `center {}`",
                     number(times),
                     vector(outside)
                 ),
                 None => format!(
-                    "move the camera out of it: against its direction it is outside at `center {}`",
+                    "move the camera out of it: backwards along its direction, `center {}` is outside",
                     vector(outside)
                 ),
             });
@@ -139,7 +139,7 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     let hits = scout.seen().count();
     let effect = match hits {
         0 => "every ray misses; the whole picture is background".to_string(),
-        _ => format!("only {} is seen", only_seen(scout)),
+        _ => format!("only {} is visible", only_seen(scout)),
     };
     let mut diagnostic = Diagnostic::warning("the camera looks past everything").effect(effect);
     if !has_eye(scout) {
@@ -147,8 +147,8 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
         let forward = world.camera_frame().forward;
         let across = off - off.dot(forward) * forward;
         let place = pose.center + across;
-        diagnostic.message += &format!(": the middle of the scene lies {} beside its axis", number(across.length()));
-        diagnostic = diagnostic.help(format!("{}move it there: `center {}`", nearest(scout), vector(place)));
+        diagnostic.message += &format!(": the center of the scene is {} away from its axis", number(across.length()));
+        diagnostic = diagnostic.help(format!("{}move it to `center {}`", nearest(scout), vector(place)));
         let diagnostic = mended(scout, diagnostic, "center", place);
         return vec![Finding::from(diagnostic).whole(true)];
     }
@@ -159,7 +159,7 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     if turned && angle < 60.0 {
         return Vec::new();
     }
-    diagnostic.message += &format!(": the middle of the scene lies {angle:.0} degrees off its direction");
+    diagnostic.message += &format!(": the center of the scene is {angle:.0} degrees off its direction");
     let moved = super::places::moved(scout);
     let first = moved.as_ref().map_or_else(|| nearest(scout), |(_, words)| words.clone() + "; or ");
     let mut help = format!("{first}turn it: `direction {}`", vector(to));
@@ -211,7 +211,7 @@ fn only_seen(scout: &SceneProbe) -> String {
     objects.dedup();
     match &objects[..] {
         [one] => format!("the {}", scout.object(*one)),
-        all => format!("{} objects without an end", all.len()),
+        all => format!("{} unbounded objects", all.len()),
     }
 }
 
@@ -231,7 +231,7 @@ fn nearest(scout: &SceneProbe) -> String {
     });
     match misses.min_by(|a, b| a.1.total_cmp(&b.1)) {
         Some((object, by)) if by > 0.0 => {
-            format!("the nearest ray passes {} beside the {}; ", number(by), scout.object(object))
+            format!("the nearest ray misses the {1} by {0}; ", number(by), scout.object(object))
         }
         _ => String::new(),
     }
@@ -247,13 +247,13 @@ pub(super) fn missed(scout: &SceneProbe) -> Vec<Finding> {
     // Objects may be visible between the probes.
     let hit = scout.visibilities().contains(&Visibility::Seen);
     let Some(bounds) = target(scout).filter(|bounds| !hit && aims(scout, bounds.center())) else { return Vec::new() };
-    let mut diagnostic = Diagnostic::warning("every ray misses, though the camera looks at the middle of the scene")
+    let mut diagnostic = Diagnostic::warning("every ray misses, although the camera looks at the center of the scene")
         .effect("the whole picture is background")
         .at(scout.subject.scene.camera_span);
     let size = pixels(scout, bounds);
     diagnostic.help = Some(match size {
         Some(size) if size < 12.0 => return Vec::new(),
-        _ => format!("{}is there a hole in the middle, or is it seen from its edge?", nearest(scout)),
+        _ => format!("{}is there a hole in the middle, or is it seen edge-on?", nearest(scout)),
     });
     vec![Finding::from(diagnostic).last()]
 }
@@ -282,11 +282,11 @@ pub(super) fn plane_through(scout: &SceneProbe) -> Vec<Finding> {
         // Objects may be sunk into a floor on purpose.
         let floor = ground(scout, number).is_some_and(|(n, _)| n.dot(world.camera_frame().up).abs() > 0.8);
         let severity = if floor { Severity::Note } else { Severity::Warning };
-        let message = format!("the {} passes through the middle of most things", scout.object(number));
+        let message = format!("the {} passes through the middle of most objects", scout.object(number));
         let diagnostic = Diagnostic { severity, ..Diagnostic::warning(message) }
             .at(scout.object_span(number))
-            .effect("only what is before it is seen of them")
-            .help("a floor lies below things: which axis is up? ProbeGrid at its `normal` and `offset`, and what turns it");
+            .effect("only the parts in front of it are visible")
+            .help("a floor is below the objects: which axis is up? Check its `normal`, its `offset` and its transforms");
         Finding::from(diagnostic)
     };
     (0..world.objects().len() as u32).filter(through).take(2).map(say).collect()
@@ -314,8 +314,8 @@ pub(super) fn upside_down(scout: &SceneProbe) -> Vec<Finding> {
     let span = scout.subject.scene.camera_span;
     let diagnostic = Diagnostic::warning("the picture is upside down: the camera's `up` points into the ground")
         .related(scout.object_span(number), "the ground")
-        .effect("things hang from it")
-        .help(format!("`up` is where the upper edge of the picture is: `up {turned}`"))
+        .effect("objects hang from it")
+        .help(format!("`up` points to the upper edge of the picture: `up {turned}`"))
         .fix_at(scout.value(span, &["up"]), turned);
     vec![Finding::from(scout.at_value(diagnostic, span, &["up"]))]
 }

@@ -17,8 +17,8 @@ pub(super) fn complete(scout: &SceneProbe, finding: &mut Finding) {
         "black-light" => {
             finding.whole = super::lights::all_fail(scout);
             finding.diagnostic.effect = Some(match finding.whole {
-                true => "no light reaches what is seen".into(),
-                false => "it adds nothing to the picture".into(),
+                true => "no light reaches the visible surfaces".into(),
+                false => "it contributes nothing to the picture".into(),
             });
             if let Some(value) = finding.diagnostic.span.and_then(|span| scout.value(span, &["color"])) {
                 finding.diagnostic.span = Some(value);
@@ -31,11 +31,11 @@ pub(super) fn complete(scout: &SceneProbe, finding: &mut Finding) {
             finding.diagnostic.effect = Some("every ray misses; the whole picture is background".into());
         }
         "empty-solid" => {
-            finding.diagnostic.effect.get_or_insert("it is not seen".into());
+            finding.diagnostic.effect.get_or_insert("it is invisible".into());
             finding
                 .diagnostic
                 .help
-                .get_or_insert("move its parts into one another: an intersection is what all have in common".into());
+                .get_or_insert("move its parts until they overlap: an intersection is the common part of all".into());
         }
         "foreign-word" => foreign_in_nodes(scout, finding),
         "up-parallel" => up_parallel(scout, finding),
@@ -74,25 +74,25 @@ fn no_light(scout: &SceneProbe, finding: &mut Finding) {
         finding.diagnostic.severity = Severity::Note;
     }
     finding.whole = true;
-    finding.diagnostic.effect = Some("every surface has one flat colour; no shading and no shadow is seen".into());
+    finding.diagnostic.effect = Some("every surface has one flat colour, without shading or shadows".into());
     finding.diagnostic.help = Some(
         match scout.subject.dialect {
             Dialect::F23 => {
-                "add a node, as in `Node { Component<Light> { type directional direction -1 -2 -1 color 0.9 0.9 0.9 } }`"
+                "add a node, such as `Node { Component<Light> { type directional direction -1 -2 -1 color 0.9 0.9 0.9 } }`"
             }
-            _ => "add some, as in `Lights { numLights 1 DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.9 } }`",
+            _ => "add some, such as `Lights { numLights 1 DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.9 } }`",
         }
         .into(),
     );
 }
 
 fn up_parallel(scout: &SceneProbe, finding: &mut Finding) {
-    finding.diagnostic.effect = Some("the picture is turned as chance has it".into());
+    finding.diagnostic.effect = Some("the picture has an arbitrary rotation".into());
     let direction = scout.world().camera().pose().direction.normalize_or_zero();
     let up = if direction.y.abs() < 0.9 { Vec3::Y } else { Vec3::Z };
     if let Some(value) = scout.value(scout.subject.scene.camera_span, &["up"]) {
         finding.diagnostic.span = Some(value);
-        finding.diagnostic.help = Some(format!("choose another `up`, as `{}`", vector(up)));
+        finding.diagnostic.help = Some(format!("choose another `up`, such as `{}`", vector(up)));
         finding.diagnostic = finding.diagnostic.clone().fix(value, vector(up));
     }
 }
@@ -114,8 +114,8 @@ fn material_index(scout: &SceneProbe, finding: &mut Finding) {
     }
     let meant = index.parse::<usize>().map_or(0, |index| if index == count { count - 1 } else { 0 });
     finding.diagnostic.help = Some(match count {
-        1 => "materials are counted from 0: write 0".into(),
-        n => format!("materials are counted from 0: the last of {n} is {}", n - 1),
+        1 => "material indices start at 0: write 0".into(),
+        n => format!("material indices start at 0: the last of {n} is {}", n - 1),
     });
     let only = count == 1 || index.parse() == Ok(count);
     if only {
@@ -134,7 +134,7 @@ fn from_one(scout: &SceneProbe, finding: &mut Finding, count: usize) -> bool {
         return false;
     }
     finding.diagnostic.help =
-        Some("materials are counted from 0, and these from 1: take 1 off each `MaterialIndex`".into());
+        Some("material indices start at 0, but these start at 1: subtract 1 from each `MaterialIndex`".into());
     for (value, index) in uses {
         finding.diagnostic = finding.diagnostic.clone().fix(value, (index - 1).to_string());
     }
@@ -142,7 +142,7 @@ fn from_one(scout: &SceneProbe, finding: &mut Finding, count: usize) -> bool {
 }
 
 fn no_material(scout: &SceneProbe, finding: &mut Finding) {
-    finding.diagnostic.effect = Some("it has not the colour that was meant".into());
+    finding.diagnostic.effect = Some("it does not have the intended colour".into());
     let scene = scout.subject.scene;
     let first = scene.root.iter().flat_map(|root| &root.objects).next();
     let nodes = scout.subject.dialect == durer_scene::dialect::Dialect::F23;

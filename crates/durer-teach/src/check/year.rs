@@ -41,14 +41,14 @@ pub(super) fn pow_zero(scout: &SceneProbe) -> Vec<Finding> {
         let missing = phong.shininess.is_none();
         let count = scout.material_rays()[i];
         let message = match missing {
-            true => format!("material {i} has a `specularColor` and no `shininess`, which is 0 then"),
+            true => format!("material {i} has a `specularColor` but no `shininess`, so that is 0"),
             false => format!("the `shininess` of material {i} is 0"),
         };
         let message = message.replace("specularColor", scout.word("specularColor", "specular"));
         let diagnostic = Diagnostic::warning(message)
-            .label(format!("on {} of what is seen", percent(count, all)))
-            .effect("its highlight is everywhere, as on chalk: 0 to the power of 0 is 1")
-            .help("write a `shininess`, 20 say; the higher, the sharper");
+            .label(format!("on {} of the visible surfaces", percent(count, all)))
+            .effect("its highlight covers everything, as on chalk: 0 to the power of 0 is 1")
+            .help("add a `shininess`, such as 20; higher is sharper");
         let value = scout.value(written.span, &["shininess"]);
         let diagnostic = match value {
             Some(value) => diagnostic.at(value).fix(value, "20"),
@@ -80,8 +80,8 @@ fn blunt(scout: &SceneProbe) -> Vec<Finding> {
             return None;
         }
         let diagnostic = Diagnostic::warning(format!("the `{word}` of material {i} is {}", number(exponent)))
-            .effect("its highlight is nearly everywhere, as on chalk")
-            .help(format!("the higher, the sharper: 20 is that of plastic: `{word} 20`, say"));
+            .effect("its highlight covers nearly everything, as on chalk")
+            .help(format!("higher is sharper, and plastic has about 20: try `{word} 20`"));
         let value = scout.value(written.span, &[word]);
         Some(Finding::from(scout.at_value(diagnostic.fix_at(value, "20"), written.span, &[word])))
     };
@@ -104,8 +104,8 @@ pub(super) fn tiny_highlight(scout: &SceneProbe) -> Vec<Finding> {
             return None;
         }
         let diagnostic = Diagnostic::warning(format!("the `{word}` of material {i} is {}", number(exponent)))
-            .effect("its highlight is smaller than a pixel: it is not seen")
-            .help(format!("20 is that of plastic, 200 that of polished metal: `{word} 100`, say"));
+            .effect("its highlight is smaller than a pixel and invisible")
+            .help(format!("plastic has about 20, polished metal 200: try `{word} 100`"));
         let value = scout.value(written.span, &[word]);
         Some(Finding::from(scout.at_value(diagnostic.fix_at(value, "100"), written.span, &[word])))
     };
@@ -125,9 +125,9 @@ pub(super) fn no_exponent(scout: &SceneProbe) -> Vec<Finding> {
     };
     let say = |(i, written, _): (usize, &Spanned<Written>, &PhongMaterial)| {
         let diagnostic =
-            Diagnostic::warning(format!("material {i} has a `specularColor` and no `exponent`, which is 1 then"))
-                .effect("its highlight is spread over all of it, pale as chalk")
-                .help("write an `exponent`, 20 say; the higher, the sharper");
+            Diagnostic::warning(format!("material {i} has a `specularColor` but no `exponent`, so that is 1"))
+                .effect("its highlight covers everything, pale as chalk")
+                .help("add an `exponent`, such as 20; higher is sharper");
         Finding::from(scout.at_value(diagnostic, written.span, &["specularColor"]))
     };
     seen(scout).filter(|(.., phong)| bare(phong)).map(say).take(MAX_SOUGHT).collect()
@@ -147,8 +147,8 @@ pub(super) fn long_up(scout: &SceneProbe) -> Vec<Finding> {
     let (how, word) = if length > 1.0 { (length, "flattened") } else { (1.0 / length, "stretched upwards") };
     let unit = vector(up / length);
     let diagnostic =
-        Diagnostic::warning(format!("the camera's `up` has the length {}, and is used as it is", number(length)))
-            .effect(format!("the picture is {word}, {} times", number(how)))
+        Diagnostic::warning(format!("the camera's `up` has the length {}, and is used as written", number(length)))
+            .effect(format!("the picture is {word} by a factor of {}", number(how)))
             .help(format!("give it the length 1: `up {unit}`"));
     let span = scout.subject.scene.camera_span;
     let diagnostic = match scout.value(span, &["up"]) {
@@ -169,9 +169,9 @@ fn skew_up(scout: &SceneProbe) -> Option<Finding> {
     let right = (up - off * forward).normalize_or_zero();
     let text = vector(right);
     let diagnostic =
-        Diagnostic::warning("the camera's `up` is not at right angles to its `direction`, and is used as it is")
+        Diagnostic::warning("the camera's `up` is not perpendicular to its `direction`, and is used as written")
             .effect(format!("the picture is skewed, and {} times too flat", number(1.0 / (1.0 - off * off).sqrt())))
-            .help(format!("at right angles it is `up {text}`"));
+            .help(format!("perpendicular is `up {text}`"));
     let span = scout.subject.scene.camera_span;
     let value = scout.value(span, &["up"]);
     Some(Finding::from(scout.at_value(diagnostic.fix_at(value, text), span, &["up"])).whole(true))
@@ -191,7 +191,7 @@ pub(super) fn stretched(scout: &SceneProbe) -> Vec<Finding> {
         .at(scout.subject.scene.camera_span)
         .effect(format!("this year's program stretches it: everything is {} times too {way}", number(ratio)))
         .help(format!(
-            "ask for a square one, as `--size {side}x{side}` (in the course's programs `-size {side} {side}`)"
+            "set a square size, such as `--size {side}x{side}` (in the course's programs `-size {side} {side}`)"
         ));
     vec![Finding::from(diagnostic).whole(true)]
 }
@@ -206,8 +206,8 @@ pub(super) fn quads(scout: &SceneProbe) -> Vec<Finding> {
             Diagnostic::warning(format!("{count} of the {all} faces of `{name}` have more than three corners"))
                 .at(face)
                 .label("the first of them")
-                .effect("this year's program reads three corners of each, and shows holes, or stops")
-                .help("cut them into triangles: `f 1 2 3 4` is `f 1 2 3` and `f 1 3 4`");
+                .effect("this year's program reads only three corners of each, and shows holes or stops")
+                .help("split them into triangles: `f 1 2 3 4` becomes `f 1 2 3` and `f 1 3 4`");
         Finding::from(diagnostic)
     };
     super::mesh::large_faces(scout).into_iter().map(say).collect()
@@ -222,8 +222,8 @@ pub(super) fn same_parts(scout: &SceneProbe) -> Vec<Finding> {
             return (noise.color1 == noise.color2 && scout.material_rays()[i] > 0).then(|| {
                 let diagnostic =
                     Diagnostic::warning(format!("both colours of this noise are {}", vector(noise.color1)))
-                        .effect("no pattern is seen: it is of one colour")
-                        .help("give its two `color` two different colours");
+                        .effect("the pattern is invisible: a single colour")
+                        .help("give its two `color` fields different values");
                 Finding::from(diagnostic.at(material.span))
             });
         }
@@ -239,8 +239,8 @@ pub(super) fn same_parts(scout: &SceneProbe) -> Vec<Finding> {
         };
         let diagnostic = Diagnostic::warning(message)
             .at(material.span)
-            .effect("no pattern is seen: it is of one colour")
-            .help("give its two `materialIndex` two different materials before it");
+            .effect("the pattern is invisible: a single colour")
+            .help("give its two `materialIndex` fields different materials that precede it");
         Some(Finding::from(diagnostic))
     };
     materials.iter().enumerate().filter_map(say).take(MAX_SOUGHT).collect()
@@ -256,8 +256,8 @@ pub(super) fn full_ambient(scout: &SceneProbe) -> Vec<Finding> {
     }
     let word = scout.word("ambientLight", "ambient_light");
     let diagnostic =
-        Diagnostic::warning(format!("the ambient light is {}: that is all the light there should be", vector(ambient)))
-            .effect("shadows and shading are washed out: surfaces have their full colour without any lamp")
+        Diagnostic::warning(format!("the ambient light is {}, which leaves no range for other light", vector(ambient)))
+            .effect("shadows and shading are washed out: surfaces have their full colour without any light")
             .help(format!("0.1 to 0.3 is usual: `{word} 0.2 0.2 0.2`"));
     let diagnostic = match super::colors::background_span(scout).and_then(|block| scout.value(block, &[word])) {
         Some(value) => diagnostic.at(value).fix(value, "0.2 0.2 0.2"),
@@ -280,15 +280,15 @@ pub(super) fn plane_normal(scout: &SceneProbe) -> Vec<Finding> {
         let unit = vector(plane.normal / length);
         let diagnostic = Diagnostic::warning(format!("the normal of this plane has the length {}", number(length)))
             .effect(match plane.offset == 0.0 {
-                true => format!("this year's program takes it as it is: light counts {} times", number(length)),
+                true => format!("this year's program uses it as written: light is multiplied by {}", number(length)),
                 false => format!(
-                    "the plane stands where p · normal = offset: {} from the origin, not {}",
+                    "the plane is at p · normal = offset: {} from the origin, not {}",
                     number(plane.offset.abs() / length),
                     number(plane.offset.abs())
                 ),
             })
             .help(match counts {
-                true => format!("give it the length 1: `normal {unit}`; light counts {} times here", number(length)),
+                true => format!("give it the length 1: `normal {unit}`; light is multiplied by {} here", number(length)),
                 false => format!("give it the length 1: `normal {unit}`"),
             });
         // The plane stays where it is.

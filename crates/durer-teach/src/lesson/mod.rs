@@ -1,7 +1,7 @@
 //! A scene in the order of the lecture: pictures, equation and effect of each step.
 //!
 //! The steps are one table, [`TOPICS`]; [`Teacher`] renders their pictures in order. A step that
-//! changes nothing in a scene is shown in a small scene of ours instead. Path-tracing steps are
+//! changes nothing in a scene is shown in a small built-in scene instead. Path-tracing steps are
 //! only shown for scenes that are rendered by path tracing and have the effect.
 
 mod change;
@@ -35,7 +35,7 @@ pub struct Step {
     pub topic: &'static Topic,
     /// Title of the step.
     pub title: String,
-    /// True if the step uses our scene because the other lacks the effect.
+    /// True if the step uses the built-in scene because the other lacks the effect.
     pub ours: bool,
     /// Reason why the other scene lacks the effect.
     pub lacking: &'static str,
@@ -56,7 +56,7 @@ pub struct Step {
 /// Renders the steps of the lesson.
 #[derive(Debug)]
 pub struct Teacher {
-    /// The scene that is taught, and ours.
+    /// The scene of the lesson, and the built-in scene.
     stages: [Stage; 2],
     transfer: Transfer,
 }
@@ -87,12 +87,12 @@ impl Teacher {
                 return Ok(marked(steps, lacking));
             }
         }
-        // Unreachable: a test checks that our own scene shows every topic.
+        // Unreachable: a test checks that the built-in scene shows every topic.
         Ok(Vec::new())
     }
 }
 
-/// Marks why steps use our scene, and which of them continue the one before.
+/// Marks why steps use the built-in scene, and which steps continue the one before.
 fn marked(steps: Vec<Step>, lacking: &'static str) -> Vec<Step> {
     steps.into_iter().enumerate().map(|(i, step)| Step { lacking, goes_on: i > 0, ..step }).collect()
 }

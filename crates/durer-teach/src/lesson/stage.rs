@@ -21,9 +21,9 @@ use durer_scene::scene::Scene;
 use durer_scene::source::MemorySource;
 use std::sync::Arc;
 
-/// Our own scene, in which every step is visible.
+/// Built-in scene, in which every step is visible.
 pub const OWN_SCENE: &str = include_str!("scene.txt");
-/// File name of our scene in messages.
+/// File name of the built-in scene in messages.
 pub const OWN_SCENE_NAME: &str = "our-scene.txt";
 
 /// Samples a pixel if the job has only one.
@@ -67,7 +67,7 @@ impl Stage {
         Stage { scene, files, world, job, lights, ambient, materials, rules, made: Vec::new() }
     }
 
-    /// Loads our own scene for pictures of a given size.
+    /// Loads the built-in scene for pictures of a given size.
     pub(super) fn ours((width, height): (u32, u32)) -> Self {
         let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
         let file = files.add(OWN_SCENE_NAME, OWN_SCENE.as_bytes().into());
@@ -76,7 +76,7 @@ impl Stage {
         let scene = course::read(OWN_SCENE.as_bytes(), file, options, &mut diagnostics).unwrap_or_default();
         let resources = Resources::new(&source, &Decoder, &mut files);
         let world = compile(&scene, Dialect::Durer.rules(), AccelKind::Bvh, resources, &mut diagnostics);
-        let world = world.expect("the lesson's own scene is sound");
+        let world = world.expect("the lesson's own scene is valid");
         Stage::new(scene, files, world, Job { width, height, ..Job::default() })
     }
 
@@ -92,7 +92,7 @@ impl Stage {
                 Some("this year's program has mirrors, but no glass")
             }
             "fresnel" if secondary == Secondary::Colors => {
-                Some("this year's program does not divide light by Fresnel's law")
+                Some("this year's program does not apply Fresnel's law")
             }
             _ => None,
         }
@@ -235,7 +235,7 @@ impl Stage {
                 let seen = values.iter().filter(|dir| **dir != Vec3::ZERO);
                 let widest = seen.map(|dir| middle.cross(*dir).length().min(1.0)).fold(0.0, f32::max);
                 Some(match widest < 1e-6 {
-                    true => "All rays are parallel here, so that the picture is of one colour: they differ by their origins.".into(),
+                    true => "All rays are parallel here, so the picture has one colour: the rays differ in their origins.".into(),
                     false => "Red, green and blue are x, y and z of the direction, from -1 (dark) to 1 (bright).".into(),
                 })
             }
@@ -255,7 +255,7 @@ impl Stage {
                 let behind = places.zip(values).filter(|pixel| away(*pixel)).count();
                 let share = percent(behind, values.len());
                 (!seen.is_empty()).then(|| match behind {
-                    0 => "All normals that are seen point to the eye's side.".into(),
+                    0 => "All visible normals point towards the eye.".into(),
                     _ => format!(
                         "{share} of the pixels show a surface from behind: its normal points away from the eye."
                     ),
@@ -268,7 +268,7 @@ impl Stage {
                 colors.dedup();
                 let count = colors.len();
                 (count > 1)
-                    .then(|| format!("The picture has {count} different colours, that of the background among them."))
+                    .then(|| format!("The picture has {count} different colours, including the background."))
             }
         }
     }

@@ -29,7 +29,7 @@ fn lesson(stage: Stage) -> Vec<Step> {
 }
 
 #[test]
-fn our_own_scene_shows_every_topic() {
+fn built_in_scene_shows_every_topic() {
     let mut ours = Stage::ours((64, 48));
     for topic in TOPICS.iter().filter(|topic| !topic.is_of_paths()) {
         let steps = steps(topic, &mut ours, Transfer::Srgb, true, &Control::default()).unwrap();
@@ -41,7 +41,7 @@ fn our_own_scene_shows_every_topic() {
 }
 
 #[test]
-fn a_lesson_ends_with_the_picture_itself_and_is_the_same_each_time() {
+fn lesson_ends_with_the_final_picture_and_is_deterministic() {
     let bits = |steps: &[Step]| -> Vec<u32> {
         let pixels = steps.iter().flat_map(|step| &step.after.layer.image.pixels);
         pixels.flat_map(|pixel| pixel.to_array().map(f32::to_bits)).collect()
@@ -58,7 +58,7 @@ fn a_lesson_ends_with_the_picture_itself_and_is_the_same_each_time() {
 }
 
 #[test]
-fn what_a_scene_cannot_show_is_shown_in_ours() {
+fn built_in_scene_replaces_a_scene_without_the_effect() {
     let ours = |scene: &str| -> Vec<&str> {
         let steps = lesson(stage(scene, 48));
         steps.iter().filter(|step| step.ours).map(|step| step.topic.name).collect()
@@ -80,7 +80,7 @@ fn of_paths(scene: &str) -> Vec<Step> {
 }
 
 #[test]
-fn each_step_of_paths_is_seen_in_a_scene_of_ours_and_only_where_it_is() {
+fn path_steps_appear_only_in_scenes_that_show_them() {
     let names = |steps: &[Step]| {
         let mut names: Vec<&str> = steps.iter().map(|step| step.topic.name).collect();
         names.dedup();
@@ -100,7 +100,7 @@ fn each_step_of_paths_is_seen_in_a_scene_of_ours_and_only_where_it_is() {
 }
 
 #[test]
-fn points_and_directions_weighed_have_less_noise_than_either() {
+fn multiple_importance_sampling_has_less_noise_than_either_strategy() {
     let mut plates = stage("plates.txt", 48);
     (plates.job.method, plates.job.sampling) =
         (Method::PATH, Sampling::Filtered { samples: 64, filter: Filter::default() });
@@ -112,7 +112,7 @@ fn points_and_directions_weighed_have_less_noise_than_either() {
 }
 
 #[test]
-fn acne_is_dark_specks_where_light_falls() {
+fn acne_makes_lit_surfaces_darker() {
     let mut ours = Stage::ours((64, 48));
     let topic = TOPICS.iter().find(|topic| topic.name == "epsilon").unwrap();
     let steps = steps(topic, &mut ours, Transfer::Srgb, true, &Control::default()).unwrap();
@@ -123,7 +123,7 @@ fn acne_is_dark_specks_where_light_falls() {
 
 /// Compares a sphere's normal transformed by the matrix itself with the inverse transpose.
 #[test]
-fn moved_normals_are_those_of_the_matrix_itself() {
+fn moved_normals_are_transformed_by_the_matrix_itself() {
     let text = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }
         Group { Transform { Scale 2 0.5 1 Sphere { center 0 0 0 radius 1 } } }";
     for (quirk, expected) in [(false, Vec3::new(0.3, 0.8, 0.0)), (true, Vec3::new(1.2, 0.2, 0.0))] {

@@ -147,9 +147,9 @@ pub static TOPICS: [Topic; 18] = [
     Topic {
         name: "rays",
         title: "Rays",
-        words: "A picture begins with a ray through the middle of each pixel. The camera makes it of the pixel's place (x, y), \
-                from -1 to 1, and of its own axes: u to the right, v upwards, w forwards. The equation is that of the \
-                perspective camera; other cameras have others.",
+        words: "A picture begins with a ray through the center of each pixel. The camera computes it from the \
+                pixel's position (x, y), from -1 to 1, and from its own axes: u to the right, v upwards, w \
+                forwards. The equation is that of the perspective camera; other cameras have other equations.",
         equations: &["p(t) = o + t d", "d = D w + x u + y v,   D = 1 / tan(angle / 2)"],
         places: &[
             at("crates/durer-bvh/src/math/ray.rs", "struct Ray"),
@@ -163,8 +163,8 @@ pub static TOPICS: [Topic; 18] = [
     Topic {
         name: "distance",
         title: "Distance",
-        words: "Each ray is put into the equation of each surface and solved for t. The least t in front of the eye is what the \
-                pixel sees. Near is bright here; black is what is far off, or nothing.",
+        words: "Each ray is inserted into the equation of each surface, which is solved for t. The least t in \
+                front of the eye is the visible hit. Near is bright here; black is far away, or no hit.",
         equations: &[
             "sphere:   t² d·d + 2 t d·(o - c) + (o - c)·(o - c) - r² = 0",
             "plane:   t = (offset - n·o) / (n·d)",
@@ -183,8 +183,8 @@ pub static TOPICS: [Topic; 18] = [
     Topic {
         name: "normals",
         title: "Normals",
-        words: "How a surface is lit depends on how it is turned: on its normal at the point that was hit. The picture shows the \
-                three coordinates of the normal as red, green and blue.",
+        words: "The shading of a surface depends on its orientation: on its normal at the hit point. The picture \
+                shows the three coordinates of the normal as red, green and blue.",
         equations: &[
             "sphere:   N = (p - c) / r",
             "triangle:   N = (b - a) × (c - a) / |(b - a) × (c - a)|",
@@ -202,22 +202,23 @@ pub static TOPICS: [Topic; 18] = [
     Topic {
         name: "flat",
         title: "Flat colour",
-        words: "The colour of what is hit, and the background's where nothing is: no light yet, and so no form. Textures and \
-                patterns are part of a surface's colour.",
+        words: "The picture shows the colour of each hit surface, and the background where nothing is hit. \
+                Without light there is no sense of shape. Textures and patterns are part of a surface's colour.",
         equations: &["L = k_d"],
         places: &[
             at("crates/durer-render/src/world/shading.rs", "fn diffuse_color"),
             at("crates/durer-render/src/world/mod.rs", "fn sky"),
             at("crates/durer-scene/src/texture/mod.rs", "fn at"),
         ],
-        shots: &[color("each surface's own colour", FLAT)],
-        lacking: "all that is seen of it has one colour",
+        shots: &[color("the colour of each surface", FLAT)],
+        lacking: "everything visible in it has the same colour",
     },
     Topic {
         name: "diffuse",
         title: "Diffuse light",
-        words: "A matt surface spreads light evenly to all sides; how much of a lamp's light it gets goes with the cosine between \
-                its normal and the way to the lamp. Ambient light stands for all that comes from nowhere in particular.",
+        words: "A matte surface scatters light evenly in all directions. The light that it receives is \
+                proportional to the cosine between its normal and the direction to the light. Ambient light \
+                approximates the light that arrives from all other directions.",
         equations: &["L = k_d I_a + Σ k_d max(0, N·L_i) I_i", "point light:   I_i = I / (a_0 + a_1 d + a_2 d²)"],
         places: &[
             at("crates/durer-render/src/integrator/whitted.rs", "fn shade"),
@@ -226,13 +227,13 @@ pub static TOPICS: [Topic; 18] = [
             at("crates/durer-scene/src/light/directional.rs", "fn illuminate"),
         ],
         shots: &[color("flat colour", FLAT), color("ambient and diffuse light", DIFFUSE)],
-        lacking: "nothing that is seen of it is lit by a lamp",
+        lacking: "no light reaches its visible surfaces",
     },
     Topic {
         name: "specular",
         title: "Highlights",
-        words: "A glossy surface shows the lamp itself, blurred: brightest where the mirrored ray would meet the lamp. The exponent \
-                says how sharp it is.",
+        words: "A glossy surface shows a blurred reflection of the light, which is brightest where the mirrored \
+                ray would hit the light. The exponent sets how sharp it is.",
         equations: &[
             "Blinn:   L += k_s max(0, N·H)^s I,   H = norm(L + V)",
             "Phong:   L += k_s max(0, R·L)^s I,   R = d - 2 (d·N) N",
@@ -243,16 +244,16 @@ pub static TOPICS: [Topic; 18] = [
             at("crates/durer-render/src/compile/materials.rs", "fn highlight"),
         ],
         shots: &[color("diffuse light", DIFFUSE), color("with highlights", SPECULAR)],
-        lacking: "no highlight is seen in it",
+        lacking: "no highlight is visible in it",
     },
     Topic {
         name: "shadows",
         title: "Shadows",
-        words: "Before a lamp's light is added, a ray goes from the surface to the lamp. If it hits anything on its way, the lamp \
-                adds nothing; any hit will do, not just the nearest.",
+        words: "Before a light is added, a shadow ray goes from the surface to the light. If it hits anything on \
+                its way, the light contributes nothing; any hit will do, not just the closest.",
         equations: &[
             "L = k_d I_a + Σ v_i (k_d max(0, N·L_i) + ...) I_i",
-            "v_i = 0 where something is hit at 0 < t < d_i, else 1",
+            "v_i = 0 if a hit has 0 < t < d_i, else 1",
         ],
         places: &[
             at("crates/durer-render/src/integrator/whitted/direct.rs", "fn visible"),
@@ -260,15 +261,15 @@ pub static TOPICS: [Topic; 18] = [
             at("crates/durer-render/src/world/mod.rs", "fn occluded"),
         ],
         shots: &[color("without shadows", SPECULAR), color("with shadows", SHADOWS)],
-        lacking: "no shadow is seen in it, or shadows are off",
+        lacking: "no shadow is visible in it, or shadows are off",
     },
     Topic {
         name: "epsilon",
         title: "Shadow acne, and the epsilon against it",
-        words: "The point of a hit is rounded, and lies a little above or below its surface. A shadow ray from below hits the \
-                surface itself, and the point is dark: specks, the acne. The course starts to count hits at a small ε. \
-                Here a ray begins beside the surface instead, as far away as the point's error may be; in a year's own \
-                dialect, that year's ε holds.",
+        words: "A hit point is rounded, and lies slightly above or below its surface. A shadow ray that starts \
+                below hits the surface itself, and the point becomes dark: these specks are called acne. The \
+                course counts hits from a small ε on. Here a ray starts off the surface instead, as far away as \
+                the error of the point may be; in a year's dialect, the ε of that year applies.",
         equations: &[
             "the course:   t > ε",
             "here:   o' = p + 2 |N|·δ N,   |p - true point| ≤ δ in each coordinate, t > 0",
@@ -285,8 +286,9 @@ pub static TOPICS: [Topic; 18] = [
     Topic {
         name: "reflection",
         title: "Reflection",
-        words: "At a mirror the light comes from where the mirrored ray ends: the same question as at the eye, so the function asks \
-                itself. Each level shows mirrors in mirrors once more, until no more levels are wanted.",
+        words: "At a mirror, light arrives along the mirrored ray. Its radiance is computed like that of a \
+                camera ray, so the function calls itself. Each level shows mirrors in mirrors once more, up to \
+                the maximum depth.",
         equations: &["L += k_r L(p, R),   R = d - 2 (d·N) N"],
         places: &[
             at("crates/durer-scene/src/math/mod.rs", "fn reflect"),
@@ -301,41 +303,42 @@ pub static TOPICS: [Topic; 18] = [
             color("3 levels", mirrors(3)),
             color("all levels", MIRRORS),
         ],
-        lacking: "no mirror is seen in it, or no levels of rays are wanted",
+        lacking: "no mirror is visible in it, or the maximum depth is 0",
     },
     Topic {
         name: "refraction",
         title: "Refraction",
-        words: "Light that goes into glass is bent towards the normal, by Snell's law, and away from it where it leaves. Beyond the \
-                critical angle the root has no solution: nothing leaves, by total reflection, and until the next step \
-                such places stay dark.",
+        words: "Light that enters glass is refracted towards the normal, by Snell's law, and away from it where \
+                it leaves. Beyond the critical angle the root has no solution: all light is reflected (total \
+                reflection), and until the next step such places stay dark.",
         equations: &["t = η (d - (d·N) N) - √(1 - η² (1 - (d·N)²)) N,   η = n_1 / n_2", "L += k_t L(p, t)"],
         places: &[
             at("crates/durer-render/src/integrator/whitted/secondary.rs", "fn refract"),
             at("crates/durer-render/src/integrator/whitted/secondary.rs", "fn secondary"),
         ],
         shots: &[color("glass without light through it", MIRRORS), color("with transmitted rays", GLASS)],
-        lacking: "no glass is seen in it, or no levels of rays are wanted",
+        lacking: "no glass is visible in it, or the maximum depth is 0",
     },
     Topic {
         name: "fresnel",
         title: "Fresnel's law",
-        words: "Glass mirrors too: little where it is looked at from the front, all towards its edge. Schlick's formula comes near \
-                Fresnel's; the rest of the light is transmitted.",
+        words: "Glass reflects too: little at normal incidence, everything towards its silhouette. Schlick's \
+                formula approximates Fresnel's; the rest of the light is transmitted.",
         equations: &[
             "F = F_0 + (1 - F_0) (1 - cos θ)⁵,   F_0 = ((n_1 - n_2) / (n_1 + n_2))²",
             "L += F k_r L(p, R) + (1 - F) k_t L(p, t)",
         ],
         places: &[at("crates/durer-render/src/integrator/whitted/secondary.rs", "fn fresnel_share")],
         shots: &[color("glass that only transmits", GLASS), color("divided by Fresnel's law", FRESNEL)],
-        lacking: "no glass with a `refractionIndex` is seen in it",
+        lacking: "no glass with a `refractionIndex` is visible in it",
     },
     Topic {
         name: "transforms",
-        title: "Normals of transformed things",
-        words: "An object under a matrix M is hit in its own space, by the ray moved by M⁻¹. Points and directions come back by M. \
-                A normal does not: it must stay perpendicular to the surface, and goes by the inverse transpose. The mistake \
-                is not seen while M only moves, turns and scales evenly.",
+        title: "Normals of transformed objects",
+        words: "An object under a matrix M is intersected in its own space, with the ray transformed by M⁻¹. \
+                Points and directions are transformed back by M. A normal is not: it must stay perpendicular to \
+                the surface, so it is transformed by the inverse transpose. The mistake is invisible if M only \
+                translates, rotates and scales uniformly.",
         equations: &["p = M p'", "wrong:   N = norm(M N')", "right:   N = norm(M⁻ᵀ N'),   for N·(M v) = N'·v = 0"],
         places: &[
             at("crates/durer-bvh/src/math/affine.rs", "fn normal"),
@@ -344,14 +347,14 @@ pub static TOPICS: [Topic; 18] = [
             at("crates/durer-scene/src/dialect/compat.rs", "MovedNormals"),
         ],
         shots: &[color("normals by M", MOVED), color("normals by the inverse transpose of M", FRESNEL)],
-        lacking: "nothing that is seen of it is sheared or scaled unevenly",
+        lacking: "none of its visible objects is sheared or scaled non-uniformly",
     },
     Topic {
         name: "supersampling",
         title: "Supersampling",
-        words: "One ray a pixel sees only what lies in its middle: edges are stairs, and far patterns dissolve. Many rays, \
-                weighted by a filter, make a pixel the mean of all around its middle. A camera with a lens is out of \
-                focus only now: its rays leave from all over the lens.",
+        words: "One ray per pixel samples only the center of the pixel: edges become stairs, and distant \
+                patterns break up. Many rays, weighted by a filter, turn a pixel into the mean of its \
+                surroundings. Depth of field appears only now, because the rays of a lens start all over it.",
         equations: &["pixel = Σ w(x_i, y_i) L(x_i, y_i) / Σ w(x_i, y_i)"],
         places: &[
             at("crates/durer-scene/src/sampler.rs", "fn pixel_position"),
@@ -359,15 +362,16 @@ pub static TOPICS: [Topic; 18] = [
             at("crates/durer-render/src/render/samples.rs", "fn aim"),
             at("crates/durer-render/src/film/film.rs", "fn resolve"),
         ],
-        shots: &[color("one ray a pixel", FRESNEL), color("many rays a pixel", SAMPLED)],
-        lacking: "its picture is the same with more rays",
+        shots: &[color("one ray per pixel", FRESNEL), color("many rays per pixel", SAMPLED)],
+        lacking: "its picture does not change with more rays",
     },
     Topic {
         name: "soft-shadows",
         title: "Soft shadows",
-        words: "A lamp has some size, and where a part of it is seen there is half a shadow. So each ray to a lamp goes to another of \
-                its points, chosen at random; the mean over many is the light of the part that is seen (Cook, Porter and \
-                Carpenter, 1984). Before that all rays go to its middle, and shadows have hard edges.",
+        words: "A light has an extent, and a point that sees only a part of it is in the penumbra. So each \
+                shadow ray goes to another random point of the light; the mean over many rays is the light of \
+                the visible part (Cook, Porter and Carpenter, 1984). Before this step all rays go to its center, \
+                and shadows have hard edges.",
         equations: &["L = ∫ f V(p, q) L_e cos θ cos θ_q / |p - q|² dq", "one sample:   f V L_e cos θ / p_l(ω)"],
         places: &[
             at("crates/durer-render/src/integrator/path/direct.rs", "fn add_direct"),
@@ -375,17 +379,18 @@ pub static TOPICS: [Topic; 18] = [
             at("crates/durer-scene/src/light/area.rs", "fn sample"),
         ],
         shots: &[
-            color("rays to the middle of each lamp", straight(Direct::Middle)),
-            color("rays to points of it at random", straight(Direct::Lights)),
+            color("rays to the center of each light", straight(Direct::Middle)),
+            color("rays to random points on it", straight(Direct::Lights)),
         ],
-        lacking: "it has no surface that shines and throws shadows",
+        lacking: "it has no emissive surface that casts shadows",
     },
     Topic {
         name: "bounces",
-        title: "One bounce more",
-        words: "What a lamp lights is a lamp in turn. The light that a surface scatters comes from all directions, and from each of \
-                them it is the same question once more (Kajiya, 1986). One direction is chosen at random, as the surface \
-                scatters, and followed. Colours go from wall to wall, and no shadow is quite black.",
+        title: "One more bounce",
+        words: "A lit surface acts as a light in turn. The light that a surface scatters arrives from all \
+                directions, and the radiance from each of them is the same problem again (Kajiya, 1986). One \
+                direction is sampled at random, as the surface scatters, and followed. Colours bleed from wall \
+                to wall, and no shadow is completely black.",
         equations: &["L_o = L_e + ∫ f L_i cos θ dω", "one sample:   L_e + f L_i cos θ / p_b(ω)"],
         places: &[
             at("crates/durer-render/src/integrator/path/mod.rs", "fn bounce"),
@@ -393,23 +398,24 @@ pub static TOPICS: [Topic; 18] = [
             at("crates/durer-render/src/integrator/path/scatter.rs", "fn spawn"),
         ],
         shots: &[
-            color("light straight from lamps", paths(0, BOTH)),
-            color("1 bounce more", paths(1, BOTH)),
-            color("2 bounces more", paths(2, BOTH)),
+            color("direct light only", paths(0, BOTH)),
+            color("1 more bounce", paths(1, BOTH)),
+            color("2 more bounces", paths(2, BOTH)),
             color("all bounces", paths(u32::MAX, BOTH)),
         ],
-        lacking: "no light goes from thing to thing in it, or no bounces are wanted",
+        lacking: "no light is scattered between its objects, or the maximum depth is 0",
     },
     Topic {
         name: "mis",
-        title: "Two ways to one light",
-        words: "A lamp can be found by choosing a point of it, or by following a direction in which the surface scatters. The first is \
-                good at small lamps and rough surfaces, the second at large lamps in smooth ones. Each alone has the right \
-                mean; where it is bad, it has much noise. Weighed by how often each finds that very light, their sum is good at \
-                both: multiple importance sampling (Veach, 1997).",
+        title: "Two ways to find a light",
+        words: "A path can find a light by sampling a point on it, or by sampling a direction from the BSDF. The \
+                first works well for small lights and rough surfaces, the second for large lights and smooth \
+                surfaces. Each alone has the right mean, but much noise where it works badly. Weighted by how \
+                often each finds that light, their sum works well for both: multiple importance sampling (Veach, \
+                1997).",
         equations: &[
-            "points:   f V L_e cos θ / p_l(ω)",
-            "directions:   f L_e cos θ / p_b(ω)",
+            "light sampling:   f V L_e cos θ / p_l(ω)",
+            "BSDF sampling:   f L_e cos θ / p_b(ω)",
             "both:   w_l times the first + w_b times the second,   w_l = p_l² / (p_l² + p_b²),   w_b = 1 - w_l",
         ],
         places: &[
@@ -418,35 +424,37 @@ pub static TOPICS: [Topic; 18] = [
             at("crates/durer-render/src/integrator/path/direct.rs", "fn of_direction"),
         ],
         shots: &[
-            color("points of lamps alone", straight(Direct::Lights)),
-            color("directions alone", straight(Direct::Bsdf)),
-            color("both, weighed", straight(Direct::Both)),
+            color("light sampling only", straight(Direct::Lights)),
+            color("BSDF sampling only", straight(Direct::Bsdf)),
+            color("both, weighted", straight(Direct::Both)),
         ],
-        lacking: "nothing of some size shines in it",
+        lacking: "it has no light with an extent",
     },
     Topic {
         name: "caustic",
         title: "Caustics",
-        words: "Mirrors and glass throw light on other things. A path from the eye comes through the glass to the lamp by chance only: \
-                bright specks, or no light at all. Photons go the other way, from the lamp through the glass, and stay where they \
-                come to rest; how dense they are there is the light (Jensen, 1996; Hachisuka and Jensen, 2009).",
+        words: "Mirrors and glass focus light on other objects. A path from the eye finds the light through the \
+                glass only by chance: bright specks, or no light at all. Photons travel in the opposite \
+                direction, from the light through the glass, and are stored where they land; their density there \
+                is the light (Jensen, 1996; Hachisuka and Jensen, 2009).",
         equations: &[
             "L = Σ f Φ_i k(|p - p_i| / r) / r²,   k(x) = 2 (1 - x²) / π",
-            "each sample looks less far:   r_(i+1)² = r_i² (i + 2/3) / (i + 1)",
+            "each sample searches a smaller radius:   r_(i+1)² = r_i² (i + 2/3) / (i + 1)",
         ],
         places: &[
             at("crates/durer-render/src/integrator/path/photons/mod.rs", "fn trace"),
             at("crates/durer-render/src/integrator/path/photons/map.rs", "fn on_surface"),
             at("crates/durer-render/src/integrator/path/photons/mod.rs", "fn radius"),
         ],
-        shots: &[color("paths alone", paths(u32::MAX, BOTH)), color("paths and photons", paths(u32::MAX, PHOTONS))],
-        lacking: "nothing in it mirrors or refracts light of a lamp onto other things",
+        shots: &[color("paths only", paths(u32::MAX, BOTH)), color("paths and photons", paths(u32::MAX, PHOTONS))],
+        lacking: "none of its mirrors or glass focuses light on other objects",
     },
     Topic {
         name: "spectrum",
         title: "A spectrum",
-        words: "Glass bends blue light more than red. A path that has wavelengths knows how each is bent, and from there on keeps one; what the \
-                eye makes of a wavelength is its colour. Before that the glass has one index for all of them.",
+        words: "Glass refracts blue light more than red. A path with several wavelengths follows the refraction \
+                of one of them and keeps only that one; the observer converts each wavelength to a colour. \
+                Before this step the glass has one index for all wavelengths.",
         equations: &["n(λ) = A + B / λ²", "Abbe's number:   V = (n_d - 1) / (n_F - n_C)"],
         places: &[
             at("crates/durer-scene/src/material/principled.rs", "fn ior_at"),
@@ -454,7 +462,7 @@ pub static TOPICS: [Topic; 18] = [
         ],
         shots: &[
             color("one index for all wavelengths", paths(u32::MAX, Carriage { disperses: false, ..SPECTRAL })),
-            color("each wavelength has its own", paths(u32::MAX, SPECTRAL)),
+            color("an index per wavelength", paths(u32::MAX, SPECTRAL)),
         ],
         lacking: "none of its glass has a `transmissionDispersionScale`",
     },

@@ -381,7 +381,7 @@ impl<'w> Pupil<'w> {
         color * seen.color
     }
 
-    /// The share of a light that arrives.
+    /// Returns the share of a light that arrives.
     fn visible(&self, surface: &Surface, light: usize, seen: &Illumination, first: bool) -> Color {
         let habits = self.habits.shadows;
         let unshadowed = self.habits.bounces.unshadowed && !first;
@@ -432,7 +432,7 @@ impl<'w> Pupil<'w> {
         Color::ZERO
     }
 
-    /// Whether only things that let light through are in the way.
+    /// Returns 1 if all occluders along the ray are transparent, else 0.
     fn visible_through_glass(&self, mut ray: Ray64, epsilon: Option<Epsilon>) -> Color {
         for _ in 0..64 {
             let Some((hit, _)) = self.closest(&ray) else { return Color::ONE };

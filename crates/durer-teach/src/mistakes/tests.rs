@@ -55,7 +55,7 @@ fn job() -> Job {
 
 /// In every dialect, a student's tracer without mistakes returns the rendered picture bit for bit.
 #[test]
-fn without_mistakes_the_picture_is_right() {
+fn variant_without_mistakes_renders_the_correct_picture() {
     for dialect in Dialect::ALL {
         for rules in [dialect.rules().clone(), dialect.rules().sane()] {
             let (scene, world) = world(&rules);
@@ -76,10 +76,10 @@ fn without_mistakes_the_picture_is_right() {
 }
 
 #[test]
-fn every_row_has_a_name_of_its_own_and_a_step_of_the_lesson() {
+fn every_row_has_a_unique_name_and_a_lesson_step() {
     let mut names = BTreeSet::new();
     for mistake in MISTAKES.iter().copied().flatten() {
-        assert!(names.insert(mistake.name), "{} is there twice", mistake.name);
+        assert!(names.insert(mistake.name), "{} exists twice", mistake.name);
         assert!(TOPICS.iter().any(|topic| topic.name == mistake.step), "{}: no step {}", mistake.name, mistake.step);
         assert!(!mistake.words.ends_with('.') && mistake.right != mistake.wrong, "{}", mistake.name);
     }
@@ -213,7 +213,7 @@ fn each_usual_mistake_is_named() {
 
 /// An unrelated picture matches no mistake, and an unrelated reference is reported as such.
 #[test]
-fn what_is_no_mistake_is_not_named() {
+fn unrelated_pictures_match_no_mistake() {
     let (scene, world) = world(Dialect::F04.rules());
     let job = job();
     let right = Variant::new(&scene, world, job.settings);

@@ -33,7 +33,7 @@ fn defaults_follow_from_the_scene() {
 }
 
 #[test]
-fn options_are_set_by_name_and_spelled_again() {
+fn options_are_set_by_name_and_printed_back() {
     let rules = Dialect::Durer.rules();
     let scene = Scene::default();
     let given = [
@@ -70,7 +70,7 @@ fn options_are_set_by_name_and_spelled_again() {
 }
 
 #[test]
-fn wrong_options_are_refused_in_a_sentence() {
+fn invalid_options_are_refused_with_a_message() {
     let wrong = |name: &str, text: &str| RenderJob::default().set(name, text).unwrap_err();
     assert_eq!(wrong("sample", "1"), "unknown option `sample`; did you mean `samples`?");
     assert_eq!(wrong("samples", "0"), "expected a number from 1 to 1048576");

@@ -71,7 +71,7 @@ impl Place {
 }
 
 #[test]
-fn what_did_not_change_is_not_read_again() {
+fn unchanged_files_are_not_read_again() {
     let place = Place::new();
     assert_eq!(place.watched("scene.txt"), (4, 0));
     place.put("scene.txt", SCENE.replace("color 1 1 1 }", "color 1 0 0 }").as_bytes());
@@ -89,7 +89,7 @@ fn what_did_not_change_is_not_read_again() {
 }
 
 #[test]
-fn after_errors_all_is_there_still_and_what_is_gone_is_let_go() {
+fn cache_survives_errors_and_drops_unused_files() {
     let place = Place::new();
     assert_eq!(place.watched("scene.txt"), (4, 0));
     place.put("scene.txt", SCENE.replace("b.obj", "c.obj").as_bytes());
@@ -103,7 +103,7 @@ fn after_errors_all_is_there_still_and_what_is_gone_is_let_go() {
 }
 
 #[test]
-fn meshes_and_pictures_of_models_are_known_by_what_they_hold() {
+fn meshes_and_pictures_of_models_are_compared_by_content() {
     let place = Place::new();
     place.put("a.mtl", b"newmtl m\nmap_Kd a.ppm\n");
     let model = |more: &str| place.put("m.obj", format!("{more}mtllib a.mtl\nusemtl m\n{MESH}").as_bytes());

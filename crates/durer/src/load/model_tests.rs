@@ -105,7 +105,7 @@ fn changed(from: &str, to: &str) -> tempfile::TempDir {
 }
 
 #[test]
-fn one_model_is_one_picture_in_every_format() {
+fn model_renders_the_same_in_every_format() {
     let folder = tetrahedra();
     let options = LoadOptions::default();
     let up = LoadOptions {
@@ -127,7 +127,7 @@ fn one_model_is_one_picture_in_every_format() {
 }
 
 #[test]
-fn content_tells_a_model_whatever_its_name() {
+fn model_format_is_detected_by_content() {
     let folder = tetrahedra();
     for name in ["a.ply", "a.stl", "a.gltf", "a.glb"] {
         fs::copy(folder.path().join(name), folder.path().join("model")).unwrap();
@@ -137,7 +137,7 @@ fn content_tells_a_model_whatever_its_name() {
 }
 
 #[test]
-fn a_packed_model_is_unpacked_and_a_bomb_is_not() {
+fn compressed_model_is_read_and_a_bomb_is_refused() {
     use std::io::Write;
     let folder = tetrahedra();
     let pack = |bytes: &[u8]| {
@@ -159,7 +159,7 @@ fn a_packed_model_is_unpacked_and_a_bomb_is_not() {
 }
 
 #[test]
-fn meshes_are_written_and_read_as_the_same() {
+fn meshes_are_equal_after_writing_and_reading() {
     let folder = tetrahedra();
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let options = LoadOptions::default();
@@ -179,7 +179,7 @@ fn meshes_are_written_and_read_as_the_same() {
 }
 
 #[test]
-fn a_model_without_light_is_dark_only_if_that_is_asked_for() {
+fn model_without_light_is_dark_only_on_request() {
     let folder = tetrahedra();
     let none =
         LoadOptions { staging: Staging { studio: Some(Studio::None), ..Staging::default() }, ..Default::default() };
@@ -189,7 +189,7 @@ fn a_model_without_light_is_dark_only_if_that_is_asked_for() {
 }
 
 #[test]
-fn uris_lead_nowhere_but_below_the_folder() {
+fn uris_stay_below_the_folder() {
     let outside = tempfile::tempdir().unwrap();
     fs::write(outside.path().join("a.bin"), [0; 60]).unwrap();
     let out = outside.path().file_name().unwrap().to_string_lossy().into_owned();
@@ -216,7 +216,7 @@ fn uris_lead_nowhere_but_below_the_folder() {
 }
 
 #[test]
-fn errors_of_gltf_name_the_place_and_what_is_wrong() {
+fn gltf_errors_name_the_place_and_the_fault() {
     for (from, to, wanted) in [
         ("\"version\": \"2.0\"", "\"version\": \"1.0\"", "UNKNOWN_ASSET_MAJOR_VERSION: /asset/version"),
         ("\"count\": 12", "\"count\": 1000000000", "ACCESSOR_TOO_LONG: /accessors/1"),
@@ -244,7 +244,7 @@ fn errors_of_gltf_name_the_place_and_what_is_wrong() {
 }
 
 #[test]
-fn materials_of_gltf_are_told_in_openpbr_s_words() {
+fn gltf_materials_become_openpbr_parameters() {
     let material = r#""materials": [{ "pbrMetallicRoughness": { "baseColorFactor": [0.5, 0.25, 1, 0.5], "metallicFactor": 0.25,
         "roughnessFactor": 0.75 }, "alphaMode": "BLEND", "emissiveFactor": [1, 0.5, 0], "extensions": {
         "KHR_materials_ior": { "ior": 1.25 }, "KHR_materials_emissive_strength": { "emissiveStrength": 4 },
@@ -269,7 +269,7 @@ fn materials_of_gltf_are_told_in_openpbr_s_words() {
 }
 
 #[test]
-fn a_camera_of_gltf_is_chosen_by_name() {
+fn gltf_camera_is_chosen_by_name() {
     let nodes = r#""cameras": [{ "type": "perspective", "perspective": { "yfov": 1, "znear": 0.1 } }],
         "nodes": [{ "mesh": 0 }, { "name": "left", "camera": 0, "translation": [1, 2, 3] },
         { "name": "right", "camera": 0, "rotation": [0, 1, 0, 0] }],"#;
@@ -294,7 +294,7 @@ fn a_camera_of_gltf_is_chosen_by_name() {
 }
 
 #[test]
-fn obj_is_parted_by_material_and_reads_mtl() {
+fn obj_is_split_by_material_and_reads_mtl() {
     let folder = tempfile::tempdir().unwrap();
     let put = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
     put(
@@ -329,7 +329,7 @@ fn obj_is_parted_by_material_and_reads_mtl() {
 }
 
 #[test]
-fn pictures_of_mtl_change_their_parameters() {
+fn mtl_pictures_set_their_parameters() {
     let folder = tempfile::tempdir().unwrap();
     let put = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
     put("m.obj", b"mtllib m.mtl\nv 0 0 0\nv 3 0 0\nv 3 4 0\nusemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\n");

@@ -29,7 +29,7 @@ fn pfm(pixel: [f32; 3]) -> Vec<u8> {
 }
 
 #[test]
-fn light_beyond_white_stays() {
+fn values_above_white_are_kept() {
     let texture = |field, pixel| texture(field, "a.pfm", &pfm(pixel), None);
     for field in ["emissionTexture", "baseColorTexture", "specularRoughnessTexture"] {
         assert_eq!(texture(field, [3.0, 0.5, 0.25]).unwrap().at(Vec2::ZERO), Color::new(3.0, 0.5, 0.25), "{field}");
@@ -39,7 +39,7 @@ fn light_beyond_white_stays() {
 }
 
 #[test]
-fn sixteen_bits_stay_with_their_opacity() {
+fn sixteen_bit_textures_keep_precision_and_opacity() {
     let pixel = [30000u16, 301, 65535, 40001];
     let mut bytes = Vec::new();
     let values: Vec<u8> = pixel.iter().flat_map(|value| value.to_ne_bytes()).collect();
@@ -53,7 +53,7 @@ fn sixteen_bits_stay_with_their_opacity() {
 }
 
 #[test]
-fn memory_is_counted_before_it_is_taken() {
+fn memory_is_checked_before_allocation() {
     let large = [b"PF\n400 400\n-1.0\n".to_vec(), vec![0; 400 * 400 * 12]].concat();
     let read = |memory| texture("emissionTexture", "a.pfm", &large, Some(memory)).map(|texture| texture.bytes());
     // The picture and the texture made of it count together.
@@ -102,7 +102,7 @@ fn stripes(minified: &str, mirrored: bool) -> (f64, f64) {
 }
 
 #[test]
-fn smaller_versions_of_pictures_have_less_noise_and_the_same_mean_also_in_mirrors() {
+fn mipmaps_reduce_noise_and_keep_the_mean_also_in_mirrors() {
     for mirrored in [false, true] {
         let [(plain, noise), (mean, less)] = ["texels", "mipmaps"].map(|minified| stripes(minified, mirrored));
         // Half of the wall emits.

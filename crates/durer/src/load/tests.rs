@@ -47,7 +47,7 @@ fn mesh(path: &str) -> String {
 }
 
 #[test]
-fn a_mesh_is_found_beside_its_scene() {
+fn mesh_is_found_beside_its_scene() {
     for path in ["tri.obj", ".\\tri.obj", "../scene/tri.obj"] {
         let (world, findings) = made(&house(&mesh(path)), &LoadOptions::default());
         assert_eq!(findings, [""; 0]);
@@ -56,7 +56,7 @@ fn a_mesh_is_found_beside_its_scene() {
 }
 
 #[test]
-fn a_file_outside_is_refused_at_the_line_that_names_it() {
+fn file_outside_is_refused_at_the_line_that_names_it() {
     let root = house(&mesh("../outside.obj"));
     let (_, found) = made(&root, &LoadOptions::default());
     assert_eq!(
@@ -74,7 +74,7 @@ fn a_file_outside_is_refused_at_the_line_that_names_it() {
 }
 
 #[test]
-fn a_missing_mesh_is_told_once_with_a_near_name() {
+fn missing_mesh_is_reported_once_with_a_similar_name() {
     let found = findings(&(mesh("tir.obj") + "\n").repeat(100));
     assert_eq!(
         found,
@@ -89,7 +89,7 @@ fn a_missing_mesh_is_told_once_with_a_near_name() {
 }
 
 #[test]
-fn what_is_wrong_in_a_mesh_is_told_there_and_in_the_scene() {
+fn mesh_error_is_reported_in_the_mesh_and_in_the_scene() {
     let root = house(&mesh("bad.obj"));
     fs::write(root.path().join("scene/bad.obj"), "v 0 0 0\nv 1 0 zero\nf 1 2 9\n").unwrap();
     let (_, found) = made(&root, &LoadOptions::default());
@@ -98,13 +98,13 @@ fn what_is_wrong_in_a_mesh_is_told_there_and_in_the_scene() {
 }
 
 #[test]
-fn folders_are_no_meshes() {
+fn folder_is_not_a_mesh() {
     let found = findings(&mesh("."));
     assert_eq!(found, ["scene/scene.txt:5:25 error: the mesh cannot be read: `.` is not a regular file"]);
 }
 
 #[test]
-fn a_scene_that_cannot_be_read_is_an_error_of_its_own() {
+fn unreadable_scene_is_a_separate_error() {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let root = tempfile::tempdir().unwrap();
     for path in [root.path().join("no.txt"), root.path().to_path_buf()] {
@@ -113,7 +113,7 @@ fn a_scene_that_cannot_be_read_is_an_error_of_its_own() {
 }
 
 #[test]
-fn what_the_picture_may_lack_is_warned_of() {
+fn missing_lights_materials_and_objects_are_reported() {
     let ball = "Sphere { center 0 0 0 radius 1 }\n";
     let text = |lights: &str, group: &str| format!("{CAMERA}{lights}{MATERIAL}{group}");
     let root = house("");
@@ -149,7 +149,7 @@ fn what_the_picture_may_lack_is_warned_of() {
 }
 
 #[test]
-fn a_flattening_transform_is_told_at_its_object() {
+fn flattening_transform_is_reported_at_its_object() {
     let found =
         findings("Transform { Matrix4f { 1 1 0 0 1 1 0 0 0 0 1 0 0 0 0 1 }\n Sphere { center 0 0 0 radius 1 } }");
     let expected =
@@ -158,7 +158,7 @@ fn a_flattening_transform_is_told_at_its_object() {
 }
 
 #[test]
-fn the_digest_is_that_of_all_that_the_picture_depends_on() {
+fn digest_covers_everything_that_the_picture_depends_on() {
     let digest = |root: &tempfile::TempDir, options: &LoadOptions| made(root, options).0.unwrap().digest();
     let (root, again) = (house(&mesh("tri.obj")), house(&mesh("tri.obj")));
     let options = LoadOptions::default();

@@ -8,7 +8,7 @@ fn set(name: &str, text: &str) -> Result<RenderOptions, String> {
 }
 
 #[test]
-fn every_statement_can_be_set_and_is_stated_once() {
+fn every_option_can_be_set_and_is_stated_once() {
     let all = statements();
     for option in &all {
         assert_eq!(all.iter().filter(|other| other.name == option.name).count(), 1, "{}", option.name);
@@ -24,7 +24,7 @@ fn every_statement_can_be_set_and_is_stated_once() {
 }
 
 #[test]
-fn wrong_values_are_refused_with_what_is_right() {
+fn invalid_values_are_refused_with_the_expected_form() {
     for (name, text, error) in [
         ("threads", "0", "--threads cannot be 0: expected a number from 1 to 1024"),
         ("accel", "tree", "--accel cannot be tree: expected one of bvh, grid, none"),
@@ -39,7 +39,7 @@ fn wrong_values_are_refused_with_what_is_right() {
 }
 
 #[test]
-fn options_reach_what_they_decide() {
+fn options_reach_the_job_and_the_loader() {
     assert_eq!(set("grid", "2x3x4").unwrap().load.accel, AccelKind::Grid(Some([2, 3, 4])));
     assert_eq!(set("compat", "no-exit-r0").unwrap().load.compat.len(), 1);
     assert_eq!(set("size", "300x200").unwrap().load_options().staging.aspect, Some(1.5));

@@ -16,7 +16,7 @@ pub fn outlines(world: &World) -> Vec<Vec<Vec3>> {
     object_outlines(world).flatten().collect()
 }
 
-/// Returns the polylines of each object in world space, by the object's number; of large scenes, of the first
+/// Returns the polylines of each object in world space, by the object's number, for the first 400
 /// objects.
 pub fn object_outlines(world: &World) -> impl Iterator<Item = Vec<Vec<Vec3>>> {
     let ends = with_camera(world);
@@ -25,9 +25,10 @@ pub fn object_outlines(world: &World) -> impl Iterator<Item = Vec<Vec<Vec3>>> {
 
 /// Mark of a light in a drawing of the scene.
 pub struct LightMark {
-    /// Position of the light, or a point beside the scene in the direction that the light comes from. World space.
+    /// Position of the light in world space; for a directional light, a point outside the scene in
+    /// the direction from which it shines.
     pub at: Vec3,
-    /// True for a light without a position.
+    /// True for a light at infinity.
     pub is_far: bool,
 }
 
@@ -53,7 +54,7 @@ fn with_camera(world: &World) -> Aabb {
     world.bounds().union(Aabb::around([world.camera_frame().eye]))
 }
 
-/// Polylines that outline one object in world space; where it has no end, within a box.
+/// Returns the polylines of one object in world space. Unbounded objects are clipped to `ends`.
 fn outline(object: &Object, ends: &Aabb) -> Vec<Vec<Vec3>> {
     let place = |points: Vec<Vec3>| points.into_iter().map(|p| object.world_point(p)).collect::<Vec<_>>();
     let closed = |[a, b, c]: [Vec3; 3]| vec![a, b, c, a];

@@ -42,7 +42,7 @@ function BarycentricFigure() {
       stage={
         <div class="layers">
           {shows === "barycentric" && <Backdrop session={session} />}
-          <Plot reach={reach} aspect={aspect} label="A triangle and a point of its plane">
+          <Plot reach={reach} aspect={aspect} label="A triangle and a point in its plane">
             {(scale) => (
               <>
                 {shows === "areas" &&
@@ -138,8 +138,8 @@ function BarycentricFigure() {
       <Equation
         numbers={
           inside
-            ? "all are positive: P lies inside"
-            : `${names.filter((_, i) => (weights[i] ?? 0) < 0).join(" and ")} below 0: P lies outside`
+            ? "all are positive: P is inside"
+            : `${names.filter((_, i) => (weights[i] ?? 0) < 0).join(" and ")} below 0: P is outside`
         }
       >
         <Sym>α</Sym> + <Sym>β</Sym> + <Sym>γ</Sym> = 1, inside where none is negative
@@ -159,7 +159,7 @@ function BarycentricFigure() {
   );
 }
 
-/** The triangle as the tracer sees its barycentric coordinates. */
+/** The triangle as rendered, coloured by its barycentric coordinates. */
 function Backdrop({ session }: { session: ReturnType<typeof useScene> }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
@@ -167,7 +167,7 @@ function Backdrop({ session }: { session: ReturnType<typeof useScene> }) {
     session.tell({ kind: "show", picture: "barycentric", stops: 0, tone: "none" });
     return session.on((event, bytes) => {
       if (event.kind !== "picture" || !canvas.current) return;
-      // What is no triangle is the page.
+      // Pixels outside the triangle show the page.
       const pixels = bytes.slice();
       for (let i = 0; i < pixels.length; i += 4) {
         if (pixels[i] === 0 && pixels[i + 1] === 0 && pixels[i + 2] === 0) pixels[i + 3] = 0;
@@ -185,17 +185,17 @@ function page(points: Point[], scale: Scale): string {
 export const barycentric: Topic = {
   id: "triangle",
   title: "Triangle",
-  lead: "Three weights say where in a triangle a point lies. They are areas, and they mix whatever the corners have.",
+  lead: "Three weights give the position of a point in a triangle. They are areas, and they interpolate the attributes of the corners.",
   text: [
-    "Every point of the plane is a mix of the three corners, with weights that sum to 1. Each weight is the area of the part opposite its corner, as a share of the whole. Drag P across an edge: the weight of the corner opposite turns negative.",
-    "The same weights mix colours, normals and texture coordinates of the corners: this is how a mesh of flat triangles is shaded smoothly.",
+    "Every point of the plane is an affine combination of the three corners, with weights that sum to 1. Each weight is the area of the part opposite its corner, divided by the area of the triangle. Drag P across an edge: the weight of the opposite corner becomes negative.",
+    "The same weights interpolate colours, normals and texture coordinates of the corners: this is how a mesh of flat triangles gets smooth shading.",
   ],
   Figure: BarycentricFigure,
   questions: [
-    { ask: "Where are all three weights the same?", answer: "At the centroid: each is one third." },
+    { ask: "Where are all three weights equal?", answer: "At the centroid: each is one third." },
     {
-      ask: "Two neighbours share an edge. Why is there no seam in what the weights mix?",
-      answer: "On the edge the third weight is 0, and the other two depend on the edge's own corners alone.",
+      ask: "Two neighbours share an edge. Why do interpolated values have no seam there?",
+      answer: "On the edge the third weight is 0, and the other two depend only on the corners of the edge.",
     },
   ],
 };

@@ -119,7 +119,7 @@ function CameraFigure() {
             <canvas
               ref={canvas}
               role="img"
-              aria-label="What this camera sees; click for the ray of a pixel"
+              aria-label="The picture of this camera; click to see the ray of a pixel"
               onPointerDown={(event) => {
                 const box = event.currentTarget.getBoundingClientRect();
                 const column = Math.floor(((event.clientX - box.left) / box.width) * width);
@@ -206,18 +206,18 @@ function row(tree: { rows: { name: string; result: string }[] } | null, name: st
 export const camera: Topic = {
   id: "camera",
   title: "The camera",
-  lead: "Three axes and an angle turn a place in the picture into a ray.",
+  lead: "Three axes and an angle turn a position in the picture into a ray.",
   text: [
-    "The camera stands at a point and has axes of its own: u to the right, v upwards, w forwards. The picture hangs at distance D before it and reaches from −1 to 1 across its larger side. A pixel at (x, y) gets the ray that goes D along w, x along u and y along v.",
-    "Make the angle wider: D shrinks, the picture comes nearer, and more of the world fits on it.",
+    "The camera has a position and three axes: u to the right, v upwards, w forwards. The picture plane is at distance D in front of it and reaches from −1 to 1 across its larger side. A pixel at (x, y) gets the ray with direction D w + x u + y v.",
+    "Make the angle wider: D shrinks, the picture plane comes nearer, and more of the world fits into it.",
   ],
   Figure: CameraFigure,
   questions: [
     { ask: "At which angle is D exactly 1?", answer: "At 90°: tan 45° is 1." },
     {
-      ask: "Why does y only reach from −0.75 to 0.75 here?",
+      ask: "Why does y reach only from −0.75 to 0.75 here?",
       answer:
-        "The picture is 4 to 3: its larger side spans −1 to 1, and the other one three quarters of that, so that pixels stay square.",
+        "The aspect ratio is 4:3. The larger side spans −1 to 1, the other side three quarters of that, so that pixels are square.",
     },
   ],
 };

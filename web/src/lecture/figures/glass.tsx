@@ -47,7 +47,7 @@ function GlassFigure() {
   return (
     <Figure
       stage={
-        <Plot reach={[4.4, 2.4]} label="A ray at the surface of glass">
+        <Plot reach={[4.4, 2.4]} label="A ray at a glass surface">
           {(scale) => (
             <>
               <rect
@@ -121,7 +121,7 @@ function GlassFigure() {
                 x={scale.x(from[0])}
                 y={scale.y(from[1])}
                 color="var(--ray-camera)"
-                label="Start of the ray"
+                label="Origin of the ray"
                 drag={(x, y) => {
                   const [px, py] = scale.back(x, y);
                   setDegrees(
@@ -160,7 +160,7 @@ function GlassFigure() {
             change={setIndex}
           />
           <Choice
-            label="Where the ray comes from"
+            label="Side of the ray"
             value={side}
             values={[
               ["outside", "From air"],
@@ -198,16 +198,16 @@ function GlassFigure() {
 export const glass: Topic = {
   id: "glass",
   title: "Glass",
-  lead: "Snell says where the ray goes, Fresnel how much of the light goes there.",
+  lead: "Snell's law gives the direction of the refracted ray, Fresnel's equations its share of the light.",
   text: [
-    "At the border of two media a ray bends: the sines of its angles are as the refractive indices, the other way round. Part of the light is mirrored, and the more of it the flatter the ray comes in: see the window of a shop from the side.",
-    "Let the ray come from the glass and turn it. Beyond some angle the sine would be more than 1: no light gets out, and the border is a perfect mirror.",
+    "At the boundary of two media a ray bends: the sines of its angles are inversely proportional to the refractive indices. Part of the light is reflected, more of it at grazing angles: look at a shop window from the side.",
+    "Let the ray come from the glass and rotate it. Beyond a critical angle the sine would exceed 1: no light leaves, and the boundary is a perfect mirror.",
   ],
   Figure: GlassFigure,
   questions: [
     {
-      ask: "How much does a window mirror that you look straight through?",
-      answer: "With an index of 1.5, R₀ = ((1.5 − 1) / (1.5 + 1))² = 4 % at each side.",
+      ask: "How much light does a window reflect if you look straight through it?",
+      answer: "With an index of 1.5, R₀ = ((1.5 − 1) / (1.5 + 1))² = 4 % on each side.",
     },
     {
       ask: "At which angle does total reflection begin in glass of index 1.5?",

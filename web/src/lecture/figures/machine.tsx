@@ -10,7 +10,7 @@ import type { Topic } from "../topic";
 
 const columns = 32;
 const rows = 24;
-/** The nail in the wall, where the string is held: the eye. */
+/** The nail in the wall, which holds the string: the eye. */
 const nail: Vec = [-5.2, 1.15, 0.4];
 const aim: Vec = unit(sub([1.4, 0.15, 0], nail));
 const angle = 44;
@@ -19,7 +19,7 @@ const right = unit(cross(aim, [0, 1, 0]));
 const up = cross(right, aim);
 const half = reach * Math.tan((angle * Math.PI) / 360);
 
-/** A point of the picture, from -1 to 1 across its larger side. */
+/** A point of the picture plane, from -1 to 1 across its larger side. */
 function onPicture(x: number, y: number): Vec {
   return add(add(nail, mul(reach, aim)), add(mul(x * half, right), mul(y * half, up)));
 }
@@ -92,7 +92,7 @@ function MachineFigure() {
           session={stage}
           eye={eye}
           setEye={setEye}
-          label="The machine: a string from a nail through a frame to a thing"
+          label="The machine: a string from a nail through a frame to an object"
         >
           {(view) => (
             <>
@@ -141,7 +141,7 @@ function MachineFigure() {
               {direction.map((x) => fixed(x, 3)).join(", ")})
             </>
           ) : (
-            "this string meets nothing: the pixel gets the background"
+            "this string hits nothing: the pixel gets the background"
           )
         }
       >
@@ -154,7 +154,7 @@ function MachineFigure() {
   );
 }
 
-/** The frame, and all pixels that are drawn. */
+/** The frame, and all pixels drawn so far. */
 function Canvas({ view, colors, upTo }: { view: Projector; colors: Uint8Array | null; upTo: number }) {
   const grid = useMemo(() => {
     const points: (ReturnType<Projector["point"]> | null)[][] = [];
@@ -204,20 +204,20 @@ function PixelHandle({ view, at, drag }: { view: Projector; at: Vec; drag(x: num
 export const machine: Topic = {
   id: "machine",
   title: "Dürer’s machine",
-  lead: "A string from a nail to the thing, and a frame in between: where the string passes, a dot is drawn.",
+  lead: "A string runs from a nail through a frame to an object: a dot is drawn where the string crosses the frame.",
   text: [
-    "In 1525 Albrecht Dürer printed how to draw a lute without any skill. A nail in the wall is the eye. A string goes from it to a point of the lute; where it passes the frame, a dot is made on the paper. Point by point, the picture appears, and it is in perfect perspective.",
-    "A ray tracer does the same the other way round. It does not choose a point of the thing, but a pixel of the picture, stretches the string through it, and asks what it meets first. The picture on the frame above is drawn by this very program, one ray for each pixel.",
+    "In 1525 Albrecht Dürer published a way to draw a lute without any skill. A nail in the wall is the eye. A string runs from it to a point of the lute; where it crosses the frame, a dot is drawn on the paper. Point by point, the picture appears, and it is in perfect perspective.",
+    "A ray tracer works in the opposite direction. It chooses a pixel of the picture instead of a point of the object, traces a ray through it, and finds the closest hit. This program draws the picture on the frame above, with one ray per pixel.",
   ],
   Figure: MachineFigure,
   questions: [
     {
-      ask: "What would change if the frame stood farther from the nail?",
+      ask: "What changes if the frame is farther from the nail?",
       answer:
-        "Seen from the nail it would cover less: the angle of view becomes smaller, and things appear larger on the same paper.",
+        "Seen from the nail, it covers less: the field of view becomes narrower, and objects appear larger on the same paper.",
     },
     {
-      ask: "Two things lie on one string. Which of them is drawn?",
+      ask: "Two objects lie on one string. Which of them is drawn?",
       answer: "The one with the least t in front of the nail: the string cannot pass through it.",
     },
   ],

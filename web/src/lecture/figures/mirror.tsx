@@ -46,7 +46,7 @@ function MirrorFigure() {
   return (
     <Figure
       stage={
-        <Stage session={session} eye={eye} setEye={setEye} label="A ray that is mirrored again and again">
+        <Stage session={session} eye={eye} setEye={setEye} label="A ray that is reflected several times">
           {(view) => (
             <>
               {rays.map(({ path, term }, i) => (
@@ -80,7 +80,7 @@ function MirrorFigure() {
                 view={view}
                 at={end}
                 color="var(--ray-camera)"
-                label="Where the ray is aimed at"
+                label="Target of the ray"
                 move={setAim}
               />
               <Point3 view={view} at={from} color="var(--ink)" label="The eye" move={setFrom} />
@@ -110,7 +110,7 @@ function MirrorFigure() {
               {row.numbers} = <b>{row.result}</b>
             </>
           ) : (
-            "this ray meets no mirror, or no level is left"
+            "this ray hits no mirror, or the maximum depth is reached"
           )
         }
       >
@@ -144,19 +144,19 @@ function MirrorFigure() {
 export const mirror: Topic = {
   id: "mirror",
   title: "Mirrors and recursion",
-  lead: "A mirror sends the ray on. The same question is asked again, one level deeper.",
+  lead: "A mirror reflects the ray. The reflected ray is traced by the same function, one level deeper.",
   text: [
-    "At a mirror the part of the direction along the normal is turned round, the rest stays. The mirrored ray is traced like any other, and what it brings is multiplied by the mirror’s colour.",
-    "Two mirrors can send a ray to and fro for ever. So levels are counted, and rays that count for too little are not traced. Raise the number of levels and watch the mirrors fill.",
+    "A mirror flips the component of the direction along the normal and keeps the rest. The reflected ray is traced like any other, and its radiance is multiplied by the mirror’s colour.",
+    "Two mirrors can reflect a ray forever. So the depth is limited, and rays whose contribution is too small are not traced. Raise the number of levels and watch the mirrors fill.",
   ],
   Figure: MirrorFigure,
   questions: [
     {
       ask: "What do mirrors show at level 0?",
-      answer: "Nothing mirrored: their own diffuse colour and highlights, which are nearly black here.",
+      answer: "No reflections: only their diffuse colour and highlights, which are nearly black here.",
     },
     {
-      ask: "A mirror has the colour 0.8. What does a ray count for after three mirrors?",
+      ask: "A mirror has the colour 0.8. What is the throughput of a ray after three mirrors?",
       answer: "0.8³ = 0.512.",
     },
   ],

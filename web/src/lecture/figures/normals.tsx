@@ -13,7 +13,7 @@ function NormalsFigure() {
   const [shear, setShear] = useState(0.8);
   const [squash, setSquash] = useState(0.7);
   const [turn, setTurn] = useState(62);
-  // Row by row: x' = x + shear y, y' = squash y.
+  // By rows: x' = x + shear y, y' = squash y.
   const text = sceneOf({
     paper: usePaper(),
     materials: [paint.clay],
@@ -141,22 +141,21 @@ function dot(a: Point, b: Point): number {
 export const normals: Topic = {
   id: "normals",
   title: "Normals",
-  lead: "Tangents move with the surface. Normals do not: they go by the inverse transpose.",
+  lead: "Tangents transform by the matrix itself, normals by its inverse transpose.",
   text: [
-    "A tangent is the difference of two points of the surface, so the matrix moves it as it moves points. A normal is upright on all tangents, and a shear that is applied to it tips it over. Upright it stays under the transpose of the inverse: n · t = nᵀ M⁻¹ M t = (M⁻ᵀ n) · (M t).",
-    "The green normal is that which the tracer found at the hit; the red one is moved like a point.",
+    "A tangent is the difference of two points of the surface, so the matrix transforms it like points. A normal is perpendicular to all tangents, and a shear that is applied to it tilts it. Under the transpose of the inverse it stays perpendicular: n · t = nᵀ M⁻¹ M t = (M⁻ᵀ n) · (M t).",
+    "The green normal is the one that the ray tracer found at the hit; the red one is transformed like a tangent.",
   ],
   Figure: NormalsFigure,
   questions: [
     {
-      ask: "For which matrices do both agree?",
+      ask: "For which matrices do both normals agree?",
       answer:
-        "For rotations, and for scales that are the same in all directions: their inverse transpose is the matrix itself, but for a factor. Set shear to 0 and squash to 1.",
+        "For rotations and uniform scales: their inverse transpose is the matrix itself, up to a factor. Set shear to 0 and squash to 1.",
     },
     {
-      ask: "Where on the ellipse do they agree even so?",
-      answer:
-        "Where the circle's own axes of the stretch are: with no shear, at the top, the bottom and the sides.",
+      ask: "Where on the ellipse do they agree for other matrices?",
+      answer: "At the principal axes of the stretch: without shear, at the top, the bottom and the sides.",
     },
   ],
 };

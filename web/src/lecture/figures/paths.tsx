@@ -30,7 +30,7 @@ function PathsFigure() {
             session={session}
             width={400}
             height={400}
-            label="The Cornell box by paths"
+            label="The path-traced Cornell box"
             told={setHead}
           />
         </div>
@@ -56,12 +56,12 @@ function PathsFigure() {
             change={setBounces}
           />
           <Choice
-            label="How the lamp is found"
+            label="Sampling of the light"
             value={direct}
             values={[
-              ["lights", "By choosing the lamp"],
-              ["bsdf", "By chance"],
-              ["both", "Both, weighted"],
+              ["lights", "Light sampling"],
+              ["bsdf", "BSDF sampling"],
+              ["both", "Both (MIS)"],
             ]}
             change={(value) => setDirect(value)}
           />
@@ -99,18 +99,17 @@ function PathsFigure() {
 export const paths: Topic = {
   id: "paths",
   title: "Paths",
-  lead: "Light comes from everywhere. A path tracer follows it back, one random direction after the other.",
+  lead: "Light arrives from all directions. A path tracer follows it backwards, one random direction after the other.",
   text: [
-    "At each hit a direction is drawn by chance, and the path goes on until it finds a lamp or is worth too little. Each path is one guess of the pixel’s light; their mean is right, and its noise falls with the root of their number.",
-    "With 0 bounces only light straight from the lamp is seen. One bounce more, and the ceiling is lit by the floor, and the white boxes take on the red and green of the walls.",
+    "At each hit a direction is sampled at random, and the path continues until it hits a light or its throughput is too small. Each path is one estimate of the pixel’s radiance; their mean converges to it, and its noise falls with the square root of their number.",
+    "With 0 bounces there is only direct light. With one bounce, the floor illuminates the ceiling, and the white boxes take on the red and green of the walls.",
   ],
   Figure: PathsFigure,
   questions: [
     {
-      ask: "Why is the picture so noisy if the lamp is only found by chance?",
-      answer:
-        "The lamp is small: most paths never meet it, and the few that do must count for all the others.",
+      ask: "Why is the picture so noisy with BSDF sampling alone?",
+      answer: "The light is small: most paths never hit it, and the few that do carry all of the weight.",
     },
-    { ask: "How many samples does half the noise take?", answer: "Four times as many." },
+    { ask: "How many samples halve the noise?", answer: "Four times as many." },
   ],
 };

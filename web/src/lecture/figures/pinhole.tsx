@@ -15,7 +15,7 @@ function PinholeFigure() {
   const [film, setFilm] = useState(1);
   const [top, setTop] = useState<Point>([2.6, 1.1]);
   const [width, height] = [360, 300];
-  // The film is 1 high and wide: the farther it is, the narrower the angle.
+  // The film is 1 high and wide: the angle narrows as its distance grows.
   const angle = (2 * Math.atan(0.5 / film) * 180) / Math.PI;
   const text = sceneOf({
     paper: usePaper(),
@@ -40,13 +40,13 @@ function PinholeFigure() {
             session={session}
             width={width}
             height={height}
-            label="Three balls of the same size, seen through the hole"
+            label="Three balls of equal size, seen through the hole"
           />
           <Plot
             reach={[2.95, 1.9]}
             middle={[1.05, 0]}
             aspect={width / height}
-            label="The camera from the side: thing, hole and film"
+            label="The camera from the side: object, hole and film"
           >
             {(scale) => (
               <>
@@ -80,7 +80,7 @@ function PinholeFigure() {
                   x={scale.x(z)}
                   y={scale.y(h)}
                   color="var(--ray-camera)"
-                  label="Top of the thing"
+                  label="Top of the object"
                   drag={(x, y) => {
                     const [px, py] = scale.back(x, y);
                     setTop([Math.min(3.8, Math.max(0.5, px)), Math.min(1.7, Math.max(-1.7, py))]);
@@ -146,7 +146,7 @@ function PinholeFigure() {
   );
 }
 
-/** The dark room: walls, the film, and the wall with the hole. */
+/** The camera obscura: walls, the film, and the wall with the hole. */
 function Box({ scale, film, hole }: { scale: Scale; film: number; hole: number }) {
   const gap = Math.max(hole / 2, 0.004);
   const [back, front, up] = [scale.x(-film), scale.x(0), 1.35];
@@ -178,7 +178,7 @@ function Box({ scale, film, hole }: { scale: Scale; film: number; hole: number }
   );
 }
 
-/** A ray from the top of the thing through one edge of the hole. */
+/** A ray from the top of the object through one edge of the hole. */
 function Beam({ scale, top: [z, h], edge, film }: { scale: Scale; top: Point; edge: number; film: number }) {
   const end: Point = [-film, edge + ((edge - h) * film) / z];
   return (
@@ -196,20 +196,21 @@ function Beam({ scale, top: [z, h], edge, film }: { scale: Scale; top: Point; ed
 export const pinhole: Topic = {
   id: "pinhole",
   title: "The pinhole",
-  lead: "A dark room with a hole in its wall: each point outside lights one spot, and the picture is inverted.",
+  lead: "A dark room with a hole in its wall: each point outside illuminates one spot, and the picture is inverted.",
   text: [
-    "Light from a point passes the hole and goes straight on to the film. Two similar triangles meet in the hole, so the picture is to the thing as the film’s distance is to the thing’s: it is inverted, and small for what is far.",
-    "A real hole has a size. Rays of one point pass it at different places and light a patch instead of a spot. The smaller the hole, the sharper the picture, and the darker in a real camera. A ray tracer may take a hole of size 0.",
+    "Light from a point passes through the hole straight to the film. Two similar triangles meet in the hole, so the ratio of the image size to the object size is that of the film distance to the object distance: the image is inverted, and far objects appear small.",
+    "A real hole has a size. Rays from one point pass through it at different places and illuminate a patch instead of a spot. A smaller hole gives a sharper picture, but a darker one in a real camera. A ray tracer may use a hole of size 0.",
   ],
   Figure: PinholeFigure,
   questions: [
     {
-      ask: "What is more blurred, the near or the far?",
-      answer: "The near: the patch is the hole times 1 + f / z, and f / z grows towards the camera.",
+      ask: "Which objects are more blurred, near or far ones?",
+      answer: "Near ones: the patch is the hole times 1 + f / z, and f / z grows towards the camera.",
     },
     {
-      ask: "Why do ray tracers put the picture before the eye, and not behind it?",
-      answer: "The triangles are the same. Before the eye the picture stands upright, and the sign is gone.",
+      ask: "Why do ray tracers put the picture plane in front of the eye, and not behind it?",
+      answer:
+        "The triangles are the same. In front of the eye the picture is upright, without a negative sign.",
     },
   ],
 };

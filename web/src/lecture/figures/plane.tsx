@@ -129,7 +129,7 @@ function PlaneFigure() {
                   x={scale.x(origin[0])}
                   y={scale.y(origin[1])}
                   color="var(--ray-camera)"
-                  label="Start of the ray"
+                  label="Origin of the ray"
                   drag={(x, y) => {
                     const to = scale.back(x, y);
                     setTip([tip[0] + to[0] - origin[0], tip[1] + to[1] - origin[1]]);
@@ -149,7 +149,7 @@ function PlaneFigure() {
           ) : (
             <>
               ({fixed(offset)} − {sign(no)}) / {sign(nd)} = <b>{fixed(t, 3)}</b>
-              {t < 0 && " < 0: behind the start, no hit"}
+              {t < 0 && " < 0: behind the origin, no hit"}
             </>
           )
         }
@@ -178,20 +178,20 @@ function sign(x: number | null | undefined): string {
 export const plane: Topic = {
   id: "plane",
   title: "Plane",
-  lead: "Put the ray into the equation of the plane, and solve for t: one division.",
+  lead: "Insert the ray into the equation of the plane and solve for t: one division.",
   text: [
-    "All points of a plane have the same product with its normal: n · p = offset. A point of the ray is o + t d; put into the equation, everything but t is known.",
-    "Turn the ray until it runs along the plane: n · d goes to 0, and t runs away to infinity. Turn it further, and t is negative: the line meets the plane behind the start.",
+    "All points of a plane have the same dot product with its normal: n · p = offset. A point of the ray is o + t d; in the equation, only t is unknown.",
+    "Rotate the ray until it is parallel to the plane: n · d approaches 0, and t goes to infinity. Rotate it further, and t is negative: the line meets the plane behind the origin.",
   ],
   Figure: PlaneFigure,
   questions: [
     {
-      ask: "Which sign has n · d when the ray comes from the front?",
-      answer: "It is negative: the ray runs against the normal.",
+      ask: "What is the sign of n · d if the ray comes from the front?",
+      answer: "Negative: the ray points against the normal.",
     },
     {
-      ask: "May n have another length than 1?",
-      answer: "Yes. Then n · o, n · d and the offset all count in it, and t stays the same.",
+      ask: "May the length of n differ from 1?",
+      answer: "Yes. Then n · o, n · d and the offset scale by that length, and t does not change.",
     },
   ],
 };

@@ -8,7 +8,7 @@ import { paint, sceneOf } from "../scenes";
 import type { Topic } from "../topic";
 
 const [width, height] = [480, 400];
-/** Half the width of what is seen at the sphere in front. */
+/** Half the visible width at the front sphere. */
 const half = 1.9;
 const things: { x: number; z: number; r: number; color: string }[] = [
   { x: -0.9, z: 0, r: 0.7, color: "#b7663f" },
@@ -48,7 +48,7 @@ function ProjectionFigure() {
             <canvas
               ref={canvas}
               role="img"
-              aria-label="The picture: three spheres of the same size, one behind the other"
+              aria-label="The picture: three spheres of equal size, one behind the other"
             />
           </div>
           <Plot reach={[4.4, 4.3]} middle={[0, -1.6]} aspect={width / height} label="The rays from above">
@@ -109,7 +109,7 @@ function ProjectionFigure() {
       <Equation
         numbers={
           parallel ? (
-            "all rays are parallel: size does not depend on distance"
+            "all rays are parallel: size is independent of distance"
           ) : (
             <>
               {fixed(half, 1)} / tan {angle / 2}° = <b>{fixed(distance, 2)}</b>
@@ -128,22 +128,22 @@ function ProjectionFigure() {
 
 export const projection: Topic = {
   id: "projection",
-  title: "Perspective and parallels",
-  lead: "Step back and narrow the angle at the same time: perspective fades into a parallel projection.",
+  title: "Perspective and orthographic projection",
+  lead: "Move back and narrow the angle at the same time: perspective turns into a parallel projection.",
   text: [
-    "The three spheres have the same size. From near, the rays spread from the eye, and what is far behind appears small. The slider narrows the angle and moves the eye away so that the first sphere keeps its size: film makers call it a dolly zoom.",
-    "At the end of the way, all rays are parallel. This is the orthographic camera: lengths can be measured in its pictures, and nothing becomes smaller with distance.",
+    "The three spheres have equal size. From nearby, the rays diverge from the eye, and far objects appear small. The slider narrows the angle and moves the eye back so that the first sphere keeps its size: film makers call this a dolly zoom.",
+    "At the end, all rays are parallel. This is the orthographic camera: lengths can be measured in its pictures, and objects do not shrink with distance.",
   ],
   Figure: ProjectionFigure,
   questions: [
     {
-      ask: "Why do faces look odd in pictures that are taken from very near?",
+      ask: "Why do faces look odd in pictures taken from very near?",
       answer:
-        "The nose is much nearer than the ears, in proportion. It is the distance that does it, not the lens.",
+        "In proportion, the nose is much nearer than the ears. The distance is the cause, not the lens.",
     },
     {
-      ask: "Where is the eye of the orthographic camera?",
-      answer: "Nowhere, or infinitely far away: each pixel has a start of its own.",
+      ask: "Where is the eye of an orthographic camera?",
+      answer: "Infinitely far away: each pixel has its own ray origin.",
     },
   ],
 };

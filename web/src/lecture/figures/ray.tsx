@@ -38,7 +38,7 @@ function RayFigure() {
   return (
     <Figure
       stage={
-        <Stage session={session} eye={eye} setEye={setEye} label="A ray in space, with a point slid along it">
+        <Stage session={session} eye={eye} setEye={setEye} label="A ray in space, with a point on it">
           {(view) => (
             <>
               <Line
@@ -80,7 +80,7 @@ function RayFigure() {
                 view={view}
                 at={origin}
                 color="var(--ink)"
-                label="Start of the ray"
+                label="Origin of the ray"
                 move={(to) => {
                   setTip(add(tip, sub(to, origin)));
                   setOrigin(to);
@@ -133,21 +133,21 @@ function RayFigure() {
 export const ray: Topic = {
   id: "ray",
   title: "Rays",
-  lead: "A ray is a start and a direction. One number, t, says which of its points is meant.",
+  lead: "A ray has an origin and a direction. One number, t, selects a point on it.",
   text: [
-    "Slide t: the point P moves along the line through o in the direction d. At t = 0 it is the start; negative t lies behind it and is not part of the ray. The direction may have any length. Then t counts in lengths of d, and is a distance only where d has length 1.",
-    "To trace a ray is to find the least positive t at which its point lies on some surface.",
+    "Slide t: the point P moves along the line through o in the direction d. At t = 0 it is the origin; points with negative t are behind it and do not belong to the ray. The direction may have any length. t counts in lengths of d, so it is a distance only if d has length 1.",
+    "To trace a ray means to find the least positive t at which its point lies on a surface.",
   ],
   Figure: RayFigure,
   questions: [
     {
-      ask: "You make d twice as long. What becomes of t at the hit?",
+      ask: "You make d twice as long. What happens to t at the hit?",
       answer:
-        "It is halved: the point stays where it is, and t counts in lengths of d. Drag the end of d to see it.",
+        "It is halved: the point stays the same, and t counts in lengths of d. Drag the end of d to see it.",
     },
     {
       ask: "Why is a hit with negative t not drawn?",
-      answer: "It lies behind the start: a camera would see what is behind it.",
+      answer: "It lies behind the origin: a camera would see objects behind itself.",
     },
   ],
 };

@@ -40,7 +40,7 @@ function SamplesFigure() {
           width={96}
           height={54}
           squares
-          label="A picture of few pixels, each shown as a square"
+          label="A picture with few pixels, each shown as a square"
           told={setHead}
         />
       }
@@ -62,7 +62,7 @@ function SamplesFigure() {
       <Equation
         numbers={
           <>
-            96 × 54 pixels, <b>{samples}</b> {samples === 1 ? "ray through each middle" : "rays through each"}
+            96 × 54 pixels, <b>{samples}</b> {samples === 1 ? "ray through each center" : "rays through each"}
             , {head ? `${(head.rays / 1e3).toFixed(0)} thousand rays in all` : "…"}
           </>
         }
@@ -76,7 +76,7 @@ function SamplesFigure() {
   );
 }
 
-/** A floor of stripes that become finer than pixels far behind. */
+/** A striped floor whose stripes become finer than a pixel in the distance. */
 function stripes(): string {
   const all = [];
   for (let i = -14; i < 14; i++) {
@@ -90,21 +90,21 @@ function stripes(): string {
 export const samples: Topic = {
   id: "samples",
   title: "Samples and filters",
-  lead: "One ray through the middle of a pixel sees one point of it. Several see its mean.",
+  lead: "One ray through the center of a pixel samples one point. Several rays estimate the mean.",
   text: [
-    "With one ray, an edge is either in a pixel or not: it becomes a staircase, and fine stripes turn into false patterns. More rays, spread over the pixel, take the mean of what it shows.",
-    "A filter says how much a ray counts, by its distance from the pixel’s middle. A box counts all alike; wider filters look softer and hide stairs better.",
+    "With one ray, an edge is either in a pixel or not: it becomes a staircase, and fine stripes turn into moiré patterns. More rays, spread over the pixel, average its area.",
+    "A filter weights each ray by its distance from the pixel’s center. A box filter gives equal weights; wider filters look softer and hide staircases better.",
   ],
   Figure: SamplesFigure,
   questions: [
     {
-      ask: "Which part of the picture gains most?",
+      ask: "Which parts of the picture improve most?",
       answer:
-        "The edges, and the stripes far behind that are finer than a pixel. Inside even surfaces nothing changes.",
+        "The edges, and the far stripes that are finer than a pixel. Inside uniform surfaces nothing changes.",
     },
     {
-      ask: "How many grey levels can a pixel on an edge have with 4 samples and a box?",
-      answer: "Five: 0, 1, 2, 3 or 4 of them lie on the thing.",
+      ask: "How many grey levels can a pixel on an edge have with 4 samples and a box filter?",
+      answer: "Five: 0, 1, 2, 3 or 4 of them hit the object.",
     },
   ],
 };

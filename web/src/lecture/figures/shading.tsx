@@ -58,7 +58,7 @@ function ShadingFigure() {
           session={session}
           eye={eye}
           setEye={setEye}
-          label="A ball in the light of a lamp, with the vectors at a point"
+          label="A ball lit by a point light, with the vectors at a point"
         >
           {(view) => {
             const seen = view.point(point);
@@ -91,7 +91,7 @@ function ShadingFigure() {
                   h
                 </Name>
                 <Dot view={view} at={lamp} color="var(--ray-scattered)" radius={11} />
-                <Point3 view={view} at={lamp} color="var(--ray-scattered)" label="The lamp" move={setLamp} />
+                <Point3 view={view} at={lamp} color="var(--ray-scattered)" label="The light" move={setLamp} />
                 {seen && (
                   <Handle
                     x={seen.x}
@@ -148,7 +148,7 @@ function ShadingFigure() {
       <Equation
         numbers={
           nl == null ? (
-            "the lamp is behind the surface"
+            "the light is behind the surface"
           ) : (
             <>
               max(0, <b>{fixed(nl, 3)}</b>) · k_d
@@ -204,20 +204,20 @@ function number(light: Term | null, name: string): number | null {
 export const shading: Topic = {
   id: "shading",
   title: "Diffuse light and highlights",
-  lead: "How bright a point is depends on three vectors: the normal, the way to the lamp, and the way to the eye.",
+  lead: "The brightness of a point depends on three vectors: the normal, the direction to the light, and the direction to the eye.",
   text: [
-    "A matt surface spreads light evenly. What it gets goes with the cosine between its normal n and the way to the lamp l: a beam that comes in flat is spread over more of the surface.",
-    "A highlight is where the surface mirrors the lamp towards the eye, about. Blinn takes the vector h halfway between the way to the lamp and that to the eye; where the normal is near to it, the surface shines. The exponent says how near it must be.",
+    "A matte surface scatters light evenly. The light that it receives is proportional to the cosine between its normal n and the direction to the light l: a beam at a grazing angle is spread over more of the surface.",
+    "A highlight appears where the surface roughly reflects the light towards the eye. Blinn's model uses the vector h halfway between the directions to the light and to the eye; the highlight is bright where the normal is close to h. The exponent controls how close it must be.",
   ],
   Figure: ShadingFigure,
   questions: [
     {
-      ask: "You go around the ball. Which of the two terms changes?",
-      answer: "The highlight: it depends on the eye. The diffuse term stays.",
+      ask: "You move around the ball. Which of the two terms changes?",
+      answer: "The highlight: it depends on the eye. The diffuse term does not.",
     },
     {
       ask: "Why is max(0, n · l) needed?",
-      answer: "Behind the edge of light the cosine is negative: without it the lamp would take light away.",
+      answer: "Beyond the terminator the cosine is negative: without max the light would darken the surface.",
     },
   ],
 };

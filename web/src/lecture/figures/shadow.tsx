@@ -34,7 +34,7 @@ function ShadowFigure() {
   const away = sub(lamp, point);
   const distance = length(away);
   const l = unit(away);
-  // A little above the floor, where the next ray starts.
+  // Slightly above the floor, like the origin of a shadow ray.
   const start = add(point, [0, 1e-4, 0]);
   const cast = useCast(session, start, l, text);
   const hits = (cast?.tests ?? []).filter(
@@ -50,7 +50,7 @@ function ShadowFigure() {
           session={session}
           eye={eye}
           setEye={setEye}
-          label="A shadow ray from a point of the floor to the lamp"
+          label="A shadow ray from a point of the floor to the light"
         >
           {(view) => (
             <>
@@ -74,9 +74,9 @@ function ShadowFigure() {
                 P
               </Name>
               <Name view={view} at={lamp} color="var(--ray-scattered)" dx={18}>
-                lamp
+                light
               </Name>
-              <Point3 view={view} at={lamp} color="var(--ray-scattered)" label="The lamp" move={setLamp} />
+              <Point3 view={view} at={lamp} color="var(--ray-scattered)" label="The light" move={setLamp} />
               <Point3
                 view={view}
                 at={point}
@@ -108,14 +108,14 @@ function ShadowFigure() {
         numbers={
           blocker ? (
             <>
-              <b>{fixed(t ?? 0, 3)}</b> &lt; {fixed(distance, 3)}: something stands before the lamp
+              <b>{fixed(t ?? 0, 3)}</b> &lt; {fixed(distance, 3)}: the light is occluded
             </>
           ) : (
-            <>no hit with t &lt; {fixed(distance, 3)}: the lamp is seen</>
+            <>no hit with t &lt; {fixed(distance, 3)}: the light is visible</>
           )
         }
       >
-        shadow where a hit has 0 &lt; <Sym>t</Sym> &lt; |<Sym vector>lamp</Sym> − <Sym vector>P</Sym>|
+        shadow where a hit has 0 &lt; <Sym>t</Sym> &lt; |<Sym vector>light</Sym> − <Sym vector>P</Sym>|
       </Equation>
       <Equation
         numbers={cast?.tests
@@ -131,25 +131,25 @@ function ShadowFigure() {
 export const shadow: Topic = {
   id: "shadow",
   title: "Shadows",
-  lead: "A point is lit by a lamp if a ray from it to the lamp meets nothing on the way.",
+  lead: "A light illuminates a point if a ray from the point to the light hits nothing in between.",
   text: [
-    "The shadow ray starts at the point and goes to the lamp. A hit between both hides the lamp, and its light is left out. What lies behind the lamp does not matter: the ray ends there.",
-    "Drag the point across the edge of the shadow. Drag the lamp below the ball’s middle and see the shadow grow long.",
+    "The shadow ray starts at the point and ends at the light. If it hits something in between, the light is occluded and contributes nothing. Objects behind the light do not matter: the ray ends there.",
+    "Drag the point across the edge of the shadow. Drag the light below the ball’s center and watch the shadow grow longer.",
   ],
   Figure: ShadowFigure,
   questions: [
     {
-      ask: "Why may the search end at the first hit that is found, whichever it is?",
-      answer: "Any one hides the lamp. Shadow rays are cheaper than camera rays for that reason.",
+      ask: "Why may the search stop at any hit, even if it is not the closest?",
+      answer: "Any hit occludes the light. This makes shadow rays cheaper than camera rays.",
     },
     {
-      ask: "Where must the shadow ray not be stopped?",
+      ask: "Which hit must the shadow ray ignore?",
       answer:
-        "At its own start: rounding would let the surface shadow itself, in speckles. This program moves the start off the surface by a bound on its error.",
+        "The hit at its own origin: because of rounding the surface would shadow itself, in speckles. This program moves the origin off the surface by a bound on its error.",
     },
     {
-      ask: "Why has this shadow a sharp edge?",
-      answer: "The lamp is a point. A lamp with extent is seen in part along the edge: a half-shadow.",
+      ask: "Why does this shadow have a sharp edge?",
+      answer: "The light is a point. An area light is partly visible along the edge: a penumbra.",
     },
   ],
 };

@@ -13,7 +13,7 @@ type Interval = [number, number];
 const radii = [1.25, 1] as const;
 const colors = ["var(--ray-camera)", "var(--ray-scattered)"] as const;
 
-/** Where a line is inside a circle. */
+/** Interval of a line inside a circle. */
 function interval(origin: Point, d: Point, center: Point, radius: number): Interval | null {
   const o: Point = [origin[0] - center[0], origin[1] - center[1]];
   const [a, b, c] = [d[0] ** 2 + d[1] ** 2, o[0] * d[0] + o[1] * d[1], o[0] ** 2 + o[1] ** 2 - radius ** 2];
@@ -21,7 +21,7 @@ function interval(origin: Point, d: Point, center: Point, radius: number): Inter
   return root < 0 ? null : [(-b - Math.sqrt(root)) / a, (-b + Math.sqrt(root)) / a];
 }
 
-/** The intervals of an operation, in order. */
+/** Returns the intervals of an operation, in order. */
 export function combined(operation: Operation, a: Interval | null, b: Interval | null): Interval[] {
   const ends = [...(a ?? []), ...(b ?? [])].sort((x, y) => x - y);
   const within = (t: number, i: Interval | null) => i !== null && t > i[0] && t < i[1];
@@ -69,7 +69,7 @@ function SolidsFigure() {
         <Plot
           reach={[4.4, 2.6]}
           middle={[0, -0.25]}
-          label="Two spheres, a ray, and the intervals of t in which it is inside of each"
+          label="Two spheres, a ray, and the intervals of t inside each"
         >
           {(scale) => (
             <>
@@ -137,7 +137,7 @@ function SolidsFigure() {
                 x={scale.x(origin[0])}
                 y={scale.y(origin[1])}
                 color="var(--ink)"
-                label="Start of the ray"
+                label="Origin of the ray"
                 drag={(x, y) => {
                   const to = scale.back(x, y);
                   setTip([tip[0] + to[0] - origin[0], tip[1] + to[1] - origin[1]]);
@@ -174,7 +174,7 @@ function SolidsFigure() {
       <Equation
         numbers={
           t === null ? (
-            "the ray passes the solid"
+            "the ray misses the solid"
           ) : (
             <>
               the solid is hit at <b>{fixed(t, 3)}</b>
@@ -228,10 +228,10 @@ function Bars({ scale, rows }: { scale: Scale; rows: Interval[][] }) {
 export const solids: Topic = {
   id: "solids",
   title: "Solids",
-  lead: "A ray is inside of a ball for an interval of t. Solids are sums and differences of such intervals.",
+  lead: "A ray is inside a ball for an interval of t. Solids combine such intervals by set operations.",
   text: [
-    "Where the ray enters a part and where it leaves it are two numbers. To combine two parts, take all these ends in order along the ray, and keep count of what it is inside of. The solid begins where the answer changes to yes.",
-    "In a difference, the surface of B inside A becomes a surface of the solid: its normal is turned round.",
+    "The ray enters and leaves each part at two values of t. To combine two parts, visit all these values in order along the ray and keep track of the parts that the ray is inside. The solid begins where the operation becomes true.",
+    "In a difference, the surface of B inside A becomes a surface of the solid: its normal is flipped.",
   ],
   Figure: SolidsFigure,
   questions: [

@@ -30,7 +30,7 @@ function SphereFigure() {
     <Figure
       stage={
         <div class="stacked">
-          <Plot reach={[4.8, 1.95]} aspect={2.4} label="A ray and a sphere in the plane that holds both">
+          <Plot reach={[4.8, 1.95]} aspect={2.4} label="A ray and a sphere in a plane that contains the ray">
             {(scale) => (
               <>
                 <circle
@@ -97,7 +97,7 @@ function SphereFigure() {
                   x={scale.x(origin[0])}
                   y={scale.y(origin[1])}
                   color="var(--ray-camera)"
-                  label="Start of the ray"
+                  label="Origin of the ray"
                   drag={(x, y) => {
                     const to = scale.back(x, y);
                     setTip([tip[0] + to[0] - origin[0], tip[1] + to[1] - origin[1]]);
@@ -129,7 +129,7 @@ function SphereFigure() {
               : roots.every((t) => t < 0)
                 ? ": both behind"
                 : first === t2
-                  ? ": the start is inside"
+                  ? ": the origin is inside"
                   : ": two hits"}
           </>
         }
@@ -143,7 +143,7 @@ function SphereFigure() {
               <b>{fixed(roots[0] ?? 0, 3)}</b> and <b>{fixed(roots[1] ?? 0, 3)}</b>
             </>
           ) : (
-            "no real root: the line passes the sphere"
+            "no real root: the line misses the sphere"
           )
         }
       >
@@ -181,7 +181,7 @@ function Parabola({
   roots: number[];
   first: number | null;
 }) {
-  // The lowest point lies at the same height for all rays but those that nearly touch.
+  // Normalise the depth of the parabola, except for rays that nearly touch the sphere.
   const steep = 1.15 * Math.max(0.4, Math.abs(b * b - 4 * a * c) / (4 * a));
   const points = [];
   for (let t = -2.5; t <= 8.5; t += 0.04)
@@ -213,22 +213,21 @@ function Parabola({
 export const sphere: Topic = {
   id: "sphere",
   title: "Sphere",
-  lead: "A line meets a sphere twice, once, or not at all: the discriminant says which.",
+  lead: "A line meets a sphere twice, once, or not at all: the discriminant decides.",
   text: [
-    "Points of a sphere lie at distance r from its centre. With the ray put in, that is a quadratic equation in t. Its parabola below the figure is 0 where the line meets the sphere.",
-    "Drag the ray past the sphere and watch the parabola rise above the line: the discriminant turns negative. Drag the start into the sphere: one root is negative, and the greater one is the hit.",
+    "Points of a sphere lie at distance r from its centre. Inserting the ray gives a quadratic equation in t. Its parabola below the figure is 0 where the line meets the sphere.",
+    "Drag the ray past the sphere and watch the parabola rise above the line: the discriminant becomes negative. Drag the origin into the sphere: one root is negative, and the greater one is the hit.",
   ],
   Figure: SphereFigure,
   questions: [
     {
-      ask: "When are both roots the same?",
-      answer:
-        "When the line only touches the sphere: the discriminant is 0, and the parabola touches the line.",
+      ask: "When are both roots equal?",
+      answer: "When the line touches the sphere: the discriminant is 0, and the parabola touches the line.",
     },
-    { ask: "The start lies inside. Which root is the hit?", answer: "t₂: t₁ is negative, behind the start." },
+    { ask: "The origin is inside. Which root is the hit?", answer: "t₂: t₁ is negative, behind the origin." },
     {
       ask: "When is c negative?",
-      answer: "When the start lies inside: its distance from the centre is less than r.",
+      answer: "When the origin is inside: its distance from the centre is less than r.",
     },
   ],
 };

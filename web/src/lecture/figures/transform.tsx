@@ -32,7 +32,7 @@ function TransformFigure() {
   const [localOrigin, localDirection] = [back(origin), vector(d)];
   const size = Math.hypot(...localDirection);
   const t = cast?.hit?.t ?? null;
-  // The mistake: a direction of length 1 in the object's space, and its t taken for that of the world.
+  // The mistake: normalise the direction in object space, and use its t in world space.
   const used = t == null ? null : wrong ? t * size : t;
   const on = (o: Point, v: Point, s: number): Point => [o[0] + s * v[0], o[1] + s * v[1]];
   return (
@@ -63,7 +63,7 @@ function TransformFigure() {
                   x={scale.x(origin[0])}
                   y={scale.y(origin[1])}
                   color="var(--ray-camera)"
-                  label="Start of the ray"
+                  label="Origin of the ray"
                   drag={(x, y) => {
                     const to = scale.back(x, y);
                     setTip([tip[0] + to[0] - origin[0], tip[1] + to[1] - origin[1]]);
@@ -76,7 +76,7 @@ function TransformFigure() {
           <Plot
             reach={[3.6, 2.9]}
             aspect={1.22}
-            label="Object space: the unit sphere, and the ray moved by the inverse"
+            label="Object space: the unit sphere, and the ray transformed by the inverse"
           >
             {(scale) => (
               <>
@@ -116,7 +116,7 @@ function TransformFigure() {
             text={fixed(move)}
             change={setMove}
           />
-          <Switch label="Usual mistake: make M⁻¹ d of length 1" on={wrong} change={setWrong} />
+          <Switch label="Usual mistake: normalise M⁻¹ d" on={wrong} change={setWrong} />
         </>
       }
     >
@@ -129,13 +129,13 @@ function TransformFigure() {
       <Equation
         numbers={
           t == null ? (
-            "the ray passes the thing"
+            "the ray misses the object"
           ) : (
             <>
               t₁ = {fixed(numberOf(cast, 0, "t₁") ?? Number.NaN, 3)} in object space,{" "}
               <b style={wrong ? { color: "var(--error)" } : {}}>{fixed(used ?? Number.NaN, 3)}</b> used in the
               world
-              {wrong && ": beside the surface"}
+              {wrong && ": off the surface"}
             </>
           )
         }
@@ -212,22 +212,22 @@ function Rays({
 export const transform: Topic = {
   id: "transform",
   title: "Transforms",
-  lead: "Do not move the thing: move the ray back, and meet the thing where it is simple.",
+  lead: "Do not transform the object: transform the ray by the inverse and intersect it in object space.",
   text: [
-    "An ellipse that is stretched, turned and moved is hard to meet. The unit sphere is easy. So the ray is moved by the inverse of the matrix, start and direction both, and meets the sphere in the space in which the object was written.",
-    "The direction must not be made to length 1 there. Then t means the same in both spaces, and hits of different objects can be compared.",
+    "A scaled, rotated and translated ellipse is hard to intersect. The unit sphere is easy. So the origin and the direction of the ray are transformed by the inverse of the matrix, and the ray is intersected with the sphere in the space in which the object was written.",
+    "Do not normalise the direction there. Then t means the same in both spaces, and hits of different objects can be compared.",
   ],
   Figure: TransformFigure,
   questions: [
     {
-      ask: "Why is a direction moved without the translation?",
+      ask: "Why does the translation not apply to a direction?",
       answer:
-        "It is the difference of two points: what is added to both cancels. In homogeneous coordinates its w is 0.",
+        "A direction is the difference of two points: the translation of both cancels. In homogeneous coordinates its w is 0.",
     },
     {
       ask: "What goes wrong if M⁻¹ d is normalised?",
       answer:
-        "t counts in other units, different for each object. Points land beside surfaces, and the order of hits is wrong. Switch it on.",
+        "t has different units for each object. Points land off the surfaces, and the order of hits is wrong. Try the switch.",
     },
   ],
 };

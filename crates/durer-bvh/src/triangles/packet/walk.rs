@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_entered_first_is_next_behind_the_origin_too() {
+    fn first_entered_child_is_next_also_behind_the_origin() {
         let mut node = WideNode::EMPTY;
         for place in 0..WIDTH {
             node.set(place, Aabb::around([Vec3::ZERO]), node::leaf(place, 1));

@@ -27,7 +27,7 @@ fn over((grid, mesh): &(Arc<HeightGrid>, Mesh), quality: BuildQuality) -> Triang
 }
 
 #[test]
-fn a_landscape_is_hit_like_its_triangles() {
+fn height_field_is_hit_like_its_triangles() {
     let (mut random, mut found) = (Random(5), 0);
     for size in [[2, 2], [3, 2], [2, 5], [3, 3], [6, 9], [40, 33]] {
         for (scale, offset) in
@@ -78,7 +78,7 @@ fn a_landscape_is_hit_like_its_triangles() {
 
 /// Neighbouring rays form packets.
 #[test]
-fn packets_find_in_a_landscape_what_single_rays_find() {
+fn packets_find_what_single_rays_find_in_a_height_field() {
     let both = landscape(&mut Random(6), [70, 50], 1.0, Vec3::ZERO);
     let tree = over(&both, BuildQuality::default());
     let ways = (0..64 * 64).map(|i| Vec3::new((i % 64) as f32 / 64.0 - 0.5, -0.6, (i / 64) as f32 / 64.0 - 0.5));
@@ -96,7 +96,7 @@ fn packets_find_in_a_landscape_what_single_rays_find() {
 }
 
 #[test]
-fn what_else_is_asked_of_a_landscape_is_as_of_its_triangles() {
+fn other_queries_of_a_height_field_match_its_triangles() {
     let mut random = Random(7);
     let both = landscape(&mut random, [9, 12], 1.0, Vec3::ZERO);
     let (grid, mesh) = &both;
@@ -125,7 +125,7 @@ fn what_else_is_asked_of_a_landscape_is_as_of_its_triangles() {
 }
 
 #[test]
-fn what_is_no_grid_is_refused() {
+fn invalid_grid_is_refused() {
     let made =
         |columns: usize, rows: usize, heights: Vec<f32>| HeightGrid::new(vec![0.0; columns], vec![1.0; rows], heights);
     assert_eq!(made(1, 2, vec![0.0; 2]), Err(BuildError::NoGrid { columns: 1, rows: 2, heights: 2 }));

@@ -16,7 +16,7 @@ fn with_sides(mesh: &Mesh, ray: &Ray) -> Vec<(TriangleHit, Option<Facing>)> {
 }
 
 #[test]
-fn sides_and_filters_are_as_brute_force_says() {
+fn sides_and_filters_match_brute_force() {
     let (mut random, mut met) = (Random(21), 0);
     for mesh in [torus(30, 15), cube(4), soup(&mut random, 300, 0.4), bars(&mut random, 60, 12)] {
         let bvh = TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Best);
@@ -84,7 +84,7 @@ fn sides_of_a_closed_mesh_alternate() {
 }
 
 #[test]
-fn corners_and_normals_are_those_of_the_mesh() {
+fn corners_and_normals_match_the_mesh() {
     let mut random = Random(23);
     let mut mesh = bars(&mut random, 200, 40);
     mesh.0[5] = Vec3::NAN;
@@ -105,7 +105,7 @@ fn corners_and_normals_are_those_of_the_mesh() {
 }
 
 #[test]
-fn batches_of_all_hits_are_as_single_ones() {
+fn batches_of_all_hits_match_single_queries() {
     let (mut random, mesh) = (Random(24), torus(20, 10));
     let bvh = TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Balanced);
     let rays: Vec<Ray> = (0..200).map(|_| ray(&mesh, &mut random, 1.0, Vec3::ZERO)).collect();
@@ -121,12 +121,12 @@ fn batches_of_all_hits_are_as_single_ones() {
 }
 
 #[test]
-fn what_no_tree_can_be_built_of_is_said() {
+fn invalid_meshes_are_refused_with_a_reason() {
     let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
     let quality = BuildQuality::Fast;
     let error = TriangleBvh::try_build(&vertices, &[[0, 1, 2], [2, 7, 0]], quality).unwrap_err();
     assert_eq!(error, BuildError::MissingVertex { triangle: 1, index: 7, vertices: 3 });
-    assert_eq!(error.to_string(), "triangle 1 names vertex 7, but there are 3, counted from 0");
+    assert_eq!(error.to_string(), "triangle 1 refers to vertex 7, but there are 3 vertices, numbered from 0");
     let error = TriangleBvh::from_flat(&[0.0; 10], &[0, 1, 2], quality).unwrap_err();
     assert_eq!(error, BuildError::NotInThrees { list: "positions", len: 10 });
     let error = TriangleBvh::from_flat(&[0.0; 9], &[0, 1], quality).unwrap_err();

@@ -136,7 +136,7 @@ fn try_rays(name: &str, mesh: &Mesh, seed: u64, rays: usize) -> Tried {
 
 /// Tests 10^5 rays per mesh; 10^7 in the long run.
 #[test]
-fn double_precision_says_the_same() {
+fn double_precision_reference_agrees() {
     const AT_ONCE: usize = 10_000;
     let all = rounds(100_000);
     let mut cut = 0;
@@ -147,8 +147,8 @@ fn double_precision_says_the_same() {
             a += b;
             a
         });
-        println!("{name}: {all} rays, {} crossings, {} too near an edge to tell", tried.crossed, tried.unsure);
+        println!("{name}: {all} rays, {} crossings, {} too close to an edge to decide", tried.crossed, tried.unsure);
         assert!(tried.crossed > all / 50 && tried.unsure < tried.crossed / 10, "{name} {tried:?}");
     }
-    assert!(cut > 0, "no tree has parts of triangles");
+    assert!(cut > 0, "no tree has split triangles");
 }

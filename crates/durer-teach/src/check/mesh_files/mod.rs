@@ -104,7 +104,7 @@ impl MeshFile<'_> {
         let corners = self.data.triangles[triangle as usize].map(|i| self.data.positions[i as usize]);
         match self.face(grid, triangle) {
             Some(span) => {
-                diagnostic.at(span).label("the first of them").related(self.name.span, "the mesh is shown here")
+                diagnostic.at(span).label("the first of them").related(self.name.span, "the mesh is used here")
             }
             None => {
                 let corners = corners.map(vector).join(", ");

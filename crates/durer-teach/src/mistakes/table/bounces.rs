@@ -17,7 +17,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "no-refraction",
         "refraction",
-        "nothing is seen through glass: the transmitted ray is missing",
+        "glass is opaque: the transmitted ray is missing",
         "color += kt * trace(p, T, bounces - 1)",
         "(nothing)",
         |v, divided| if divided == 0.0 { v.settings.refraction = false } else { v.habits.bounces.no_glass = true },
@@ -26,7 +26,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "no-bounces",
         "reflection",
-        "there are no secondary rays at all: neither reflections nor anything through glass",
+        "there are no secondary rays: neither reflection nor transmission",
         "if (bounces > 0) color += ...",
         "(nothing)",
         |v, _| v.settings.bounces = 0,
@@ -34,25 +34,25 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "bounce-less",
         "reflection",
-        "there {is one level|are two levels} of secondary rays less than asked for",
-        "trace(ray, bounces), and again while bounces > 0",
-        "trace(ray, bounces), and again while bounces > {1|2}",
+        "the maximum depth is {one level|two levels} too small",
+        "trace(ray, bounces), recursing while bounces > 0",
+        "trace(ray, bounces), recursing while bounces > {1|2}",
         |v, more| v.settings.bounces = v.settings.bounces.saturating_sub(1 + more as u32),
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
         "bounce-more",
         "reflection",
-        "there {is one level|are two levels} of secondary rays more than asked for",
-        "trace(ray, bounces), and again while bounces > 0",
-        "trace(ray, bounces), and again while bounces >= {0|-1}",
+        "the maximum depth is {one level|two levels} too large",
+        "trace(ray, bounces), recursing while bounces > 0",
+        "trace(ray, bounces), recursing while bounces >= {0|-1}",
         |v, more| v.settings.bounces += 1 + more as u32,
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
         "mirror-in-full",
         "reflection",
-        "mirrored light is not multiplied with the mirror's colour",
+        "mirrored light is not multiplied by the mirror's colour",
         "color += kr * trace(p, R)",
         "color += trace(p, R)",
         |v, _| v.habits.bounces.mirror_in_full = true,
@@ -60,7 +60,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "glass-in-full",
         "refraction",
-        "transmitted light is not multiplied with the glass's colour",
+        "transmitted light is not multiplied by the glass's colour",
         "color += kt * trace(p, T)",
         "color += trace(p, T)",
         |v, _| v.habits.bounces.glass_in_full = true,
@@ -84,7 +84,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "mirror-plus",
         "reflection",
-        "the mirrored direction has the wrong sign within",
+        "the mirrored direction has a wrong sign inside",
         "R = d - 2 (d.N) N",
         "R = d + 2 (d.N) N",
         |v, _| v.habits.bounces.mirror = Mirror::Plus,
@@ -92,7 +92,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "secondary-each-light",
         "reflection",
-        "secondary rays are counted once for each light, inside the loop",
+        "secondary rays are added once per light, inside the loop",
         "for each light { local }; color += kr * trace(p, R)",
         "for each light { local; color += kr * trace(p, R) }",
         |v, _| v.habits.bounces.each_light = true,
@@ -100,7 +100,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "secondary-black-sky",
         "reflection",
-        "mirrored and transmitted rays that hit nothing bring black, not the background",
+        "mirrored and transmitted rays that miss return black instead of the background",
         "if (!hit) return background(d)",
         "if (!hit) return 0, for secondary rays",
         |v, _| v.habits.bounces.black_sky = true,
@@ -108,7 +108,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "secondary-unshadowed",
         "shadows",
-        "there are no shadows in mirrors and behind glass",
+        "shadows are missing in mirrors and behind glass",
         "shadow rays at every hit",
         "shadow rays at the first hit only",
         |v, _| v.habits.bounces.unshadowed = true,
@@ -145,7 +145,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "index-inverted",
         "refraction",
-        "the ratio of the indices of refraction is turned round",
+        "the ratio of the indices of refraction is inverted",
         "eta = n1 / n2 (from, to)",
         "eta = n2 / n1",
         |v, _| v.habits.bounces.glass = Glass::Inverted,
@@ -153,7 +153,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "exit-not-swapped",
         "refraction",
-        "where a ray leaves the glass, the indices are not exchanged",
+        "the indices are not swapped when a ray leaves the glass",
         "leaving: eta = n / 1",
         "leaving: eta = 1 / n",
         |v, _| v.habits.bounces.glass = Glass::NotSwapped,
@@ -161,7 +161,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "not-bent",
         "refraction",
-        "rays go straight through glass, as if its index were 1",
+        "rays pass straight through glass, as if its index were 1",
         "T by Snell's law",
         "T = d",
         |v, _| v.habits.bounces.glass = Glass::Straight,
@@ -169,7 +169,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "fresnel-constant",
         "fresnel",
-        "glass mirrors the same at every angle: R0 in place of Schlick's formula",
+        "glass reflects the same share at every angle: R0 instead of Schlick's formula",
         "R = R0 + (1 - R0) (1 - c)^5",
         "R = R0",
         |v, _| v.habits.bounces.fresnel = Fresnel::Constant,
@@ -177,7 +177,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "no-fresnel",
         "fresnel",
-        "mirrored and transmitted light of glass are not divided by Fresnel's law: both count in full",
+        "Fresnel's law is missing: mirrored and transmitted light of glass both count in full",
         "R * trace(R) + (1 - R) * trace(T)",
         "trace(R) + trace(T)",
         |v, _| v.habits.bounces.fresnel = Fresnel::None,
@@ -185,7 +185,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "fresnel-share",
         "fresnel",
-        "glass mirrors the same share of the light at every angle: {}",
+        "glass reflects the same share of the light at every angle: {}",
         "R = R0 + (1 - R0) (1 - c)^5",
         "R = {}",
         |v, share| v.habits.bounces.fresnel = Fresnel::Share(share),
@@ -194,7 +194,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "fresnel-exchanged",
         "fresnel",
-        "what glass mirrors and what it lets through are exchanged",
+        "the mirrored and transmitted shares of glass are swapped",
         "R * trace(R) + (1 - R) * trace(T)",
         "(1 - R) * trace(R) + R * trace(T)",
         |v, _| v.habits.bounces.fresnel = Fresnel::Exchanged,
@@ -202,7 +202,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "mirror-mixed",
         "reflection",
-        "local light of mirrors counts only for what the mirror's colour leaves",
+        "the local light of mirrors is scaled by 1 minus the mirror's colour",
         "local + kr * trace(p, R)",
         "(1 - kr) * local + kr * trace(p, R)",
         |v, _| v.habits.bounces.mixed = true,
@@ -218,7 +218,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "exit-not-turned",
         "refraction",
-        "where a ray leaves the glass, the normal is not turned round",
+        "the normal is not flipped when a ray leaves the glass",
         "leaving: T of -N",
         "leaving: T of N",
         |v, _| v.habits.bounces.glass = Glass::Outward,
@@ -226,7 +226,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "exit-r0",
         "fresnel",
-        "R0 where a ray leaves glass is another",
+        "R0 differs when a ray leaves glass",
         "R0 = ((n2 - n1) / (n2 + n1))^2 on both sides",
         "R0 = 0 on the way out",
         |v, _| v.toggle(durer_scene::dialect::Compat::ExitR0),
@@ -234,7 +234,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "mirror-diffuse",
         "reflection",
-        "mirrored light is multiplied with the diffuse colour too",
+        "mirrored light is also multiplied by the diffuse colour",
         "color += kr * trace(p, R)",
         "color += kd * kr * trace(p, R), or kd * (local + kr * trace(p, R))",
         |v, _| v.habits.bounces.times_diffuse = true,
@@ -242,7 +242,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "secondary-diffuse",
         "reflection",
-        "{mirrors|glass|both} weigh{s|s|} their light by the diffuse colour, not by the specular one",
+        "{mirrors|glass|mirrors and glass} scale{|s|} light by the diffuse colour instead of the specular one",
         "color += ks * trace(...)",
         "color += kd * trace(...)",
         |v, which| {
@@ -258,7 +258,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "glass-white",
         "refraction",
-        "{what glass lets through is|what glass lets through and mirrors is} not multiplied with its colour",
+        "{light transmitted by glass is|light transmitted and mirrored by glass is} not multiplied by its colour",
         "color += kt * trace(p, T)",
         "color += trace(p, T)",
         |v, which| {
@@ -274,7 +274,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "mirror-squared",
         "reflection",
-        "the mirror's colour counts twice",
+        "the mirror's colour is applied twice",
         "color += kr * trace(p, R)",
         "color += kr * kr * trace(p, R)",
         |v, _| v.phongs(|phong| phong.reflective *= phong.reflective),
@@ -282,7 +282,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "glass-squared",
         "refraction",
-        "the glass's colour counts twice",
+        "the glass's colour is applied twice",
         "color += kt * trace(p, T)",
         "color += kt * kt * trace(p, T)",
         |v, _| v.phongs(|phong| phong.transparent *= phong.transparent),
@@ -290,7 +290,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "fresnel-incoming",
         "fresnel",
-        "Schlick's formula takes the angle of the incoming ray also where that leaves the glass",
+        "Schlick's formula uses the angle of the incoming ray even when it leaves the glass",
         "c = cosine on the side of air",
         "c = dot(-d, N) always",
         |v, _| v.habits.bounces.fresnel = Fresnel::Incoming,
@@ -306,7 +306,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "mirror-factor",
         "reflection",
-        "mirrored light counts {} times",
+        "mirrored light is multiplied by {}",
         "color += kr * trace(p, R)",
         "color += {} * kr * trace(p, R)",
         |v, factor| v.phongs(|phong| phong.reflective *= factor),
@@ -330,8 +330,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "indices-exchanged",
         "refraction",
-        "the two indices of refraction are exchanged, and with them which angle Schlick's formula takes",
-        "n1 outside, n2 inside; the other way on leaving",
+        "the two indices of refraction are swapped, and so is the angle in Schlick's formula",
+        "n1 outside, n2 inside; swapped when leaving",
         "n1 inside, n2 outside",
         |v, _| v.habits.bounces.glass = Glass::Exchanged,
     ),
@@ -346,7 +346,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "fresnel-power",
         "fresnel",
-        "Schlick's formula has the power {}, not 5",
+        "Schlick's formula has the power {} instead of 5",
         "R = R0 + (1 - R0) (1 - c)^5",
         "R = R0 + (1 - R0) (1 - c)^{}",
         |v, power| v.habits.bounces.fresnel = Fresnel::Power(power),
@@ -355,7 +355,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "epsilon-negative",
         "epsilon",
-        "secondary and shadow rays begin behind the surface that they leave: the epsilon has the wrong sign",
+        "secondary and shadow rays start behind the surface that they leave: the epsilon has the wrong sign",
         "t_min = epsilon",
         "t_min = -epsilon",
         |v, _| {

@@ -11,7 +11,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "pixel-corner",
         "rays",
-        "rays go through the corners of pixels, not through their middles",
+        "rays pass through the corners of pixels instead of their centers",
         "x = (i + 0.5) / n",
         "x = i / n",
         |v, corner| v.aim.place = Vec2::new(corner as u32 as f32 % 2.0, (0.5 * corner).floor()),
@@ -20,39 +20,39 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "one-ray",
         "supersampling",
-        "there is one ray a pixel, where the reference has many",
+        "there is one ray per pixel, but the reference has many",
         "the mean of many samples",
-        "one ray through the middle of each pixel",
+        "one ray through the center of each pixel",
         |v, _| v.aim.rays = Rays::One,
     ),
     row(
         "many-rays",
         "supersampling",
-        "each pixel is the mean of many rays, where the reference has one",
-        "one ray through the middle of each pixel",
+        "each pixel is the mean of many rays, but the reference has one",
+        "one ray through the center of each pixel",
         "the mean of many samples",
         |v, _| v.aim.rays = Rays::Sixteen,
     ),
     row(
         "border-pixels",
         "rays",
-        "the first and last pixels lie on the picture's border where their middles should be inside, or the other way",
-        "as the year has it: (i + 0.5) / n, or i / (n - 1)",
+        "the first and last pixels are centered on the picture's border instead of inside it, or the reverse",
+        "as in that year: (i + 0.5) / n, or i / (n - 1)",
         "the other",
         |v, _| v.toggle(Compat::BorderPixels),
     ),
     row(
         "stretch",
         "rays",
-        "a picture that is not square is stretched where it should be cropped, or the other way",
-        "as the year has it: both axes in units of the larger side, or each in its own",
+        "a non-square picture is stretched instead of cropped, or the reverse",
+        "as in that year: both axes in units of the larger side, or each in its own",
         "the other",
         |v, _| v.toggle(Compat::Stretch),
     ),
     row(
         "aspect-smaller-side",
         "rays",
-        "in a picture that is not square the angle spans the smaller side, not the larger one",
+        "in a non-square picture the angle spans the smaller side instead of the larger one",
         "larger side from -1 to 1, the other less",
         "smaller side from -1 to 1, the other more",
         |v, _| v.aim.aspect = Aspect::Smaller,
@@ -60,7 +60,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "aspect-other-axis",
         "rays",
-        "the aspect of the picture is applied to the wrong axis, or divided where it should be multiplied",
+        "the aspect ratio is applied to the wrong axis, or divides instead of multiplying",
         "y *= height / width",
         "y *= width / height",
         |v, _| v.aim.aspect = Aspect::Turned,
@@ -84,7 +84,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "angle-not-degrees",
         "rays",
-        "the field of view is taken as radians",
+        "the field of view is interpreted as radians",
         "D = 1 / tan(angle * pi / 180 / 2)",
         "D = 1 / tan(angle / 2)",
         |v, _| scale(v, |angle| tan(0.5 * angle.to_degrees()) / tan(0.5 * angle)),
@@ -113,8 +113,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "up-not-orthogonal",
         "rays",
-        "whether the camera's up is made perpendicular to its direction is the other way",
-        "as the year has it: v = cross(u, w), or `up` as it is written",
+        "the camera's up is made perpendicular to its direction although it should not be, or the reverse",
+        "as in that year: v = cross(u, w), or `up` as written",
         "the other",
         |v, _| {
             let raw = v.world.camera_rules().up != UpRule::Perpendicular;
@@ -136,7 +136,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "right-not-unit",
         "rays",
-        "the camera's right is not normalised{|, and its up is}",
+        "the camera's right is not normalised{|, but its up is}",
         "u = normalize(cross(w, up))",
         "u = cross(w, up)",
         |v, how| {
@@ -164,8 +164,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "up-default",
         "rays",
-        "the camera's up is taken to be 0 1 0",
-        "up as it is written",
+        "the camera's up is always 0 1 0",
+        "up as written",
         "up = (0, 1, 0)",
         |v, _| {
             let frame = *v.world.camera_frame();
@@ -177,7 +177,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "angle-without-tangent",
         "rays",
-        "half the width of the picture is half the angle{|'s sine}, not its tangent",
+        "half the width of the picture is {half the angle|the sine of half the angle} instead of its tangent",
         "tan(angle / 2)",
         "{angle / 2, in radians|sin(angle / 2)}",
         |v, sine| {

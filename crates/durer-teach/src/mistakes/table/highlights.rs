@@ -17,7 +17,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "highlights-added",
         "specular",
-        "there are highlights, which this year's program does not have ({by R.L|by R.L, where N.L > 0|by N.H})",
+        "there are highlights, which this year's program lacks ({by R.L|by R.L, where N.L > 0|by N.H})",
         "(nothing)",
         "color += ks * pow(max(0, R.L), s) * I",
         |v, model| v.add_highlights(model),
@@ -55,7 +55,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "highlight-factor",
         "specular",
-        "the highlights count {} times",
+        "the highlights are multiplied by {}",
         "color += ks * pow(max(0, N.H), s) * I",
         "color += {} * ks * pow(max(0, N.H), s) * I",
         |v, factor| v.habits.highlights.factor = Some(factor),
@@ -64,15 +64,15 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "other-model",
         "specular",
-        "the highlights are of the other model: Phong's (R.L) for Blinn's (N.H), or the other way",
-        "the year's: max(0, dot(N, norm(L + V))) or max(0, dot(R, L))",
+        "the highlights use the other model: Phong's (R.L) instead of Blinn's (N.H), or the reverse",
+        "as in that year: max(0, dot(N, norm(L + V))) or max(0, dot(R, L))",
         "the other",
         |v, _| v.other_highlights(),
     ),
     row(
         "highlight-cosine",
         "specular",
-        "the highlights are multiplied with N.L",
+        "the highlights are multiplied by N.L",
         "color += ks * pow(base, s) * I",
         "color += ks * pow(base, s) * max(0, N.L) * I",
         |v, _| v.habits.highlights.times_cosine = true,
@@ -80,7 +80,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "highlight-diffuse",
         "specular",
-        "the highlights are multiplied with the diffuse colour",
+        "the highlights are multiplied by the diffuse colour",
         "color += (kd * N.L + ks * pow(base, s)) * I",
         "color += kd * (N.L + ks * pow(base, s)) * I",
         |v, _| v.habits.highlights.times_diffuse = true,
@@ -88,7 +88,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "highlight-bare",
         "specular",
-        "the highlights have not the specular colour: they are white, or the light's",
+        "the highlights lack the specular colour: they are white, or have the light's colour",
         "ks * pow(base, s) * I",
         "pow(base, s) * I",
         |v, _| {
@@ -115,9 +115,9 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "highlight-behind",
         "specular",
-        "highlights on surfaces that face away from the light are shown where the year has none, or left out where it has them",
-        "as the year has it: with or without `if (dot(N, L) > 0)`",
-        "the other way",
+        "highlights on surfaces that face away from the light are present although that year has none, or the reverse",
+        "as in that year: with or without `if (dot(N, L) > 0)`",
+        "the reverse",
         |v, _| {
             v.phongs(|phong| {
                 if let Some((_, _, HighlightModel::Phong { behind })) = &mut phong.highlight {
@@ -137,7 +137,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "highlight-two-sided",
         "specular",
-        "the highlights have lost the sign of their base: there is one on the other side too",
+        "the highlights ignore the sign of their base: there is one on the other side too",
         "pow(max(0, base), s)",
         "pow(abs(base), s)",
         |v, _| v.habits.highlights.two_sided = true,
@@ -145,7 +145,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "highlight-lightless",
         "specular",
-        "the highlights are not multiplied with the light's colour",
+        "the highlights are not multiplied by the light's colour",
         "color += ks * pow(base, s) * I",
         "color += ks * pow(base, s)",
         |v, _| v.habits.highlights.lightless = true,
@@ -153,7 +153,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "highlight-white",
         "specular",
-        "the specular colour is ignored: what has one has white highlights",
+        "the specular colour is ignored: highlights and reflections are white",
         "ks * pow(base, s) * I, ks * trace(R)",
         "pow(base, s) * I, trace(R)",
         |v, _| {

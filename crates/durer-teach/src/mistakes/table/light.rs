@@ -17,7 +17,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "ambient-each-light",
         "diffuse",
-        "the ambient light is added once for each light, inside the loop",
+        "the ambient light is added once per light, inside the loop",
         "color = ambient * kd; for each light color += ...",
         "for each light color += ambient * kd + ...",
         |v, _| v.habits.ambient = Ambient::EachLight,
@@ -25,7 +25,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "ambient-bare",
         "diffuse",
-        "the ambient light is added as it is, not times the diffuse colour",
+        "the ambient light is not multiplied by the diffuse colour",
         "color = ambient * kd",
         "color = ambient",
         |v, _| v.habits.ambient = Ambient::Bare,
@@ -33,8 +33,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "ambient-textured",
         "diffuse",
-        "the ambient light is multiplied with the other of texture (or noise) and diffuse colour",
-        "as the year has it: ambient * texel, or ambient * diffuseColor",
+        "the ambient light is multiplied by the texture (or noise) instead of the diffuse colour, or the reverse",
+        "as in that year: ambient * texel, or ambient * diffuseColor",
         "the other one",
         |v, _| v.phongs(|phong| phong.ambient = phong.ambient.xor(Some(phong.diffuse))),
     ),
@@ -49,7 +49,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "no-cosine",
         "diffuse",
-        "the diffuse term is not times N.L: surfaces have their flat colour",
+        "the diffuse term is not multiplied by N.L: surfaces have a flat colour",
         "color += kd * max(0, N.L) * I",
         "color += kd * I",
         |v, _| v.habits.cosine = Cosine::One,
@@ -57,7 +57,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "two-sided",
         "diffuse",
-        "surfaces are lit from behind too: N.L without its sign",
+        "surfaces are lit from behind too: the sign of N.L is ignored",
         "max(0, dot(N, L))",
         "abs(dot(N, L))",
         |v, _| v.habits.cosine = Cosine::TwoSided,
@@ -65,7 +65,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "not-clamped-below",
         "diffuse",
-        "light from behind is taken away: negative N.L is not clamped",
+        "light from behind is subtracted: negative N.L is not clamped",
         "max(0, dot(N, L))",
         "dot(N, L)",
         |v, _| v.habits.cosine = Cosine::Signed,
@@ -73,7 +73,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "white-diffuse",
         "diffuse",
-        "the {diffuse term has|diffuse and ambient terms have} not the surface's colour",
+        "the {diffuse term is|diffuse and ambient terms are} not multiplied by the surface's colour",
         "color += kd * max(0, N.L) * I",
         "color += max(0, N.L) * I",
         |v, which| {
@@ -87,7 +87,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "diffuse-lightless",
         "diffuse",
-        "the diffuse term is not multiplied with the light's colour",
+        "the diffuse term is not multiplied by the light's colour",
         "color += kd * max(0, N.L) * I",
         "color += kd * max(0, N.L)",
         |v, _| v.habits.diffuse_lightless = true,
@@ -103,7 +103,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "background",
         "flat",
-        "{rays of the camera that hit|rays that hit|rays of the camera that hit|rays that hit} nothing are {black|black|white|white}, not of the background's colour",
+        "{rays of the camera that hit|rays that hit|rays of the camera that hit|rays that hit} nothing are {black|black|white|white} instead of the background's colour",
         "if (!hit) return background",
         "if (!hit) return {0|0|1|1}",
         |v, how| {
@@ -115,7 +115,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "light-missing",
         "diffuse",
-        "light {} (counted from 0) adds nothing",
+        "light {} (counted from 0) contributes nothing",
         "for (i = 0; i < numLights; i++)",
         "a loop that leaves out light {}",
         |v, light| {
@@ -128,7 +128,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "light-alone",
         "diffuse",
-        "light {} (counted from 0) is the only one that adds anything",
+        "light {} (counted from 0) is the only one that contributes",
         "for (i = 0; i < numLights; i++)",
         "only light {}",
         |v, light| {
@@ -140,7 +140,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "last-light-only",
         "diffuse",
-        "each light replaces those before it, so that only the last one is seen",
+        "each light replaces the ones before it, so only the last one is visible",
         "color += ...",
         "color = ambient * kd + ...",
         |v, seen| v.habits.sum = if seen == 0.0 { Sum::LastOnly } else { Sum::LastSeen },
@@ -149,7 +149,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "white-lights",
         "diffuse",
-        "{the colour of the lights is not used|lights shine in the grey of their colours}",
+        "{the colour of the lights is not used|lights emit the grey of their colours}",
         "color += (kd * N.L + ...) * I",
         "color += (kd * N.L + ...) * {1|(I.r + I.g + I.b) / 3}",
         |v, grey| {
@@ -161,7 +161,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "lights-negated",
         "diffuse",
-        "the direction to every light has the wrong sign, and shadow rays go the same way",
+        "the direction to every light has the wrong sign, and shadow rays use it too",
         "L = normalize(position - p), or normalize(-direction)",
         "L = normalize(p - position), or normalize(direction)",
         |v, _| v.habits.lamps.all_negated = true,
@@ -169,7 +169,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "light-negated",
         "diffuse",
-        "directional lights shine from where they should shine to: L is the direction itself",
+        "directional lights shine from the opposite side: L is the direction itself",
         "L = normalize(-direction)",
         "L = normalize(direction)",
         |v, _| v.habits.lamps.negated = true,
@@ -211,7 +211,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "falloff-linear",
         "diffuse",
-        "light fades with the distance, not with its square",
+        "light fades with the distance instead of its square",
         "I = color / (a0 + a1 d + a2 d^2)",
         "I = color / (a0 + a2 d)",
         |v, _| {
@@ -237,7 +237,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "falloff-multiplied",
         "diffuse",
-        "light grows with distance: the falloff is multiplied, not divided by",
+        "light grows with distance: it is multiplied by the falloff instead of divided",
         "I = color / (a0 + a1 d + a2 d^2)",
         "I = color * (a0 + a1 d + a2 d^2)",
         |v, _| v.habits.lamps.fading = Fading::Multiplied,
@@ -265,7 +265,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "falloff-reversed",
         "diffuse",
-        "the three factors of the attenuation are taken in the wrong order",
+        "the three factors of the attenuation are in the wrong order",
         "color / (a0 + a1 d + a2 d^2)",
         "color / (a2 + a1 d + a0 d^2)",
         |v, _| {
@@ -318,7 +318,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "clamped-light",
         "diffuse",
-        "what each light gives is clamped to 1 by itself",
+        "the contribution of each light is clamped to 1",
         "sum all, clamp once when the pixel is written",
         "for each light color += min(1, ...)",
         |v, _| v.habits.sum = Sum::ClampedLight,
@@ -326,7 +326,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "clamped-rays",
         "reflection",
-        "the colour that each ray brings back is clamped to 1",
+        "the colour that each ray returns is clamped to 1",
         "clamp once when the pixel is written",
         "trace(ray) returns min(1, color)",
         |v, _| v.habits.clamped_rays = true,
@@ -350,7 +350,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "cosine-half",
         "diffuse",
-        "the diffuse term goes around to the dark side: (N.L + 1) / 2",
+        "the diffuse term extends to the dark side: (N.L + 1) / 2",
         "color += kd * max(0, N.L) * I",
         "color += kd * (0.5 * N.L + 0.5) * I",
         |v, _| v.habits.cosine = Cosine::Half,
@@ -366,7 +366,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "diffuse-over-pi",
         "diffuse",
-        "the diffuse term is divided by pi, which this year's light is not",
+        "the diffuse term is divided by pi, unlike in this year's program",
         "color += kd * max(0, N.L) * I",
         "color += kd / pi * max(0, N.L) * I",
         |v, _| v.habits.cosine = Cosine::OverPi,
@@ -374,7 +374,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "point-light-position",
         "diffuse",
-        "the position of point lights is taken as a direction{|, and negated|, and its length as the distance}",
+        "the position of point lights is used as a direction{|, and negated|, and its length as the distance}",
         "L = normalize(position - p)",
         "L = normalize({position|-position|position}){||, d = length(position)}",
         |v, how| {
@@ -386,7 +386,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "falloff-root",
         "diffuse",
-        "light is divided by the root of its falloff",
+        "light is divided by the square root of its falloff",
         "I = color / (a0 + a1 d + a2 d^2)",
         "I = color / sqrt(a0 + a1 d + a2 d^2)",
         |v, _| v.habits.lamps.fading = Fading::Root,
@@ -402,7 +402,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "ambient-factor",
         "diffuse",
-        "the ambient light counts {} times",
+        "the ambient light is multiplied by {}",
         "color = ambient * kd",
         "color = {} * ambient * kd",
         |v, factor| v.world.edit().ambient *= factor,
@@ -411,7 +411,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "diffuse-term-factor",
         "diffuse",
-        "the diffuse term counts {} times",
+        "the diffuse term is multiplied by {}",
         "color += kd * max(0, N.L) * I",
         "color += {} * kd * max(0, N.L) * I",
         |v, factor| v.habits.diffuse_factor = Some(factor),
@@ -420,7 +420,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "diffuse-factor",
         "diffuse",
-        "the lights count {} times",
+        "the lights are multiplied by {}",
         "color += (kd * N.L + ks * ...) * I",
         "color += {} * (kd * N.L + ks * ...) * I",
         |v, factor| recolor(v.world.edit().lights.iter_mut(), |color| color * factor),

@@ -27,7 +27,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "turned",
         "rays",
-        "the picture is turned by 180 degrees",
+        "the picture is rotated by 180 degrees",
         "d = D w + x u + y v",
         "d = D w - x u - y v",
         |v, _| {
@@ -38,7 +38,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "transposed",
         "rays",
-        "columns and rows are exchanged",
+        "columns and rows are swapped",
         "pixel(i, j): i the column, j the row",
         "pixel(j, i)",
         |v, _| v.turn.exchange = true,
@@ -46,7 +46,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "bgr",
         "flat",
-        "red and blue are exchanged",
+        "red and blue are swapped",
         "red, green, blue in the order of the format",
         "blue, green, red",
         |v, _| v.turn.bgr = true,
@@ -54,7 +54,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shifted",
         "rays",
-        "the picture is moved by one pixel {up|down|to the left|to the right|up, repeating the border|down, repeating the border|to the left, repeating the border|to the right, repeating the border|up, and around|down, and around|to the left, and around|to the right, and around}",
+        "the picture is shifted by one pixel {up|down|to the left|to the right|up, repeating the border|down, repeating the border|to the left, repeating the border|to the right, repeating the border|up, and around|down, and around|to the left, and around|to the right, and around}",
         "rows and columns from 0",
         "rows or columns from 1",
         |v, way| {
@@ -63,13 +63,13 @@ pub(super) const MISTAKES: &[Mistake] = &[
         },
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0])),
-    row("tone-mapped", "flat", "light is compressed, not cut off at 1", "min(1, c)", "c / (1 + c)", |v, _| {
+    row("tone-mapped", "flat", "light is compressed instead of clamped to 1", "min(1, c)", "c / (1 + c)", |v, _| {
         v.output = Output::Toned
     }),
     row(
         "wrapped",
         "flat",
-        "values beyond 1 wrap around in eight bits",
+        "values above 1 wrap around in eight bits",
         "(unsigned char) (min(1, c) * 255)",
         "(unsigned char) (c * 255)",
         |v, _| v.output = Output::Wrapped,
@@ -77,7 +77,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "scaled-to-maximum",
         "flat",
-        "the picture is divided by its brightest value, not cut off at 1",
+        "the picture is divided by its brightest value instead of clamped to 1",
         "min(1, c) * 255",
         "c / max(all c) * 255",
         |v, _| v.output = Output::Scaled,
@@ -85,15 +85,15 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "other-rounding",
         "flat",
-        "values are rounded where they should be cut off, or the other way: they differ by 1",
-        "as the year has it: (int) (c * 255), or round(c * 255)",
+        "values are rounded instead of truncated, or the reverse: they differ by 1",
+        "as in that year: (int) (c * 255), or round(c * 255)",
         "the other",
         |v, _| v.output = Output::OtherRounding,
     ),
     row(
         "curve-more",
         "flat",
-        "the curve of sRGB (gamma) is applied once more than it should be",
+        "the sRGB curve (gamma) is applied once too often",
         "value = c * 255",
         "value = pow(c, 1 / 2.2) * 255",
         |v, power| v.output = Output::CurveMore(power),
@@ -102,8 +102,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "curve-less",
         "flat",
-        "the curve of sRGB (gamma) is applied once less than it should be, or undone",
-        "value = srgb(c) * 255 where the reference has the curve, else c * 255",
+        "the sRGB curve (gamma) is missing once, or undone",
+        "value = srgb(c) * 255 if the reference has the curve, else c * 255",
         "one curve less: value = c * 255, or pow(c, 2.2) * 255",
         |v, power| v.output = Output::CurveLess(power),
     )
@@ -112,20 +112,20 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "halved",
         "rays",
         "the picture has half the resolution, doubled",
-        "one ray for each pixel",
-        "one ray for two by two pixels",
+        "one ray per pixel",
+        "one ray per two by two pixels",
         |v, _| {
             v.turn.halved = true;
             v.aim.place = durer_scene::math::Vec2::ONE;
         },
     ),
-    row("negative", "flat", "the picture is a negative: dark for bright", "c", "1 - c", |v, _| {
+    row("negative", "flat", "the picture is a negative: bright and dark are swapped", "c", "1 - c", |v, _| {
         v.output = Output::Negative;
     }),
     row(
         "grey",
         "flat",
-        "the picture has no colours{|||| but red| but green| but blue}",
+        "the picture is grey{||||, from red only|, from green only|, from blue only}",
         "three channels",
         "one, three times",
         |v, how| v.output = Output::Grey(how as u32),
@@ -134,9 +134,9 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "steps",
         "flat",
-        "there are only {} steps of each colour",
-        "256 steps",
-        "{} steps",
+        "there are only {} levels of each colour",
+        "256 levels",
+        "{} levels",
         |v, steps| v.output = Output::Steps(steps as u32),
     )
     .with(Values::Only(&[2.0, 3.0, 4.0, 8.0, 16.0, 32.0, 64.0])),

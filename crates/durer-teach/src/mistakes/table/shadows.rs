@@ -10,7 +10,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-added",
         "shadows",
-        "there are shadows, which this picture should not have",
+        "there are shadows, but this picture should have none",
         "(nothing, without -shadows)",
         "if (occluded(p, L, d)) continue",
         |v, _| v.settings.shadows = true,
@@ -18,7 +18,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-endless",
         "shadows",
-        "shadow rays do not end at the light: what is behind it blocks it too",
+        "shadow rays do not end at the light: objects behind it block it too",
         "occluded if hit at eps < t < distance to the light",
         "occluded if hit at t > eps",
         |v, _| v.habits.shadows.endless = true,
@@ -34,7 +34,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-later",
         "shadows",
-        "where one light is blocked, all lights after it are missing too",
+        "if one light is blocked, all later lights are missing too",
         "if (occluded) continue",
         "if (occluded) break",
         |v, _| v.habits.shadows.later_too = true,
@@ -42,7 +42,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-black",
         "shadows",
-        "where one light is blocked, all light is missing, the ambient light too{, but not what mirrors and glass bring|, and what mirrors and glass bring}",
+        "if one light is blocked, all direct and ambient light is missing{, but not the light from mirrors and glass|, and the light from mirrors and glass}",
         "if (occluded) continue",
         "if (occluded) return black",
         |v, all| v.habits.shadows.black = Some(all > 0.0),
@@ -51,7 +51,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-weak",
         "shadows",
-        "in its shadow a light still counts for {} of what it gives",
+        "in its shadow a light still contributes a share of {}",
         "if (occluded) continue",
         "if (occluded) I *= {}",
         |v, left| v.habits.shadows.left = left,
@@ -60,17 +60,17 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-transparent",
         "shadows",
-        "things of glass cast coloured shadows, or full ones where they should not",
-        "as asked for",
-        "the other way",
+        "glass objects cast coloured shadows instead of full ones, or the reverse",
+        "as the options say",
+        "the reverse",
         |v, _| v.settings.transparent_shadows = !v.settings.transparent_shadows,
     ),
     row(
         "shadows-ambient-any",
         "shadows",
-        "where any light is blocked the ambient light is missing too",
+        "if any light is blocked, the ambient light is missing too",
         "color = ambient * kd; if (!occluded) color += ...",
-        "if (occluded) the ambient light is taken away, or never added",
+        "if (occluded) the ambient light is subtracted, or never added",
         |v, _| v.habits.shadows.ambient_of_any = true,
     ),
     row(
@@ -78,7 +78,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "shadows",
         "only light {} (counted from 0) casts shadows",
         "for each light if (occluded) continue",
-        "a shadow ray for light {} alone",
+        "a shadow ray for light {} only",
         |v, light| {
             if v.world.lights().len() > 1 {
                 v.habits.shadows.only_light = Some(light as usize);
@@ -97,7 +97,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-along-normal",
         "shadows",
-        "shadow rays go along the normal, not to the light",
+        "shadow rays go along the normal instead of to the light",
         "Ray(p, L)",
         "Ray(p, N)",
         |v, _| v.habits.shadows.way = ShadowWay::Normal,
@@ -105,7 +105,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-not-of-glass",
         "shadows",
-        "things that let light through cast no shadow",
+        "transparent objects cast no shadow",
         "occluded by any hit",
         "occluded by hits that are not transparent",
         |v, _| v.habits.shadows.no_glass = true,
@@ -113,7 +113,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-inverted",
         "shadows",
-        "light counts where it is blocked, and not where it arrives",
+        "light counts where it is blocked instead of where it arrives",
         "if (!occluded) color += ...",
         "if (occluded) color += ...",
         |v, _| v.habits.shadows.inverted = true,
@@ -129,7 +129,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-highlights",
         "shadows",
-        "highlights are there in shadow too",
+        "highlights remain in shadow",
         "if (!occluded) color += diffuse + specular",
         "color += specular; if (!occluded) color += diffuse",
         |v, _| v.habits.shadows.highlights_left = true,

@@ -14,7 +14,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "normals-local",
         "transforms",
-        "normals of transformed things are not transformed",
+        "normals of transformed objects are not transformed",
         "N = normalize(M^-T n)",
         "N = n",
         |v, _| v.habits.normals = Normals::Local,
@@ -22,7 +22,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "normals-moved",
         "transforms",
-        "normals of transformed things go by M, not by its inverse transpose",
+        "normals of transformed objects are transformed by M instead of its inverse transpose",
         "N = normalize(M^-T n)",
         "N = normalize(M n)",
         |v, _| v.world.edit().shading.moved_normals = true,
@@ -30,7 +30,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "normals-inverse",
         "transforms",
-        "normals of transformed things go by the inverse of M without the transpose",
+        "normals of transformed objects are transformed by the inverse of M without the transpose",
         "N = normalize(M^-T n)",
         "N = normalize(M^-1 n)",
         |v, _| v.habits.normals = Normals::ByInverse,
@@ -38,7 +38,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "normals-long",
         "transforms",
-        "normals of transformed things are not normalised",
+        "normals of transformed objects are not normalised",
         "N = normalize(M^-T n)",
         "N = M^-T n",
         |v, _| v.habits.normals = Normals::Long,
@@ -46,7 +46,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "normals-mixed-long",
         "normals",
-        "normals between the corners of a smooth mesh are not normalised",
+        "interpolated normals of a smooth mesh are not normalised",
         "N = normalize(a Na + b Nb + c Nc)",
         "N = a Na + b Nb + c Nc",
         |v, _| v.habits.long_mixed = true,
@@ -54,7 +54,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "normals-flat",
         "normals",
-        "smooth meshes are shaded flat, with one normal a triangle",
+        "smooth meshes are shaded flat, with one normal per triangle",
         "N = normalize(a Na + b Nb + c Nc)",
         "N = normalize(cross(b - a, c - a))",
         |v, _| v.habits.flat = true,
@@ -62,7 +62,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "normals-smooth",
         "normals",
-        "flat meshes are shaded smooth, their corners' normals weighted {by the areas around|by each face alike}",
+        "flat meshes are shaded smoothly, with vertex normals averaged {by area|evenly}",
         "N = normalize(cross(b - a, c - a))",
         "N = normalize(a Na + b Nb + c Nc)",
         |v, weight| {
@@ -80,7 +80,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "triangles-turned",
         "normals",
-        "normals of triangles point the other way",
+        "normals of triangles are flipped",
         "N = normalize(cross(b - a, c - a))",
         "N = normalize(cross(c - a, b - a))",
         |v, _| v.habits.triangles_turned = true,
@@ -96,7 +96,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "planes-turned",
         "normals",
-        "the normals of planes point to the other side",
+        "normals of planes are flipped",
         "N = normalize(normal)",
         "N = -normalize(normal)",
         |v, _| v.habits.planes_turned = true,
@@ -104,7 +104,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "normals-exchanged",
         "normals",
-        "the weights of smooth normals belong to other corners: {a b c|b c a|c a b|b a c|a c b|c b a} for a b c",
+        "the weights of smooth normals belong to the wrong corners: {a b c|b c a|c a b|b a c|a c b|c b a} for a b c",
         "N = (1 - b - c) Na + b Nb + c Nc",
         "the weights or the normals in another order",
         |v, order| v.habits.mixed_otherwise = order as usize,
@@ -113,7 +113,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "parallelograms",
         "distance",
-        "triangles are parallelograms: nothing asks whether b + c <= 1",
+        "triangles are parallelograms: the test b + c <= 1 is missing",
         "b >= 0 && c >= 0 && b + c <= 1",
         "b >= 0 && c >= 0",
         |v, _| v.parallelograms(),
@@ -121,7 +121,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "other-material",
         "flat",
-        "things have the material {after their own|before their own|after their own, but the last its own|before their own, but the first its own}",
+        "objects have the {next|previous|next|previous} material{||, except for the last one|, except for the first one}",
         "materials[index], index from 0",
         "materials[index + 1], or - 1",
         |v, which| {
@@ -140,7 +140,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "far-spheres",
         "distance",
-        "the far side of spheres is seen: the greater root is taken",
+        "the far side of spheres is visible: the greater root is used",
         "t = (-b - sqrt(D)) / 2a, unless that is less than t_min",
         "t = (-b + sqrt(D)) / 2a",
         |v, _| v.habits.pick = Pick::FarSpheres,
@@ -148,32 +148,32 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "normals-faced",
         "diffuse",
-        "surfaces seen from behind are shaded with their normal turned to the eye, without being asked to",
-        "N as it is (without -shade_back)",
+        "back faces are shaded with a flipped normal, without `-shade_back`",
+        "N as is (without -shade_back)",
         "if (dot(N, d) > 0) N = -N",
         |v, _| v.habits.faced = !v.settings.shade_back,
     ),
     row(
         "backs-not-shaded",
         "diffuse",
-        "surfaces seen from behind are not shaded with their normal turned",
+        "back faces are not shaded with a flipped normal",
         "if (dot(N, d) > 0) N = -N",
-        "N as it is",
+        "N as is",
         |v, _| v.settings.shade_back = false,
     ),
     row(
         "black-backs",
         "diffuse",
-        "whether surfaces seen from behind are black is the other way",
-        "as the year has it",
-        "the other way",
+        "back faces are black although they should not be, or the reverse",
+        "as in that year",
+        "the reverse",
         |v, _| v.toggle(Compat::BlackBacks),
     ),
     row(
         "local-direction-unit",
         "transforms",
-        "the ray's direction is normalised in object space, so that t is another there than in the world",
-        "d' = M^-1 d, with t as it is",
+        "the ray's direction is normalised in object space, so t differs from world space",
+        "d' = M^-1 d, with t unchanged",
         "d' = normalize(M^-1 d)",
         |v, _| v.habits.local_unit = true,
     ),
@@ -193,7 +193,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "rotation-radians",
         "transforms",
-        "angles of rotations are taken as radians",
+        "angles of rotations are interpreted as radians",
         "angle * pi / 180",
         "angle",
         |v, _| v.place(|ops, rules| turned(ops, rules, f32::to_degrees)),
@@ -201,7 +201,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "rotation-negated",
         "transforms",
-        "rotations turn the other way",
+        "rotations have the wrong sign",
         "rotation by angle",
         "rotation by -angle, or the transposed matrix",
         |v, _| v.place(|ops, rules| turned(ops, rules, |angle| -angle)),
@@ -212,7 +212,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "transforms-inverted",
         "transforms",
-        "things are transformed by the inverse of M",
+        "objects are transformed by the inverse of M",
         "ray to object space by M^-1",
         "ray to object space by M",
         |v, _| v.place(|ops, rules| MatrixOp::product(ops, rules).inverse()),
@@ -248,9 +248,9 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "radius",
         "distance",
-        "spheres have {} times the radius that they should have",
+        "spheres have {} times the correct radius",
         "b^2 - 4 a c with c = |o - center|^2 - r^2",
-        "a wrong factor within",
+        "a wrong factor inside",
         |v, factor| {
             v.objects(|geometry| {
                 if let Geometry::Primitive(Primitive::Sphere(sphere)) = geometry {
@@ -292,7 +292,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "farthest-object",
         "distance",
-        "the farthest thing is seen, not the nearest",
+        "the farthest object is visible instead of the nearest",
         "if (t < best) best = t",
         "if (t > best) best = t",
         |v, _| v.habits.pick = Pick::FarthestObject,
@@ -300,7 +300,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "farthest-triangle",
         "distance",
-        "the farthest thing is seen, and of meshes the farthest triangle",
+        "the farthest object is visible, and of meshes the farthest triangle",
         "if (t < best) best = t",
         "if (t > best) best = t",
         |v, _| v.habits.pick = Pick::FarthestTriangle,
@@ -308,7 +308,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "last-triangle",
         "distance",
-        "what is written last hides all others, and of meshes the last triangle",
+        "the last object in the file hides all others, and the last triangle of a mesh hides its others",
         "if (t < best) best = t",
         "if (hit) best = t",
         |v, _| v.habits.pick = Pick::LastTriangle,
@@ -316,7 +316,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "near-roots",
         "distance",
-        "of spheres the nearer root alone is looked at: rays that begin inside do not hit them",
+        "only the nearer root of spheres is tested: rays that start inside do not hit them",
         "t = the least root > t_min",
         "t = the lesser root, or nothing",
         |v, _| v.habits.pick = Pick::NearRoots,
@@ -324,7 +324,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "last-hit",
         "distance",
-        "the last hit along the ray is taken, not the first: the far root of spheres, say",
+        "the last hit along the ray is used instead of the first, such as the far root of spheres",
         "t = the least root > t_min",
         "t = the greatest root",
         |v, _| v.habits.pick = Pick::Last,
@@ -332,7 +332,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "last-written",
         "distance",
-        "the thing written last hides all others: hits are not compared by t",
+        "the last object in the file hides all others: hits are not compared by t",
         "if (t < best) best = t",
         "best = t",
         |v, _| v.habits.pick = Pick::LastWritten,
@@ -340,7 +340,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "first-written",
         "distance",
-        "the thing written first hides all others: a group stops at its first hit",
+        "the first object in the file hides all others: a group stops at its first hit",
         "for each object hit |= object.intersect(...)",
         "for each object if (object.intersect(...)) return true",
         |v, _| v.habits.pick = Pick::FirstWritten,
@@ -358,7 +358,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "thing-missing",
         "distance",
         "all {spheres|planes|triangles|meshes} are missing",
-        "every kind has an intersect(...)",
+        "every kind has a working intersect(...)",
         "one that always returns false",
         |v, kind| {
             v.world.edit().objects.retain(|object| match taught(&object.geometry) {
@@ -388,7 +388,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "one-material",
         "flat",
-        "all things have the {first|last} material",
+        "all objects have the {first|last} material",
         "materials[index]",
         "materials[0], or the one read last",
         |v, last| {
