@@ -135,7 +135,9 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     if keep.is_none() {
         std::fs::remove_dir_all(&out)?;
     }
-    println!("\n{passed} passed, {failed} failed, {explained} differ for a known reason, {looked} for visual comparison only");
+    println!(
+        "\n{passed} passed, {failed} failed, {explained} differ for a known reason, {looked} for visual comparison only"
+    );
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 

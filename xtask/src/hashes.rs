@@ -220,7 +220,8 @@ fn below(root: &Path, folder: &str, deep: bool) -> Result<Vec<String>> {
     let mut found = Vec::new();
     for entry in fs::read_dir(root.join(folder)).with_context(|| folder.to_string())? {
         let entry = entry?;
-        let name = entry.file_name().into_string().ok().with_context(|| format!("{folder}: a file name is not Unicode"))?;
+        let name =
+            entry.file_name().into_string().ok().with_context(|| format!("{folder}: a file name is not Unicode"))?;
         let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_lowercase();
         let path = format!("{folder}/{name}");
         if entry.path().is_dir() {

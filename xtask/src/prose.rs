@@ -204,9 +204,15 @@ impl Paragraph {
     }
 }
 
-/// Replaces code spans by a mark.
+/// Replaces code spans and format placeholders by a mark.
 fn without_code(line: &str) -> String {
-    line.split('`').enumerate().map(|(i, part)| if i % 2 == 0 { part } else { "§" }).collect()
+    let text: String = line.split('`').enumerate().map(|(i, part)| if i % 2 == 0 { part } else { "§" }).collect();
+    let mut parts = text.split('{');
+    let first = parts.next().unwrap_or_default().to_string();
+    parts.fold(first, |all, part| match part.split_once('}') {
+        Some((_, rest)) => all + "§" + rest,
+        None => all + "{" + part,
+    })
 }
 
 /// Returns the contents of the string literals that start or continue on a line, judged by the line

@@ -26,19 +26,12 @@ pub fn run() -> Result<ExitCode> {
         .env("DURER_SOLID_POINTS", POINTS.to_string())
         .status()
         .context("cannot run cargo")?;
-    println!(
-        "{:52} {:>8} {:>12} {:>12}",
-        "a thousand spheres, random rays", "objects", "ns a ray", "tests a ray"
-    );
+    println!("{:52} {:>8} {:>12} {:>12}", "a thousand spheres, random rays", "objects", "ns a ray", "tests a ray");
     for (name, radius) in [("apart from each other", 0.3), ("touching: one tree of a thousand parts", 0.6)] {
         let plain = world("Group", radius)?;
         let merged = world("Merge", radius)?;
         let holes = holes(radius)?;
-        let rows = [
-            ("as plain objects", &plain),
-            ("merged", &merged),
-            ("subtracted from a box", &holes),
-        ];
+        let rows = [("as plain objects", &plain), ("merged", &merged), ("subtracted from a box", &holes)];
         let mut least = [Duration::MAX; 3];
         for _ in 0..TURNS {
             for (time, (_, world)) in least.iter_mut().zip(&rows) {

@@ -116,10 +116,7 @@ fn full_disks(bench: &Bench, offsets: u64) -> Result<()> {
     writers.push(("p.part".into(), "--size 48x36 --shard 1/2".into()));
     for (name, options) in &writers {
         let whole = bench.place("whole")?.join(name);
-        ensure!(
-            bench.render(&format!("{options} --quiet"), &whole).output()?.status.success(),
-            "cannot make {name}"
-        );
+        ensure!(bench.render(&format!("{options} --quiet"), &whole).output()?.status.success(), "cannot make {name}");
         let size = fs::metadata(&whole)?.len();
         for i in 0..offsets {
             let limit = size * i / offsets;

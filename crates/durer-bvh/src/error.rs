@@ -52,12 +52,17 @@ impl fmt::Display for BuildError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             BuildError::MissingVertex { triangle, index, vertices } => {
-                write!(f, "triangle {triangle} refers to vertex {index}, but there are {vertices} vertices, numbered from 0")
+                write!(
+                    f,
+                    "triangle {triangle} refers to vertex {index}, but there are {vertices} vertices, numbered from 0"
+                )
             }
             BuildError::TooManyTriangles { triangles } => {
                 write!(f, "{triangles} triangles are too many: a tree holds fewer than 2^28")
             }
-            BuildError::NotInThrees { list, len } => write!(f, "{list} has {len} numbers, which is not a multiple of 3"),
+            BuildError::NotInThrees { list, len } => {
+                write!(f, "{list} has {len} numbers, which is not a multiple of 3")
+            }
             BuildError::NoGrid { columns, rows, heights } => {
                 write!(
                     f,
@@ -99,7 +104,9 @@ impl fmt::Display for LoadError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             LoadError::NotATree => f.write_str("the data is not a saved tree"),
-            LoadError::Version(version) => write!(f, "the tree is saved in format {version}, which this version does not support"),
+            LoadError::Version(version) => {
+                write!(f, "the tree is saved in format {version}, which this version does not support")
+            }
             LoadError::Length { expected, found } => {
                 write!(f, "the saved tree should have {expected} bytes, but has {found}")
             }

@@ -159,9 +159,7 @@ impl Outputs {
         let place = |(option, name, format)| Ok((guard.writes(option, Path::new(name))?, format));
         let files: Vec<_> = named.into_iter().map(place).collect::<Result<_, Failure>>()?;
         if files.is_empty() {
-            return Err(bad(
-                "nothing to write: pass -output, -depth, -normals, -render_samples or -render_filter",
-            ));
+            return Err(bad("nothing to write: pass -output, -depth, -normals, -render_samples or -render_filter"));
         }
         Ok(Outputs(files))
     }

@@ -251,7 +251,10 @@ fn nan_light_is_reported_with_its_pixel_and_cause() {
     place.put("lamp.txt", lit);
     let ran = place.gives(0, "course --dialect f16 -input lamp.txt -size 9 9 -output o.png");
     let told = ran.err.lines().find(|line| line.contains("not finite")).unwrap_or_else(|| panic!("{}", ran.err));
-    assert!(told.contains("the first in pixel ") && told.contains("light 0 divides by its falloff, which is missing"), "{told}");
+    assert!(
+        told.contains("the first in pixel ") && told.contains("light 0 divides by its falloff, which is missing"),
+        "{told}"
+    );
 }
 
 #[test]

@@ -88,9 +88,7 @@ fn photographs_of_a_known_scene_give_its_cameras() {
     assert!(
         place.gives(0, "photo explain scene.gltf --camera 03.png").out.contains("the file has no observations of it")
     );
-    assert!(
-        place.gives(0, "photo explain points.ply --point 3").out.contains("the file has no observations of it")
-    );
+    assert!(place.gives(0, "photo explain points.ply --point 3").out.contains("the file has no observations of it"));
     place.refused(2, "photo convert matches.json", &["these are matches without cameras"]);
     place.refused(2, "photo solve scene.gltf -o no.out", &["there is nothing to adjust"]);
     place.refused(

@@ -195,7 +195,11 @@ fn help_suggests_the_intended_value() {
         ("diffuseColor 0.6 0.6 0.6", "diffuseColor 0.6 0.6 0.6 reflectiveColor 1 1 1"),
     ];
     let (codes, text) = found(&place, "f04", "--bounces 3", &mirrors);
-    assert!(codes[0] == "too-bright" && text.contains("material 1 reflects and transmits 1.6 times the light that it receives"), "{text}");
+    assert!(
+        codes[0] == "too-bright"
+            && text.contains("material 1 reflects and transmits 1.6 times the light that it receives"),
+        "{text}"
+    );
     assert!(!text.contains("colours of the lights"), "{text}");
     let nodes = "Camera { center 0 0 9 direction 0 0 -1 up 0 1 0 fov 30 }
 Background { color 0 0 0 ambient_light 0.1 0.1 0.1 }

@@ -47,7 +47,8 @@ fn parse(text: &str, column: Option<&str>) -> Result<Vec<[f32; 2]>, Wrong> {
         }
         let word = words.get(number.unwrap_or(1)).ok_or_else(|| (place.clone(), "a value is missing".to_string()))?;
         let value = word.parse().ok().filter(|value: &f32| value.is_finite() && *value >= 0.0);
-        let value = value.ok_or_else(|| (place.clone(), format!("`{word}` is not a spectral value: it must be 0 or more")))?;
+        let value =
+            value.ok_or_else(|| (place.clone(), format!("`{word}` is not a spectral value: it must be 0 or more")))?;
         if !(nm > 0.0 && nm.is_finite()) || rows.last().is_some_and(|last| last[0] >= nm) {
             return Err((place, "wavelengths must be more than 0 and ascend".into()));
         }

@@ -8,10 +8,9 @@ use std::fmt::Write;
 /// Explains a point: its rays, and its residual in every photograph that observes it.
 pub fn point(all: &Reconstruction, number: usize) -> Result<String, Error> {
     let count = all.points.len();
-    let point = all
-        .points
-        .get(number)
-        .ok_or_else(|| Error::new(format!("point {number} does not exist: the file has {count} points, numbered from 0")))?;
+    let point = all.points.get(number).ok_or_else(|| {
+        Error::new(format!("point {number} does not exist: the file has {count} points, numbered from 0"))
+    })?;
     let p = point.position;
     let angle = all.angle(point).to_degrees();
     let mut text = format!("point {number} at ({:.6}, {:.6}, {:.6}), colour {:?}\n", p.x, p.y, p.z, point.color);

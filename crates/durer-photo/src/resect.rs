@@ -203,9 +203,7 @@ pub fn from_vanishing_lines(known: &VanishingLines, distance: f64) -> Result<(Le
     let mut points = Vec::new();
     for lines in &known.lines {
         let v = meeting(lines, size).ok_or_else(|| {
-            Error::new(
-                "a vanishing point needs at least two distinct lines, each through two different pixels",
-            )
+            Error::new("a vanishing point needs at least two distinct lines, each through two different pixels")
         })?;
         if v.z.abs() * 1e4 * size < v.xy().norm() {
             return Err(Error::new(

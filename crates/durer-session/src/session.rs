@@ -355,8 +355,7 @@ impl Session {
     fn write_camera(&mut self) -> Result<String, String> {
         let statement = self.camera()?.statement;
         let document = self.document.as_ref().ok_or("no scene is open")?;
-        let (start, end) =
-            document.camera_statement().ok_or("cannot replace the camera in the text of this file")?;
+        let (start, end) = document.camera_statement().ok_or("cannot replace the camera in the text of this file")?;
         let text = document.text().ok_or("this file is not a text")?;
         Ok(format!("{}{statement}{}", &text[..start], &text[end..]))
     }

@@ -210,9 +210,7 @@ fn portability(bytes: &[u8], file: u32, dialect: Dialect, said: &Diagnostics) ->
     let first = strict.iter().find(|d| d.severity == Severity::Error);
     if let Some(first) = first.filter(|first| !said.iter().any(|known| known.span == first.span)) {
         let message = format!("the program of {} would refuse this file: {}", dialect.name(), first.message);
-        let note = Diagnostic::note(message)
-            .code("portability")
-            .help("it is read anyway; `--strict` refuses it too");
+        let note = Diagnostic::note(message).code("portability").help("it is read anyway; `--strict` refuses it too");
         notes.push(Diagnostic { span: first.span, ..note });
     }
     notes

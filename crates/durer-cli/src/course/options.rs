@@ -166,7 +166,8 @@ impl Given {
             .map(|(row, _)| Hint { set: row.2, why: format!("`{}` is an option of that year", row.0), weak: false })
             .collect();
         let extension = self.text("-output").and_then(|name| Path::new(name).extension()?.to_str());
-        let wanted = |set: DialectSet, format: &str| Hint { set, why: format!("the output is a {format} file"), weak: true };
+        let wanted =
+            |set: DialectSet, format: &str| Hint { set, why: format!("the output is a {format} file"), weak: true };
         hints.extend(match extension {
             Some("bmp") => Some(wanted(set::F12A4 | set::F12A5, "BMP")),
             Some("png") => Some(wanted(set::F16 | set::F23, "PNG")),

@@ -270,7 +270,8 @@ impl Reader<'_, '_> {
             }
         };
         if numbers.len() % width != 0 {
-            let message = format!("`{field}` needs rows of {width} numbers, but has {} numbers in total", numbers.len());
+            let message =
+                format!("`{field}` needs rows of {width} numbers, but has {} numbers in total", numbers.len());
             self.error(Diagnostic::error(message).at(open.to(self.last_span())).related(keyword, "in this block"));
             return None;
         }

@@ -134,8 +134,9 @@ impl Reader<'_, '_> {
         let error = Diagnostic::error("`Rotate` needs braces around its axis and angle").code("syntax").at(whole);
         self.error(match count {
             4 => error.help(format!("write `Rotate {{ {numbers} }}`")).fix(whole, format!("Rotate {{ {numbers} }}")),
-            _ => error
-                .help(format!("for rotation about one axis, write `XRotate {numbers}`, `YRotate {numbers}` or `ZRotate {numbers}`")),
+            _ => error.help(format!(
+                "for rotation about one axis, write `XRotate {numbers}`, `YRotate {numbers}` or `ZRotate {numbers}`"
+            )),
         });
         for _ in 0..count {
             self.advance();
@@ -155,7 +156,9 @@ impl Reader<'_, '_> {
         let error =
             Diagnostic::error("`Scale` takes three numbers, one for each axis").code("syntax").at(word.to(last));
         self.error(
-            error.help(format!("for the same scale along all axes, write `UniformScale {number}`")).fix(word, "UniformScale"),
+            error
+                .help(format!("for the same scale along all axes, write `UniformScale {number}`"))
+                .fix(word, "UniformScale"),
         );
         self.advance();
         true

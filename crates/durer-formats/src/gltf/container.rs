@@ -56,7 +56,12 @@ fn glb(bytes: &[u8], report: &mut Report) -> Option<Parts> {
         return None;
     };
     if version != 2 {
-        say(report, 4..8, "GLB_INVALID_VERSION", format!("unsupported GLB version {version}: only version 2 is supported"));
+        say(
+            report,
+            4..8,
+            "GLB_INVALID_VERSION",
+            format!("unsupported GLB version {version}: only version 2 is supported"),
+        );
         return None;
     }
     if length < 20 {
@@ -64,7 +69,12 @@ fn glb(bytes: &[u8], report: &mut Report) -> Option<Parts> {
         return None;
     }
     if length as usize > end {
-        say(report, 8..12, "GLB_LENGTH_MISMATCH", format!("the header declares {length} bytes, but the file has {end}"));
+        say(
+            report,
+            8..12,
+            "GLB_LENGTH_MISMATCH",
+            format!("the header declares {length} bytes, but the file has {end}"),
+        );
         return None;
     }
     if (length as usize) < end {

@@ -15,8 +15,7 @@ use durer_scene::texture::{Channel, Mapping};
 use std::f32::consts::TAU;
 
 /// Extensions without a counterpart, with the substitute.
-const WITHOUT_COUNTERPART: [(&str, &str); 1] =
-    [("KHR_materials_subsurface", "subsurface scattering is left out")];
+const WITHOUT_COUNTERPART: [(&str, &str); 1] = [("KHR_materials_subsurface", "subsurface scattering is left out")];
 
 /// Textures of extensions without a counterpart: extension, key and substitute.
 const TEXTURES: [(&str, &str, &str); 3] = [

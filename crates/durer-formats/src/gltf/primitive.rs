@@ -63,7 +63,10 @@ impl Model<'_> {
         }
         let counts: Vec<usize> = primitives.items().map(|primitive| primitive.list("targets", |_| ()).len()).collect();
         if counts.iter().any(|count| *count != counts[0]) {
-            primitives.error("MESH_PRIMITIVES_UNEQUAL_TARGETS_COUNT", "all primitives must have the same number of morph targets");
+            primitives.error(
+                "MESH_PRIMITIVES_UNEQUAL_TARGETS_COUNT",
+                "all primitives must have the same number of morph targets",
+            );
         }
         primitives.items().map(|primitive| self.primitive(&primitive)).collect()
     }

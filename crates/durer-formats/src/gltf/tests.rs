@@ -67,11 +67,7 @@ const SURVIVED: &[(&str, &str, &str)] = &[
     ("ACCESSOR_ELEMENT_OUT_OF_", "accessor_data/", "bounds are computed from the data; declared bounds are ignored"),
     ("ACCESSOR_MAX_MISMATCH", "accessor_data/", "as before"),
     ("ACCESSOR_MIN_MISMATCH", "accessor_data/", "as before"),
-    (
-        "BUFFER_VIEW_INVALID_BYTE_STRIDE",
-        "buffer_view/",
-        "a stride is applied even where the specification forbids it",
-    ),
+    ("BUFFER_VIEW_INVALID_BYTE_STRIDE", "buffer_view/", "a stride is applied even where the specification forbids it"),
     ("BUFFER_VIEW_TARGET_OVERRIDE", "mesh/", "the target of a view is a hint for graphics hardware"),
     ("IMAGE_", "image", "pictures are recognised by their bytes, and decoded only if a material uses them"),
     ("INVALID_URI", "image", "as before: the bytes are not of the kind that is declared"),

@@ -175,7 +175,8 @@ impl Reader<'_> {
     /// Picture that a light projects.
     fn thrown(&self, texture: &Plugin) -> Option<Image> {
         if texture.kind != "bitmap" {
-            self.said.once(texture.at, "projecting other textures than `bitmap` has no counterpart: the texture is ignored");
+            self.said
+                .once(texture.at, "projecting other textures than `bitmap` has no counterpart: the texture is ignored");
             return None;
         }
         let name = texture.text(self.said, "filename")?;

@@ -479,7 +479,8 @@ impl<'a> Loader<'a> {
     fn curve(&self, all: Vec<f64>, at: Span) -> Option<Value> {
         let curve: Vec<[f32; 2]> = all.chunks_exact(2).map(|pair| [pair[0] as f32, pair[1] as f32]).collect();
         if let Some(pair) = curve.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
-            let message = format!("the wavelengths of a spectrum must increase: {} comes after {}", pair[1][0], pair[0][0]);
+            let message =
+                format!("the wavelengths of a spectrum must increase: {} comes after {}", pair[1][0], pair[0][0]);
             self.said.bad(at, message);
             return None;
         }

@@ -199,7 +199,11 @@ impl Reader<'_> {
         if let Value::Text(text) = &property.value {
             return metals::clear(text).unwrap_or_else(|| {
                 let help = meant(text, metals::clear_names());
-                self.said.bad_with(property.at, format!("unknown material `{text}`: it has no index of refraction"), help);
+                self.said.bad_with(
+                    property.at,
+                    format!("unknown material `{text}`: it has no index of refraction"),
+                    help,
+                );
                 usual
             });
         }
@@ -324,8 +328,10 @@ impl Reader<'_> {
             m.coat_roughness_texture = m.specular_roughness_texture.take();
             m.specular_weight = 0.0;
             if m.specular_color != Vec3::ONE || m.specular_color_texture.take().is_some() {
-                self.said
-                    .once(plugin.place("specular_reflectance"), "a coloured reflection of a coat has no counterpart: white is used");
+                self.said.once(
+                    plugin.place("specular_reflectance"),
+                    "a coloured reflection of a coat has no counterpart: white is used",
+                );
             }
         } else {
             m.specular_ior = index;

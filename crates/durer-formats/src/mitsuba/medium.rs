@@ -39,8 +39,10 @@ impl Reader<'_> {
             match phase.kind.as_str() {
                 "isotropic" => {}
                 "hg" => anisotropy = phase.number(said, "g").unwrap_or(0.8).clamp(-0.99, 0.99),
-                other => said
-                    .once(phase.at, format!("the phase function `{other}` has no counterpart: isotropic scattering is used")),
+                other => said.once(
+                    phase.at,
+                    format!("the phase function `{other}` has no counterpart: isotropic scattering is used"),
+                ),
             }
         }
         plugin.known(&["sample_emitters", "has_spectral_extinction", "majorant_resolution_factor"]);
@@ -59,10 +61,7 @@ impl Reader<'_> {
             "constvolume" => self.color(&volume, "value", usual),
             _ => {
                 let at = volume.at;
-                self.said.once(
-                    at,
-                    format!("a `{name}` that varies has no counterpart: its mean is used"),
-                );
+                self.said.once(at, format!("a `{name}` that varies has no counterpart: its mean is used"));
                 let bytes = volume.text(self.said, "filename");
                 let bytes = bytes.and_then(|path| named_bytes(self.input, self.said, "the volume", &path, at));
                 let mean = bytes

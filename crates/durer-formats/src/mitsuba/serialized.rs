@@ -71,7 +71,8 @@ fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, Wrong> {
     }
     let wanted = triangles.saturating_mul(12).saturating_add(vertices * row);
     if wanted > budget {
-        let message = format!("{vertices} vertices and {triangles} triangles are more than a file of this size may hold");
+        let message =
+            format!("{vertices} vertices and {triangles} triangles are more than a file of this size may hold");
         return Err((unpacked.place(), message));
     }
     let mut list = |what: &str, there: bool, width: u64| match there {

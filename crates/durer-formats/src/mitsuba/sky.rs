@@ -66,7 +66,10 @@ impl Reader<'_> {
         plugin.known(&["sun_aperture", "sun_radius_scale", "resolution", "stretch", "sampling_weight", "complex_sun"]);
         plugin.left_out(said, &["albedo"], "the ground's albedo is 0.2");
         plugin.finish(said);
-        said.once(plugin.at, "the sky of Hosek and Wilkie has no counterpart: Preetham's is used, with the same illuminance");
+        said.once(
+            plugin.at,
+            "the sky of Hosek and Wilkie has no counterpart: Preetham's is used, with the same illuminance",
+        );
         let Some(way) = way.try_normalize().filter(|way| way.y > 0.0) else {
             return said.once(plugin.at, "the sun is below the horizon: this light is left out");
         };

@@ -81,8 +81,7 @@ impl Reader<'_> {
         match self.texture(plugin, name, Vec3::splat(usual)) {
             Texture::Even(color) => {
                 if color.min_element() < 0.0 {
-                    self.said
-                        .once(plugin.place(name), format!("a negative `{name}` has no counterpart: 0 is used"));
+                    self.said.once(plugin.place(name), format!("a negative `{name}` has no counterpart: 0 is used"));
                 }
                 (color.max(Vec3::ZERO), None)
             }

@@ -106,7 +106,11 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
             let up = if up == DVec3::ZERO { frame(forward.unwrap_or(DVec3::Z)).x_axis } else { up };
             let left = forward.and_then(|forward| up.cross(forward).try_normalize());
             let (Some(forward), Some(left)) = (forward, left) else {
-                loader.bad(tag.at, "the direction from `origin` to `target` must have a length and not be along `up`", None);
+                loader.bad(
+                    tag.at,
+                    "the direction from `origin` to `target` must have a length and not be along `up`",
+                    None,
+                );
                 return None;
             };
             let axes = DMat3::from_cols(left, forward.cross(left), forward);

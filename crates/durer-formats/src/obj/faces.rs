@@ -234,8 +234,7 @@ pub(super) fn index(
         report.error(at, format!("{one} 0 does not exist: indices count from 1"));
     } else if index > 0 {
         let message = format!("{one} {} does not exist: the file has {}", shown(text), counted(total, one, many));
-        report.error(at, message).help =
-            (total == 0).then(|| format!("add `{keyword}` statements for {many}"));
+        report.error(at, message).help = (total == 0).then(|| format!("add `{keyword}` statements for {many}"));
     } else {
         let before = counted(so_far, one, many);
         report.error(at, format!("{} reaches back too far: {before} so far", shown(text)));

@@ -193,7 +193,10 @@ impl Reader<'_> {
     fn larger(&self, window: &Window, (width, height): (u32, u32), params: &Params) -> (f64, DVec2) {
         let (x, y) = (window.half.x / f64::from(width), window.half.y / f64::from(height));
         if (x / y - 1.0).abs() > 2e-3 {
-            params.said.other(params.at, "pixels that are not square have no counterpart: the view across the larger side is used");
+            params.said.other(
+                params.at,
+                "pixels that are not square have no counterpart: the view across the larger side is used",
+            );
         }
         let half = if width >= height { window.half.x } else { window.half.y };
         (half, window.middle / half)
@@ -297,8 +300,7 @@ impl Reader<'_> {
             let help = meant(&asked.kind, known.iter().copied());
             self.said.bad_with(asked.at, format!("unknown integrator `{}`", asked.kind), help);
         } else if !asked.kind.ends_with("path") {
-            let what =
-                format!("the integrator `{}` has no counterpart: path tracing is used", asked.kind);
+            let what = format!("the integrator `{}` has no counterpart: path tracing is used", asked.kind);
             self.said.push(durer_diag::Diagnostic::note(what).code("NO_COUNTERPART").at(asked.at));
         }
         match params.whole("maxdepth").unwrap_or(5) {

@@ -82,7 +82,10 @@ fn pieces(params: &Params) -> Option<Vec<[DVec3; 4]>> {
     if points.len() <= degree || !(points.len() - 1 - degree).is_multiple_of(step) {
         let message = match basis {
             "bezier" => {
-                format!("{} points do not make a curve of degree {degree}: give 1 more than a multiple of {degree}", points.len())
+                format!(
+                    "{} points do not make a curve of degree {degree}: give 1 more than a multiple of {degree}",
+                    points.len()
+                )
             }
             _ => format!("{} points do not make a curve of degree {degree}: give more than {degree}", points.len()),
         };

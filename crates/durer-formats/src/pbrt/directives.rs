@@ -191,7 +191,9 @@ impl Reader<'_> {
             },
             "LookAt" => match look_at(self.numbers(at)?) {
                 Some(map) => self.state.transforms.apply(map),
-                None => said.bad(at, "the eye and the target of `LookAt` must differ, and `up` must not be along the view"),
+                None => {
+                    said.bad(at, "the eye and the target of `LookAt` must differ, and `up` must not be along the view")
+                }
             },
             "Transform" | "ConcatTransform" => {
                 let map = matrix(self.numbers(at)?, at, said);
@@ -358,8 +360,7 @@ impl Reader<'_> {
         match self.stack.last() {
             Some((open, ..)) if *open == scope => {}
             Some((open, _, begun)) if *open != Scope::Import => {
-                let error =
-                    Diagnostic::error(format!("`{end}` does not match the scope that is open"));
+                let error = Diagnostic::error(format!("`{end}` does not match the scope that is open"));
                 self.said.push(error.code("unclosed").at(at).related(*begun, "this is still open"));
                 return;
             }

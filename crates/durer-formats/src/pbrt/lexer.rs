@@ -114,7 +114,10 @@ impl Lexer {
                         Some(letter @ (b'"' | b'\\' | b'\'')) => letter,
                         _ => {
                             let at = self.span(self.at, (self.at + 2).min(self.bytes.len()));
-                            said.bad(at, "unknown escape: `\\` must be followed by b, f, n, r, t, a quote or another `\\`");
+                            said.bad(
+                                at,
+                                "unknown escape: `\\` must be followed by b, f, n, r, t, a quote or another `\\`",
+                            );
                             b'\\'
                         }
                     });

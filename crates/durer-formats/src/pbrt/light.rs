@@ -31,9 +31,7 @@ fn color(params: &Params, name: &'static str) -> Color {
 fn colored_scale(params: &Params) -> Color {
     match params.get("scale") {
         Some(param) if param.kind == Kind::Float => {
-            params
-                .said
-                .once(param.at, "`scale` of a light is a colour in pbrt-v3: this number is ignored");
+            params.said.once(param.at, "`scale` of a light is a colour in pbrt-v3: this number is ignored");
             Vec3::ONE
         }
         _ => params.spectrum("scale").map_or(Vec3::ONE, |spectrum| spectrum.plain()),
@@ -149,11 +147,7 @@ impl Reader<'_> {
     pub fn area_light(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
         let third = self.language == Language::Third;
         if kind != "diffuse" && !(third && kind == "area") {
-            return self.said.bad_with(
-                at,
-                format!("unknown area light `{kind}`"),
-                Some("write `diffuse`".into()),
-            );
+            return self.said.bad_with(at, format!("unknown area light `{kind}`"), Some("write `diffuse`".into()));
         }
         let params = self.params(list, Some(LIGHT), at);
         let picture = if third { None } else { params.text("filename").map(str::to_string) };

@@ -88,9 +88,7 @@ impl Reader<'_> {
             }
             "uniformgrid" | "heterogeneous" => self.grid(&name, &params),
             "rgbgrid" | "cloud" | "nanovdb" => {
-                let what = format!(
-                    "media of type `{kind}` have no counterpart: they are ignored"
-                );
+                let what = format!("media of type `{kind}` have no counterpart: they are ignored");
                 self.said.once(at, what);
                 None
             }

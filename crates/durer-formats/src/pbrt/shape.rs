@@ -187,8 +187,7 @@ impl Reader<'_> {
         self.grown = self.grown.saturating_add(data.triangles.len());
         if self.grown > MAX_GROWN {
             self.grown = MAX_GROWN;
-            let what =
-                format!("tessellated shapes beyond {MAX_GROWN} triangles are left out");
+            let what = format!("tessellated shapes beyond {MAX_GROWN} triangles are left out");
             self.said.once(at, what);
             return None;
         }

@@ -44,7 +44,10 @@ fn written(param: &Param, params: &Params) -> Option<SpectrumSource> {
         (Kind::Blackbody, _) => {
             let kelvin = param.number();
             if !(kelvin > 0.0 && kelvin < 1e6) {
-                said.bad(param.values_at, "the temperature of a blackbody must be more than 0 and less than 1000000 kelvin");
+                said.bad(
+                    param.values_at,
+                    "the temperature of a blackbody must be more than 0 and less than 1000000 kelvin",
+                );
                 return None;
             }
             Some(SpectrumSource::Blackbody(kelvin))

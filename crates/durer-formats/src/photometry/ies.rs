@@ -153,7 +153,11 @@ fn parse(text: &str, file: u32) -> Result<(Profile, Vec<Diagnostic>), Box<Diagno
         }
         let value = (scale * value) as f32;
         if !value.is_finite() {
-            return Err(numbers.error(start, numbers.at, "the candela value exceeds the range of 32-bit floating point"));
+            return Err(numbers.error(
+                start,
+                numbers.at,
+                "the candela value exceeds the range of 32-bit floating point",
+            ));
         }
         candela.push(value);
     }

@@ -151,7 +151,11 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Found<Profile>
         let value = lines.not_negative(&format!("intensity number {} of {all}", i + 1))?;
         let value = (scale * value) as f32;
         if !value.is_finite() {
-            return Err(lines.error(lines.at, lines.at, "the candela value exceeds the range of 32-bit floating point"));
+            return Err(lines.error(
+                lines.at,
+                lines.at,
+                "the candela value exceeds the range of 32-bit floating point",
+            ));
         }
         candela.push(value);
     }
@@ -167,7 +171,8 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Found<Profile>
         _ => {}
     }
     if profile.candela.iter().all(|candela| *candela == 0.0) {
-        let error = lines.error(angles.start, angles.end, "this luminaire is dark: its flux or all its intensities are 0");
+        let error =
+            lines.error(angles.start, angles.end, "this luminaire is dark: its flux or all its intensities are 0");
         diagnostics.push(Diagnostic { severity: Severity::Warning, ..*error });
     }
     Ok(profile)

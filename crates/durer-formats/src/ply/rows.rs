@@ -235,8 +235,7 @@ impl<V: Values> Body<'_, '_, V> {
         let cut = self.cutter.cut(corners.len(), position, |triangle| triangles.push(triangle.map(|i| corners[i])));
         cut.map_err(|_| {
             let message = format!("a face of {} corners is too complex to triangulate", self.corners.len());
-            self.report.error(self.values.last(), message).help =
-                Some("triangulate it in a modelling program".into());
+            self.report.error(self.values.last(), message).help = Some("triangulate it in a modelling program".into());
             Stop
         })
     }

@@ -143,7 +143,11 @@ fn wrong_rows() {
         ("1 0 0", "1 x 0", "11:3+1 Error: expected a number, found `x`".to_string()),
         ("1 0 0", "1 0 nan", format!("11:5+3 Error: expected a finite number, found `nan` {limit}")),
         ("3 0 1 2", "3 0 1 3", "13:7+1 Error: vertex 3 does not exist: the file has 3 vertices, counted from 0".into()),
-        ("3 0 1 2", "3 0 -1 2", "13:5+2 Error: vertex -1 does not exist: the file has 3 vertices, counted from 0".into()),
+        (
+            "3 0 1 2",
+            "3 0 -1 2",
+            "13:5+2 Error: vertex -1 does not exist: the file has 3 vertices, counted from 0".into(),
+        ),
         ("3 0 1 2", "3 0 1.5 2", "13:5+3 Error: expected a whole number, found `1.5`".into()),
         ("3 0 1 2", "2 0 1", "13:1+1 Error: a face needs at least 3 corners, found 2".into()),
         ("3 0 1 2", "-1", "13:1+2 Error: a list cannot have -1 values".into()),

@@ -57,7 +57,8 @@ impl Thing {
         let right = counts.contains(&self.numbers.len());
         if !right {
             let counts = counts.iter().map(usize::to_string).collect::<Vec<_>>().join(" or ");
-            let message = format!("a {} needs {counts} numbers, but this one has {}", self.kind.text, self.numbers.len());
+            let message =
+                format!("a {} needs {counts} numbers, but this one has {}", self.kind.text, self.numbers.len());
             said.bad(self.at(), message);
         }
         right

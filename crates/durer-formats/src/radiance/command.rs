@@ -237,7 +237,10 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &Place) -> O
                 rest = &more[1..];
             }
             _ => {
-                reader.said.bad(option.at, format!("`genprism` has no option {}, or its arguments are missing", option.shown()));
+                reader.said.bad(
+                    option.at,
+                    format!("`genprism` has no option {}, or its arguments are missing", option.shown()),
+                );
                 return None;
             }
         }

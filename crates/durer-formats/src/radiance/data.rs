@@ -42,10 +42,7 @@ impl Table {
             let places = count.count(said)?;
             total = total.saturating_mul(places);
             if places == 0 || total > bytes.len() {
-                said.bad(
-                    count.at,
-                    format!("the file is too short for {places} values of this coordinate"),
-                );
+                said.bad(count.at, format!("the file is too short for {places} values of this coordinate"));
                 return None;
             }
             axes.push(match from == to {

@@ -50,9 +50,8 @@ impl Reader<'_> {
         let path = format!("lamp-{}.ies", number + 1);
         if known.is_none() {
             if self.profiles.len() >= MOST_PROFILES {
-                let message = format!(
-                    "more than {MOST_PROFILES} directional distributions of emitters: the rest are left out"
-                );
+                let message =
+                    format!("more than {MOST_PROFILES} directional distributions of emitters: the rest are left out");
                 self.said.warn_once("too-many-lamps", span, message);
                 return None;
             }

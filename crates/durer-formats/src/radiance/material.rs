@@ -223,7 +223,10 @@ impl Reader<'_> {
                     instead("it becomes a visible emitter");
                 }
                 if kind == "glow" && thing.number(3).is_some_and(|reach| reach != 0.0) {
-                    said.once(at, "the maximum radius of a `glow` has no counterpart: it illuminates surfaces at any distance");
+                    said.once(
+                        at,
+                        "the maximum radius of a `glow` has no counterpart: it illuminates surfaces at any distance",
+                    );
                 }
                 if let Some(spread) = above.spread.clone() {
                     return Made { kind: Kind::Aimed { radiance: color, spread, at }, ..Made::nothing() };

@@ -26,10 +26,7 @@ impl Reader<'_> {
                 0.0
             }
             _ => {
-                self.said.once(
-                    at,
-                    format!("`{kind}` has no counterpart: both modifiers are mixed in equal parts"),
-                );
+                self.said.once(at, format!("`{kind}` has no counterpart: both modifiers are mixed in equal parts"));
                 0.5
             }
         };

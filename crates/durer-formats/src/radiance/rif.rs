@@ -71,8 +71,7 @@ impl Reader<'_> {
         }
         let options = settings.iter().filter(|setting| setting.name == "render").flat_map(|setting| &setting.values);
         for option in options.filter(|option| option.text == "-bv-") {
-            let what =
-                "back-face culling (-bv-) has no counterpart: surfaces are visible from both sides";
+            let what = "back-face culling (-bv-) has no counterpart: surfaces are visible from both sides";
             self.said.once(option.at, what);
         }
         let last = |name: &str| settings.iter().rfind(|setting| setting.name == name).and_then(|s| s.values.first());

@@ -156,7 +156,8 @@ impl<'a> Reader<'a> {
     pub fn is_full(&mut self, at: Span) -> bool {
         if !self.full && self.scene.materials.len() > 3 * self.modifiers.len() + MOST_COPIES {
             self.full = true;
-            self.said.bad(at, format!("more than {MOST_COPIES} materials result from patterns and mixtures with `void`"));
+            self.said
+                .bad(at, format!("more than {MOST_COPIES} materials result from patterns and mixtures with `void`"));
         }
         self.full
     }
@@ -268,8 +269,7 @@ impl<'a> Reader<'a> {
         let before = self.count;
         self.count = self.count.saturating_add(more);
         if before <= MAX_THINGS && self.count > MAX_THINGS {
-            self.said
-                .bad(at, format!("the scene has more than {MAX_THINGS} corners and shapes, including arrays"));
+            self.said.bad(at, format!("the scene has more than {MAX_THINGS} corners and shapes, including arrays"));
         }
         self.count <= MAX_THINGS
     }
@@ -291,7 +291,8 @@ impl<'a> Reader<'a> {
                 continue;
             }
             let span = body.at;
-            self.said.once(span, "the mist around the camera fills its bounding box, and attenuates all colours equally");
+            self.said
+                .once(span, "the mist around the camera fills its bounding box, and attenuates all colours equally");
             self.bodies.remove(&number);
             self.scene.fog = Some(Spanned { value: Fog { min: Some(min), max: Some(max), ..fog }, span });
         }

@@ -26,12 +26,8 @@ impl Reader<'_> {
             "instance" | "mesh" => {
                 let name = thing.texts.first().map_or(String::new(), Word::shown);
                 let help = match thing.kind.text.as_str() {
-                    "mesh" => {
-                        "Radiance meshes are not supported: convert the original OBJ to polygons with `obj2rad`"
-                    }
-                    _ => {
-                        "octrees are not supported: write `!xform OPTIONS FILE.rad` with the octree's source file"
-                    }
+                    "mesh" => "Radiance meshes are not supported: convert the original OBJ to polygons with `obj2rad`",
+                    _ => "octrees are not supported: write `!xform OPTIONS FILE.rad` with the octree's source file",
                 };
                 self.missing(thing);
                 let message = format!("{name} is left out: {help}");

@@ -174,7 +174,10 @@ fn errors_have_positions() {
     let cycle = folder(&[("a.rad", b"\n!xform a.rad"), ("far.rad", b"!cat ../a.rad")]);
     for (text, told) in [
         ("void plastik m 0 0 5 1 1 1 0 0", "1:6 error unknown type `plastik` (did you mean `plastic`?)"),
-        ("void plastic m 0 0 4 1 1 1 0\nm sphere s 0 0 4 0 0 0 1", "1:6 error a plastic needs 5 numbers, but this one has 4"),
+        (
+            "void plastic m 0 0 4 1 1 1 0\nm sphere s 0 0 4 0 0 0 1",
+            "1:6 error a plastic needs 5 numbers, but this one has 4",
+        ),
         ("void plastic m 0 0 5 1 x 1 0 0", "1:24 error expected a number, found `x`"),
         ("void plastic m 0 0 5 1 1e99 1 0 0", "1:24 error expected a number, found `1e99`"),
         ("void plastic m 0 0 5 1 1", "1:1 error the file ends within this primitive"),

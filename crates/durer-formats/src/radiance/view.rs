@@ -134,10 +134,7 @@ impl View {
     /// Sets the camera and the picture size of a scene.
     pub fn place(&self, scene: &mut Scene, larger: u32, said: &Said) {
         if self.kind != 'l' && self.fore != 0.0 {
-            said.once(
-                self.at,
-                "the fore clipping plane has a counterpart only in parallel views (`-vtl`)",
-            );
+            said.once(self.at, "the fore clipping plane has a counterpart only in parallel views (`-vtl`)");
         }
         let half = |degrees: f64| 0.5 * degrees.to_radians();
         let [across, upwards] = self.size;
@@ -150,8 +147,7 @@ impl View {
         };
         let above = if self.kind == 'c' { 179.9 } else { most };
         if !(across > 0.0 && across <= most && upwards > 0.0 && upwards <= above) {
-            return said
-                .bad(self.at, "a view's sizes (-vh, -vv) must be above 0 and within the range of its type");
+            return said.bad(self.at, "a view's sizes (-vh, -vv) must be above 0 and within the range of its type");
         }
         if self.direction.cross(self.up).try_normalize().is_none() {
             return said.bad(self.at, "the up vector (-vu) must not be parallel to the view direction (-vd)");

@@ -87,8 +87,10 @@ impl Parser<'_, '_> {
         let corners = [Some(p1), self.optional_number(tag, "p2"), self.optional_number(tag, "p3")];
         let corners = corners.map(|corner| corner.unwrap_or(p1));
         if let Some(wrong) = corners.iter().find(|corner| **corner as usize >= count) {
-            self.said
-                .bad(tag.at, format!("property {wrong} does not exist: the list {pid} has {count} properties, counted from 0"));
+            self.said.bad(
+                tag.at,
+                format!("property {wrong} does not exist: the list {pid} has {count} properties, counted from 0"),
+            );
             return None;
         }
         Some((pid, corners))

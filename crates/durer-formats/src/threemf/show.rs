@@ -84,7 +84,8 @@ impl Show<'_> {
             let Some((group, count)) = self.object(&other, place, depth) else { continue };
             self.count = self.count.saturating_add(count);
             if self.count > MAX_OBJECTS {
-                let message = format!("the model has more than {MAX_OBJECTS} objects, counting each use of a component");
+                let message =
+                    format!("the model has more than {MAX_OBJECTS} objects, counting each use of a component");
                 self.said.bad(place.at, message);
                 return objects;
             }

@@ -16,7 +16,11 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
         let known = MODELS.iter().position(|model| model.0 == name);
         let names = MODELS.map(|model| model.0).join(", ");
         let model = known.ok_or_else(|| {
-            Error::at(cameras.0, place, format!("the camera model `{name}` is not supported; supported models: {names}"))
+            Error::at(
+                cameras.0,
+                place,
+                format!("the camera model `{name}` is not supported; supported models: {names}"),
+            )
         })?;
         let size = [words.parse("a width")?, words.parse("a height")?];
         let numbers = (0..MODELS[model].2).map(|_| words.number("a parameter")).collect::<Result<Vec<_>, _>>()?;

@@ -65,13 +65,10 @@ pub fn read_project<'b>(file: &'b str, content: &'b [u8]) -> Result<(VanishingLi
     let (state, photograph) = (bytes.u32()? as usize, bytes.u32()? as usize);
     let state = bytes.take(state)?;
     let photograph = bytes.take(photograph)?;
-    let state: Value =
-        serde_json::from_slice(state).map_err(|error| Error::of(file, format!("invalid JSON in its state: {error}")))?;
+    let state: Value = serde_json::from_slice(state)
+        .map_err(|error| Error::of(file, format!("invalid JSON in its state: {error}")))?;
     if state["globalSettings"]["calibrationMode"] != "TwoVanishingPoints" {
-        return Err(Error::of(
-            file,
-            "only projects with two vanishing points determine a camera from lines alone",
-        ));
+        return Err(Error::of(file, "only projects with two vanishing points determine a camera from lines alone"));
     }
     let size = crate::photo::size(file, photograph)?;
     let [width, height] = size.map(f64::from);

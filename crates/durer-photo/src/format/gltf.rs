@@ -140,9 +140,9 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
             all.views.push(View { name, lens: known.unwrap_or(all.lenses.len()), pose: Some(pose) });
             all.lenses.extend(known.is_none().then_some(lens));
         }
-        let mesh = node
-            .mesh
-            .map(|number| file.meshes.get(number).ok_or_else(|| fail(format!("node {i}: mesh {number} does not exist"))));
+        let mesh = node.mesh.map(|number| {
+            file.meshes.get(number).ok_or_else(|| fail(format!("node {i}: mesh {number} does not exist")))
+        });
         for primitive in mesh.transpose()?.iter().flat_map(|mesh| &mesh.primitives).filter(|one| one.mode == Some(0)) {
             let mut column = |number| column(&file, &mut buffers, binary, number).map_err(fail);
             let Some(positions) = primitive.attributes.position.map(&mut column).transpose()? else { continue };
@@ -152,9 +152,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
             }
             // A mesh may be instanced many times.
             if all.points.len() + positions.len() > bytes.len() {
-                return Err(fail(
-                    "there are more points than the file has bytes: meshes are used too often".into(),
-                ));
+                return Err(fail("there are more points than the file has bytes: meshes are used too often".into()));
             }
             for (k, place) in positions.iter().enumerate() {
                 let position = (world * place.insert_row(3, 1.0)).xyz();
@@ -275,8 +273,7 @@ fn column(
         None => binary,
         Some(uri) => {
             let packed = uri.split_once(";base64,").filter(|(kind, _)| kind.starts_with("data:"));
-            let packed =
-                packed.ok_or_else(|| fail("its bytes are in another file, which is not supported"))?.1;
+            let packed = packed.ok_or_else(|| fail("its bytes are in another file, which is not supported"))?.1;
             if buffers[view.buffer].is_none() {
                 buffers[view.buffer] = Some(STANDARD.decode(packed).map_err(|error| fail(&error.to_string()))?);
             }

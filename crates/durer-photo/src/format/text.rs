@@ -154,7 +154,9 @@ impl<'t> Words<'t> {
     pub fn index(&mut self, what: &str, end: usize) -> Result<usize, Error> {
         let (word, place) = self.word(what)?;
         let index: Option<usize> = word.parse().ok().filter(|index| *index < end);
-        index.ok_or_else(|| Error::at(self.file, place, format!("`{word}` is not {what}: there are {end}, numbered from 0")))
+        index.ok_or_else(|| {
+            Error::at(self.file, place, format!("`{word}` is not {what}: there are {end}, numbered from 0"))
+        })
     }
 
     /// Returns an error if words are left in this row.

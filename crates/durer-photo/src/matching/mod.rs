@@ -189,9 +189,7 @@ pub fn match_all(
         return Err(Error::new("no two photographs show the same objects: too few matches agree on one geometry"));
     }
     if found.iter().all(|(link, _)| link.moved < 0.5) {
-        return Err(Error::new(
-            "the photographs are the same picture: without parallax, depth is undetermined",
-        ));
+        return Err(Error::new("the photographs are the same picture: without parallax, depth is undetermined"));
     }
     let counts: Vec<usize> = photos.iter().map(|photo| photo.features.len()).collect();
     let connected = found.iter().flat_map(|(link, matches)| {

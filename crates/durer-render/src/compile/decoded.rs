@@ -62,8 +62,7 @@ pub(super) fn mend(texels: &mut [Vec3], width: u32, path: &str) -> Option<String
     }
     let (i, texel) = first?;
     let (column, row) = (i % width as usize, i / width as usize);
-    let texels =
-        if count == 1 { "one invalid texel".into() } else { format!("{count} invalid texels") };
+    let texels = if count == 1 { "one invalid texel".into() } else { format!("{count} invalid texels") };
     let [r, g, b] = texel.to_array();
     Some(format!(
         "the picture `{path}` has {texels}: {r} {g} {b} in column {column} of row {row}, from the upper left; NaN is \

@@ -177,7 +177,9 @@ impl<'r> Loader<'r> {
         let mut refuse = |message: String| diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
         if width < 2 || height < 2 || width * height > HeightField::MAX_PIXELS {
             let most = HeightField::MAX_PIXELS;
-            refuse(format!("a height field cannot have {width} x {height} pixels: it needs at least 2 x 2 and at most {most} in all"));
+            refuse(format!(
+                "a height field cannot have {width} x {height} pixels: it needs at least 2 x 2 and at most {most} in all"
+            ));
             return None;
         }
         let picture = encoded.read(self.resources.memory, image::decode_linear);

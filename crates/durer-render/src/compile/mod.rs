@@ -349,9 +349,10 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
     if written.is_empty() {
         let (message, ambient) = match rules.ambient_alone {
             true => ("the scene has no lights: its ambient light is set to 1 1 1, so colours are flat", Color::ONE),
-            false => {
-                ("the scene has no lights: only its ambient light is visible, so colours are flat", scene.background.ambient_light)
-            }
+            false => (
+                "the scene has no lights: only its ambient light is visible, so colours are flat",
+                scene.background.ambient_light,
+            ),
         };
         // The first assignments intentionally have no lights and ambient light of 1 1 1.
         let meant = scene.background.ambient_light == Color::ONE;

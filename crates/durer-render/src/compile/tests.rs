@@ -114,7 +114,10 @@ fn shapes_with_inconsistent_fields_are_rejected() {
             "`minorRadius` of a `Torus` must be less than its `majorRadius`",
         ),
         ("Ellipsoid { center 0 0 0 radii 1 0 1 }", "all `radii` of an `Ellipsoid` must be more than 0"),
-        ("Quadric { squares 0 0 0 constant 1 }", "a `Quadric` needs a coefficient other than its `constant` that is not 0"),
+        (
+            "Quadric { squares 0 0 0 constant 1 }",
+            "a `Quadric` needs a coefficient other than its `constant` that is not 0",
+        ),
         (
             "Disc { center 0 0 0 normal 0 1 0 radius 1 innerRadius 1 }",
             "`innerRadius` of a `Disc` must be less than its `radius`",

@@ -68,11 +68,11 @@ impl Emitter for PointLight {
         let unit = self.candela.or(self.lumens).is_some();
         match () {
             () if self.candela.is_some() && self.lumens.is_some() => Err(TWO_UNITS.into()),
-            () if unit && (self.attenuation.is_some() || self.falloff.is_some()) => Err(
-                "a light in `candela` or `lumens` fades with the square of the distance: remove `attenuation` and \
+            () if unit && (self.attenuation.is_some() || self.falloff.is_some()) => {
+                Err("a light in `candela` or `lumens` fades with the square of the distance: remove `attenuation` and \
                      `falloff`"
-                    .into(),
-            ),
+                    .into())
+            }
             () => Ok(()),
         }
     }

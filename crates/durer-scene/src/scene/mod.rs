@@ -115,9 +115,7 @@ impl Background {
         // A clock without a time zone is in UTC.
         let missing = |words: &[(&'static str, bool)]| match given(words) {
             Some(word) => match words.iter().find(|(word, given)| !given && *word != "timeZone") {
-                Some((lacking, _)) => {
-                    Err(format!("the sun's position is incomplete: `{word}` needs `{lacking}`"))
-                }
+                Some((lacking, _)) => Err(format!("the sun's position is incomplete: `{word}` needs `{lacking}`")),
                 None => Ok(()),
             },
             None => Ok(()),

@@ -36,15 +36,14 @@ pub(super) fn thick_fog(scout: &SceneProbe) -> Vec<Finding> {
     if even && !ways.is_empty() && swallowed * 20 > scout.seen().count() * 19 {
         let middle = ways[ways.len() / 2];
         let some = number(0.5 / middle);
-        let diagnostic =
-            Diagnostic::warning(format!("this fog is opaque: its extinction is {}", number(extinction)))
-                .effect(format!(
-                    "a hundredth of the light remains after a distance of {}; the visible surfaces are {} away",
-                    number(4.6 / extinction),
-                    number(middle)
-                ))
-                .label(format!("hides {} of the visible surfaces", percent(swallowed, scout.seen().count())))
-                .help(format!("`extinction` is per unit of the scene: try `extinction {some}`"));
+        let diagnostic = Diagnostic::warning(format!("this fog is opaque: its extinction is {}", number(extinction)))
+            .effect(format!(
+                "a hundredth of the light remains after a distance of {}; the visible surfaces are {} away",
+                number(4.6 / extinction),
+                number(middle)
+            ))
+            .label(format!("hides {} of the visible surfaces", percent(swallowed, scout.seen().count())))
+            .help(format!("`extinction` is per unit of the scene: try `extinction {some}`"));
         let value = scout.value(span, &["extinction"]);
         let diagnostic = diagnostic.fix_at(value, some);
         found.push(Finding::from(scout.at_value(diagnostic, span, &["extinction"])).whole(true));

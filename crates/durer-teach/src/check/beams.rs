@@ -26,8 +26,9 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
         let to = (middle - place).normalize_or(Vec3::NEG_Y);
         let aimed = if turned.dot(to) > 0.7 { -direction } else { middle - place };
         let text = vector(aimed);
-        let help =
-            format!("`direction` is where its light goes: `direction {text}` points at the center of the visible objects");
+        let help = format!(
+            "`direction` is where its light goes: `direction {text}` points at the center of the visible objects"
+        );
         let diagnostic = Diagnostic { message: format!("{word} misses everything that is visible"), ..diagnostic };
         match scout.value(light.span, &["direction"]) {
             Some(value) => diagnostic.at(value).help(help).fix(value, text),
@@ -141,7 +142,10 @@ pub(super) fn near(scout: &SceneProbe) -> Vec<Finding> {
             Diagnostic::warning(format!("this light is {} from the {}", number(near), scout.object(object)))
                 .related(scout.object_span(object), "this object")
                 .effect("it lights a bright spot below it and hardly anything else")
-                .help(format!("the mean distance of the visible points is {}: move the light away from the object", number(middle)));
+                .help(format!(
+                    "the mean distance of the visible points is {}: move the light away from the object",
+                    number(middle)
+                ));
         let only = scout.world().lights().len() == 1;
         found.push(Finding::from(scout.at_value(diagnostic, lamp.span, &["position"])).whole(only));
     }

@@ -126,15 +126,12 @@ fn switched_off(scout: &SceneProbe, all: &[(u32, &Spanned<Written>, &Phong)]) ->
             false if !settings.reflection => {
                 (format!("material {i} mirrors, but mirrored rays are disabled"), "remove `--no-reflection`")
             }
-            true if !settings.refraction => (
-                format!("material {i} transmits light, but refracted rays are disabled"),
-                "remove `--no-refraction`",
-            ),
+            true if !settings.refraction => {
+                (format!("material {i} transmits light, but refracted rays are disabled"), "remove `--no-refraction`")
+            }
             // Light needs one bounce to enter and one to leave.
             true if settings.bounces == 1 && phong.ior != 1.0 && dark(phong) => (
-                format!(
-                    "material {i} is glass, but the maximum depth of secondary rays is 1: light cannot leave it"
-                ),
+                format!("material {i} is glass, but the maximum depth of secondary rays is 1: light cannot leave it"),
                 "set `--bounces 4` (in the course's programs `-bounces 4`)",
             ),
             _ => return None,
@@ -341,7 +338,9 @@ pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
     };
     let say = |(i, written, _): (u32, &Spanned<Written>, &Phong)| {
         let diagnostic = Diagnostic::warning(format!("material {i} is glass that transmits no light"))
-            .effect("this year's program scales reflection and transmission of glass by `specularColor`, which is black")
+            .effect(
+                "this year's program scales reflection and transmission of glass by `specularColor`, which is black",
+            )
             .help("write `specularColor 1 1 1` for clear glass");
         Finding::from(scout.at_value(diagnostic, written.span, &["specularColor", "refractionIndex"]))
     };
@@ -506,12 +505,11 @@ pub(super) fn unused(scout: &SceneProbe) -> Vec<Finding> {
         1 => format!("no object uses material {first}"),
         n => format!("no object uses {}: {}", counted(n, "material", "materials"), list.join(", ")),
     };
-    let diagnostic = Diagnostic::note(message)
-        .at(written[first].span)
-        .effect("it has no effect on the picture")
-        .help(match scout.subject.dialect {
+    let diagnostic = Diagnostic::note(message).at(written[first].span).effect("it has no effect on the picture").help(
+        match scout.subject.dialect {
             Dialect::F23 => "is the `index` of a `Component<Material>` wrong? Indices start at 0",
             _ => "is a `MaterialIndex` wrong? Indices start at 0",
-        });
+        },
+    );
     vec![Finding::from(diagnostic)]
 }

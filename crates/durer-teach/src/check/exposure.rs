@@ -208,8 +208,9 @@ pub(super) fn depth_range(scout: &SceneProbe) -> Vec<Finding> {
     if min > max {
         let turned = format!("{} {}", number(max), number(min));
         let message = format!("the depth range is reversed, from {} to {}", number(min), number(max));
-        let help =
-            format!("write the nearer value first: `--depth-range {turned}` (in the course's programs `-depth {turned}`)");
+        let help = format!(
+            "write the nearer value first: `--depth-range {turned}` (in the course's programs `-depth {turned}`)"
+        );
         let diagnostic = Diagnostic::warning(message).effect("near and far are swapped in the depth picture");
         return vec![Finding::from(diagnostic.help(help))];
     }

@@ -88,14 +88,16 @@ pub(super) fn too_narrow(scout: &SceneProbe) -> Vec<Finding> {
             let degrees = camera.angle.to_degrees();
             let mut diagnostic =
                 Diagnostic::warning(format!("the field of view is only {} degrees", number(camera.angle)))
-                    .effect(format!("less than a {}th of the scene's width is visible", number((size / larger).floor())))
+                    .effect(format!(
+                        "less than a {}th of the scene's width is visible",
+                        number((size / larger).floor())
+                    ))
                     .help("angles are in degrees: 30 to 60 are usual");
             if let Some(place) = scout.value(span, &["angle", "fov"]).filter(|_| radians(camera.angle)) {
                 let whole = degrees.round().clamp(20.0, 100.0);
-                diagnostic = diagnostic.fix(place, number(whole)).help(format!(
-                    "angles are in degrees; in radians it would be {}: try `{whole}`",
-                    number(degrees)
-                ));
+                diagnostic = diagnostic
+                    .fix(place, number(whole))
+                    .help(format!("angles are in degrees; in radians it would be {}: try `{whole}`", number(degrees)));
             }
             vec![Finding::from(scout.at_value(diagnostic, span, &["angle", "fov"])).whole(true)]
         }

@@ -47,8 +47,7 @@ pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
                 (color, Some(a)) if scout.subject.dialect == Dialect::F23 => {
                     let after = Span { start: color.end, ..color };
                     let text = format!(" attenuation {}", number(a.z / factor));
-                    let help =
-                        format!("the default is {} here: try `{}`", number(a.z), text.trim());
+                    let help = format!("the default is {} here: try `{}`", number(a.z), text.trim());
                     return Some(diagnostic.at(color).fix(after, text).help(help));
                 }
                 (color, _) => (color, vector(point.color * factor), "color".into()),

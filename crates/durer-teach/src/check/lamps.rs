@@ -192,7 +192,11 @@ pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
         ))
         .at(scout.object_span(number))
         .related(scout.object_span(blocker), "the occluder")
-        .effect(if scout.is_dark() { "the picture is black" } else { "none of its light reaches the visible surfaces directly" })
+        .effect(if scout.is_dark() {
+            "the picture is black"
+        } else {
+            "none of its light reaches the visible surfaces directly"
+        })
         .help("is it on the wrong side, or inside? Move the light to the visible side");
         // If the picture is not dark, the light arrives indirectly.
         let dark = scout.is_dark();

@@ -202,7 +202,8 @@ fn grazing(scout: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
             all.fold((0, 0), |(grazed, count), lit| (grazed + usize::from(is_grazing(lit)), count + 1));
         grazed * 4 > count
     })?;
-    let (diagnostic, span) = useless(scout, light, "this light only grazes the visible surfaces: N · L is 0 there".into())?;
+    let (diagnostic, span) =
+        useless(scout, light, "this light only grazes the visible surfaces: N · L is 0 there".into())?;
     let objects: Vec<u32> =
         scout.seen().filter(|(_, seen)| seen.by(light).is_some_and(is_grazing)).map(|(_, seen)| seen.object).collect();
     let surface = most_common(&objects)?;
@@ -223,7 +224,8 @@ fn grazing(scout: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
             let eye = scout.world().camera().pose().center;
             let raised = vector(from + 0.5 * (eye - from).length().max(1e-3) * n);
             let value = scout.value(span, &["position"]);
-            let help = format!("the light lies in the plane of that surface: raise it, for example to `position {raised}`");
+            let help =
+                format!("the light lies in the plane of that surface: raise it, for example to `position {raised}`");
             Some(scout.at_value(diagnostic.fix_at(value, raised), span, &["position"]).help(help))
         }
     }
@@ -260,7 +262,8 @@ pub(super) fn behind(scout: &SceneProbe) -> Vec<Finding> {
         if turned * 2 < away {
             return grazing(scout, &[light]);
         }
-        let message = format!("this light is behind the visible surfaces: {} of them face away", percent(away, lit.len()));
+        let message =
+            format!("this light is behind the visible surfaces: {} of them face away", percent(away, lit.len()));
         let (diagnostic, span) = useless(scout, light, message)?;
         let lamp = &written(scout, light)?.value;
         let diagnostic = match lamp.position() {

@@ -150,12 +150,13 @@ pub(super) fn misread(scout: &SceneProbe) -> Vec<Finding> {
             let start = (bytes.len() - last.len()) as u32;
             let span = Span { file: mesh.file, start, end: bytes.len() as u32 };
             let end = Span { start: span.end, ..span };
-            let diagnostic = Diagnostic::warning(format!("the last line of `{}` does not end with a newline", mesh.name.path))
-                .at(span)
-                .related(mesh.name.span, "the mesh is used here")
-                .effect("this year's program loses that line: a face is missing, which leaves a hole")
-                .help("end the file with a newline")
-                .fix(end, "\n");
+            let diagnostic =
+                Diagnostic::warning(format!("the last line of `{}` does not end with a newline", mesh.name.path))
+                    .at(span)
+                    .related(mesh.name.span, "the mesh is used here")
+                    .effect("this year's program loses that line: a face is missing, which leaves a hole")
+                    .help("end the file with a newline")
+                    .fix(end, "\n");
             found.push(Finding::from(diagnostic));
         }
         if rules.has(Compat::NormalsByVertex)

@@ -99,7 +99,8 @@ pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
             continue;
         };
         let mut diagnostic = Diagnostic::warning(message).at(written.span).effect(effect).help(help);
-        diagnostic = diagnostic.label(format!("on {} of the visible surfaces", percent(places.len(), scout.seen().count())));
+        diagnostic =
+            diagnostic.label(format!("on {} of the visible surfaces", percent(places.len(), scout.seen().count())));
         found.push(Finding::from(diagnostic));
     }
     found

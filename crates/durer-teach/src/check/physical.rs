@@ -87,7 +87,8 @@ pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
             ),
         ),
     };
-    let message = format!("nothing emits light in this scene: it has no light and no {surface}, and the background is black");
+    let message =
+        format!("nothing emits light in this scene: it has no light and no {surface}, and the background is black");
     let diagnostic = Diagnostic::warning(message).effect("the picture is black").help(help);
     vec![Finding::from(diagnostic).whole(true)]
 }
@@ -106,9 +107,7 @@ pub(super) fn lamp_in_glass(scout: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic::warning(message)
             .at(scout.object_span(glass))
             .effect("paths cannot find it: it lights nothing outside")
-            .help(
-                "use `--integrator photons`, or replace the light by a sphere with `emissionLuminance`",
-            );
+            .help("use `--integrator photons`, or replace the light by a sphere with `emissionLuminance`");
         Some(Finding::from(diagnostic))
     });
     enclosed.collect()

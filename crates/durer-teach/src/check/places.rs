@@ -34,7 +34,6 @@ fn of(scout: &SceneProbe, object: &Object) -> Option<(Span, String)> {
         );
         return Some((object.span, words));
     }
-    aims(local).then(|| {
-        (object.span, format!("its transforms move it to {place}; without them it would be in the picture"))
-    })
+    aims(local)
+        .then(|| (object.span, format!("its transforms move it to {place}; without them it would be in the picture")))
 }

@@ -75,9 +75,7 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
         };
         let plane = plane(&scout.world().objects()[by as usize]).is_some();
         let help = match (plane, inside) {
-            (true, _) => {
-                "it is behind the plane, which is at p · normal = offset: is the sign of `offset` right?"
-            }
+            (true, _) => "it is behind the plane, which is at p · normal = offset: is the sign of `offset` right?",
             (false, true) => "move it out, or move or shrink the other object",
             (false, false) => "is it on the wrong side of the other object, or is that in the way?",
         };
@@ -92,9 +90,7 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
         let diagnostic = match mirrored(scout, first) {
             Some((place, text)) => diagnostic
                 .at(place)
-                .help(format!(
-                    "a negative scale, `{text}`, mirrors it through its origin: remove the sign"
-                ))
+                .help(format!("a negative scale, `{text}`, mirrors it through its origin: remove the sign"))
                 .fix(place, text.replace('-', "")),
             None => diagnostic,
         };
@@ -199,10 +195,13 @@ pub(super) fn flat_field(scout: &SceneProbe) -> Vec<Finding> {
                     continue;
                 }
                 let max = vector(Vec3::new(field.max.x, field.min.y + 0.2 * wide, field.max.z));
-                let diagnostic =
-                    Diagnostic::warning(format!("this height field is {} wide and {} high", number(wide), number(size.y)))
-                        .effect("it looks flat")
-                        .help(format!("heights go from `min` to `max` along y: try `max {max}`"));
+                let diagnostic = Diagnostic::warning(format!(
+                    "this height field is {} wide and {} high",
+                    number(wide),
+                    number(size.y)
+                ))
+                .effect("it looks flat")
+                .help(format!("heights go from `min` to `max` along y: try `max {max}`"));
                 let diagnostic = diagnostic.fix_at(scout.value(object.span, &["max"]), max);
                 found.push(Finding::from(scout.at_value(diagnostic, object.span, &["max"])));
             }

@@ -286,7 +286,9 @@ pub(super) fn plane_through(scout: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic { severity, ..Diagnostic::warning(message) }
             .at(scout.object_span(number))
             .effect("only the parts in front of it are visible")
-            .help("a floor is below the objects: which axis is up? Check its `normal`, its `offset` and its transforms");
+            .help(
+                "a floor is below the objects: which axis is up? Check its `normal`, its `offset` and its transforms",
+            );
         Finding::from(diagnostic)
     };
     (0..world.objects().len() as u32).filter(through).take(2).map(say).collect()

@@ -288,7 +288,9 @@ pub(super) fn plane_normal(scout: &SceneProbe) -> Vec<Finding> {
                 ),
             })
             .help(match counts {
-                true => format!("give it the length 1: `normal {unit}`; light is multiplied by {} here", number(length)),
+                true => {
+                    format!("give it the length 1: `normal {unit}`; light is multiplied by {} here", number(length))
+                }
                 false => format!("give it the length 1: `normal {unit}`"),
             });
         // The plane stays where it is.

@@ -91,9 +91,7 @@ impl Stage {
             "refraction" | "fresnel" if secondary == Secondary::Specular => {
                 Some("this year's program has mirrors, but no glass")
             }
-            "fresnel" if secondary == Secondary::Colors => {
-                Some("this year's program does not apply Fresnel's law")
-            }
+            "fresnel" if secondary == Secondary::Colors => Some("this year's program does not apply Fresnel's law"),
             _ => None,
         }
     }
@@ -235,8 +233,13 @@ impl Stage {
                 let seen = values.iter().filter(|dir| **dir != Vec3::ZERO);
                 let widest = seen.map(|dir| middle.cross(*dir).length().min(1.0)).fold(0.0, f32::max);
                 Some(match widest < 1e-6 {
-                    true => "All rays are parallel here, so the picture has one colour: the rays differ in their origins.".into(),
-                    false => "Red, green and blue are x, y and z of the direction, from -1 (dark) to 1 (bright).".into(),
+                    true => {
+                        "All rays are parallel here, so the picture has one colour: the rays differ in their origins."
+                            .into()
+                    }
+                    false => {
+                        "Red, green and blue are x, y and z of the direction, from -1 (dark) to 1 (bright).".into()
+                    }
                 })
             }
             Some("depth") => {
@@ -267,8 +270,7 @@ impl Stage {
                 colors.sort_unstable();
                 colors.dedup();
                 let count = colors.len();
-                (count > 1)
-                    .then(|| format!("The picture has {count} different colours, including the background."))
+                (count > 1).then(|| format!("The picture has {count} different colours, including the background."))
             }
         }
     }

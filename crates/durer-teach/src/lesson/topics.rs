@@ -251,10 +251,7 @@ pub static TOPICS: [Topic; 18] = [
         title: "Shadows",
         words: "Before a light is added, a shadow ray goes from the surface to the light. If it hits anything on \
                 its way, the light contributes nothing; any hit will do, not just the closest.",
-        equations: &[
-            "L = k_d I_a + Σ v_i (k_d max(0, N·L_i) + ...) I_i",
-            "v_i = 0 if a hit has 0 < t < d_i, else 1",
-        ],
+        equations: &["L = k_d I_a + Σ v_i (k_d max(0, N·L_i) + ...) I_i", "v_i = 0 if a hit has 0 < t < d_i, else 1"],
         places: &[
             at("crates/durer-render/src/integrator/whitted/direct.rs", "fn visible"),
             at("crates/durer-render/src/integrator/whitted/direct.rs", "fn shadow_ray"),

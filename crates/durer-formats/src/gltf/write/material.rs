@@ -168,10 +168,7 @@ impl Writer<'_> {
         for row in TEXTURED.iter().filter(|row| row.field != "base_color_texture") {
             let Some(name) = (row.picture)(m) else { continue };
             if !self.add_picture(m, row.field, name, &mut extensions) {
-                self.left_out(format!(
-                    "glTF has no texture for `{}`: it is left out",
-                    row.field
-                ));
+                self.left_out(format!("glTF has no texture for `{}`: it is left out", row.field));
             }
         }
         if dark_backs && m.backs == Backs::Shown {

@@ -95,7 +95,10 @@ fn settings_come_from_film_sampler_and_integrator() {
     assert_eq!((scene.unwrap().wishes.crop, told), (Some((10, 20, 86, 32)), Vec::new()));
     for wrong in [number("width", 87), number("width", 0), number("width", -1), String::new()] {
         let (scene, told) = film(&(part.clone() + &wrong));
-        assert!(scene.is_none() && told[0].contains("the crop window must lie within the picture of 96 x 576"), "{told:?}");
+        assert!(
+            scene.is_none() && told[0].contains("the crop window must lie within the picture of 96 x 576"),
+            "{told:?}"
+        );
     }
 }
 
@@ -558,7 +561,11 @@ fn curve_files_with_hair_become_tubes() {
     }
     for (file, kind, wanted) in [
         ("short.txt", "bsplinecurve", "short.txt:3:1 error a curve that ends here has 2 points: it needs 4"),
-        ("bad.txt", "linearcurve", "bad.txt:2:1 error a point of a curve must be three numbers and a radius of 0 or more"),
+        (
+            "bad.txt",
+            "linearcurve",
+            "bad.txt:2:1 error a point of a curve must be three numbers and a radius of 0 or more",
+        ),
         (
             "thin.txt",
             "linearcurve",

@@ -136,7 +136,8 @@ impl Reader<'_> {
                 let [reflected, through] = ["reflectance", "transmittance"].map(|name| {
                     let (color, picture) = self.colored(params, name, 0.25);
                     if picture.is_some() {
-                        let what = "diffuse transmission by a picture has no counterpart: its `scale` is used as the colour";
+                        let what =
+                            "diffuse transmission by a picture has no counterpart: its `scale` is used as the colour";
                         self.said.once(params.place(name), what);
                     }
                     scale * color

@@ -208,7 +208,8 @@ impl Reader<'_> {
                         Some(self.scene_material(Material::Solid(solid, Vec::new()), at))
                     }
                     (Some(only), None) | (None, Some(only)) => {
-                        self.said.once(at, "a mix with an invisible material has no counterpart: only the other is used");
+                        self.said
+                            .once(at, "a mix with an invisible material has no counterpart: only the other is used");
                         Some(only)
                     }
                     (None, None) => None,
@@ -232,7 +233,9 @@ impl Reader<'_> {
         (m.emission_luminance, m.emission_color) = (most, color / most);
         if light.two_sided {
             match m.transmission_weight > 0.0 && m.walls == Walls::Solid {
-                true => self.said.once(light.at, "two-sided emission of glass has no counterpart: it emits outwards only"),
+                true => {
+                    self.said.once(light.at, "two-sided emission of glass has no counterpart: it emits outwards only")
+                }
                 false => m.walls = Walls::Thin,
             }
         }

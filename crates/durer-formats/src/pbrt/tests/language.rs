@@ -52,7 +52,10 @@ fn errors_have_place_and_suggestion() {
         ("Transform [ 1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1 ]", "error this matrix is not affine"),
         ("WorldBegin AttributeEnd", "error `AttributeEnd` without a scope to close"),
         ("WorldBegin AttributeBegin", "scene.pbrt:1:12 error this is not closed (a `AttributeEnd` is missing)"),
-        ("WorldBegin AttributeBegin TransformEnd AttributeEnd", "error `TransformEnd` does not match the scope that is open"),
+        (
+            "WorldBegin AttributeBegin TransformEnd AttributeEnd",
+            "error `TransformEnd` does not match the scope that is open",
+        ),
         ("Shape \"sphere\" WorldBegin", "scene.pbrt:1:1 error this must come after `WorldBegin`"),
         ("WorldBegin Camera \"perspective\"", "error `Camera` must come before `WorldBegin`"),
         ("WorldBegin NamedMaterial \"gold\"", "error unknown material `gold`"),

@@ -200,20 +200,14 @@ fn pictured_lights_follow_their_pictures() {
 #[test]
 fn errors_and_warnings_of_pbrt_v3() {
     for (text, wanted) in [
-        (
-            "\nMaterial \"mattte\"",
-            "scene.pbrt:2:11 error unknown material `mattte` in pbrt-v3 (did you mean `matte`?)",
-        ),
+        ("\nMaterial \"mattte\"", "scene.pbrt:2:11 error unknown material `mattte` in pbrt-v3 (did you mean `matte`?)"),
         ("Material \"conductor\"", "error unknown material `conductor` in pbrt-v3 (this material is of pbrt-v4"),
         ("Material \"mix\" \"string namedmaterial1\" \"a\"", "error no material `a` is defined before this"),
         ("Material \"mix\"", "error a mix needs `\"string namedmaterial1\"`"),
         ("LightSource \"infinite\" \"string mapname\" \"no.exr\"", "error there is no file `no.exr`"),
         ("LightSource \"projection\" \"float fov\" 180", "error a field of view must be more than 0 and less than 180"),
         ("Texture \"t\" \"colour\" \"constant\"", "error textures are `float` or `spectrum`, not `colour`"),
-        (
-            "Material \"matte\" \"spectrum Kd\" \"no.spd\"",
-            "error cannot read the spectrum: there is no file `no.spd`",
-        ),
+        ("Material \"matte\" \"spectrum Kd\" \"no.spd\"", "error cannot read the spectrum: there is no file `no.spd`"),
         ("Shape \"curve\"", "error a curve needs points"),
         ("Shape \"curve\" \"point P\" [ 0 0 0 1 0 0 ]", "error 2 points do not make a curve of degree 3"),
         (
@@ -245,10 +239,7 @@ fn errors_and_warnings_of_pbrt_v3() {
             "Material \"plastic\" \"float uroughness\" 1",
             "warning the material `plastic` has no parameter `uroughness`: it is ignored (did you mean `roughness`?)",
         ),
-        (
-            "LightSource \"point\" \"float scale\" 3",
-            "warning `scale` of a light is a colour in pbrt-v3: this number",
-        ),
+        ("LightSource \"point\" \"float scale\" 3", "warning `scale` of a light is a colour in pbrt-v3: this number"),
         ("LightSource \"point\" \"float power\" 3", "warning this light has no parameter `power`"),
         ("Material \"fourier\" \"string bsdffile\" \"a.bsdf\"", "warning measured materials have no counterpart"),
         ("Material \"disney\" \"float flatness\" 1", "warning `flatness` has no counterpart"),

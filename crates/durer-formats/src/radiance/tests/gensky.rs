@@ -80,7 +80,10 @@ fn errors_have_positions() {
         ("!gensky 6 21", "1:2 error `gensky` needs month, day and hour, or `-ang` with altitude and azimuth"),
         ("!gensky 13 21 12", "1:9 error the month must be from 1 to 12"),
         ("!gensky 6 21 25", "1:14 error the hour must be of the form 14.5, 14:30, 14:30EST or, in solar time, +14.5"),
-        ("!gensky 6 21 12:75", "1:14 error the hour must be of the form 14.5, 14:30, 14:30EST or, in solar time, +14.5"),
+        (
+            "!gensky 6 21 12:75",
+            "1:14 error the hour must be of the form 14.5, 14:30, 14:30EST or, in solar time, +14.5",
+        ),
         ("!gensky 6 21 12 -q", "1:17 error `gensky` has no option `-q`"),
         ("!gensky 6 21 12 -a", "1:17 error `-a` needs a number"),
         ("!gensky 6 21 12 -a north", "1:20 error expected a number, found `north`"),

@@ -162,7 +162,10 @@ fn suns_are_visible_directly_and_in_mirrors_and_light_the_floor() {
         // Light bounces between floor and pane.
         let bounces = if name.contains("below") { 0 } else { 3 };
         let (mean, error) = light(&world, ray, bounces, 4096);
-        assert!((mean - expected).abs() <= 4.0 * error + 2e-3 * expected, "{name}: {mean} ± {error}, expected {expected}");
+        assert!(
+            (mean - expected).abs() <= 4.0 * error + 2e-3 * expected,
+            "{name}: {mean} ± {error}, expected {expected}"
+        );
     }
 }
 

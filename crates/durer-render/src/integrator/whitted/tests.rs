@@ -43,7 +43,10 @@ fn refraction_follows_snells_law_and_ends_at_the_critical_angle() {
                 // The root loses half the digits near the critical angle.
                 assert!(expected < 1.0 + 1e-6 && (t.length() - 1.0).abs() < 1e-3, "{expected} {t}");
                 assert!((t.as_dvec3().cross(n.as_dvec3()).length() - expected).abs() < 2e-6);
-                assert!(t.dot(n) <= 0.0 && t.dot(d.cross(n)).abs() < 1e-6, "the ray must stay in the plane of incidence");
+                assert!(
+                    t.dot(n) <= 0.0 && t.dot(d.cross(n)).abs() < 1e-6,
+                    "the ray must stay in the plane of incidence"
+                );
             }
             None => assert!(expected > 1.0 - 1e-6, "{expected}"),
         }

@@ -36,8 +36,7 @@ impl Explanation {
         let mut said = vec![format!("sample {number} alone is {:.0} % of the pixel", 100.0 * share)];
         said.extend(self.samples[number].light.iter().flat_map(cause));
         said.push(
-            "more samples make such pixels rarer, not darker; `--clamp 10` limits them, and removes some light"
-                .into(),
+            "more samples make such pixels rarer, not darker; `--clamp 10` limits them, and removes some light".into(),
         );
         said
     }
@@ -78,10 +77,7 @@ fn cause(light: &Tree) -> Vec<String> {
         }
         TermKind::Emission { mis } => {
             said.push(told("an emitter"));
-            said.push(format!(
-                "its MIS weight is {}: light sampling finds this light even less often",
-                number(*mis)
-            ));
+            said.push(format!("its MIS weight is {}: light sampling finds this light even less often", number(*mis)));
         }
         TermKind::Sky => said.push(told("the sky")),
         TermKind::Direct { choice, pdf, mis, .. } => {

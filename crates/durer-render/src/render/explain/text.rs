@@ -392,7 +392,9 @@ fn node_lines(
         TermKind::Cut { weight } => {
             format!("a ray with throughput {} is not traced (--min-throughput)", number(*weight))
         }
-        TermKind::Spent => "mirrored and transmitted light is left out: the maximum depth is reached (--bounces)".into(),
+        TermKind::Spent => {
+            "mirrored and transmitted light is left out: the maximum depth is reached (--bounces)".into()
+        }
     };
     let of_whole = |node: &TraceNode, gain| {
         let added = node.added().unwrap_or_else(|| gain * node.contribution());
@@ -488,9 +490,7 @@ fn shadow_line(shadow: &Shadow, names: &Names) -> String {
     match shadow.share {
         share if share.is(0.0) => format!("occluded by {object}, {t} away"),
         share if share.is(1.0) && names.world.shading_rules().shadow_fronts => {
-            format!(
-                "{object} is {t} away, but does not block it: the ray hits its back (quirk `shadow-fronts`)"
-            )
+            format!("{object} is {t} away, but does not block it: the ray hits its back (quirk `shadow-fronts`)")
         }
         share if share.is(1.0) => format!("{object} is {t} away, but does not block it: it transmits all light"),
         share => format!("{object}, {t} away, transmits {}", numbers(share)),

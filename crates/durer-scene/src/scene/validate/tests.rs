@@ -106,7 +106,10 @@ fn material_indices_must_exist_except_for_objects_of_files() {
     let board = |material1, material2| Material::Solid(Checkerboard { material1, material2 }.into(), Vec::new());
     let plain = || Material::from(PhongMaterial::default());
     assert_eq!(messages(&with_materials(vec![plain(), board(0, 0)])), [""; 0]);
-    assert_eq!(messages(&with_materials(vec![plain(), board(0, 1)])), ["a solid material must be made of earlier materials"]);
+    assert_eq!(
+        messages(&with_materials(vec![plain(), board(0, 1)])),
+        ["a solid material must be made of earlier materials"]
+    );
 }
 
 #[test]

@@ -161,19 +161,12 @@ pub(super) const MISTAKES: &[Mistake] = &[
             }
         },
     ),
-    row(
-        "up-default",
-        "rays",
-        "the camera's up is always 0 1 0",
-        "up as written",
-        "up = (0, 1, 0)",
-        |v, _| {
-            let frame = *v.world.camera_frame();
-            let right = frame.forward.cross(Vec3::Y).normalize_or(frame.right);
-            let own = &mut v.world.edit().frame;
-            (own.right, own.up) = (right, right.cross(frame.forward));
-        },
-    ),
+    row("up-default", "rays", "the camera's up is always 0 1 0", "up as written", "up = (0, 1, 0)", |v, _| {
+        let frame = *v.world.camera_frame();
+        let right = frame.forward.cross(Vec3::Y).normalize_or(frame.right);
+        let own = &mut v.world.edit().frame;
+        (own.right, own.up) = (right, right.cross(frame.forward));
+    }),
     row(
         "angle-without-tangent",
         "rays",

@@ -46,7 +46,10 @@ fn pane_transmits_light_by_fresnel_and_its_colour() {
         ] {
             let (mean, error) = light(&under(pane, lamp), below(), 0, 256);
             let expected = 0.5 * distance * share;
-            assert!((mean - expected).abs() <= 3.0 * error + 1e-3 * expected, "{pane} {lamp}: {mean}, expected {expected}");
+            assert!(
+                (mean - expected).abs() <= 3.0 * error + 1e-3 * expected,
+                "{pane} {lamp}: {mean}, expected {expected}"
+            );
         }
     }
 }

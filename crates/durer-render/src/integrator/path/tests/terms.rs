@@ -12,7 +12,11 @@ pub(super) fn tree(path: &Path, ray: &Ray, sample: u32) -> Tree {
         for term in &node.terms {
             let expected = throughput(node) * term.factor.spectrum() * term.scale.spectrum();
             let difference = (throughput(term) - expected).abs();
-            assert!(difference.cmple(1e-5 * expected.abs()).all(), "{:?}, expected {expected}: {term:?}", term.throughput);
+            assert!(
+                difference.cmple(1e-5 * expected.abs()).all(),
+                "{:?}, expected {expected}: {term:?}",
+                term.throughput
+            );
             check(term);
         }
     }
