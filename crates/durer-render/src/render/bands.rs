@@ -20,7 +20,6 @@ pub struct Bands {
 
 /// Error of a render in bands.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum BandsError {
     /// The render failed.
     #[error(transparent)]
