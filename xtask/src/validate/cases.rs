@@ -203,7 +203,7 @@ fn lamps() -> Vec<Case> {
         Case {
             what: What::Illuminance(Vec3::new(0.0, 0.7, 0.0), Vec3::X),
             ..lamp(
-                "[5.3] Panel of 1000 cd/m², 2 m x 1.5 m, on the floor at a wall, point 0.7 m above its corner",
+                "[5.3] Panel of 1000 cd/m², 2 m x 1.5 m, on the floor next to a wall, point on the wall 0.7 m above its corner",
                 "Howell C-12",
                 "Rectangle { corner 0 0 0 edge0 0 0 1.5 edge1 2 0 0 }",
                 PI * 1000.0 * upright(2.0, 1.5, 0.7),
@@ -229,7 +229,7 @@ fn skies() -> Vec<Case> {
     let mut all = vec![
         open("Open field under a uniform sky of 1000 cd/m²", "E = π L", EVEN, PI * 1000.0),
         open(
-            "Open field under the CIE's overcast sky of 9000 cd/m² at the zenith",
+            "Open field under the CIE overcast sky, 9000 cd/m² at the zenith",
             "E = 7 π Lz / 9",
             "cieSky 16 zenithLuminance 9000 groundReflectance 0",
             7_000.0 * PI,
@@ -237,7 +237,7 @@ fn skies() -> Vec<Case> {
         Case {
             what: What::Illuminance(Vec3::new(0.0, 0.5, 0.0), Vec3::X),
             ..open(
-                "Wall under the same sky, no ground",
+                "Wall under the same sky, no light from the ground",
                 "E = Lz (π/6 + 4/9): the cosine integrated over half the sky",
                 "cieSky 16 zenithLuminance 9000 groundReflectance 0",
                 9_000.0 * (PI / 6.0 + 4.0 / 9.0),
@@ -248,7 +248,7 @@ fn skies() -> Vec<Case> {
             group:
                 "MaterialIndex 0 Transform { UniformScale 1000 Disc { center 0 -0.000001 0 normal 0 -1 0 radius 1 } }"
                     .into(),
-            ..open("Wall at a dark field, uniform sky of 1000 cd/m²", "E = π L / 2", EVEN, PI * 500.0)
+            ..open("Wall beside a black field, uniform sky of 1000 cd/m²", "E = π L / 2", EVEN, PI * 500.0)
         },
         behind(
             "[5.9] Open roof light of 3 m x 1 m, 2 m overhead, uniform sky",
@@ -303,7 +303,7 @@ fn skies() -> Vec<Case> {
         hidden(1.0, 1.6),
     ));
     all.push(masked(
-        "[5.14] The window opposite a dark wall 4 m away and 3.2 m high, overcast",
+        "[5.14] The window opposite a black wall 4 m away and 3.2 m high, overcast",
         "Rectangle { corner 4 0 -999 edge0 0 3.2 0 edge1 0 0 1998 }",
         // The top at y = 3.2, x = 4 appears at 1.6 in the window.
         hidden(1.6, 2.2),
@@ -343,7 +343,7 @@ fn reflections() -> Vec<Case> {
                 around(roof)
             ),
             ..case(
-                "[5.4] Flux into a dark room of 4 m x 4 m x 3 m through a roof light of 2 m², uniform sky",
+                "[5.4] Flux into a black room of 4 m x 4 m x 3 m through a roof light of 2 m², uniform sky",
                 "Φ = π L A: all flux reaches the walls and the floor",
                 What::Flux(inside),
                 PI * 1000.0 * 2.0,
@@ -372,7 +372,7 @@ fn reflections() -> Vec<Case> {
             SUN,
             &format!("{patch} MaterialIndex 1 Rectangle {{ corner 1 0 -5 edge0 0 1 0 edge1 0 0 10 }}"),
             1,
-            "[5.7] The same behind a dark screen across the floor's middle, 1 m high",
+            "[5.7] The same with a black screen, 1 m high, across the middle of the floor",
             "E = ρ E₀ F of the visible half",
             500.0 * parallel(0.5, 0.75),
         ),
@@ -381,7 +381,7 @@ fn reflections() -> Vec<Case> {
             &lamp("0 0 0"),
             "Sphere { center 0 0 0 radius 2 }",
             60,
-            "[5.8] Integrating sphere, radius 2 m, ρ 0.5, a source of 100 cd at the center",
+            "[5.8] Integrating sphere, radius 2 m, ρ 0.5, point source of 100 cd at the centre",
             "E = I/r² + Φ/S · ρ/(1 − ρ)",
             100.0 / (1.999 * 1.999) + flux / (16.0 * PI),
         ),
@@ -390,7 +390,7 @@ fn reflections() -> Vec<Case> {
             &lamp("0.3 0.5 -0.4"),
             "Box { min -2 -2 -2 max 2 2 2 }",
             60,
-            "[5.8] Flux inside a cube of 4 m, ρ 0.5, a source of 100 cd",
+            "[5.8] Flux inside a cube of 4 m, ρ 0.5, point source of 100 cd",
             "Φ = 4π I / (1 − ρ)",
             flux / 0.5,
         ),
@@ -405,7 +405,7 @@ fn panes() -> Vec<Case> {
         group: format!("MaterialIndex 0 {ball}"),
         bounces: 60,
         ..case(
-            "In a hollow glass ball under a uniform sky on all sides",
+            "Inside a hollow glass ball in uniform light",
             "E = π L: non-absorbing glass is invisible",
             floor(),
             PI * 1000.0,
@@ -418,11 +418,11 @@ fn panes() -> Vec<Case> {
         format!("MaterialIndex 1 Disc {{ center {x} {y} 0 normal {nx} {ny} 0 radius 3 }} MaterialIndex 0 {pane}")
     };
     for (name, degrees, absorbed) in [
-        ("[5.5] Through a pane of clear glass, n 1.5, at 0°", 0.0, false),
+        ("[5.5] Through a clear glass pane, n 1.5, at 0°", 0.0, false),
         ("[5.5] The same at 40°", 40.0, false),
         ("[5.5] The same at 60°", 60.0, false),
         ("[5.5] The same at 80°", 80.0, false),
-        ("[5.5] Through tinted glass that transmits half at 0°, at 60°", 60.0, true),
+        ("[5.5] Through a tinted glass pane with 50 % internal transmittance at 0°, at 60°", 60.0, true),
     ] {
         let (sine, cosine) = fp::sin_cos_degrees(degrees);
         let inside = (1.0 - sine * sine / 2.25).sqrt();
@@ -458,7 +458,7 @@ fn panes() -> Vec<Case> {
             group: lamp(sine, cosine, "Rectangle { corner -99 1 -99 edge0 198 0 0 edge1 0 0 198 }"),
             ..case(
                 name,
-                "mean of T parallel and perpendicular to the plane of incidence: light stays polarised",
+                "mean of T for both polarisations: light keeps its polarisation inside the sheet",
                 What::Luminance(Vec3::ZERO, Vec3::new(sine as f32, cosine as f32, 0.0)),
                 1000.0 * polarised_pane(cosine, kept),
             )

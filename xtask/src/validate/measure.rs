@@ -59,10 +59,13 @@ fn measured(case: &Case, samples: u32) -> Result<(f64, f64)> {
 pub fn light(table: &mut Table, samples: u32) -> Result<()> {
     table.head(
         "Light",
-        "Each row compares a known answer with the path tracer's measurement and its standard error (computed for independent\n\
-         samples; stratified samples have a smaller error). A row passes within three standard errors plus 0.1 %. Where the\n\
-         formula is an integral without a closed form, the answer is computed by quadrature in double precision. A number in brackets is the section of\n\
-         CIE 171:2006 with the analytical case of the same physics; dimensions and values differ. Scenes and formulas are in `xtask/src/validate/cases.rs`.",
+        "Each row compares the measurement of the path tracer with a known answer. The standard error assumes independent\n\
+         samples; the error of Dürer's stratified samples is smaller. A row passes if the difference is at most three standard\n\
+         errors plus 0.1 %. If the formula is an integral without a closed form, the answer is computed by quadrature in double\n\
+         precision.\n\
+         \n\
+         A number in brackets is the section of CIE 171:2006 whose analytical case tests the same physics; dimensions and values\n\
+         are different. Scenes and formulas are in `xtask/src/validate/cases.rs`.",
         "case|formula|>answer|>measured|>difference",
     );
     for case in cases() {

@@ -15,9 +15,10 @@ const COSINES: [f32; 5] = [0.999, 0.7, 0.4, 0.2, 0.1];
 
 pub fn furnaces(table: &mut Table) {
     table.head(
-        "Non-absorbing materials in uniform light",
-        "White furnace test: radiance reflected by a white material in uniform light of radiance 1, as minimum and maximum over seven roughnesses\n\
-         and five angles from 3 to 84 degrees. A row passes at 1 within 0.2 % plus three standard errors (2^18 samples each).",
+        "Energy conservation",
+        "White furnace test: a white, non-absorbing material in uniform light of radiance 1 must reflect radiance 1. The columns\n\
+         give the minimum and maximum over seven roughnesses and five angles from 3 to 84 degrees. A row passes if all values are\n\
+         1 within 0.2 % plus three standard errors (2^18 samples each).",
         "material|>minimum|>maximum",
     );
     let smooth = proof::filmed().into_iter().map(|(name, material)| (format!("{name}, smooth"), material, 1));
@@ -70,11 +71,11 @@ const LAMPS: [(&str, &str); 6] = [
     ("rectangle", "Rectangle { corner -1 2 0 edge0 3 0 0 edge1 0 0 1 }"),
     ("triangle", "Triangle { vertex0 -1 2 -1 vertex1 2 2 -1 vertex2 2 1.5 2 }"),
     (
-        "five in the tree",
+        "five lights in the light tree",
         "Sphere { center 0.5 2 1 radius 0.4 } Disc { center -3 1 0 normal 1 -0.3 0 radius 1 } Rectangle { corner 1 3 -2 edge0 1 0 0 edge1 0 0 1 } \
          Sphere { center 2 1.5 -1 radius 0.2 } Triangle { vertex0 -1 2 -3 vertex1 2 2 -3 vertex2 2 1.5 -2 }",
     ),
-    ("sphere all around", "Sphere { center 0.4 0.2 0.1 radius 2 }"),
+    ("sphere around the point", "Sphere { center 0.4 0.2 0.1 radius 2 }"),
 ];
 
 pub fn densities(table: &mut Table) -> Result<()> {
@@ -83,7 +84,7 @@ pub fn densities(table: &mut Table) -> Result<()> {
     for (name, lobe) in proof::broad() {
         for (cosine, turn) in [(0.95, 0.1), (0.6, 0.7), (0.25, 0.35)] {
             let verdict = CELLS.lobe(11, lobe, warp::polar(cosine, turn));
-            rows.push((format!("{name}, seen at cosine {cosine}"), verdict));
+            rows.push((format!("{name}, viewed at cosine {cosine}"), verdict));
         }
     }
     for anisotropy in [-0.4, 0.0, 0.3, 0.85] {
@@ -108,13 +109,14 @@ pub fn densities(table: &mut Table) -> Result<()> {
     // Sidak's correction: 1 - 0.99^(1/n), which is -ln 0.99 / n up to second order.
     let most = deviate_of(0.010_050_3 / rows.len() as f64);
     table.head(
-        "Sampled directions against their density",
+        "Sampled directions and their pdf",
         &format!(
-            "Chi-square test of 10^6 samples each in 80 x 160 cells of equal solid angle, as a standard normal deviate. A row passes below {most:.2}: a\n\
-             significance of 0.01 for all {} tests together, by Šidák. The density integrates to 1 minus the share of samples below the surface.",
+            "Chi-square test with 10^6 samples in 80 x 160 cells of equal solid angle. The deviate is the result as a standard normal\n\
+             deviate. A row passes if it is below {most:.2}, which gives all {} tests together a significance level of 0.01 (Šidák\n\
+             correction). The integral of the pdf is 1 minus the share of samples below the surface.",
             rows.len()
         ),
-        "sampler|>integral of density|>deviate",
+        "sampler|>integral of pdf|>deviate",
     );
     for (name, Verdict { deviate, density }) in rows {
         table.row(&format!("| {name} | {density:.4} | {deviate:+.2} |"), deviate < most && density < 1.002);

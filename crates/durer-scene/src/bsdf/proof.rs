@@ -128,7 +128,7 @@ pub fn broad() -> Vec<(&'static str, Lobe<'static>)> {
             "matte with bent normal",
             Diffuse { normal: leaning, roughness: 0.5, ..Diffuse::lambert(Spectrum::ONE) }.into(),
         ),
-        ("matte, other side", DiffuseTransmission { color: Spectrum::ONE }.into()),
+        ("diffuse transmission", DiffuseTransmission { color: Spectrum::ONE }.into()),
         ("Blinn", Blinn { color: Spectrum::ONE, exponent: 30.0, phong: false }.into()),
         ("Phong", Blinn { color: Spectrum::ONE, exponent: 12.0, phong: true }.into()),
         ("fuzz", Fuzz { roughness: 0.4 }.into()),
@@ -151,25 +151,25 @@ pub fn broad() -> Vec<(&'static str, Lobe<'static>)> {
 pub fn lossless() -> Vec<(&'static str, PrincipledMaterial)> {
     let white = || PrincipledMaterial { base_color: Vec3::ONE, ..Default::default() };
     vec![
-        ("matte under a boundary", white()),
+        ("matte under a dielectric", white()),
         ("rough matte", PrincipledMaterial { base_diffuse_roughness: 1.0, ..white() }),
-        ("half rough matte", PrincipledMaterial { base_diffuse_roughness: 0.4, specular_ior: 2.0, ..white() }),
+        ("moderately rough matte", PrincipledMaterial { base_diffuse_roughness: 0.4, specular_ior: 2.0, ..white() }),
         ("metal", PrincipledMaterial { base_metalness: 1.0, ..white() }),
         ("glass", PrincipledMaterial { transmission_weight: 1.0, ..white() }),
         ("thin glass", PrincipledMaterial { transmission_weight: 1.0, walls: Walls::Thin, ..white() }),
         ("coat on matte", PrincipledMaterial { coat_weight: 1.0, coat_roughness: 0.3, ..white() }),
         ("coat on metal", PrincipledMaterial { coat_weight: 0.7, base_metalness: 1.0, ..white() }),
         ("fuzz", PrincipledMaterial { fuzz_weight: 1.0, ..white() }),
-        ("half metal", PrincipledMaterial { base_metalness: 0.5, ..white() }),
-        ("matte under a strong boundary", PrincipledMaterial { specular_ior: 4.0, ..white() }),
-        ("matte under a weak boundary", PrincipledMaterial { specular_ior: 1.05, ..white() }),
+        ("half metallic", PrincipledMaterial { base_metalness: 0.5, ..white() }),
+        ("matte under a dielectric of index 4", PrincipledMaterial { specular_ior: 4.0, ..white() }),
+        ("matte under a dielectric of index 1.05", PrincipledMaterial { specular_ior: 1.05, ..white() }),
         ("rough coat on matte", PrincipledMaterial { coat_weight: 1.0, coat_roughness: 0.8, coat_ior: 2.5, ..white() }),
         ("smooth coat on glass", PrincipledMaterial { coat_weight: 1.0, transmission_weight: 1.0, ..white() }),
         (
             "sharp fuzz on metal",
             PrincipledMaterial { fuzz_weight: 1.0, fuzz_roughness: 0.1, base_metalness: 1.0, ..white() },
         ),
-        ("heavy glass", PrincipledMaterial { transmission_weight: 1.0, specular_ior: 2.5, ..white() }),
+        ("dense glass", PrincipledMaterial { transmission_weight: 1.0, specular_ior: 2.5, ..white() }),
     ]
 }
 
