@@ -31,11 +31,11 @@ const PHOTONS: [(&str, u32, f32); 1] = [("water-caustic", 200_000, 0.01)];
 
 /// Known causes of differences from Tungsten.
 const CAUSES: [(&str, &str); 3] = [
-    ("coffee", "coats lose the mean share of the light that enters them, whatever its direction"),
+    ("coffee", "coats attenuate light by the same mean share in all directions"),
     ("veach-mis", "the file's metals lack the factor 0.3 and Beckmann's distribution of Tungsten's metals"),
     (
         "water-caustic",
-        "single pixels, different in each picture, where the water mirrors the light; clamped at 1, +0.2 %",
+        "isolated pixels, different in each picture, where the water reflects the light; clamped at 1, +0.2 %",
     ),
 ];
 
@@ -69,7 +69,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         bail!("no matching scenes in {}", folder.display());
     }
     let mut table = format!(
-        "{samples} samples a pixel.\n\n\
+        "{samples} samples per pixel.\n\n\
          | scene | pixels | bounces | mean luminance | FLIP | HDR-FLIP | |\n\
          | --- | --- | ---: | ---: | ---: | ---: | --- |\n",
     );
