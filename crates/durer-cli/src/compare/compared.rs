@@ -76,14 +76,14 @@ fn explained(found: &Comparison) -> Vec<String> {
         ];
     }
     let line = |(i, finding): (usize, &Finding)| {
-        let percent = (1000.0 * finding.explained + 1e-6).floor() / 10.0;
+        let percent = named::percent(finding.explained);
         match i {
             // A location does not explain the cause.
             0 if finding.kind.ends_with("-parts") => {
-                format!("{} ({percent:.1} % of the squared difference is there)", finding.words)
+                format!("{} ({percent} of the squared difference is there)", finding.words)
             }
-            0 => format!("{}: explains {percent:.1} % of the squared difference", finding.words),
-            _ => format!("and {}: together {percent:.1} %", finding.words),
+            0 => format!("{}: explains {percent} of the squared difference", finding.words),
+            _ => format!("and {}: together {percent}", finding.words),
         }
     };
     found.findings.iter().enumerate().map(line).collect()

@@ -243,7 +243,7 @@ pub(super) fn out_of_scale(scout: &SceneProbe) -> Vec<Finding> {
             _ => "it is not seen",
         })
         .help(format!(
-            "its largest side is {}, that of most things {}: is it in another unit, as millimetres? ProbeGrid at its size and the \
+            "its largest side is {}, that of most things {}: is it in another unit, as millimetres? Look at its size and the \
              `{}` around it",
             number(size),
             number(middle),

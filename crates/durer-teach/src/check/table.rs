@@ -3,8 +3,8 @@
 use super::finding::Finding;
 use super::scene_probe::SceneProbe;
 use super::{
-    air, beams, colors, exposure, extent, facing, fading, hidden, lamps, layers, lens, lights, mesh, names, numbers,
-    objects, patterns, physical, solid, unseen, view, year,
+    air, beams, colors, exposure, extent, facing, fading, hidden, lamps, layers, lens, lights, mesh, method, names, numbers,
+    objects, optics, patterns, physical, solid, unseen, view, year,
 };
 
 /// A kind of finding.
@@ -67,8 +67,11 @@ checks! {
     "plane-normal": "a plane whose normal is not of length 1", year::plane_normal;
     "out-of-scale": "an object far larger or smaller than most", extent::out_of_scale;
     // Lights.
+    "wrong-integrator": "light of a kind that the method leaves out", method::wrong_integrator;
+    "black-sky": "an environment that is multiplied by 0", method::black_sky;
     "no-light": "no light", reported;
     "no-emitter": "a scene for paths in which nothing shines", physical::no_emitter;
+    "fog-away": "fog that no ray of the picture goes through", air::away;
     "thick-fog": "fog that keeps all light off", air::thick_fog;
     "lamp-turned": "a lamp that shines away from all that is seen", lamps::turned;
     "lamp-blocked": "a lamp whose light something keeps off all that is seen", lamps::blocked;
@@ -101,6 +104,10 @@ checks! {
     "negative-color": "a colour below zero", colors::negative;
     "no-bounces": "mirrors or glass without secondary rays", colors::no_bounces;
     "dull-glass": "glass whose colour lets nothing through", colors::dull_glass;
+    "nothing-mirrored": "mirrors that have nothing to show", method::nothing_mirrored;
+    "thick-film": "a film too thick to show colours", optics::thick_film;
+    "wide-scatter": "a body thinner than the way of light in it", optics::wide_scatter;
+    "no-spectrum": "glass that spreads colours, without light by wavelength", optics::no_spectrum;
     "odd-index": "glass of an index that no glass has", colors::odd_index;
     "same-color": "things of the colour of the background", colors::camouflaged;
     "no-coordinates": "a texture on a thing without texture coordinates", colors::no_coordinates;
@@ -125,6 +132,7 @@ checks! {
     "not-finite": "samples that are no finite numbers", numbers::not_finite;
     "depth-range": "a range of depths that none of the picture's lies in", exposure::depth_range;
     "too-bright": "more light than a picture of eight bits can hold", exposure::too_bright;
+    "mostly-black": "lights that reach next to nothing of what is seen", method::mostly_black;
     "too-dark": "hardly any light", exposure::too_dark;
     "all-missed": "no ray hits anything, though the camera looks at the scene", view::missed;
     "one-color": "a picture of one colour, and nothing found that says why", exposure::one_color;

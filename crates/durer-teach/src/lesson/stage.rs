@@ -125,7 +125,7 @@ impl Stage {
                 let mut job = Job { color, aovs, settings, sampling, method, ..self.job.clone() };
                 let mut rendered = render(&self.world, &job, control)?;
                 if value == Some("depth") && job.depth_range.is_none() {
-                    job.depth_range = depth_range(&rendered.layers[0].image);
+                    job.depth_range = depth_range(self.distances());
                     rendered = render(&self.world, &job, control)?;
                 }
                 let noise = noise.and_then(|_| noise_of(&rendered.layers[0].image, &rendered.layers[1].image));
@@ -225,6 +225,14 @@ impl Stage {
         Ok(Shown { layer, values: Image::from_pixels(width, height, values)?, noise: None })
     }
 
+    /// Returns t of the first hit of each ray through a pixel's centre that hits something.
+    fn distances(&self) -> Vec<f32> {
+        let raster = self.raster();
+        let ray = |place| center_ray(&self.world, &raster, place);
+        let hits = self.job.whole().places().filter_map(|place| self.world.intersect(&ray(place)?, &mut ()));
+        hits.map(|at| at.hit.t).filter(|t| t.is_finite()).collect()
+    }
+
     /// Describes a picture that is not compared with another, in a sentence; `None` if it shows
     /// nothing.
     pub(super) fn facts(&self, shot: &Shot, shown: &Shown) -> Option<String> {
@@ -240,7 +248,7 @@ impl Stage {
                 })
             }
             Some("depth") => {
-                let hits: Vec<f32> = values.iter().map(|value| value.x).filter(|t| t.is_finite()).collect();
+                let hits = self.distances();
                 let least = hits.iter().copied().reduce(f32::min)?;
                 let most = hits.iter().copied().reduce(f32::max)?;
                 let share = percent(hits.len(), values.len());
@@ -267,8 +275,8 @@ impl Stage {
                 colors.sort_unstable();
                 colors.dedup();
                 let count = colors.len();
-                (count > 1)
-                    .then(|| format!("The picture has {count} different colours, that of the background among them."))
+                let sky = if self.distances().len() < values.len() { ", that of the background among them" } else { "" };
+                (count > 1).then(|| format!("The picture has {count} different colours{sky}."))
             }
         }
     }
@@ -290,8 +298,7 @@ impl Stage {
 
 /// Returns a useful depth range for a scene with an infinite ground: from the minimum to three
 /// times as far from it as the median.
-fn depth_range(depths: &Image) -> Option<(f32, f32)> {
-    let mut depths: Vec<f32> = depths.pixels.iter().map(|depth| depth.x).filter(|depth| depth.is_finite()).collect();
+fn depth_range(mut depths: Vec<f32>) -> Option<(f32, f32)> {
     depths.sort_by(f32::total_cmp);
     let (least, most) = (*depths.first()?, *depths.last()?);
     let end = most.min(least + 3.0 * (depths[depths.len() / 2] - least));

@@ -76,6 +76,9 @@ pub struct Diagnosis {
     /// Explanations of the picture, more than one if several give the same picture; empty if none
     /// does.
     pub named: Vec<Named>,
+    /// A mistake that reproduces nearly all of the difference, while something more is different.
+    /// Only if nothing is named.
+    pub nearly: Option<Named>,
     /// The closest trials, including those that do not explain the picture.
     pub tried: Vec<Named>,
     /// Formulas for describing the mistakes.
@@ -216,7 +219,7 @@ fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     let trials = search.trials(close.map(|(_, trial)| trial.mistakes).collect(), &full);
     told(0.5);
     let tried = tried(&trials);
-    let single = decided(trials, &full, &Bars::SINGLE);
+    let single = decided(trials, &full, &Bars::NEARLY);
     if single.first().is_some_and(|named| Bars::CLEAR.passes(&named.fit())) {
         return Diagnosis { off, named: single, tried, ..Diagnosis::default() };
     }
@@ -229,7 +232,11 @@ fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     // Two mistakes always explain more than one; require much more.
     let rest = |named: &[Named]| named.first().map_or(1.0, |named| 1.0 - named.explained);
     let named = if rest(&pairs) < 0.35 * rest(&single) { pairs } else { single };
-    Diagnosis { off, named, tried: [tried, tried_pairs].concat(), ..Diagnosis::default() }
+    let tried = [tried, tried_pairs].concat();
+    match named.first().is_none_or(|named| Bars::SINGLE.passes(&named.fit())) {
+        true => Diagnosis { off, named, tried, ..Diagnosis::default() },
+        false => Diagnosis { off, nearly: named.into_iter().next(), tried, ..Diagnosis::default() },
+    }
 }
 
 /// Returns the trials at all pixels, best first.
@@ -437,9 +444,12 @@ struct Bars {
 }
 
 impl Bars {
+    /// Fit of a mistake beside which something more is different.
+    const NEARLY: Bars = Bars { explained: 0.985, matched: 0.9 };
     // The right mistake leaves only rounding at edges; a larger rest means another mistake.
-    const SINGLE: Bars = Bars { explained: 0.985, matched: 0.9 };
-    const PAIR: Bars = Bars { explained: 0.985, matched: 0.95 };
+    const SINGLE: Bars = Bars { explained: 0.99, matched: 0.95 };
+    /// Two mistakes fit more pictures by chance than one.
+    const PAIR: Bars = Bars { explained: 0.995, matched: 0.97 };
     /// Minimum fit with a fitted value.
     const FITTED: Bars = Bars { explained: 0.999, matched: 0.97 };
     /// Fit at which the search stops.

@@ -45,6 +45,9 @@ pub fn three_factors(scene: &Scene) -> bool {
     scene.lights.iter().flatten().any(|light| factors(&light.value))
 }
 
+/// How many times larger a triangle without one of its sides is taken to be.
+const WIDE: f32 = 100.0;
+
 /// Kinds of geometry that the course's programs implement, and can therefore get wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taught {
@@ -80,7 +83,7 @@ pub fn taught(geometry: &Geometry) -> Option<Taught> {
 }
 
 /// Computes the product of a transform's matrices.
-pub type Product = fn(&[MatrixOp], MatrixRules) -> DAffine3;
+pub type Product<'p> = &'p dyn Fn(&[MatrixOp], MatrixRules) -> DAffine3;
 
 impl<'s> Variant<'s> {
     /// Creates a variant without mistakes.
@@ -231,6 +234,26 @@ impl<'s> Variant<'s> {
             }
         }
         self.world.edit().objects.extend(halves);
+        self.rebuild();
+    }
+
+    /// Lets every triangle go on beyond the side opposite a corner, as if that side were not tested.
+    pub fn wedges(&mut self, corner: usize) {
+        for object in &mut self.world.edit().objects {
+            match &mut object.geometry {
+                Geometry::Primitive(shape) => {
+                    if let Primitive::Triangle(triangle) = shape {
+                        let all = triangle.corners();
+                        let [vertex0, vertex1, vertex2] = all.map(|p| all[corner] + WIDE * (p - all[corner]));
+                        *triangle = Triangle { vertex0, vertex1, vertex2 };
+                    }
+                }
+                Geometry::Mesh(tree) => {
+                    *tree = Arc::new(MeshTree::new(tree.mesh.grown(corner, WIDE), BuildQuality::Balanced))
+                }
+                Geometry::Solid(_) => {}
+            }
+        }
         self.rebuild();
     }
 
