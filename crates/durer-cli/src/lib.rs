@@ -28,6 +28,7 @@ mod output;
 mod page;
 mod photo;
 mod picture;
+mod pointers;
 mod progress;
 mod render;
 mod report;
@@ -40,7 +41,7 @@ mod watching;
 mod words;
 
 use args::{Cli, Command};
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 use failure::bad;
 use std::ffi::OsString;
 use std::io::IsTerminal;
@@ -98,7 +99,8 @@ pub fn run(words: Vec<OsString>, end: terminal::End) -> u8 {
 
 /// What a command line says. Help is written as all else is, so that it is told if it cannot be.
 fn parsed(words: Vec<OsString>) -> Cli {
-    Cli::try_parse_from(words).unwrap_or_else(|error| {
+    Cli::try_parse_from(&words).unwrap_or_else(|error| {
+        let error = pointers::corrected(error, &words, &Cli::command());
         if error.use_stderr() || std::io::stdout().is_terminal() {
             // A closed terminal reads no message either.
             let _ = error.print();

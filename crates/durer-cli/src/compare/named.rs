@@ -30,6 +30,9 @@ pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
             percent(nearly.explained)
         )];
     }
+    if let Some(remark) = &diagnosis.remark {
+        return vec![remark.clone()];
+    }
     let Some(first) = diagnosis.named.first() else {
         return vec!["cause unknown: none of the known mistakes explains the difference".into()];
     };
@@ -80,6 +83,7 @@ pub fn json(diagnosis: &Diagnosis) -> Value {
         "reference_off": diagnosis.off,
         "told": !diagnosis.named.is_empty(),
         "nearest": diagnosis.tried.iter().map(|n| json!([words(n), n.explained, n.matched])).collect::<Vec<_>>(),
+        "remark": diagnosis.remark,
         "nearly": diagnosis.nearly.as_ref().map(one),
         "named": diagnosis.named.iter().map(one).collect::<Vec<_>>(),
         "lines": lines(diagnosis),

@@ -3,6 +3,8 @@
 pub mod check;
 mod course;
 mod firefly;
+mod numbers;
+mod origins;
 mod text;
 
 use super::aim::PixelSample;
@@ -21,7 +23,8 @@ use durer_scene::math::{Color, Ray, Vec2, Vec3};
 use durer_scene::sampler::SampleId;
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
-pub use text::{Names, Telling, TextLine, number, ray_text};
+pub use numbers::number;
+pub use text::{Names, Telling, TextLine, ray_text};
 
 /// A pixel and everything that contributed to it.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -139,7 +139,7 @@ fn mirrored(scout: &SceneProbe, number: u32) -> Option<(Span, String)> {
 }
 
 /// Returns objects without a surface: empty solids, triangles and meshes without area.
-fn nothing_of(scout: &SceneProbe) -> Vec<u32> {
+pub(super) fn nothing_of(scout: &SceneProbe) -> Vec<u32> {
     let mut nothing = super::objects::empty_solids(scout);
     let flat = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).length_squared() == 0.0;
     let without = scout.world().objects().iter().enumerate().filter(|(i, object)| {

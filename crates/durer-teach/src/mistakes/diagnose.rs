@@ -4,7 +4,7 @@ use super::habits::Turn;
 use super::pictures::View;
 use super::search::{Fit, difference, differing, fit, sampled};
 use super::table::{Formulas, MISTAKES, Mistake, Values};
-use super::{Variant, speckles};
+use super::{Variant, paths, speckles};
 use durer_image::Transfer;
 use durer_image::compare::{Picture, Scale};
 use durer_render::render::Job;
@@ -79,6 +79,8 @@ pub struct Diagnosis {
     /// A mistake that reproduces nearly all of the difference, while something more is different.
     /// Only if nothing is named.
     pub nearly: Option<Named>,
+    /// What else can be said, if nothing is named.
+    pub remark: Option<String>,
     /// The closest trials, including those that do not explain the picture.
     pub tried: Vec<Named>,
     /// Formulas for describing the mistakes.
@@ -140,7 +142,7 @@ struct Search<'a> {
 }
 
 /// Converts a picture's values to a scale.
-fn values(picture: &Picture, scale: Scale, transfer: Transfer) -> Vec<Vec3> {
+pub(super) fn values(picture: &Picture, scale: Scale, transfer: Transfer) -> Vec<Vec3> {
     let pixels = picture.image.pixels.iter();
     match picture.scale == scale {
         true => pixels.map(|v| if v.is_finite() { *v } else { Vec3::ZERO }).collect(),
@@ -149,7 +151,7 @@ fn values(picture: &Picture, scale: Scale, transfer: Transfer) -> Vec<Vec3> {
 }
 
 /// Returns the reference's values, the view, and the scene without mistakes.
-fn prepared<'a>(question: &Question<'a>) -> (Vec<Vec3>, View<'a>, Variant<'a>) {
+pub(super) fn prepared<'a>(question: &Question<'a>) -> (Vec<Vec3>, View<'a>, Variant<'a>) {
     let screen = [question.reference, question.test].iter().any(|picture| picture.scale == Scale::Display);
     let scale = if screen { Scale::Display } else { Scale::Linear };
     let base = Variant::new(question.scene, question.world.clone(), question.job.settings);
@@ -159,6 +161,9 @@ fn prepared<'a>(question: &Question<'a>) -> (Vec<Vec3>, View<'a>, Variant<'a>) {
 
 /// Tries all mistakes. `told` receives the progress, from 0 to 1.
 pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
+    if question.job.method.transport().is_some() {
+        return paths::diagnose(question, told);
+    }
     Diagnosis { formulas: Formulas::of(question.scene, question.world.rules()), ..all_tried(question, told) }
 }
 
@@ -250,6 +255,9 @@ fn tried(trials: &[Trial]) -> Vec<Named> {
 /// Returns the share of a sample of pixels in which the scene's own picture differs from the
 /// reference.
 pub fn off(question: &Question) -> f64 {
+    if question.job.method.transport().is_some() {
+        return paths::off(question);
+    }
     let (reference, view, base) = prepared(question);
     let places = sampled(question.job.width, &reference, &reference, 2 * FEW);
     let width = question.job.width;

@@ -7,6 +7,7 @@
 
 mod diagnose;
 pub mod habits;
+pub mod paths;
 mod pictures;
 mod pupil;
 mod search;

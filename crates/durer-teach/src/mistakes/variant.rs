@@ -1,6 +1,7 @@
 //! A scene with its rules, and the deviations of a student's tracer.
 
 use super::habits::{Aim, Habits, Output, Turn};
+use super::paths::Paths;
 use durer_bvh::BuildQuality;
 use durer_render::compile::rules::matrix_rules;
 use durer_render::compile::{self, AccelKind};
@@ -34,6 +35,8 @@ pub struct Variant<'s> {
     pub output: Output,
     /// Deviations of pixel order.
     pub turn: Turn,
+    /// Deviations of a path tracer.
+    pub paths: Paths,
 }
 
 /// Returns true if some light is written with three attenuation factors.
@@ -88,8 +91,8 @@ pub type Product<'p> = &'p dyn Fn(&[MatrixOp], MatrixRules) -> DAffine3;
 impl<'s> Variant<'s> {
     /// Creates a variant without mistakes.
     pub fn new(scene: &'s Scene, world: World, settings: Settings) -> Self {
-        let (habits, aim, output, turn) = Default::default();
-        Variant { scene, world, settings, habits, aim, output, turn }
+        let (habits, aim, output, turn, paths) = Default::default();
+        Variant { scene, world, settings, habits, aim, output, turn, paths }
     }
 
     /// Returns the ray of a pixel through a position in pixels from the upper left corner.

@@ -72,11 +72,11 @@ pub const MISTAKES: [&[Mistake]; 7] = [
 
 /// Finds a mistake by name.
 pub fn of_name(name: &str) -> Option<&'static Mistake> {
-    MISTAKES.iter().copied().flatten().find(|mistake| mistake.name == name)
+    MISTAKES.iter().copied().flatten().chain(super::paths::MISTAKES).find(|mistake| mistake.name == name)
 }
 
 /// Builds a row without values.
-const fn row(
+pub(in crate::mistakes) const fn row(
     name: &'static str,
     step: &'static str,
     words: &'static str,
@@ -89,7 +89,7 @@ const fn row(
 
 impl Mistake {
     /// Sets the values to try.
-    const fn with(self, values: Values) -> Mistake {
+    pub(in crate::mistakes) const fn with(self, values: Values) -> Mistake {
         Mistake { values, ..self }
     }
 
