@@ -8,17 +8,9 @@ use std::ffi::OsString;
 /// What an option of another program is called here: its names, the option that a command must have
 /// for it to be offered, and the words.
 const POINTERS: &[(&[&str], &str, &str)] = &[
-    (
-        &["--width", "--height", "--resolution", "--res", "-size"],
-        "size",
-        "`--size 640x480` has both, the width first",
-    ),
+    (&["--width", "--height", "--resolution", "--res", "-size"], "size", "`--size 640x480` has both, the width first"),
     (&["--spp", "--aa", "--antialias", "--samples-per-pixel"], "samples", "samples a pixel are `--samples 64`"),
-    (
-        &["--format", "--type", "--filetype"],
-        "output",
-        "the ending of the file chooses the format: `-o picture.exr`",
-    ),
+    (&["--format", "--type", "--filetype"], "output", "the ending of the file chooses the format: `-o picture.exr`"),
     (&["--out", "--outfile", "-output"], "output", "the file to write is `-o picture.png`"),
     (&["--depth", "--max-depth", "--maxdepth", "-bounces"], "bounces", "the depth of secondary rays is `--bounces 4`"),
     (&["--depth", "-depth"], "show", "the picture of depths is `--show depth --depth-range 8 12`"),

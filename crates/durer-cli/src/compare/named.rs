@@ -36,11 +36,7 @@ pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
     let Some(first) = diagnosis.named.first() else {
         return vec!["cause unknown: none of the known mistakes explains the difference".into()];
     };
-    let mut lines = vec![format!(
-        "{}: explains {} of the squared difference",
-        words(first),
-        percent(first.explained)
-    )];
+    let mut lines = vec![format!("{}: explains {} of the squared difference", words(first), percent(first.explained))];
     for (mistake, value) in &first.mistakes {
         let [right, wrong] = mistake.forms(*value, &diagnosis.formulas);
         lines.push(format!("  should be:  {right}"));

@@ -147,11 +147,7 @@ impl Fit {
             }
         }
         let share = |part: f64, of: f64| if of > 0.0 { part / of } else { 1.0 };
-        Fit {
-            left: share(rest, total),
-            contrast: share(rest, spread),
-            matched: share(agree as f64, either as f64),
-        }
+        Fit { left: share(rest, total), contrast: share(rest, spread), matched: share(agree as f64, either as f64) }
     }
 }
 

@@ -21,9 +21,9 @@ use crate::integrator::{Integrate, Integrator, TraceRecorder, Tree};
 use crate::world::World;
 use durer_scene::math::{Color, Ray, Vec2, Vec3};
 use durer_scene::sampler::SampleId;
+pub use numbers::number;
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
-pub use numbers::number;
 pub use text::{Names, Telling, TextLine, ray_text};
 
 /// A pixel and everything that contributed to it.

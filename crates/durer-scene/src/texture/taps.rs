@@ -35,10 +35,10 @@ impl Texture {
         };
         let index = |axis: usize, i: i64, size: u32| match &self.mapping {
             Some(mapping) => mapping.wrap[axis].index(i, size),
-            None => i.clamp(0, i64::from(size) - 1),
+            None => i.clamp(0, i64::from(size) - 1) as u32,
         };
         let tap = |i: i64, j: i64, weight: f64| {
-            let place = (index(0, i, self.width) as u32, index(1, j, self.height) as u32);
+            let place = (index(0, i, self.width), index(1, j, self.height));
             let at = place.1 as usize * self.width as usize + place.0 as usize;
             let bytes = match &self.texels {
                 Texels::Eight(texels, _) => Some(texels[at]),

@@ -20,9 +20,8 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     };
     // Fog beside the picture may still shade what is in it.
     let around = world.bounds();
-    let apart = around.is_empty() || (0..3).any(|axis| {
-        place.bounds.min[axis] > around.max[axis] || place.bounds.max[axis] < around.min[axis]
-    });
+    let apart = around.is_empty()
+        || (0..3).any(|axis| place.bounds.min[axis] > around.max[axis] || place.bounds.max[axis] < around.min[axis]);
     if !apart || scout.probes.iter().any(goes_through) {
         return Vec::new();
     }

@@ -241,7 +241,12 @@ fn all_colors(scout: &SceneProbe) -> Vec<Named> {
             (m.fuzz_color, "fuzzColor"),
         ];
         // Presets of measured metals are a little above 1.
-        colors.extend(shares.map(|(color, field)| Named { color, block: written.span, fields: [field, field], most: 1.1 }));
+        colors.extend(shares.map(|(color, field)| Named {
+            color,
+            block: written.span,
+            fields: [field, field],
+            most: 1.1,
+        }));
     }
     for (number, (written, light)) in
         scout.subject.scene.lights.iter().flatten().zip(scout.world().lights()).enumerate()

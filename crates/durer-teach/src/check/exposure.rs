@@ -52,11 +52,9 @@ fn white(scout: &SceneProbe) -> Vec<Finding> {
     let middle = values[values.len() / 2];
     let stops = stops_of(0.5 / middle).round();
     let factor = number(0.5 / middle);
-    let diagnostic = Diagnostic::warning(format!(
-        "there is too much light: half of {what} is brighter than {}",
-        number(middle)
-    ))
-    .effect(format!("{} of {what} is white", percent(white, shown.len())));
+    let diagnostic =
+        Diagnostic::warning(format!("there is too much light: half of {what} is brighter than {}", number(middle)))
+            .effect(format!("{} of {what} is white", percent(white, shown.len())));
     let background = &scout.subject.scene.background;
     let sky = background.sun().is_some() || background.cie_sky.is_some();
     let lamp = super::lamps::brightest(scout).filter(|_| !sky);

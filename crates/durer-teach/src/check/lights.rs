@@ -227,7 +227,11 @@ fn grazing(scout: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
             let place = from + 0.5 * (eye - from).length().max(1e-3) * n;
             let raised = vector(place);
             let bounds = scout.world().bounds();
-            let wide = if bounds.is_empty() { f32::INFINITY } else { bounds.size().length() + (eye - bounds.center()).length() };
+            let wide = if bounds.is_empty() {
+                f32::INFINITY
+            } else {
+                bounds.size().length() + (eye - bounds.center()).length()
+            };
             // A lamp out of all proportion is a mistake of its own.
             if (place - eye).length() > FARTHEST * wide {
                 let help = "the light lies in the plane of that surface, and far from everything: move it nearer";

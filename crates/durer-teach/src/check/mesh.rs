@@ -1,8 +1,8 @@
 //! Checks of meshes, file by file: triangles, edges and normals.
 
 use super::finding::{Finding, counted, percent, vector};
-use super::mesh_files::{MeshFile, models};
 use super::mesh_files::topology::Topology;
+use super::mesh_files::{MeshFile, models};
 use super::scene_probe::SceneProbe;
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_render::world::{Material, Object as Placed};

@@ -31,9 +31,10 @@ pub(super) fn wrong_integrator(scout: &SceneProbe) -> Vec<Finding> {
         (None, Some(_)) => ("its environment", background_span(scout)),
         (None, None) => return Vec::new(),
     };
-    let diagnostic = Diagnostic::warning(format!("the light of this scene comes from {what}, which Whitted's method leaves out"))
-        .effect("nothing is lit: surfaces are black, or of one flat colour")
-        .help("paths bring it: ask for `--integrator path`, or leave `--integrator` away");
+    let diagnostic =
+        Diagnostic::warning(format!("the light of this scene comes from {what}, which Whitted's method leaves out"))
+            .effect("nothing is lit: surfaces are black, or of one flat colour")
+            .help("paths bring it: ask for `--integrator path`, or leave `--integrator` away");
     vec![Finding::from(Diagnostic { span, ..diagnostic }).whole(true)]
 }
 
@@ -64,24 +65,28 @@ pub(super) fn mostly_black(scout: &SceneProbe) -> Vec<Finding> {
             Some(Written::Principled(m)) => m.base_color.max_element() < 0.05 && m.base_color_texture.is_none(),
             _ => false,
         };
-        !dark && !world.may_shine(seen.material) && !matches!(world.materials()[seen.material as usize], Material::Solid(..))
+        !dark
+            && !world.may_shine(seen.material)
+            && !matches!(world.materials()[seen.material as usize], Material::Solid(..))
     };
-    let own = scout.lit_probes().filter_map(|(probe, color): (&Probe, Color)| {
-        probe.seen.as_ref().filter(|seen| reflects(seen)).map(|_| color)
-    });
-    let (all, black) = own.fold((0, 0), |(all, black), color| {
-        (all + 1, black + usize::from(color.max_element() < BLACK))
-    });
+    let own = scout
+        .lit_probes()
+        .filter_map(|(probe, color): (&Probe, Color)| probe.seen.as_ref().filter(|seen| reflects(seen)).map(|_| color));
+    let (all, black) =
+        own.fold((0, 0), |(all, black), color| (all + 1, black + usize::from(color.max_element() < BLACK)));
     if all < FEWEST || black * 10 < all * MOSTLY {
         return Vec::new();
     }
     let model = scout.subject.files.name(0).is_some_and(|name| scene_format_for(name).is_some());
-    let diagnostic = Diagnostic::warning(format!("{} of what is seen is black: its lights do not reach it", percent(black, all)))
-        .effect("hardly anything but the background is seen")
-        .help(match model {
-            true => "`--studio sun` lights a model from outside; its own lights then do not count",
-            false => "move the light to the camera's side, add another, or write `Background { color 0.3 0.3 0.3 }`",
-        });
+    let diagnostic =
+        Diagnostic::warning(format!("{} of what is seen is black: its lights do not reach it", percent(black, all)))
+            .effect("hardly anything but the background is seen")
+            .help(match model {
+                true => "`--studio sun` lights a model from outside; its own lights then do not count",
+                false => {
+                    "move the light to the camera's side, add another, or write `Background { color 0.3 0.3 0.3 }`"
+                }
+            });
     let span = scout.subject.scene.lights.iter().flatten().next().map(|light| light.span);
     vec![Finding::from(Diagnostic { span, ..diagnostic }).whole(true)]
 }
@@ -104,9 +109,8 @@ pub(super) fn nothing_mirrored(scout: &SceneProbe) -> Vec<Finding> {
     let black = |probe: &Probe| probe.color.max_element() < BLACK;
     let mut seen = scout.seen().peekable();
     let Some((_, first)) = seen.peek().copied() else { return Vec::new() };
-    let (all, dark) = seen.fold((0, 0), |(all, dark), (probe, hit)| {
-        (all + 1, dark + usize::from(mirror(hit) && black(probe)))
-    });
+    let (all, dark) =
+        seen.fold((0, 0), |(all, dark), (probe, hit)| (all + 1, dark + usize::from(mirror(hit) && black(probe))));
     if dark * 100 < all * 95 {
         return Vec::new();
     }

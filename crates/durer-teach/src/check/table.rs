@@ -3,8 +3,8 @@
 use super::finding::Finding;
 use super::scene_probe::SceneProbe;
 use super::{
-    air, beams, colors, exposure, extent, facing, fading, hidden, lamps, layers, lens, lights, mesh, method, names, numbers,
-    objects, optics, patterns, physical, solid, unseen, view, year,
+    air, beams, colors, exposure, extent, facing, fading, hidden, lamps, layers, lens, lights, mesh, method, names,
+    numbers, objects, optics, patterns, physical, solid, unseen, view, year,
 };
 
 /// A kind of finding.

@@ -1,6 +1,6 @@
 //! A scene that can be rendered without parts of its light and with common mistakes.
 
-use super::topics::{Carriage, Glass, Look, Shot};
+use super::topics::{Carriage, Glass, Look, Shot, Topic};
 use crate::mistakes::{Variant, of_name};
 use durer_diag::{Diagnostics, Files};
 use durer_formats::Decoder;
@@ -115,13 +115,14 @@ impl Stage {
         let shown = match shot.value {
             Some("rays") => self.directions()?,
             value => {
-                self.arrange(&shot.look);
+                let look = self.carried(shot.look);
+                self.arrange(&look);
                 let color = value.is_none();
-                let noise = shot.look.paths.map(|_| "variance");
+                let noise = look.paths.map(|_| "variance");
                 let aovs: Vec<_> = value.into_iter().chain(noise).filter_map(Aov::from_name).collect();
-                let settings = self.settings(&shot.look);
-                let sampling = self.sampling(&shot.look);
-                let method = self.method(&shot.look);
+                let settings = self.settings(&look);
+                let sampling = self.sampling(&look);
+                let method = self.method(&look);
                 let mut job = Job { color, aovs, settings, sampling, method, ..self.job.clone() };
                 let mut rendered = render(&self.world, &job, control)?;
                 if value == Some("depth") && job.depth_range.is_none() {
@@ -197,6 +198,28 @@ impl Stage {
             }
             (true, _) => Method::Photons(PhotonParameters { transport, ..PhotonParameters::default() }),
         }
+    }
+
+    /// Returns true if no light of the scene is of a kind that Whitted's method knows.
+    pub(super) fn needs_paths(&self) -> bool {
+        self.has_paths() && self.lights.is_empty()
+    }
+
+    /// Returns a look with paths in place of Whitted's method where that shows no light: direct light
+    /// is the same step with either.
+    fn carried(&self, look: Look) -> Look {
+        match self.needs_paths() && look.lights && look.paths.is_none() && look.bounces == 0 {
+            true => Look { paths: Some(Carriage::PLAIN), sampled: true, ..look },
+            false => look,
+        }
+    }
+
+    /// Returns the reason if a topic takes light that only Whitted's method shows step by step, and
+    /// that method does not know the scene's light.
+    pub(super) fn method_lacks(&self, topic: &Topic) -> Option<&'static str> {
+        let bounces = topic.shots.iter().any(|shot| shot.look.bounces > 0 && shot.look.paths.is_none());
+        (self.needs_paths() && bounces)
+            .then_some("its light comes from surfaces or from all around, which Whitted's method does not know")
     }
 
     /// Returns true if the job uses path tracing.
@@ -275,7 +298,8 @@ impl Stage {
                 colors.sort_unstable();
                 colors.dedup();
                 let count = colors.len();
-                let sky = if self.distances().len() < values.len() { ", that of the background among them" } else { "" };
+                let sky =
+                    if self.distances().len() < values.len() { ", that of the background among them" } else { "" };
                 (count > 1).then(|| format!("The picture has {count} different colours{sky}."))
             }
         }

@@ -2,15 +2,13 @@
 
 use super::habits::Turn;
 use super::pictures::View;
+use super::question::{Diagnosis, MAX_OFF, Named, Question, prepared, values};
 use super::search::{Fit, difference, differing, fit, sampled};
+use super::speckles;
 use super::table::{Formulas, MISTAKES, Mistake, Values};
-use super::{Variant, paths, speckles};
-use durer_image::Transfer;
-use durer_image::compare::{Picture, Scale};
-use durer_render::render::Job;
-use durer_render::world::World;
+use super::variant::Variant;
+use durer_image::compare::Scale;
 use durer_scene::math::Vec3;
-use durer_scene::scene::Scene;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -31,68 +29,11 @@ const BEST: usize = 12;
 /// Only the `CLOSEST` best trials are tried at all pixels, unless they explain more than this.
 const CLOSE: f64 = 0.8;
 const CLOSEST: usize = 5;
-/// Share of pixels in which the scene's own picture may differ from the reference; above it,
-/// nothing is reported.
-const MAX_OFF: f64 = 0.25;
 /// Half a step of eight bits, and minimum number of pixels with different rounding.
 const HALF: f32 = 0.5 / 255.0;
 const FEWEST_ROUNDED: usize = 30;
 /// Maximum number of pairs that are tried.
 const MAX_PAIRS: usize = 3000;
-
-/// Two pictures, and the scene of the reference.
-#[derive(Clone, Copy, Debug)]
-pub struct Question<'a> {
-    /// The scene as written.
-    pub scene: &'a Scene,
-    /// The scene compiled with the rules of the reference.
-    pub world: &'a World,
-    /// The job of the reference: the pictures' size, without a crop.
-    pub job: &'a Job,
-    /// Transfer curve of the eight-bit pictures.
-    pub transfer: Transfer,
-    /// The correct picture.
-    pub reference: &'a Picture,
-    /// The picture to diagnose.
-    pub test: &'a Picture,
-}
-
-/// Mistakes that together explain a picture.
-#[derive(Clone, Debug)]
-pub struct Named {
-    /// The mistakes, each with its value.
-    pub mistakes: Vec<(&'static Mistake, f32)>,
-    /// Share of the squared difference that they explain, without rounding.
-    pub explained: f64,
-    /// Share of the differing pixels that they reproduce.
-    pub matched: f64,
-}
-
-/// Result of a diagnosis.
-#[derive(Clone, Debug, Default)]
-pub struct Diagnosis {
-    /// Share of the pixels in which the scene's own picture differs from the reference.
-    pub off: f64,
-    /// Explanations of the picture, more than one if several give the same picture; empty if none
-    /// does.
-    pub named: Vec<Named>,
-    /// A mistake that reproduces nearly all of the difference, while something more is different.
-    /// Only if nothing is named.
-    pub nearly: Option<Named>,
-    /// What else can be said, if nothing is named.
-    pub remark: Option<String>,
-    /// The closest trials, including those that do not explain the picture.
-    pub tried: Vec<Named>,
-    /// Formulas for describing the mistakes.
-    pub formulas: Formulas,
-}
-
-impl Diagnosis {
-    /// Returns true if the scene and the options reproduce the reference.
-    pub fn is_of_scene(&self) -> bool {
-        self.off <= MAX_OFF
-    }
-}
 
 /// A trial: mistakes, their picture, and its fit.
 #[derive(Clone, Debug)]
@@ -141,29 +82,8 @@ struct Search<'a> {
     base: Variant<'a>,
 }
 
-/// Converts a picture's values to a scale.
-pub(super) fn values(picture: &Picture, scale: Scale, transfer: Transfer) -> Vec<Vec3> {
-    let pixels = picture.image.pixels.iter();
-    match picture.scale == scale {
-        true => pixels.map(|v| if v.is_finite() { *v } else { Vec3::ZERO }).collect(),
-        false => pixels.map(|light| Vec3::from(transfer.encode_pixel(*light).map(f32::from)) / 255.0).collect(),
-    }
-}
-
-/// Returns the reference's values, the view, and the scene without mistakes.
-pub(super) fn prepared<'a>(question: &Question<'a>) -> (Vec<Vec3>, View<'a>, Variant<'a>) {
-    let screen = [question.reference, question.test].iter().any(|picture| picture.scale == Scale::Display);
-    let scale = if screen { Scale::Display } else { Scale::Linear };
-    let base = Variant::new(question.scene, question.world.clone(), question.job.settings);
-    let view = View { job: question.job, scale, transfer: question.transfer, brightest: 1.0 };
-    (values(question.reference, scale, question.transfer), view, base)
-}
-
 /// Tries all mistakes. `told` receives the progress, from 0 to 1.
 pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
-    if question.job.method.transport().is_some() {
-        return paths::diagnose(question, told);
-    }
     Diagnosis { formulas: Formulas::of(question.scene, question.world.rules()), ..all_tried(question, told) }
 }
 
@@ -255,9 +175,6 @@ fn tried(trials: &[Trial]) -> Vec<Named> {
 /// Returns the share of a sample of pixels in which the scene's own picture differs from the
 /// reference.
 pub fn off(question: &Question) -> f64 {
-    if question.job.method.transport().is_some() {
-        return paths::off(question);
-    }
     let (reference, view, base) = prepared(question);
     let places = sampled(question.job.width, &reference, &reference, 2 * FEW);
     let width = question.job.width;

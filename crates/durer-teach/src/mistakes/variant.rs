@@ -1,7 +1,7 @@
 //! A scene with its rules, and the deviations of a student's tracer.
 
 use super::habits::{Aim, Habits, Output, Turn};
-use super::paths::Paths;
+use super::path_habits::Paths;
 use durer_bvh::BuildQuality;
 use durer_render::compile::rules::matrix_rules;
 use durer_render::compile::{self, AccelKind};

@@ -65,13 +65,15 @@ fn equation(object: &Object, ray: &RayRecord, t: f32) -> Option<String> {
             let n = plane.normal.as_dvec3();
             // Of a plane the geometry is never moved about a centre.
             let (offset, no, nd) = (f64::from(plane.offset), n.dot(o), n.dot(d));
-            is_it((offset - no) / nd).then(|| format!(
-                "t = (offset - n·o) / n·d = ({} - {}) / {} = {}",
-                real(offset),
-                real(no),
-                real(nd),
-                real((offset - no) / nd)
-            ))
+            is_it((offset - no) / nd).then(|| {
+                format!(
+                    "t = (offset - n·o) / n·d = ({} - {}) / {} = {}",
+                    real(offset),
+                    real(no),
+                    real(nd),
+                    real((offset - no) / nd)
+                )
+            })
         }
         Geometry::Primitive(_) | Geometry::Mesh(_) | Geometry::Solid(_) => None,
     }
@@ -105,7 +107,13 @@ fn of_color(hit: &HitRecord, scene: &Scene, world: &World) -> Vec<String> {
         let (chosen, text) = match solid {
             Solid::Checkerboard(_) => cell(q, share, [first, second]),
             _ => (
-                if share == 1.0 { Some(first) } else if share == 0.0 { Some(second) } else { None },
+                if share == 1.0 {
+                    Some(first)
+                } else if share == 0.0 {
+                    Some(second)
+                } else {
+                    None
+                },
                 format!(
                     "{} at {}: {} of material {first}, {} of material {second}",
                     solid.own_keyword(),

@@ -1,8 +1,9 @@
 //! Means over blocks of a picture, with the variance that noise gives them.
 
-use super::walker::{Mean, Walker};
-use crate::mistakes::Variant;
+use super::walker::Walker;
+use crate::mistakes::path_habits::Mean;
 use crate::mistakes::pictures::View;
+use crate::mistakes::variant::Variant;
 use durer_render::render::sample_places;
 use durer_scene::math::{Color, Vec2, Vec3};
 use rayon::prelude::*;
@@ -64,9 +65,9 @@ impl Blocks {
             let (mut all, mut weights) = (Vec::new(), 0.0);
             let mut add = |place: Vec2, lens: Vec2, weight: f32| {
                 if all.len() < MOST_SAMPLES as usize {
-                    let light = variant.ray(&raster, (x, y), place, lens).map_or(Color::ZERO, |ray| {
-                        walker.radiance(&ray, seed, (x, y), all.len() as u32)
-                    });
+                    let light = variant
+                        .ray(&raster, (x, y), place, lens)
+                        .map_or(Color::ZERO, |ray| walker.radiance(&ray, seed, (x, y), all.len() as u32));
                     let light = match variant.paths.mean {
                         Mean::Light => light,
                         Mean::Clamped => light.clamp(Color::ZERO, Color::ONE),

@@ -10,5 +10,3 @@ mod table;
 mod walker;
 
 pub use search::{diagnose, off};
-pub(super) use table::MISTAKES;
-pub use walker::Paths;

@@ -2,10 +2,10 @@
 
 use super::blocks::{Blocks, Means};
 use super::table::MISTAKES;
-use crate::mistakes::diagnose::{Diagnosis, Named, Question, prepared, values};
-use crate::mistakes::table::Mistake;
-use crate::mistakes::{Formulas, Variant};
 use crate::mistakes::pictures::View;
+use crate::mistakes::question::{Diagnosis, Named, Question, prepared, values};
+use crate::mistakes::table::{Formulas, Mistake};
+use crate::mistakes::variant::Variant;
 use durer_scene::math::Vec3;
 
 /// Share of the blocks that may differ significantly from the scene's own picture; above it nothing
@@ -62,7 +62,8 @@ pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     let own = blocks.render(&view, &base, seed);
     told(0.1);
     let off = share_off(&own, &reference);
-    let found = Diagnosis { off, formulas: Formulas::of(question.scene, question.world.rules()), ..Diagnosis::default() };
+    let found =
+        Diagnosis { off, formulas: Formulas::of(question.scene, question.world.rules()), ..Diagnosis::default() };
     if off > MAX_OFF {
         return found;
     }
@@ -123,11 +124,8 @@ fn decided(mut trials: Vec<Trial>, test: &Means) -> Vec<Named> {
     if rivals.len() > 3 || !rivals.iter().all(|rival| alike(rival)) {
         return Vec::new();
     }
-    let named = |trial: &&Trial| Named {
-        mistakes: vec![trial.mistake],
-        explained: trial.explained,
-        matched: trial.matched,
-    };
+    let named =
+        |trial: &&Trial| Named { mistakes: vec![trial.mistake], explained: trial.explained, matched: trial.matched };
     rivals.iter().map(named).collect()
 }
 

@@ -1,6 +1,6 @@
 //! The table of mistakes of path tracers.
 
-use super::walker::{Chosen, Lacks, Mean, Sky, Slant};
+use crate::mistakes::path_habits::{Chosen, Lacks, Mean, Sky, Slant};
 use crate::mistakes::table::{Mistake, Values, row};
 
 pub const MISTAKES: &[Mistake] = &[

@@ -2,112 +2,17 @@
 //! with optional mistakes. It shares the library's surfaces, BSDFs and emitters, and has the same
 //! mean as its path tracer for scenes without fog.
 
-use crate::mistakes::Variant;
-use durer_bvh::math::fp;
-use durer_render::integrator::media::{Media, Passage};
+use crate::mistakes::path_habits::{Chosen, Lacks, Paths, Sky, Slant};
+use crate::mistakes::variant::Variant;
+use durer_render::integrator::media::Media;
 use durer_render::integrator::spawn::{offset_bound, spawn_ray, to_point};
 use durer_render::integrator::{Settings, Whitted};
 use durer_render::world::emitters::{LightId, LightSample, Receiver};
 use durer_render::world::{Geometry, Interaction, Shading, World};
-use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3};
+use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3, fp};
 use durer_scene::shape::{Primitive, Shape as _};
 use durer_scene::spectrum::{ColorMode, Lanes, Spectrum};
 use std::f32::consts::PI;
-
-/// Factor of the cosine at a surface.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Slant {
-    /// cos.
-    #[default]
-    Right,
-    /// Left out.
-    None,
-    /// cos².
-    Twice,
-}
-
-/// Choice of scattered directions.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Chosen {
-    /// By the BSDF, divided by its density.
-    #[default]
-    Right,
-    /// By the BSDF, not divided.
-    Undivided,
-    /// Uniform over the hemisphere, divided by the density of the cosine.
-    Uniform,
-    /// By the BSDF, in the frame of the surface taken for the world.
-    LocalFrame,
-    /// By the BSDF, with one random number for two.
-    OneNumber,
-}
-
-/// Factor of a light sample that is left out.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Lacks {
-    /// None.
-    #[default]
-    Nothing,
-    /// 1 / d².
-    Distance,
-    /// The cosine at the light.
-    Cosine,
-    /// The light's area.
-    Area,
-    /// The division by the probability of the light among all.
-    Choice,
-    /// The division by the density.
-    Density,
-}
-
-/// Directions of the environment.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Sky {
-    /// As written.
-    #[default]
-    Right,
-    /// Upside down.
-    UpsideDown,
-    /// Its density lacks the sine of the polar angle.
-    NoSine,
-}
-
-/// Value of a pixel from its samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Mean {
-    /// The mean of light.
-    #[default]
-    Light,
-    /// The mean of clamped light.
-    Clamped,
-    /// The mean of display values.
-    Shown,
-}
-
-/// Deviations of a path tracer. The default is a correct one.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Paths {
-    /// Cosine at surfaces.
-    pub slant: Slant,
-    /// The matte lobe lacks 1/π; with `true` for light samples alone.
-    pub no_pi: Option<bool>,
-    /// Scattered directions.
-    pub chosen: Chosen,
-    /// Light samples.
-    pub lacks: Lacks,
-    /// Both strategies count in full.
-    pub unweighted: bool,
-    /// Emitters count only where scattered directions hit them, and light samples are weighted.
-    pub half_weighted: bool,
-    /// What survives roulette is not divided by the probability.
-    pub roulette: bool,
-    /// Emitters shine to both sides.
-    pub two_sided: bool,
-    /// Environment.
-    pub sky: Sky,
-    /// Value of a pixel.
-    pub mean: Mean,
-}
 
 /// Random numbers of a sample.
 struct Numbers(u64);
@@ -187,7 +92,8 @@ impl<'w> Walker<'w> {
             if depth > self.settings.bounces {
                 return sum;
             }
-            let shading = world.shading(&at, passage.as_ref().map_or(1.0, Passage::eta), lanes);
+            let shading =
+                world.shading(&at, passage.as_ref().map_or(1.0, |passage| passage.there / passage.here), lanes);
             if shading.bsdf.is_black() {
                 return sum;
             }
@@ -281,9 +187,7 @@ impl<'w> Walker<'w> {
         let weight = if light.pdf == 0.0 || self.habits.unweighted { 1.0 } else { power(pdf, bsdf_pdf) };
         let radiance = match (choice.is_sky(), self.habits.sky) {
             (true, Sky::UpsideDown) => emitters.sky(self.world, self.turned(light.wi)).0,
-            (true, Sky::NoSine) => {
-                light.radiance / (1.0 - light.wi.y * light.wi.y).max(1e-4).sqrt()
-            }
+            (true, Sky::NoSine) => light.radiance / (1.0 - light.wi.y * light.wi.y).max(1e-4).sqrt(),
             _ => light.radiance,
         };
         value * (weight / pdf) * self.lacking(&light, pdf) * self.lanes.light(radiance)

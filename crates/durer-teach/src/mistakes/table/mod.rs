@@ -72,7 +72,7 @@ pub const MISTAKES: [&[Mistake]; 7] = [
 
 /// Finds a mistake by name.
 pub fn of_name(name: &str) -> Option<&'static Mistake> {
-    MISTAKES.iter().copied().flatten().chain(super::paths::MISTAKES).find(|mistake| mistake.name == name)
+    MISTAKES.iter().copied().flatten().find(|mistake| mistake.name == name)
 }
 
 /// Builds a row without values.

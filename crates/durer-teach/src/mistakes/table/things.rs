@@ -513,7 +513,13 @@ fn exchanged(op: &MatrixOp, a: usize, b: usize) -> MatrixOp {
         }
         other => return other,
     };
-    let turned = if axis == a { b } else if axis == b { a } else { axis };
+    let turned = if axis == a {
+        b
+    } else if axis == b {
+        a
+    } else {
+        axis
+    };
     [MatrixOp::XRotate(angle), MatrixOp::YRotate(angle), MatrixOp::ZRotate(angle)][turned]
 }
 
