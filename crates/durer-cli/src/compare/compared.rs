@@ -43,6 +43,20 @@ impl Compared {
         }
     }
 
+    /// Returns the keywords of the mistakes that explain the difference; empty if none does.
+    pub fn mistakes(&self) -> String {
+        let all: Vec<&str> = match (&self.outcome, &self.diagnosis) {
+            (_, Some(diagnosis)) => {
+                diagnosis.named.first().into_iter().flat_map(|named| &named.mistakes).map(|one| one.0.name).collect()
+            }
+            (Outcome::Compared(found), None) if found.verdict == Verdict::Different => {
+                found.findings.iter().map(|finding| finding.kind).collect()
+            }
+            _ => Vec::new(),
+        };
+        all.join(" + ")
+    }
+
     /// Returns the verdict as one word.
     pub fn verdict(&self) -> &'static str {
         match &self.outcome {
