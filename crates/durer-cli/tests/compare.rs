@@ -392,7 +392,7 @@ fn a_class_is_a_table_of_comma_separated_values() {
     std::fs::create_dir_all(place.path("ref")).unwrap();
     std::fs::create_dir_all(place.path("class/ann")).unwrap();
     put(&place, "ref/a.ppm", &picture);
-    put(&place, "class/ann/a.ppm", &changed(&picture, |x, y, at| at(picture.width as u32 - 1 - x, y)));
+    put(&place, "class/ann/a.ppm", &changed(&picture, |x, y, at| at(picture.width - 1 - x, y)));
     let ran = place.gives(1, "compare ref class --csv");
     let lines: Vec<&str> = ran.out.lines().collect();
     assert_eq!(lines[0], "student,picture,verdict,differ_percent,rmse,ssim,flip,mistake,why");
