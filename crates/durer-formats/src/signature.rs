@@ -27,7 +27,6 @@ const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
     (b"#?RADIANCE", "a picture (Radiance's)", None),
     (b"II*\0", "a picture (TIFF)", None),
     (b"MM\0*", "a picture (TIFF)", None),
-    (b"\x1f\x8b", "a gzip archive", None),
     (b"7z\xbc\xaf", "a 7z archive", None),
     (b"Rar!", "a RAR archive", None),
     (b"ISO-10303-21", "STEP", None),
@@ -89,7 +88,7 @@ mod tests {
         assert!(told(b"OFF\n8 6 12", "b.off", &[]).unwrap().contains("`b.off` is OFF"));
         assert!(told(b"IESNA:LM-63", "b.ies", &[]).unwrap().contains("it is used in a scene"));
         assert!(told(b"%PDF-1.7", "b.txt", &[]).unwrap().contains("`b.txt` is a PDF"));
-        assert!(told(b"\x1f\x8b\x08", "b.blend", &[]).unwrap().contains("unpack it"));
+        assert!(told(b"Rar!\x1a\x07", "b.obj", &[]).unwrap().contains("unpack it"));
         assert_eq!(told(b"glTF", "b.gltf", &["gltf", "glb"]), None);
         assert_eq!(told(b"ply\n", "b.ply", &["ply"]), None);
         assert_eq!(told(b"plywood", "b.obj", &["obj"]), None);

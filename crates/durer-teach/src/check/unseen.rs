@@ -15,7 +15,7 @@ const FEW_OBJECTS: usize = 8;
 /// Reports objects that are nowhere in the picture.
 pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
     let visibilities = scout.visibilities();
-    let nothing: Vec<u32> = nothing_of(scout);
+    let nothing: Vec<u32> = super::objects::nothing_of(scout);
     // In a large scene some objects are always outside the picture or hidden.
     let mut found = far_away(scout);
     let missing =
@@ -136,22 +136,6 @@ fn mirrored(scout: &SceneProbe, number: u32) -> Option<(Span, String)> {
         }
     }
     None
-}
-
-/// Returns objects without a surface: empty solids, triangles and meshes without area.
-pub(super) fn nothing_of(scout: &SceneProbe) -> Vec<u32> {
-    let mut nothing = super::objects::empty_solids(scout);
-    let flat = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).length_squared() == 0.0;
-    let without = scout.world().objects().iter().enumerate().filter(|(i, object)| {
-        scout.visibilities()[*i] != Visibility::Seen
-            && match &object.geometry {
-                Geometry::Primitive(_) => triangle(object).is_some_and(flat),
-                Geometry::Mesh(tree) => (0..tree.mesh.len().min(1000)).all(|i| flat(tree.mesh.corners(i as u32))),
-                Geometry::Solid(_) => false,
-            }
-    });
-    nothing.extend(without.map(|(i, _)| i as u32));
-    nothing
 }
 
 /// Returns true if the centre of one object is inside another.
