@@ -6,6 +6,7 @@ use super::shapes::{plane, triangle};
 use super::visibility::{Visibility, pixels};
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_render::world::{Geometry, Object};
+use durer_scene::camera::Projection;
 use durer_scene::math::{Aabb, Vec3};
 use durer_scene::scene::Node;
 

@@ -16,6 +16,7 @@ use durer_render::integrator::spawn::{spawn_ray, to_light};
 use durer_render::integrator::whitted::secondary::{Blend, fresnel_share};
 use durer_render::integrator::{Settings, Whitted, refract};
 use durer_render::world::{Epsilon, Geometry, HighlightModel, Interaction, Phong, WeightedMaterial, World};
+use durer_scene::camera::Projection;
 use durer_scene::light::{Emitter, Illumination, Light};
 use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3, fp, gamma, reflect};
 use durer_scene::shape::{Primitive, Surface};
