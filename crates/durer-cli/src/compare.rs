@@ -63,6 +63,8 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
 
     if args.json {
         say(&serde_json::to_string_pretty(&text::json(&all, &extra, args))?);
+    } else if args.csv {
+        say(text::csv(&all).trim_end());
     } else if folders {
         text::table(&all, &extra);
     } else {

@@ -28,6 +28,7 @@ mod output;
 mod page;
 mod photo;
 mod picture;
+mod pointers;
 mod progress;
 mod render;
 mod report;
@@ -40,7 +41,7 @@ mod watching;
 mod words;
 
 use args::{Cli, Command};
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 use failure::bad;
 use std::ffi::OsString;
 use std::io::IsTerminal;
@@ -98,7 +99,8 @@ pub fn run(words: Vec<OsString>, end: terminal::End) -> u8 {
 
 /// Parses a command line. Prints help like other output, so that write errors are reported.
 fn parsed(words: Vec<OsString>) -> Cli {
-    Cli::try_parse_from(words).unwrap_or_else(|error| {
+    Cli::try_parse_from(&words).unwrap_or_else(|error| {
+        let error = pointers::corrected(error, &words, &Cli::command());
         if error.use_stderr() || std::io::stdout().is_terminal() {
             // Ignore errors: a closed terminal cannot show a message.
             let _ = error.print();

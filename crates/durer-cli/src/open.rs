@@ -60,6 +60,13 @@ pub fn open(path: &Path, options: &LoadOptions, quiet: bool, guard: &mut Guard) 
     read(path, options, quiet, guard)?.compile(options, guard)
 }
 
+/// Returns true if a scene can be read and compiled; prints nothing.
+pub fn readable(path: &Path, options: &LoadOptions) -> bool {
+    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+    let loaded = load(path, options, &mut files, &mut diagnostics);
+    matches!(loaded, Ok(Some(loaded)) if loaded.compile(options, &mut files, &mut diagnostics).is_some())
+}
+
 /// Converts command-line options to load options.
 pub fn load_options(args: &SceneArgs) -> LoadOptions {
     LoadOptions {

@@ -327,3 +327,75 @@ fn page_works_in_a_browser_without_network() {
     ];
     sees(&place, "report.html", CLICKS, &wanted);
 }
+
+const ROOM: &str = "PerspectiveCamera { center 2 1.6 5.8 direction 0 -0.06 -1 up 0 1 0 angle 60 }
+Background { color 0 0 0 }
+Materials {
+  PrincipledMaterial { baseColor 0.7 0.7 0.7 specularWeight 0 }
+  PrincipledMaterial { baseColor 0.7 0.2 0.1 specularWeight 0 }
+  PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 9 }
+}
+Group {
+  MaterialIndex 0
+  Rectangle { corner 0 0 0 edge0 0 0 6 edge1 4 0 0 }
+  Rectangle { corner 0 3 0 edge0 4 0 0 edge1 0 0 6 }
+  Rectangle { corner 0 0 0 edge0 4 0 0 edge1 0 3 0 }
+  MaterialIndex 1
+  Rectangle { corner 0 0 0 edge0 0 3 0 edge1 0 0 6 }
+  MaterialIndex 0
+  Rectangle { corner 4 0 0 edge0 0 0 6 edge1 0 3 0 }
+  MaterialIndex 2
+  Rectangle { corner 1.4 2.98 2 edge0 1.2 0 0 edge1 0 0 1.2 }
+  MaterialIndex 0
+  Sphere { center 1.4 0.6 2 radius 0.6 }
+}
+";
+
+/// Pictures of paths are judged against their noise, and other dialects' errors are not printed.
+#[test]
+fn pictures_of_paths_are_judged_against_their_noise() {
+    let place = Place::new();
+    place.put("room.txt", ROOM);
+    let options = "--integrator path --samples 32 --bounces 6";
+    let render = |name: &str, more: &str| {
+        place.gives(0, &format!("render room.txt -o {name}.png -q --size 64x48 {options} {more}"));
+    };
+    render("right", "");
+    render("other", "--seed 5");
+    render("few", "--samples 4 --seed 3");
+    render("direct", "--bounces 0");
+    render("one", "--bounces 1 --seed 9");
+    let told = |name: &str| {
+        let ran = place.gives(1, &format!("compare right.png {name}.png --scene room.txt {options} --json"));
+        assert!(!ran.err.contains("error["), "{}", ran.err);
+        json(&ran.out)["pairs"][0]["diagnosis"].clone()
+    };
+    let words = |name: &str| told(name)["lines"][0].as_str().unwrap().to_string();
+    assert!(words("other").contains("the difference is noise"), "{}", words("other"));
+    assert!(words("few").contains("times the variance of the reference"), "{}", words("few"));
+    for name in ["direct", "one"] {
+        let told = told(name);
+        assert_eq!(told["named"][0]["mistakes"][0]["name"], "path-depth", "{told:#}");
+    }
+    // Another scene's reference is told as such, with a share that is measured against noise.
+    place.put(
+        "other.txt",
+        ROOM.replace("baseColor 0.7 0.2 0.1", "baseColor 0.1 0.7 0.2").replace("0.6 2 radius", "1.6 2 radius"),
+    );
+    let ran = place.gives(1, &format!("compare right.png one.png --scene other.txt {options}"));
+    assert!(ran.out.contains("cause unknown") && !ran.err.contains("error["), "{}{}", ran.out, ran.err);
+}
+
+#[test]
+fn a_class_is_a_table_of_comma_separated_values() {
+    let (place, picture) = rendered();
+    std::fs::create_dir_all(place.path("ref")).unwrap();
+    std::fs::create_dir_all(place.path("class/ann")).unwrap();
+    put(&place, "ref/a.ppm", &picture);
+    put(&place, "class/ann/a.ppm", &changed(&picture, |x, y, at| at(picture.width - 1 - x, y)));
+    let ran = place.gives(1, "compare ref class --csv");
+    let lines: Vec<&str> = ran.out.lines().collect();
+    assert_eq!(lines[0], "student,picture,verdict,differ_percent,rmse,ssim,flip,mistake,why");
+    assert!(lines[1].starts_with("ann,a.ppm,different,") && lines[1].contains(",mirrored,"), "{}", ran.out);
+    place.refused(2, "compare ref class --csv --json", &["--csv"]);
+}

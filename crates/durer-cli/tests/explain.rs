@@ -268,3 +268,52 @@ fn page_works_in_a_browser_without_network() {
     ];
     sees(&place, "why.html", CLICKS, &wanted);
 }
+
+const ORIGINS: &str = "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 60 }
+Lights { DirectionalLight { direction 0 -0.2 -1 color 0.8 0.8 0.8 } }
+Background { color 0.2 0.3 0.4 ambientLight 0.1 0.1 0.1 }
+Materials {
+  PhongMaterial { diffuseColor 0.8 0.3 0.2 }
+  PhongMaterial { diffuseColor 0.2 0.2 0.2 }
+  Checkerboard { materialIndex 0 materialIndex 1 }
+  PhongMaterial { texture two.ppm }
+  PhongMaterial { diffuseColor 0 0 0 transparentColor 0.9 0.9 0.9 reflectiveColor 0.5 0.5 0.5 indexOfRefraction 1.5 }
+}
+Group {
+  MaterialIndex 0 Transform { Translate 0 0 -1 Sphere { center 0 0 0 radius 1 } }
+  MaterialIndex 2 Plane { normal 0 1 0 offset -1.5 }
+  MaterialIndex 3 TriangleMesh { obj_file sheet.obj }
+  MaterialIndex 4 Sphere { center 3 0 0 radius 1 }
+}
+";
+
+/// The equation of a hit, a matrix, a cell, texels and Snell's law stand under their terms.
+#[test]
+fn numbers_say_where_they_come_from() {
+    let place = Place::new();
+    place.put("s.txt", ORIGINS);
+    place.put("two.ppm", "P3\n2 1\n255\n99 99 99 200 20 20\n");
+    place.put(
+        "sheet.obj",
+        "v -4 -1 0\nv -2 -1 0\nv -2 1 0\nv -4 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n",
+    );
+    for (ray, words) in [
+        (
+            "0 0 5 0 0 -1",
+            &["a t² + 2 b t + c = 0: a = d·d = 1", "c = |o - C|² - r² = 35", "= 5 or 7", "M = (1 0 0 0)"][..],
+        ),
+        ("0 0 5 0 -0.5 -1", &["t = (offset - n·o) / n·d = (-1.5 - 0) / -0.5 = 3", "checkerboard: ", "material "]),
+        (
+            "-3.2 0.1 5 0 0 -1",
+            &["texture `two.ppm` of 2 x 1 texels", "99 99 99 by the curve of sRGB", "· texel (0, 0)"],
+        ),
+        ("3.3 0 5 0 0 -1", &["Snell: sin i = 0.3, sin t = n₁/n₂ sin i = 1 / 1.5 · 0.3 = 0.2"]),
+    ] {
+        let text = place.gives(0, &format!("explain s.txt --bounces 2 --ray {ray}")).out;
+        for word in words {
+            assert!(text.contains(word), "`{word}` is not in:\n{text}");
+        }
+        let json = place.gives(0, &format!("explain s.txt --bounces 2 --json --ray {ray}")).out;
+        assert!(json.contains("\"origins\"") && json.contains(words[0]), "{json}");
+    }
+}

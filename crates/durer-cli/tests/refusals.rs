@@ -200,3 +200,25 @@ fn closed_pipes_and_odd_names_do_not_panic() {
     let ran = Command::new(place.path("a4soln")).arg(odd).output().unwrap();
     assert_eq!(ran.status.code(), Some(2));
 }
+
+/// Options of other programs point to ours, and never to an option that does something else.
+#[test]
+fn options_of_other_programs_are_pointed_to_ours() {
+    let place = Place::new();
+    for (options, words, course) in [
+        ("--width 640", "`--size 640x480`", false),
+        ("--height=480", "`--size 640x480`", false),
+        ("--format png", "`-o picture.exr`", false),
+        ("--spp 64", "`--samples 64`", false),
+        ("--verbose", "`--stats`", false),
+        ("-size 200 200", "`--size 640x480`", true),
+    ] {
+        let ran = place.gives(2, &format!("render scene.txt -o x.png {options}"));
+        assert!(ran.err.contains("unexpected argument") && ran.err.contains(words), "{}", ran.err);
+        assert_eq!(ran.err.contains("`durer course`"), course, "{}", ran.err);
+        assert!(!ran.err.contains("similar argument") && !ran.err.contains("as a value"), "{}", ran.err);
+    }
+    let ran = place.gives(2, "check scene.txt --verbose");
+    assert!(ran.err.contains("`--json` prints everything"), "{}", ran.err);
+    assert!(!ran.err.contains("--stats"), "{}", ran.err);
+}

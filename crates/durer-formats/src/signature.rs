@@ -16,10 +16,32 @@ const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
     (b"GIF8", "a picture (GIF)", None),
     (b"%PDF", "a PDF", None),
     (b"BLENDER", "a Blender file", None),
+    (b"OFF\n", "OFF", None),
+    (b"OFF\r", "OFF", None),
+    (b"COFF", "OFF", None),
+    (b"NOFF", "OFF", None),
+    (b"STOFF", "OFF", None),
+    (b"IESNA", LAMP, None),
+    (b"P3\n", "a picture (PPM)", None),
+    (b"P6\n", "a picture (PPM)", None),
+    (b"#?RADIANCE", "a picture (Radiance's)", None),
+    (b"II*\0", "a picture (TIFF)", None),
+    (b"MM\0*", "a picture (TIFF)", None),
+    (b"7z\xbc\xaf", "a 7z archive", None),
+    (b"Rar!", "a RAR archive", None),
+    (b"ISO-10303-21", "STEP", None),
+    (b"#VRML", "VRML", None),
+    (b"{\\rtf", "a text of a word processor (RTF)", None),
+    (b"<!DOCTYPE html", "a web page", None),
+    (b"<html", "a web page", None),
+    (b"\x7fELF", "a program", None),
     (b"Kaydara FBX Binary", "FBX", None),
     (b"PXR-USDC", "USD", None),
     (b"#usda", "USD", None),
 ];
+
+/// A measured lamp: light for a scene, and no scene itself.
+const LAMP: &str = "a measured lamp (IES)";
 
 /// Returns an error if the signature of a file contradicts its format, whose extensions are
 /// `extensions`.
@@ -38,6 +60,10 @@ pub(super) fn mistaken(bytes: &[u8], file: u32, name: &str, extensions: &[&str])
     });
     Some(error.help(match (own, what.starts_with("a picture")) {
         (Some(own), _) => format!("rename it to `{stem}.{own}`"),
+        (None, _) if *what == LAMP => {
+            format!("it is used in a scene: `PhotometricLight {{ position 0 3 0 file {last} }}`")
+        }
+        (None, _) if what.contains("archive") => "unpack it: the scene may be inside".into(),
         (None, true) => "a picture is not a model; use `--environment` to put it around a model".into(),
         (None, false) => "this format is not supported: convert it to glTF".into(),
     }))
@@ -59,6 +85,10 @@ mod tests {
         assert!(told(b"ply\r\nformat", "b.stl", &["stl"]).unwrap().contains("`b.stl` is PLY"));
         assert!(told(b"\x89PNG\r\n", "b", &[]).unwrap().contains("a picture is not a model"));
         assert!(told(b"PXR-USDC", "b.obj", &["obj"]).unwrap().contains("convert it to glTF"));
+        assert!(told(b"OFF\n8 6 12", "b.off", &[]).unwrap().contains("`b.off` is OFF"));
+        assert!(told(b"IESNA:LM-63", "b.ies", &[]).unwrap().contains("it is used in a scene"));
+        assert!(told(b"%PDF-1.7", "b.txt", &[]).unwrap().contains("`b.txt` is a PDF"));
+        assert!(told(b"Rar!\x1a\x07", "b.obj", &[]).unwrap().contains("unpack it"));
         assert_eq!(told(b"glTF", "b.gltf", &["gltf", "glb"]), None);
         assert_eq!(told(b"ply\n", "b.ply", &["ply"]), None);
         assert_eq!(told(b"plywood", "b.obj", &["obj"]), None);

@@ -65,7 +65,7 @@ pub fn judge(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resu
         std::fs::write(folder.join("broken.txt"), &case.text)?;
         // The last of two equal options wins.
         let mut options = case.options.clone();
-        for name in ["--dialect", "--bounces"] {
+        for name in ["--dialect", "--bounces", "--integrator"] {
             let places: Vec<usize> = (0..options.len()).filter(|&i| options[i] == name).collect();
             if let [first, _] = places[..] {
                 options.drain(first..first + 2);

@@ -1,6 +1,6 @@
 //! The judge's own tracer. It is independent of the library, and can make common mistakes by name.
 
-use super::scene::{Lamp, Scene, Shape, Stuff, Thing, Year};
+use super::scene::{Lamp, Op, Scene, Shape, Stuff, Thing, Year};
 use super::vector::{Matrix, V};
 
 /// A picture: eight bits a channel, the top row first.
@@ -40,7 +40,14 @@ impl<'s> Tracer<'s> {
         };
         let mut m = Matrix::ONE;
         for op in &thing.ops {
-            let one = op.matrix(degrees);
+            let one = match *op {
+                Op::Translate(by) if self.is("translation-negated") => Op::Translate(-by),
+                Op::Scale(V(x, y, z)) if self.is("scale-inverted") => Op::Scale(V(1.0 / x, 1.0 / y, 1.0 / z)),
+                Op::X(angle) if self.is("rotation-axis") => Op::Y(angle),
+                Op::Y(angle) if self.is("rotation-axis") => Op::X(angle),
+                ref other => other.clone(),
+            };
+            let one = one.matrix(degrees);
             m = if self.is("matrices-reversed") { one.times(&m) } else { m.times(&one) };
         }
         if self.is("transforms-ignored") {
@@ -58,20 +65,25 @@ impl<'s> Tracer<'s> {
             let area = |a: V, b: V| (b - a).cross(q - a).dot(n) / n.dot(n);
             let w = [area(p[1], p[2]), area(p[2], p[0]), area(p[0], p[1])];
             let n = if self.is("triangles-turned") { -n } else { n };
-            (w.iter().all(|w| *w >= 0.0) && t.is_finite()).then_some((t, n.unit(), w))
+            let tested = |(i, w): (usize, &f64)| *w >= 0.0 || self.is("triangle-test") && i == 1;
+            (w.iter().enumerate().all(tested) && t.is_finite()).then_some((t, n.unit(), w))
         };
         match &thing.shape {
             Shape::Sphere(c, r) => {
                 let r = if self.is("radius-not-squared") { r.sqrt() } else { *r };
                 let c = if self.is("center-ignored") { V::ZERO } else { *c };
                 let (a, b, k) = (d.dot(d), d.dot(o - c), (o - c).dot(o - c) - r * r);
-                let root = b * b - a * k;
+                let (root, a) = match self.is("sphere-roots") {
+                    true => (b * b - 4.0 * a * k, 2.0 * a),
+                    false => (b * b - a * k, a),
+                };
                 if root < 0.0 {
                     return Vec::new();
                 }
                 let one = |t: f64| {
-                    let n = (o + d * t - c).unit();
-                    (t, n, n)
+                    let p = o + d * t;
+                    let n = if self.is("sphere-normals") { p.unit() } else { (p - c).unit() };
+                    (t, n, (p - c).unit())
                 };
                 vec![one((-b - root.sqrt()) / a), one((-b + root.sqrt()) / a)]
             }
@@ -113,13 +125,25 @@ impl<'s> Tracer<'s> {
         for (number, thing) in self.scene.things.iter().enumerate() {
             let (to_world, back) = &self.places[number];
             let (lo, mut ld) = (back.point(o), back.vector(d));
+            if self.is("direction-moved") {
+                ld = back.point(d);
+            }
             if self.is("local-direction-unit") {
                 ld = ld.unit();
             }
             let mut own: Option<(f64, V, V)> = None;
             for (t, n, geo) in self.roots(thing, lo, ld) {
                 let least = if self.is("hits-behind") { f64::NEG_INFINITY } else { least };
-                let better = own.as_ref().is_none_or(|b| if self.is("last-hit") { t > b.0 } else { t < b.0 });
+                let mesh = matches!(thing.shape, Shape::Mesh(..));
+                let better = own.as_ref().is_none_or(|b| match () {
+                    () if self.is("last-hit") => t > b.0,
+                    () if self.is("mesh-first") && mesh => false,
+                    () => t < b.0,
+                });
+                let flat = matches!(thing.shape, Shape::Mesh(..) | Shape::Triangle(_));
+                if self.is("backs-culled") && flat && geo.dot(ld) > 0.0 {
+                    continue;
+                }
                 if t > least && t < most && better {
                     own = Some((t, n, geo));
                 }
@@ -168,7 +192,12 @@ impl<'s> Tracer<'s> {
         if !self.scene.shadows && !self.is("shadows-added") || self.is("no-shadows") {
             return false;
         }
-        let most = if self.is("shadows-endless") { f64::INFINITY } else { distance };
+        let most = match () {
+            () if self.is("shadows-endless") => f64::INFINITY,
+            () if self.is("shadows-reach") && distance.is_finite() => 1.0,
+            () => distance,
+        };
+        let p = if self.is("shadows-from-eye") { self.scene.eye } else { p };
         // Single precision, as in student programs, which causes acne.
         let single = |v: V| v.map(|x| f64::from(x as f32));
         let p = if self.is("epsilon-0") { single(p) } else { p };
@@ -207,6 +236,7 @@ impl<'s> Tracer<'s> {
         if !(scene.year == Year::F04 && back && !faced) {
             color = ambient;
             let mut free = scene.lamps.is_empty();
+            let mut greatest = V::ZERO;
             for (number, lamp) in scene.lamps.iter().enumerate() {
                 if self.is("light-missing") && number == 0 {
                     continue;
@@ -219,6 +249,7 @@ impl<'s> Tracer<'s> {
                     Lamp::Bulb(at, c, a) => {
                         let at = if self.is("x-light-turned") { V(at.0, at.2, at.1) } else { at };
                         let distance = (at - p).length();
+                        let p = if self.is("point-light-from-eye") { scene.eye } else { p };
                         (at - p, distance, c * self.fading(a, distance))
                     }
                 };
@@ -233,15 +264,23 @@ impl<'s> Tracer<'s> {
                     };
                 }
                 if self.blocked(p, toward, distance) && !(self.is("x-second-light-unshadowed") && number == 1) {
+                    if self.is("shadows-diffuse") {
+                        color = color + stuff.kd * n.dot(l).max(0.0) * light;
+                    }
                     continue;
                 }
                 free = true;
                 let direct = self.direct(&stuff, n, d, l) * light;
+                if self.is("greatest-light") {
+                    greatest = V(greatest.0.max(direct.0), greatest.1.max(direct.1), greatest.2.max(direct.2));
+                    continue;
+                }
                 color = if self.is("last-light-only") { ambient + direct } else { color + direct };
                 if self.is("clamped-each-light") {
                     color = color.map(|c| c.clamp(0.0, 1.0));
                 }
             }
+            color = color + greatest;
             if self.is("shadows-ambient") && !free {
                 color = color - ambient;
             }
@@ -281,9 +320,11 @@ impl<'s> Tracer<'s> {
             () if self.is("no-cosine") => 1.0,
             () if self.is("two-sided") => cosine.abs(),
             () if self.is("not-clamped-below") => cosine,
+            () if self.is("cosine-of-view") => n.dot(-d).max(0.0),
             () => cosine.max(0.0),
         };
-        let mut color = stuff.kd * diffuse;
+        let kd = if self.is("diffuse-twice") { stuff.kd * stuff.kd } else { stuff.kd };
+        let mut color = kd * diffuse;
         let none = self.scene.year == Year::F12a5 && !self.is("highlights-added") || self.is("no-highlights");
         if none {
             return color;
@@ -295,7 +336,11 @@ impl<'s> Tracer<'s> {
                 () if self.is("exponent-3") => 3.0,
                 () => 1.0,
             };
-        let exponent = if self.is("exponent-one") { 1.0 } else { exponent };
+        let exponent = match () {
+            () if self.is("exponent-one") => 1.0,
+            () if self.is("exponent-plus-one") => exponent + 1.0,
+            () => exponent,
+        };
         let blinn = matches!(self.scene.year, Year::F04 | Year::Durer) != self.is("other-model");
         let base = if blinn {
             let h = l - d;
@@ -309,7 +354,7 @@ impl<'s> Tracer<'s> {
             if cosine <= 0.0 && self.scene.year == Year::F04 {
                 return color;
             }
-            let r = d - n * (2.0 * d.dot(n));
+            let r = d - n * (if self.is("highlight-mirror") { 1.0 } else { 2.0 } * d.dot(n));
             r.dot(l)
         };
         let mut strength = base.max(0.0).powf(exponent);
@@ -349,12 +394,17 @@ impl<'s> Tracer<'s> {
         let mirror = match () {
             () if self.is("mirror-negated") => n * (2.0 * d.dot(n)) - d,
             () if self.is("mirror-along") => d - n * d.dot(n),
+            () if self.is("mirror-normal") => n,
             () => d - n * (2.0 * d.dot(n)),
         };
         let c = d.dot(n);
         let root = 1.0 - eta * eta * (1.0 - c * c);
         let through = match () {
             () if self.is("not-bent") => Some(d),
+            () if self.is("refraction-formula") => {
+                let root = 1.0 - eta * (1.0 - c * c);
+                (root >= 0.0).then(|| (d - n * c) * eta - n * root.sqrt())
+            }
             () => (root >= 0.0).then(|| (d - n * c) * eta - n * root.sqrt()),
         };
         if glassy && !self.is("no-fresnel") {
@@ -429,6 +479,7 @@ impl<'s> Tracer<'s> {
         let half = match () {
             () if self.is("angle-not-halved") => scene.angle.to_radians().tan(),
             () if self.is("angle-ignored") => 1.0,
+            () if self.is("angle-inverted") => 1.0 / (0.5 * scene.angle.to_radians()).tan(),
             () if self.is("x-wider") => (0.58 * scene.angle.to_radians()).tan(),
             () => (0.5 * scene.angle.to_radians()).tan(),
         };
@@ -442,6 +493,7 @@ impl<'s> Tracer<'s> {
         let bounces = match () {
             () if self.is("bounce-less") => self.scene.bounces - 1,
             () if self.is("bounce-more") => self.scene.bounces + 1,
+            () if self.is("bounce-one") => 1,
             () => self.scene.bounces,
         };
         let all: Vec<V> = (0..w * h)
@@ -477,7 +529,11 @@ impl<'s> Tracer<'s> {
                 () => (i, j),
             };
             let V(r, g, b) = all[j * w + i];
-            if self.is("bgr") { [eight(b), eight(g), eight(r)] } else { [eight(r), eight(g), eight(b)] }
+            match () {
+                () if self.is("bgr") => [eight(b), eight(g), eight(r)],
+                () if self.is("channels") => [eight(g), eight(b), eight(r)],
+                () => [eight(r), eight(g), eight(b)],
+            }
         };
         (0..w * h).map(|pixel| at(pixel % w, pixel / w)).collect()
     }

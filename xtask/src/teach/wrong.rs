@@ -364,6 +364,37 @@ const ALONE: [&[&str]; 12] = [
     &["normals-smooth", "normals-local", "no-falloff"],
 ];
 
+/// Further kinds, by scene.
+const MORE: [(usize, &[&str]); 8] = [
+    (
+        0,
+        &[
+            "sphere-normals",
+            "sphere-roots",
+            "cosine-of-view",
+            "diffuse-twice",
+            "greatest-light",
+            "exponent-plus-one",
+            "point-light-from-eye",
+            "shadows-from-eye",
+            "shadows-reach",
+            "shadows-diffuse",
+            "angle-inverted",
+            "channels",
+        ],
+    ),
+    (1, &["mirror-normal", "bounce-one", "sphere-normals"]),
+    (2, &["refraction-formula", "bounce-one", "mirror-normal"]),
+    (
+        3,
+        &["direction-moved", "rotation-axis", "translation-negated", "scale-inverted", "triangle-test", "backs-culled"],
+    ),
+    (5, &["highlight-mirror", "mesh-first", "rotation-axis", "translation-negated", "sphere-normals"]),
+    (6, &["mirror-normal", "exponent-plus-one", "shadows-from-eye"]),
+    (7, &["refraction-formula", "greatest-light", "diffuse-twice"]),
+    (10, &["triangle-test", "mesh-first", "scale-inverted", "backs-culled"]),
+];
+
 /// Mistakes that were missing from the table when the judge was written. Valid answers are their
 /// own name, or none.
 const UNKNOWN: [&str; 7] = [
@@ -399,6 +430,9 @@ pub fn cases() -> Vec<Case> {
     let alone = ALONE.iter().enumerate();
     let mut cases: Vec<Case> =
         alone.flat_map(|(scene, names)| names.iter().map(move |name| Case { scene, made: vec![*name] })).collect();
+    cases.extend(
+        MORE.iter().flat_map(|(scene, names)| names.iter().map(|name| Case { scene: *scene, made: vec![*name] })),
+    );
     for scene in [0, 1, 5, 6] {
         cases.extend(UNKNOWN.iter().map(|name| Case { scene, made: vec![*name] }));
     }
@@ -414,6 +448,7 @@ pub fn told(made: &str) -> &str {
         // Added to the table since.
         "x-ambient-brighter" => "ambient-factor",
         "x-materials-swapped" => "other-material",
+        "x-kd-squared" => "diffuse-twice",
         "x-second-light-unshadowed" => "shadows-of-one-light",
         other => other,
     }

@@ -16,6 +16,7 @@ use std::path::PathBuf;
   durer compare reference.png mine.png --scene scene.txt --bounces 4 --report report.html
   durer compare reference/ mine/ --report report.html
   durer compare reference/ class/
+  durer compare reference/ class/ --scene scenes/ --csv > class.csv
 
 Folders are compared picture by picture, by name; extensions may differ. If no name in REFERENCE exists in PICTURE itself, each
 folder in PICTURE counts as one student's.
@@ -47,6 +48,9 @@ pub struct CompareArgs {
     /// Print JSON
     #[arg(long)]
     pub json: bool,
+    /// Print a table of comma-separated values, one line a picture
+    #[arg(long, conflicts_with = "json")]
+    pub csv: bool,
     /// Scene of the pictures, or a folder of scenes with their names: tries common mistakes on it
     /// and names the one that reproduces the picture; pass the options that made the reference too
     #[arg(long, value_name = "SCENE")]

@@ -43,6 +43,20 @@ impl Compared {
         }
     }
 
+    /// Returns the keywords of the mistakes that explain the difference; empty if none does.
+    pub fn mistakes(&self) -> String {
+        let all: Vec<&str> = match (&self.outcome, &self.diagnosis) {
+            (_, Some(diagnosis)) => {
+                diagnosis.named.first().into_iter().flat_map(|named| &named.mistakes).map(|one| one.0.name).collect()
+            }
+            (Outcome::Compared(found), None) if found.verdict == Verdict::Different => {
+                found.findings.iter().map(|finding| finding.kind).collect()
+            }
+            _ => Vec::new(),
+        };
+        all.join(" + ")
+    }
+
     /// Returns the verdict as one word.
     pub fn verdict(&self) -> &'static str {
         match &self.outcome {
@@ -76,14 +90,14 @@ fn explained(found: &Comparison) -> Vec<String> {
         ];
     }
     let line = |(i, finding): (usize, &Finding)| {
-        let percent = (1000.0 * finding.explained + 1e-6).floor() / 10.0;
+        let percent = named::percent(finding.explained);
         match i {
             // A location does not explain the cause.
             0 if finding.kind.ends_with("-parts") => {
-                format!("{} ({percent:.1} % of the squared difference is there)", finding.words)
+                format!("{} ({percent} of the squared difference is there)", finding.words)
             }
-            0 => format!("{}: explains {percent:.1} % of the squared difference", finding.words),
-            _ => format!("and {}: together {percent:.1} %", finding.words),
+            0 => format!("{}: explains {percent} of the squared difference", finding.words),
+            _ => format!("and {}: together {percent}", finding.words),
         }
     };
     found.findings.iter().enumerate().map(line).collect()

@@ -23,14 +23,20 @@ pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
             100.0 * diagnosis.off
         )];
     }
+    if let Some(nearly) = &diagnosis.nearly {
+        return vec![format!(
+            "nearly: {}: explains {} of the squared difference, but something more is different",
+            words(nearly),
+            percent(nearly.explained)
+        )];
+    }
+    if let Some(remark) = &diagnosis.remark {
+        return vec![remark.clone()];
+    }
     let Some(first) = diagnosis.named.first() else {
         return vec!["cause unknown: none of the known mistakes explains the difference".into()];
     };
-    let mut lines = vec![format!(
-        "{}: explains {:.1} % of the squared difference",
-        words(first),
-        (1000.0 * first.explained + 1e-6).floor() / 10.0
-    )];
+    let mut lines = vec![format!("{}: explains {} of the squared difference", words(first), percent(first.explained))];
     for (mistake, value) in &first.mistakes {
         let [right, wrong] = mistake.forms(*value, &diagnosis.formulas);
         lines.push(format!("  should be:  {right}"));
@@ -41,6 +47,11 @@ pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
         diagnosis.named.iter().skip(1).take(4).map(|named| format!("  or, equivalent in this scene: {}", words(named))),
     );
     lines
+}
+
+/// Formats a share in percent, rounded down so that only a whole is 100 %.
+pub fn percent(share: f64) -> String {
+    format!("{:.1} %", (1000.0 * share + 1e-6).floor() / 10.0)
 }
 
 /// Describes one or two mistakes.
@@ -68,6 +79,8 @@ pub fn json(diagnosis: &Diagnosis) -> Value {
         "reference_off": diagnosis.off,
         "told": !diagnosis.named.is_empty(),
         "nearest": diagnosis.tried.iter().map(|n| json!([words(n), n.explained, n.matched])).collect::<Vec<_>>(),
+        "remark": diagnosis.remark,
+        "nearly": diagnosis.nearly.as_ref().map(one),
         "named": diagnosis.named.iter().map(one).collect::<Vec<_>>(),
         "lines": lines(diagnosis),
     })

@@ -5,7 +5,7 @@ use super::pairs::Pair;
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
 use crate::job;
-use crate::open::{Opened, load_options, open};
+use crate::open::{Opened, load_options, open, readable};
 use durer::LoadOptions;
 use durer::dialect::Dialect;
 use durer::image::Transfer;
@@ -56,7 +56,8 @@ pub fn stage(
     let mut best = (way_off(&first, reference, transfer), first, transfer, None);
     // Filters wider than a pixel make edges inexact.
     let enough = if best.1.1.sampling.is_local() { SAME } else { MAX_OFF };
-    if best.0 <= enough {
+    // Paths are not of the course: their dialects have nothing to try.
+    if best.0 <= enough || best.1.1.method.transport().is_some() {
         return Ok(Some(finished(args, path, best.1, best.2, None)));
     }
     let guessed = asked.dialect.or(best.1.0.loaded.guess.as_ref().map(|guess| guess.dialect));
@@ -76,7 +77,7 @@ pub fn stage(
     'found: for dialect in dialects {
         let options = LoadOptions { dialect, ..load_options(&args.reading) };
         // Skip dialects in which the scene cannot be read.
-        let Ok((opened, job)) = opened(args, &path, &options, reference, guard) else { continue };
+        let Some((opened, job)) = tried(args, &path, &options, reference, guard) else { continue };
         let mut current = (opened, job);
         for way in shadows.iter().flat_map(|&shadows| {
             bounces
@@ -128,6 +129,18 @@ fn reopened(
     let (opened, mut job) = opened(args, path, options, reference, guard)?;
     way.apply(&mut job);
     Ok((opened, job))
+}
+
+/// Opens the scene in a dialect that is only tried: its errors are not printed.
+fn tried(
+    args: &CompareArgs,
+    path: &Path,
+    options: &LoadOptions,
+    reference: &Picture,
+    guard: &mut Guard,
+) -> Option<(Opened, Job)> {
+    let is_readable = options.dialect.is_none() || readable(path, options);
+    is_readable.then(|| opened(args, path, options, reference, guard).ok()).flatten()
 }
 
 fn opened(

@@ -130,6 +130,37 @@ pub fn table(all: &[Compared], extra: &[PathBuf]) {
     }
 }
 
+/// Returns a table of comma-separated values (RFC 4180), one line a picture: its verdict, measures,
+/// the keywords of its mistakes, and their words.
+pub fn csv(all: &[Compared]) -> String {
+    let quoted = |text: &str| match text.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", text.replace('"', "\"\"")),
+        false => text.to_string(),
+    };
+    let mut table = "student,picture,verdict,differ_percent,rmse,ssim,flip,mistake,why\r\n".to_string();
+    for compared in all {
+        let pair = &compared.pair;
+        let mut cells = vec![pair.who.clone().unwrap_or_default(), pair.name.clone(), compared.verdict().to_string()];
+        let (numbers, why) = match &compared.outcome {
+            Outcome::Compared(found) => {
+                let m = &found.measures;
+                let share = 100.0 * m.over_tolerance as f64 / (f64::from(found.width) * f64::from(found.height));
+                let ssim = m.ssim.map_or(String::new(), |ssim| ssim.to_string());
+                let flip = m.hdr_flip.unwrap_or(m.flip).to_string();
+                ([share.to_string(), m.rmse.to_string(), ssim, flip], compared.causes().first().cloned())
+            }
+            Outcome::Missing => Default::default(),
+            Outcome::Failed(reason) => (Default::default(), Some(reason.clone())),
+        };
+        cells.extend(numbers);
+        cells.push(compared.mistakes());
+        cells.push(why.unwrap_or_default());
+        table += &cells.iter().map(|cell| quoted(cell)).collect::<Vec<_>>().join(",");
+        table += "\r\n";
+    }
+    table
+}
+
 /// Counts the pictures of each student: same, different, missing, unreadable.
 pub fn students(all: &[Compared]) -> BTreeMap<String, [usize; 4]> {
     let mut students = BTreeMap::new();

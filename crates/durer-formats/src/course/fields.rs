@@ -342,6 +342,11 @@ impl Reader<'_, '_> {
             self.error(Diagnostic::error(message).at(self.end_span()).label(format!("{what} expected")));
             return self.stop();
         };
+        if what.contains("number")
+            && let Some(error) = self.commented_color(what, after, token.span)
+        {
+            return self.error(error);
+        }
         let text = self.text(token.span);
         let message = format!("`{after}` needs {what}, but found {}", shown(text.as_bytes()));
         let error = Diagnostic::error(message).code("syntax").at(token.span).label(format!("{what} expected"));
@@ -360,6 +365,31 @@ impl Reader<'_, '_> {
             error = edits.into_iter().fold(error, |error, (span, meant)| error.fix(span, meant));
         }
         self.error(error);
+    }
+
+    /// An error at a colour as of the web, `#b38033`, which is a comment here, if one stands where the
+    /// numbers before `next` should.
+    fn commented_color(&self, what: &str, after: &str, next: Span) -> Option<Diagnostic> {
+        let last = self.last_span();
+        let gap = self.text(Span { start: last.end, end: next.start.max(last.end), ..last });
+        let hash = gap.find('#').filter(|at| !gap[..*at].contains('\n'))?;
+        let digits = gap[hash + 1..].bytes().take_while(u8::is_ascii_hexdigit).count();
+        let (start, text) = (last.end + hash as u32, &gap[hash..=hash + digits]);
+        let wide = match digits {
+            3 => 1,
+            6 | 8 => 2,
+            _ => return None,
+        };
+        let channel = |i: usize| {
+            let part = &text[1 + i * wide..1 + (i + 1) * wide];
+            let value = u32::from_str_radix(part, 16).unwrap_or_default();
+            f64::from(if wide == 1 { 17 * value } else { value }) / 255.0
+        };
+        let numbers = [0, 1, 2].map(|i| ((channel(i) * 1000.0).round() / 1000.0).to_string()).join(" ");
+        let span = Span { start, end: start + text.len() as u32, ..last };
+        let message = format!("`{after}` needs {what}, but `{text}` begins a comment");
+        let error = Diagnostic::error(message).code("syntax").at(span).label(format!("{what} expected"));
+        Some(error.help(format!("colours are three numbers from 0 to 1: `{numbers}`")).fix(span, numbers))
     }
 
     /// Reports a word that this dialect lacks: an error if strict, else one warning per word.

@@ -137,6 +137,11 @@ impl Reader<'_, '_> {
                 if found > 0 && self.options.strict {
                     self.error(Diagnostic::error(format!("`{word}` must come first in `{name}`")).at(span));
                 }
+                if let Some((_, first)) = count {
+                    let message = format!("`{word}` is given twice; the last counts");
+                    let warning = Diagnostic::warning(message).code("repeated").at(span);
+                    self.diagnostics.push(warning.related(first, "first given here"));
+                }
                 match self.whole(&word) {
                     Some(n) => count = Some((n, span.to(self.last_span()))),
                     None => self.skip_values(),

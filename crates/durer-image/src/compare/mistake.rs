@@ -12,7 +12,7 @@ mod words;
 #[cfg(test)]
 mod tests;
 
-use super::picture::Pair;
+use super::picture::{Pair, Scale};
 use durer_bvh::math::Vec3;
 use rayon::prelude::*;
 use rule::{Rule, TURNS};
@@ -46,47 +46,108 @@ const ENOUGH: f64 = 0.5;
 /// Maximum number of successive mistakes.
 const STEPS: usize = 3;
 
+/// Share of the picture's own contrast above which the rest is as strong as what is explained: a
+/// nearly uniform picture can be made from any other.
+const MAX_CONTRAST: f64 = 0.1;
+/// Smallest share of the pixels that a rule must reproduce, so that nothing else is different.
+const MATCHED: f64 = 0.97;
+/// Differences above this, in values from 0 to 1, are visible.
+const SEEN: f32 = 2.5 / 255.0;
+/// Half a step of eight bits.
+const HALF: f32 = 0.5 / 255.0;
+
 /// Finds the mistakes that best explain the difference of two pictures; empty if none explains half
-/// of it.
+/// of it. If a single mistake explains nearly everything, but more pixels differ, its words say so.
 pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
-    let mut reference = pair.reference.clone();
     let test = View::of(pair, &pair.test);
-    if let Some(finding) = parts::blank(&View::of(pair, &reference), &test) {
+    let reference = View::of(pair, &pair.reference);
+    if let Some(finding) = parts::blank(&reference, &test) {
         return vec![finding];
     }
-    let total = difference(&sample::samples(&View::of(pair, &reference), &test));
-    let mut findings: Vec<Finding> = Vec::new();
-    let (mut left, mut moved, mut fitted) = (1.0, false, false);
+    let samples = sample::samples(&reference, &test);
+    let (rules, mut findings) = chain(pair, &test, difference(&samples));
+    let fit = Fit::of(pair, &rules, &test, &samples);
+    let fitted = rules.iter().any(Rule::is_fitted);
+    let most = if fitted { MAX_LEFT_FITTED } else { MAX_LEFT };
+    let close = !rules.is_empty() && fit.left <= most && fit.contrast <= MAX_CONTRAST;
+    if close && fit.matched >= MATCHED {
+        return findings;
+    }
+    let differing = samples.iter().filter(|s| (s.test - s.reference).abs().max_element() > 1.5 / 255.0).count();
+    let part = (differing >= FEWEST).then(|| parts::finding(&reference, &test, &samples)).flatten();
+    match part {
+        Some(finding) if finding.explained > WELL => vec![finding],
+        _ if close && findings.len() == 1 => {
+            findings[0].words = format!("nearly: {}, but something more is different", findings[0].words);
+            findings
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Finds rules one after another, each of which explains most of what the ones before leave.
+fn chain(pair: &Pair, test: &View, total: f64) -> (Vec<Rule>, Vec<Finding>) {
+    let (mut rules, mut findings) = (Vec::new(), Vec::new());
+    let mut reference = pair.reference.clone();
     for _ in 0..STEPS {
         let view = View::of(pair, &reference);
-        let samples = sample::samples(&view, &test);
-        let Some((rule, rest)) = best_rule(&view, &test, &samples) else { break };
+        let samples = sample::samples(&view, test);
+        let Some((rule, rest)) = best_rule(&view, test, &samples) else { break };
         // A rule that explains less than half of the remaining difference is a guess.
         if rest > ENOUGH * difference(&samples) {
             break;
         }
-        left = rest / total;
+        let left = rest / total;
         findings.push(Finding { kind: rule.kind(), words: words::of(&rule), explained: 1.0 - left });
-        moved |= rule.moves();
-        fitted |= rule.is_fitted();
+        rules.push(rule);
         if left < 0.02 {
             break;
         }
         reference = rule.made(&view);
     }
-    // A shift cannot explain the pixels that enter at the edge.
-    let most = if fitted { MAX_LEFT_FITTED } else { MAX_LEFT };
-    if !findings.is_empty() && (left <= most || moved && left < 0.3) {
-        return findings;
-    }
-    let view = View::of(pair, &pair.reference);
-    let samples = sample::samples(&view, &test);
-    if samples.iter().filter(|s| (s.test - s.reference).abs().max_element() > 1.5 / 255.0).count() < FEWEST {
-        return Vec::new();
-    }
-    match parts::finding(&view, &test, &samples) {
-        Some(finding) if finding.explained > WELL => vec![finding],
-        _ => Vec::new(),
+    (rules, findings)
+}
+
+/// How well rules reproduce a picture, without the pixels that a shift brings in at the edge.
+struct Fit {
+    /// Share of the squared difference that is left.
+    left: f64,
+    /// Squared difference that is left, as a share of the picture's own variance.
+    contrast: f64,
+    /// Share of the pixels in which the made picture or the reference differs visibly from the
+    /// picture, and the made one agrees with it up to rounding.
+    matched: f64,
+}
+
+impl Fit {
+    fn of(pair: &Pair, rules: &[Rule], test: &View, samples: &[Sample]) -> Fit {
+        // Rounding before the mistake is as large as half a step of the reference.
+        let made = |offset: f32| {
+            let start: Vec<Vec3> = pair.reference.iter().map(|value| pair.scale.clamp(*value + offset)).collect();
+            rules.iter().fold(start, |pixels, rule| rule.made(&View::of(pair, &pixels)))
+        };
+        let step = if pair.scale == Scale::Display { HALF } else { 0.0 };
+        let [low, exact, high] = [-step, 0.0, step].map(made);
+        let known: Vec<&Sample> =
+            samples.iter().filter(|s| rules.iter().all(|rule| rule.knows(test, s.x, s.y))).collect();
+        let count = known.len().max(1) as f64;
+        let mean = known.iter().map(|s| s.test).sum::<Vec3>() / count as f32;
+        let (mut total, mut rest, mut spread, mut either, mut agree) = (0.0, 0.0, 0.0, 0_usize, 0_usize);
+        for s in known {
+            let at = s.y as usize * test.width + s.x as usize;
+            total += f64::from((s.test - s.reference).length_squared());
+            rest += f64::from((s.test - exact[at]).length_squared());
+            spread += f64::from((s.test - mean).length_squared());
+            let seen = |a: Vec3, b: Vec3| (a - b).abs().max_element() > pair.scale.visible(b, SEEN);
+            if seen(s.reference, s.test) || seen(exact[at], s.test) {
+                let slack = Vec3::splat(pair.scale.visible(s.test, SEEN));
+                let (least, most) = (low[at].min(high[at]).min(exact[at]), low[at].max(high[at]).max(exact[at]));
+                either += 1;
+                agree += usize::from(s.test.cmpge(least - slack).all() && s.test.cmple(most + slack).all());
+            }
+        }
+        let share = |part: f64, of: f64| if of > 0.0 { part / of } else { 1.0 };
+        Fit { left: share(rest, total), contrast: share(rest, spread), matched: share(agree as f64, either as f64) }
     }
 }
 

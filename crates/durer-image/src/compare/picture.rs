@@ -38,6 +38,15 @@ impl Scale {
         }
     }
 
+    /// Smallest visible difference at a value, for a difference `step` of display values. Light is
+    /// judged relative to its strength.
+    pub(super) fn visible(self, value: Vec3, step: f32) -> f32 {
+        match self {
+            Scale::Linear => step * value.abs().max_element().max(0.05),
+            Scale::Display => step,
+        }
+    }
+
     /// Clamps a value to the range of the scale.
     pub(super) fn clamp(self, value: Vec3) -> Vec3 {
         match self {

@@ -3,6 +3,8 @@
 pub mod check;
 mod course;
 mod firefly;
+mod numbers;
+mod origins;
 mod text;
 
 use super::aim::PixelSample;
@@ -19,9 +21,10 @@ use crate::integrator::{Integrate, Integrator, TraceRecorder, Tree};
 use crate::world::World;
 use durer_scene::math::{Color, Ray, Vec2, Vec3};
 use durer_scene::sampler::SampleId;
+pub use numbers::number;
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
-pub use text::{Names, Telling, TextLine, number, ray_text};
+pub use text::{Names, Telling, TextLine, ray_text};
 
 /// A pixel and everything that contributed to it.
 #[derive(Clone, Debug, PartialEq, Serialize)]

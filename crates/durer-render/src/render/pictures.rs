@@ -231,7 +231,7 @@ impl PartialRender {
             look: self.look,
             depth_range: self.job.depth_range,
             light_scale: self.job.light_scale.unwrap_or_else(|| LightScale::over(light.iter().map(|value| value.0.x))),
-            hits: Aabb::around(values.iter().filter(|value| value.1 == PrimaryHit::Hit).map(|value| value.0)),
+            hits: if aov.name == "depth" { seen_depths(values) } else { Aabb::around(of_hits(values)) },
             all: Aabb::around(values.iter().map(|value| value.0)),
         };
         let color = |&(value, found): &(Vec3, PrimaryHit)| match found {
@@ -245,6 +245,28 @@ impl PartialRender {
         }
         (picture, display.light_scale)
     }
+}
+
+/// Depths beyond this many times those of 95 % of the hits are a horizon.
+const HORIZON: f32 = 4.0;
+
+fn of_hits(values: &[(Vec3, PrimaryHit)]) -> impl Iterator<Item = Vec3> {
+    values.iter().filter(|value| value.1 == PrimaryHit::Hit).map(|value| value.0)
+}
+
+/// Returns the bounds of the depths at hits, without the horizon of a plane, which would leave one
+/// grey to all else.
+fn seen_depths(values: &[(Vec3, PrimaryHit)]) -> Aabb {
+    let mut bounds = Aabb::around(of_hits(values));
+    let mut depths: Vec<f32> = of_hits(values).map(|value| value.x).collect();
+    depths.sort_by(f32::total_cmp);
+    if let Some(most) = depths.get(depths.len() * 95 / 100).map(|most| most - bounds.min.x)
+        && bounds.max.x - bounds.min.x > HORIZON * most
+        && most > 0.0
+    {
+        bounds.max.x = bounds.min.x + 1.5 * most;
+    }
+    bounds
 }
 
 /// Crops a picture.

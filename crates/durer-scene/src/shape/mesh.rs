@@ -130,6 +130,29 @@ impl Mesh {
         Mesh { form: Form::Lists(data.into()), made: None, center: self.center }
     }
 
+    /// Returns the mesh with every triangle grown about one of its corners; the normals are
+    /// extrapolated.
+    pub fn grown(&self, corner: usize, times: f32) -> Mesh {
+        let mut data = self.to_data().into_owned();
+        let (normals, triangle_normals) = self.normals();
+        (data.normals, data.triangle_normals) = (normals.to_vec(), triangle_normals.into_owned());
+        fn apart(triangles: &mut [[u32; 3]], values: &mut Vec<Vec3>, corner: usize, times: f32) {
+            let old = std::mem::take(values);
+            for triangle in triangles {
+                let all = triangle.map(|i| old.get(i as usize).copied().unwrap_or_default());
+                *triangle = [0, 1, 2].map(|i| (values.len() + i) as u32);
+                values.extend(all.map(|value| all[corner] + times * (value - all[corner])));
+            }
+        }
+        apart(&mut data.triangles, &mut data.positions, corner, times);
+        if !data.triangle_normals.is_empty() {
+            apart(&mut data.triangle_normals, &mut data.normals, corner, times);
+        }
+        (data.triangle_uvs, data.vertices) = Default::default();
+        (data.colors, data.second_uvs, data.tangents) = Default::default();
+        Mesh { form: Form::Lists(data.into()), made: None, center: self.center }
+    }
+
     /// Hash of the whole mesh.
     pub fn digest(&self) -> Digest {
         let (normals, triangles) = self.normals();

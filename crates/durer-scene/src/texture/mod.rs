@@ -7,6 +7,7 @@ pub mod environment;
 pub mod mapping;
 mod mipmap;
 pub mod sky;
+mod taps;
 
 use crate::math::{Color, Vec2, fp};
 pub use cie_sky::CieSky;
@@ -15,6 +16,7 @@ pub use environment::Environment;
 pub use mapping::{Channel, Mapping, Wrap};
 pub use sky::Sky;
 use std::sync::Arc;
+pub use taps::Tap;
 
 /// Decoded image, looked up by the course's rules or by a [`Mapping`].
 #[derive(Clone, Debug, PartialEq)]

@@ -9,6 +9,32 @@ use durer_scene::math::{Color, fp};
 /// Fog is opaque if it transmits less than this.
 const WALL: f32 = 0.01;
 
+/// Reports a box of fog that no camera ray goes through before it hits something.
+pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    let (Some(fog), Some(written)) = (world.fog(), &scout.subject.scene.fog) else { return Vec::new() };
+    let Some(place) = fog.place.as_ref().filter(|_| scout.is_physical()) else { return Vec::new() };
+    let goes_through = |probe: &super::probes::Probe| {
+        let end = probe.seen.as_ref().map_or(f32::INFINITY, |seen| seen.t);
+        place.bounds.clip(probe.ray.origin, probe.ray.dir).is_some_and(|(from, to)| to > 0.0 && from < end)
+    };
+    // Fog beside the picture may still shade what is in it.
+    let around = world.bounds();
+    let apart = around.is_empty()
+        || (0..3).any(|axis| place.bounds.min[axis] > around.max[axis] || place.bounds.max[axis] < around.min[axis]);
+    if !apart || scout.probes.iter().any(goes_through) {
+        return Vec::new();
+    }
+    let (min, max) = (super::finding::vector(around.min), super::finding::vector(around.max));
+    let diagnostic = Diagnostic::warning("this fog is not in the picture: no ray goes through its box")
+        .effect("nothing of it is seen")
+        .help(match around.is_empty() {
+            true => "put its `min` and `max` where the camera looks".to_string(),
+            false => format!("the scene is in `min {min} max {max}`"),
+        });
+    vec![Finding::from(scout.at_value(diagnostic, written.span, &["min", "max"]))]
+}
+
 /// Reports fog that blocks the light.
 pub(super) fn thick_fog(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();

@@ -10,25 +10,25 @@ use rayon::prelude::*;
 const MAX_PIXELS: usize = 300;
 const SAMPLES: u32 = 16;
 
-/// Returns the exposed colours of the picture: one for each probe, or with a path tracer the mean
-/// of `SAMPLES` samples for at most `MAX_PIXELS` of them.
-pub(super) fn light(grid: &ProbeGrid) -> Vec<Color> {
+/// Returns the exposed colours of the picture, each with the index of its probe: one for each probe,
+/// or with a path tracer the mean of `SAMPLES` samples for at most `MAX_PIXELS` of them.
+pub(super) fn light(grid: &ProbeGrid) -> (Vec<usize>, Vec<Color>) {
     let exposure = grid.subject.exposure;
     let Some(transport) = grid.subject.job.method.transport() else {
-        return grid.probes.iter().map(|probe| exposure * probe.color).collect();
+        return grid.probes.iter().enumerate().map(|(i, probe)| (i, exposure * probe.color)).unzip();
     };
     let job = grid.subject.job;
     let path = Path::new(grid.world(), job.settings, transport);
     let step = grid.probes.len().div_ceil(MAX_PIXELS).max(1);
     // An odd step avoids sampling the same column in each row.
-    let chosen: Vec<&Probe> =
-        grid.probes.iter().step_by(if step.is_multiple_of(2) { step + 1 } else { step }).collect();
-    let mean = |probe: &&Probe| {
+    let step = if step.is_multiple_of(2) { step + 1 } else { step };
+    let chosen: Vec<(usize, &Probe)> = grid.probes.iter().enumerate().step_by(step).collect();
+    let mean = |&(number, probe): &(usize, &Probe)| {
         let sample = |i: u32| path.radiance(&probe.ray, SampleId::new(job.seed, probe.pixel, i), &mut ());
         let all = (0..SAMPLES).map(sample).filter(|color| color.is_finite());
-        exposure * all.sum::<Color>() / SAMPLES as f32
+        (number, exposure * all.sum::<Color>() / SAMPLES as f32)
     };
-    chosen.par_iter().map(mean).collect()
+    chosen.par_iter().map(mean).unzip()
 }
 
 /// Returns the second largest value, so that one bright speck does not count.

@@ -70,6 +70,9 @@ pub(super) fn black(scout: &SceneProbe) -> Vec<Finding> {
 
 /// Reports mirrors and glass in a picture without secondary rays.
 pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
+    if scout.is_physical() {
+        return super::optics::short_paths(scout);
+    }
     let settings = &scout.subject.job.settings;
     let old = scout.world().rules().is_official();
     let counts = |color: Color| if old { color.length() } else { color.max_element() };
@@ -224,6 +227,23 @@ fn all_colors(scout: &SceneProbe) -> Vec<Named> {
         colors.push(all(phong.specular_color, ["specularColor", "specular"], if mirrors { 1.05 } else { 1.6 }));
         colors.push(all(phong.reflective_color, ["reflectiveColor", "reflectiveColor"], 1.001));
         colors.push(all(phong.transparent_color, ["transparentColor", "transparentColor"], 1.001));
+    }
+    for written in &scout.subject.scene.materials {
+        let Written::Principled(m) = &written.value else { continue };
+        let shares = [
+            (m.base_color, "baseColor"),
+            (m.transmission_color, "transmissionColor"),
+            (m.subsurface_color, "subsurfaceColor"),
+            (m.coat_color, "coatColor"),
+            (m.fuzz_color, "fuzzColor"),
+        ];
+        // Presets of measured metals are a little above 1.
+        colors.extend(shares.map(|(color, field)| Named {
+            color,
+            block: written.span,
+            fields: [field, field],
+            most: 1.1,
+        }));
     }
     for (number, (written, light)) in
         scout.subject.scene.lights.iter().flatten().zip(scout.world().lights()).enumerate()

@@ -4,7 +4,7 @@
 use super::brightness::brightest;
 use super::finding::{Finding, number, percent, vector};
 use super::lights::place;
-use super::probes::ProbeHit;
+use super::probes::{Probe, ProbeHit};
 use super::scene_probe::SceneProbe;
 use super::verdict::VISIBLE;
 use durer_diag::{Diagnostic, Severity};
@@ -22,6 +22,8 @@ const MAX_FAR: f32 = 0.2;
 
 /// Largest share of white pixels in a picture that still shows something.
 const MAX_WHITE: f32 = 0.5;
+/// Largest share of white among the surfaces that are lit, whatever the background.
+const MAX_WHITE_THINGS: f32 = 0.8;
 
 /// Converts a factor of light to stops.
 fn stops_of(factor: f32) -> f32 {
@@ -31,21 +33,28 @@ fn stops_of(factor: f32) -> f32 {
 /// Reports a picture in physical units (path tracing, or a sky in cd/m^2) that eight bits show as
 /// white.
 fn white(scout: &SceneProbe) -> Vec<Finding> {
-    let shown = scout.light();
-    let white = shown.iter().filter(|color| color.min_element() > 1.1).count();
-    if white as f32 <= MAX_WHITE * shown.len() as f32 {
+    // What shines itself may be white, and a background that is not seen to be lit says nothing.
+    let lit = |probe: &Probe| probe.seen.as_ref().is_some_and(|seen| !scout.world().may_shine(seen.material));
+    let all = scout.light();
+    let things: Vec<Color> = scout.lit_probes().filter(|(probe, _)| lit(probe)).map(|(_, color)| color).collect();
+    let is_white = |color: &&Color| color.min_element() > 1.1;
+    let over = |shown: &[Color], share: f32| shown.iter().filter(is_white).count() as f32 > share * shown.len() as f32;
+    let (shown, what) = if over(all, MAX_WHITE) {
+        (all, "the picture")
+    } else if things.len() * 20 > all.len() && over(&things, MAX_WHITE_THINGS) {
+        (&things[..], "what is lit")
+    } else {
         return Vec::new();
-    }
+    };
+    let white = shown.iter().filter(is_white).count();
     let mut values: Vec<f32> = shown.iter().map(|color| color.max_element()).collect();
     values.sort_by(f32::total_cmp);
     let middle = values[values.len() / 2];
     let stops = stops_of(0.5 / middle).round();
     let factor = number(0.5 / middle);
-    let diagnostic = Diagnostic::warning(format!(
-        "there is too much light: half of the picture is brighter than {}",
-        number(middle)
-    ))
-    .effect(format!("{} of the picture is white", percent(white, shown.len())));
+    let diagnostic =
+        Diagnostic::warning(format!("there is too much light: half of {what} is brighter than {}", number(middle)))
+            .effect(format!("{} of {what} is white", percent(white, shown.len())));
     let background = &scout.subject.scene.background;
     let sky = background.sun().is_some() || background.cie_sky.is_some();
     let lamp = super::lamps::brightest(scout).filter(|_| !sky);

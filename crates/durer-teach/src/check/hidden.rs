@@ -24,7 +24,7 @@ pub(super) fn hidden(scout: &SceneProbe) -> Vec<Finding> {
     let mut hits = scout.seen().map(|(_, seen)| seen.object);
     let Some(front) = hits.next().filter(|front| hits.all(|other| other == *front)) else { return Vec::new() };
     let (mut hidden, mut others) = (0, 0);
-    let empty = empty_solids(scout);
+    let empty = super::objects::nothing_of(scout);
     let there = |(i, _): &(usize, &Visibility)| *i as u32 != front && !empty.contains(&(*i as u32));
     for (number, sight) in scout.visibilities().iter().enumerate().filter(there) {
         match sight {

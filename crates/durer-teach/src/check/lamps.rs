@@ -36,7 +36,7 @@ struct Given {
 }
 
 /// Returns the area lights that can be sampled: object, and true if they are two-sided.
-fn shining(scout: &SceneProbe) -> Vec<(u32, bool)> {
+pub(super) fn shining(scout: &SceneProbe) -> Vec<(u32, bool)> {
     let world = scout.world();
     let shines = |(number, object): (usize, &Object)| {
         let Some(Material::Phong(phong)) = world.materials().get(object.material as usize) else { return None };

@@ -12,7 +12,7 @@ use durer_scene::scene::{Material as Written, Spanned};
 const BLACK: f32 = 0.002;
 
 /// Returns the layered materials that objects use: index, description and parameters.
-fn layers<'s>(scout: &SceneProbe<'s>) -> Vec<(usize, &'s Spanned<Written>, &'s PrincipledMaterial)> {
+pub(super) fn layers<'s>(scout: &SceneProbe<'s>) -> Vec<(usize, &'s Spanned<Written>, &'s PrincipledMaterial)> {
     let used = |number: usize| scout.world().objects().iter().any(|object| object.material as usize == number);
     let all = scout.subject.scene.materials.iter().enumerate();
     let own = all.filter_map(|(number, written)| match &written.value {
@@ -23,7 +23,7 @@ fn layers<'s>(scout: &SceneProbe<'s>) -> Vec<(usize, &'s Spanned<Written>, &'s P
 }
 
 /// Returns the smallest side of the thickest object of a material.
-fn thickness(scout: &SceneProbe, material: usize) -> Option<f32> {
+pub(super) fn thickness(scout: &SceneProbe, material: usize) -> Option<f32> {
     let made = scout.world().objects().iter().filter(|object| object.material as usize == material);
     let sides = made.filter_map(|object| Some(object.bounds()?.size().min_element()));
     sides.max_by(f32::total_cmp).filter(|side| *side > 0.0)

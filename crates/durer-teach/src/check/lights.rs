@@ -190,6 +190,9 @@ fn mostly_dark(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole((reached as f32) < NEARLY_ALL_DARK * all as f32)]
 }
 
+/// Distance of a light, as a multiple of the scene's size, beyond which no edit places it.
+const FARTHEST: f32 = 20.0;
+
 fn is_grazing(lit: &Lit) -> bool {
     lit.cosine.abs() <= 1e-3
 }
@@ -222,7 +225,19 @@ fn grazing(scout: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
         }
         Some(from) => {
             let eye = scout.world().camera().pose().center;
-            let raised = vector(from + 0.5 * (eye - from).length().max(1e-3) * n);
+            let place = from + 0.5 * (eye - from).length().max(1e-3) * n;
+            let raised = vector(place);
+            let bounds = scout.world().bounds();
+            let wide = if bounds.is_empty() {
+                f32::INFINITY
+            } else {
+                bounds.size().length() + (eye - bounds.center()).length()
+            };
+            // A lamp out of all proportion is a mistake of its own.
+            if (place - eye).length() > FARTHEST * wide {
+                let help = "the light lies in the plane of that surface, and far from everything: move it nearer";
+                return Some(scout.at_value(diagnostic, span, &["position"]).help(help));
+            }
             let value = scout.value(span, &["position"]);
             let help =
                 format!("the light lies in the plane of that surface: raise it, for example to `position {raised}`");

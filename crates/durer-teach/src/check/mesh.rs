@@ -1,12 +1,13 @@
 //! Checks of meshes, file by file: triangles, edges and normals.
 
 use super::finding::{Finding, counted, percent, vector};
-use super::mesh_files::MeshFile;
 use super::mesh_files::topology::Topology;
+use super::mesh_files::{MeshFile, models};
 use super::scene_probe::SceneProbe;
-use durer_diag::{Diagnostic, Span};
+use durer_diag::{Diagnostic, Severity, Span};
 use durer_render::world::{Material, Object as Placed};
 use durer_scene::dialect::Compat;
+use durer_scene::math::Vec3;
 
 /// Share of triangles without area that is above what the poles of a surface of revolution have.
 const MANY_FLAT: f32 = 0.03;
@@ -231,7 +232,35 @@ pub(super) fn inside_out(scout: &SceneProbe) -> Vec<Finding> {
             .help(if by_file { "negate its `vn` vectors" } else { "order the corners of its faces counter-clockwise, as seen from outside" });
         found.push(Finding::from(diagnostic).whole(most));
     }
+    found.extend(models_inside_out(scout));
     found
+}
+
+/// Reports closed meshes of a model whose triangles wind clockwise seen from outside.
+fn models_inside_out(scout: &SceneProbe) -> Vec<Finding> {
+    // A transform that mirrors turns the winding round, as formats have it.
+    let kept = |object: &Placed| {
+        object.to_world.as_ref().is_none_or(|to_world| {
+            to_world.vector(Vec3::X).cross(to_world.vector(Vec3::Y)).dot(to_world.vector(Vec3::Z)) > 0.0
+        })
+    };
+    let all = models(scout);
+    let turned = all.iter().filter(|mesh| {
+        mesh.is_inside_out() && !mesh.is_room(scout) && !mesh.is_hollow(scout) && mesh.placed(scout).all(kept)
+    });
+    let say = |mesh: &MeshFile| {
+        let index = scout.world().objects().iter().position(|object| mesh.is_shown_at(object.span))? as u32;
+        let seen = scout.seen().filter(|(_, seen)| mesh.is_shown_at(scout.object_span(seen.object))).count();
+        let most = seen * 2 > scout.seen().count();
+        let diagnostic = Diagnostic::warning(format!("the {} is closed, and inside out", scout.object(index)))
+            .at(scout.object_span(index))
+            .effect("programs that leave out backs show its inside; as glass it bends light the wrong way")
+            .help("let its faces go round counter-clockwise, seen from outside");
+        // Modelling programs leave small pieces so, and nobody sees them.
+        let severity = if most { Severity::Warning } else { Severity::Note };
+        Some(Finding::from(Diagnostic { severity, ..diagnostic }))
+    };
+    turned.filter_map(say).collect()
 }
 
 /// Returns true if an object shows a mesh that `inside-out` reports.

@@ -23,9 +23,11 @@ mod lens;
 mod lights;
 mod mesh;
 mod mesh_files;
+mod method;
 mod names;
 mod numbers;
 mod objects;
+mod optics;
 mod patterns;
 mod physical;
 pub mod picture;
@@ -60,6 +62,11 @@ const EMPTIES: [&str; 7] =
 
 /// Causes, and the findings that are suppressed beside each because they follow from it.
 const CONSEQUENCES: &[(&str, &[&str])] = &[
+    ("wrong-integrator", &["no-light", "no-emitter", "too-dark", "same-color", "one-color", "nothing-mirrored"]),
+    ("black-sky", &["no-emitter", "too-dark", "one-color"]),
+    ("nothing-mirrored", &["same-color", "too-dark", "one-color", "light-cancelled"]),
+    ("tiny-highlight", &["light-cancelled", "same-color", "too-dark"]),
+    ("mostly-black", &["too-dark", "lamp-blocked", "light-behind"]),
     ("color-range", &["too-bright"]),
     ("full-ambient", &["too-bright"]),
     ("negative-color", &["too-dark", "light-cancelled"]),

@@ -58,6 +58,22 @@ pub(super) fn empty_solids(scout: &SceneProbe) -> Vec<u32> {
     world.objects().iter().enumerate().filter(|_| few).filter(empty).map(|(i, _)| i as u32).take(MAX_SOUGHT).collect()
 }
 
+/// Returns objects without a surface: empty solids, triangles and meshes without area.
+pub(super) fn nothing_of(scout: &SceneProbe) -> Vec<u32> {
+    let mut nothing = empty_solids(scout);
+    let flat = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).length_squared() == 0.0;
+    let without = scout.world().objects().iter().enumerate().filter(|(i, object)| {
+        scout.visibilities()[*i] != Visibility::Seen
+            && match &object.geometry {
+                Geometry::Primitive(_) => triangle(object).is_some_and(flat),
+                Geometry::Mesh(tree) => (0..tree.mesh.len().min(1000)).all(|i| flat(tree.mesh.corners(i as u32))),
+                Geometry::Solid(_) => false,
+            }
+    });
+    nothing.extend(without.map(|(i, _)| i as u32));
+    nothing
+}
+
 /// Reports solids that are empty.
 pub(super) fn empty_solid(scout: &SceneProbe) -> Vec<Finding> {
     let say = |object: u32| {

@@ -22,7 +22,6 @@ const OF_LOCAL_LIGHT: &[&str] = &[
     "pow-zero",
     "no-exponent",
     "light-cancelled",
-    "no-bounces",
     "same-color",
     "seen-from-behind",
 ];
@@ -38,7 +37,8 @@ pub(super) fn is_beside_the_point(scout: &SceneProbe, code: &str) -> bool {
 
 pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
-    let dark_sky = world.environment().is_none()
+    let scaled = scout.subject.scene.background.environment_scale != Some(Vec3::ZERO);
+    let dark_sky = (world.environment().is_none() || !scaled)
         && world.cube_map().is_none()
         && (world.background() == Color::ZERO || world.is_dark());
     let radiance = |material: &Compiled| match material {

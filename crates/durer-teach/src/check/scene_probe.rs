@@ -3,7 +3,7 @@
 use super::aim::{Aim, aim};
 use super::brightness::{brightest, light};
 use super::mesh_files::{MeshFile, files};
-use super::probes::{ProbeGrid, Subject};
+use super::probes::{Probe, ProbeGrid, Subject};
 use super::verdict::{Verdict, verdicts};
 use super::visibility::{Visibility, visibilities};
 use durer_scene::math::Color;
@@ -20,7 +20,7 @@ pub struct SceneProbe<'a> {
     visibilities: OnceLock<Vec<Visibility>>,
     verdicts: OnceLock<Vec<Verdict>>,
     aims: OnceLock<Vec<Option<Aim>>>,
-    light: OnceLock<Vec<Color>>,
+    light: OnceLock<(Vec<usize>, Vec<Color>)>,
     meshes: OnceLock<Vec<MeshFile<'a>>>,
     material_rays: OnceLock<Vec<usize>>,
 }
@@ -66,7 +66,17 @@ impl<'a> SceneProbe<'a> {
     /// Returns the exposed colours of the picture: one for each probe, or with a path tracer the
     /// mean of a few samples for some of them.
     pub(super) fn light(&self) -> &[Color] {
+        &self.lit().1
+    }
+
+    fn lit(&self) -> &(Vec<usize>, Vec<Color>) {
         self.light.get_or_init(|| light(self))
+    }
+
+    /// Iterates over the probes whose exposed colours are known, with their colours.
+    pub(super) fn lit_probes(&self) -> impl Iterator<Item = (&Probe, Color)> {
+        let (probes, colors) = self.lit();
+        probes.iter().zip(colors).map(|(probe, color)| (&self.probes[*probe], *color))
     }
 
     /// Returns true if a path tracer's picture is black, or nearly so.

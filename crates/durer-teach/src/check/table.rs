@@ -3,8 +3,8 @@
 use super::finding::Finding;
 use super::scene_probe::SceneProbe;
 use super::{
-    air, beams, colors, exposure, extent, facing, fading, hidden, lamps, layers, lens, lights, mesh, names, numbers,
-    objects, patterns, physical, solid, unseen, view, year,
+    air, beams, colors, exposure, extent, facing, fading, hidden, lamps, layers, lens, lights, mesh, method, names,
+    numbers, objects, optics, patterns, physical, solid, unseen, view, year,
 };
 
 /// A kind of finding.
@@ -67,8 +67,11 @@ checks! {
     "plane-normal": "a plane whose normal does not have length 1", year::plane_normal;
     "out-of-scale": "an object far larger or smaller than most", extent::out_of_scale;
     // Lights.
+    "wrong-integrator": "light of a kind that the method leaves out", method::wrong_integrator;
+    "black-sky": "an environment that is multiplied by 0", method::black_sky;
     "no-light": "no light", reported;
     "no-emitter": "a path-traced scene in which nothing emits light", physical::no_emitter;
+    "fog-away": "fog that no ray of the picture goes through", air::away;
     "thick-fog": "fog that blocks all light", air::thick_fog;
     "lamp-turned": "an area light that faces away from everything visible", lamps::turned;
     "lamp-blocked": "an area light that is occluded from everything visible", lamps::blocked;
@@ -101,6 +104,10 @@ checks! {
     "negative-color": "a colour below zero", colors::negative;
     "no-bounces": "mirrors or glass without secondary rays", colors::no_bounces;
     "dull-glass": "glass whose colour absorbs all light", colors::dull_glass;
+    "nothing-mirrored": "mirrors that have nothing to show", method::nothing_mirrored;
+    "thick-film": "a film too thick to show colours", optics::thick_film;
+    "wide-scatter": "a body thinner than the way of light in it", optics::wide_scatter;
+    "no-spectrum": "glass that spreads colours, without light by wavelength", optics::no_spectrum;
     "odd-index": "glass with an impossible index of refraction", colors::odd_index;
     "same-color": "objects with the colour of the background", colors::camouflaged;
     "no-coordinates": "a texture on an object without texture coordinates", colors::no_coordinates;
@@ -125,6 +132,7 @@ checks! {
     "not-finite": "samples that are NaN or infinite", numbers::not_finite;
     "depth-range": "a depth range that contains no depth of the picture", exposure::depth_range;
     "too-bright": "more light than a picture of eight bits can show", exposure::too_bright;
+    "mostly-black": "lights that reach next to nothing of what is seen", method::mostly_black;
     "too-dark": "hardly any light", exposure::too_dark;
     "all-missed": "no ray hits anything, although the camera looks at the scene", view::missed;
     "one-color": "a picture of one colour without a known cause", exposure::one_color;

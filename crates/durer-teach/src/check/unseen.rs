@@ -6,6 +6,7 @@ use super::shapes::{plane, triangle};
 use super::visibility::{Visibility, pixels};
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_render::world::{Geometry, Object};
+use durer_scene::camera::Projection;
 use durer_scene::math::{Aabb, Vec3};
 use durer_scene::scene::Node;
 
@@ -15,7 +16,7 @@ const FEW_OBJECTS: usize = 8;
 /// Reports objects that are nowhere in the picture.
 pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
     let visibilities = scout.visibilities();
-    let nothing: Vec<u32> = nothing_of(scout);
+    let nothing: Vec<u32> = super::objects::nothing_of(scout);
     // In a large scene some objects are always outside the picture or hidden.
     let mut found = far_away(scout);
     let missing =
@@ -81,7 +82,12 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
         };
         // An object may stand behind another on purpose.
         let one = hidden.iter().all(|(_, other)| *other == by);
-        let severity = if plane || inside || one { severity(hidden.len()) } else { Severity::Note };
+        let severity = match below(scout, by, first) {
+            // Behind a plane that is all before it an object is never seen.
+            true => Severity::Warning,
+            false if plane || inside || one => severity(hidden.len()),
+            false => Severity::Note,
+        };
         let diagnostic = Diagnostic { severity, ..Diagnostic::note(message) }
             .at(scout.object_span(first))
             .related(scout.object_span(by), if inside { "around it" } else { "in front of it" })
@@ -97,6 +103,14 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
         found.push(Finding::from(diagnostic));
     }
     found
+}
+
+/// Returns true if an object is wholly on the other side of a plane than the camera.
+fn below(scout: &SceneProbe, plane: u32, object: u32) -> bool {
+    let Some((n, d)) = super::hidden::ground(scout, plane) else { return false };
+    let eye = scout.world().camera().pose().center.dot(n) - d;
+    let bounds = scout.world().objects()[object as usize].bounds().filter(|bounds| !bounds.is_empty());
+    bounds.is_some_and(|bounds| bounds.corners().iter().all(|corner| (corner.dot(n) - d) * eye < 0.0))
 }
 
 /// Returns the negative scale around an object: its span and its replacement.
@@ -119,22 +133,6 @@ fn mirrored(scout: &SceneProbe, number: u32) -> Option<(Span, String)> {
         }
     }
     None
-}
-
-/// Returns objects without a surface: empty solids, triangles and meshes without area.
-fn nothing_of(scout: &SceneProbe) -> Vec<u32> {
-    let mut nothing = super::objects::empty_solids(scout);
-    let flat = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).length_squared() == 0.0;
-    let without = scout.world().objects().iter().enumerate().filter(|(i, object)| {
-        scout.visibilities()[*i] != Visibility::Seen
-            && match &object.geometry {
-                Geometry::Primitive(_) => triangle(object).is_some_and(flat),
-                Geometry::Mesh(tree) => (0..tree.mesh.len().min(1000)).all(|i| flat(tree.mesh.corners(i as u32))),
-                Geometry::Solid(_) => false,
-            }
-    });
-    nothing.extend(without.map(|(i, _)| i as u32));
-    nothing
 }
 
 /// Returns true if the centre of one object is inside another.
@@ -192,6 +190,7 @@ pub(super) fn flat_field(scout: &SceneProbe) -> Vec<Finding> {
                 let size = field.max - field.min;
                 let wide = size.x.max(size.z);
                 if size.y > 0.002 * wide {
+                    found.extend(even_field(scout, object, size));
                     continue;
                 }
                 let max = vector(Vec3::new(field.max.x, field.min.y + 0.2 * wide, field.max.z));
@@ -209,6 +208,25 @@ pub(super) fn flat_field(scout: &SceneProbe) -> Vec<Finding> {
         }
     }
     found
+}
+
+/// Returns a warning about a landscape whose picture has the same value everywhere.
+fn even_field(scout: &SceneProbe, object: &durer_scene::scene::Object, size: Vec3) -> Option<Finding> {
+    let is_it = |own: &&Object| own.span.file == object.span.file && own.span.start == object.span.start;
+    let mesh = scout.world().objects().iter().find(is_it).and_then(|own| match &own.geometry {
+        Geometry::Mesh(tree) => Some(&tree.mesh),
+        Geometry::Primitive(_) | Geometry::Solid(_) => None,
+    })?;
+    let step = (mesh.len() / 2000).max(1);
+    let corners = (0..mesh.len()).step_by(step).flat_map(|part| mesh.corners(part as u32));
+    let (low, high) = corners.fold((f32::MAX, f32::MIN), |(low, high), p| (low.min(p.y), high.max(p.y)));
+    if high - low > 0.002 * size.y {
+        return None;
+    }
+    let diagnostic = Diagnostic::warning("the picture of this landscape has the same value everywhere")
+        .effect("it is flat: there are no hills to be seen")
+        .help("dark is low and bright is high: take a picture of several values");
+    Some(Finding::from(scout.at_value(diagnostic, object.span, &["picture"])))
 }
 
 fn is_triangle(scout: &SceneProbe, object: u32) -> bool {

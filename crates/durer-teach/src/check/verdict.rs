@@ -137,14 +137,22 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
     if facing.len() - blocked.len() > all.len() / 50 && !is_blocked {
         let most = facing.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
         // At a grazing angle a surface is dark whatever its colour.
-        let lit = facing.iter().filter(|lit| lit.blocker.is_none() && lit.cosine > GRAZING);
+        let colored = |seen: &ProbeHit| match &grid.world().materials()[seen.material as usize] {
+            // Of what reflects no light by itself, as a mirror, nothing cancels.
+            Material::Phong(phong) => phong.diffuse.max_element() >= 0.05,
+            Material::Solid(..) => true,
+        };
+        let lit = grid.seen().filter(|(_, seen)| !clear(seen) && colored(seen));
+        let lit = lit.filter_map(|(_, seen)| seen.by(number));
+        let lit = lit.filter(|lit| lit.blocker.is_none() && lit.cosine > GRAZING);
         let (full, lost) = lit
             .filter(|lit| lit.arrives.abs().max_element() > 4.0 * VISIBLE)
             .fold((0, 0), |(n, lost), lit| (n + 1, lost + usize::from(lit.adds.abs().max_element() <= VISIBLE)));
+        let dull = facing.iter().filter(|lit| lit.blocker.is_none() && lit.cosine > GRAZING).count() > 4 && full == 0;
         return match most < 4.0 * VISIBLE {
             true => Verdict::Faint(most),
             false if full > 4 && lost * 10 > full * 9 => Verdict::Cancelled,
-            false if full > 0 => Verdict::Works,
+            false if full > 0 || dull => Verdict::Works,
             false => Verdict::Behind,
         };
     }

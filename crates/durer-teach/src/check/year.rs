@@ -114,8 +114,10 @@ pub(super) fn tiny_highlight(scout: &SceneProbe) -> Vec<Finding> {
 
 /// Reports a highlight colour without an exponent, which then is 1.
 pub(super) fn no_exponent(scout: &SceneProbe) -> Vec<Finding> {
-    if !matches!(scout.world().rules().highlight, Highlight::Blinn | Highlight::ByKeyword) {
-        return Vec::new();
+    match scout.world().rules().highlight {
+        Highlight::None => return no_highlight(scout).into_iter().collect(),
+        Highlight::Phong => return Vec::new(),
+        Highlight::Blinn | Highlight::ByKeyword => {}
     }
     let bare = |phong: &PhongMaterial| {
         phong.specular_color.max_element() > 0.02
@@ -131,6 +133,23 @@ pub(super) fn no_exponent(scout: &SceneProbe) -> Vec<Finding> {
         Finding::from(scout.at_value(diagnostic, written.span, &["specularColor"]))
     };
     seen(scout).filter(|(.., phong)| bare(phong)).map(say).take(MAX_SOUGHT).collect()
+}
+
+/// Notes a highlight's colour without an exponent in a dialect without highlights, which takes it for
+/// the colour of a mirror.
+fn no_highlight(scout: &SceneProbe) -> Option<Finding> {
+    let bare = |phong: &PhongMaterial| {
+        phong.specular_color.max_element() > 0.02
+            && phong.shininess.is_none()
+            && phong.exponent.is_none()
+            && phong.refraction_index.is_none()
+            && phong.diffuse_color.is_none_or(|color| color.max_element() > 0.15)
+    };
+    let (i, written, _) = seen(scout).find(|(.., phong)| bare(phong))?;
+    let diagnostic = Diagnostic::note(format!("material {i} has a `specularColor` and no `shininess`"))
+        .effect("this year's program has no highlights, and mirrors with that colour; in others the highlight is everywhere")
+        .help("for a highlight write a `shininess`, 20 say, and take a year that has highlights, as `--dialect f16`");
+    Some(Finding::from(scout.at_value(diagnostic, written.span, &["specularColor"])))
 }
 
 /// Reports a camera's `up` that is not unit length in a dialect that does not normalise it.

@@ -80,8 +80,10 @@ impl Teacher {
                 if stage.has_paths() { steps(topic, stage, self.transfer, false, control)? } else { Vec::new() };
             return Ok(marked(shown, topic.lacking));
         }
-        let lacking = self.stages[0].year_lacks(topic.name).unwrap_or(topic.lacking);
-        for (ours, stage) in [false, true].into_iter().zip(&mut self.stages) {
+        let unknown = self.stages[0].method_lacks(topic);
+        let lacking = self.stages[0].year_lacks(topic.name).or(unknown).unwrap_or(topic.lacking);
+        let stages = [false, true].into_iter().zip(&mut self.stages);
+        for (ours, stage) in stages.filter(|(ours, _)| *ours || unknown.is_none()) {
             let steps = steps(topic, stage, self.transfer, ours, control)?;
             if !steps.is_empty() {
                 return Ok(marked(steps, lacking));
@@ -149,7 +151,7 @@ fn noise(before: &Shown, after: &Shown) -> String {
     let share = |noise: f64| format!("{:.1} %", 100.0 * noise);
     match (before.noise, after.noise) {
         (Some(before), Some(after)) => format!(
-            " Its noise (the mean of the pixels' standard errors) is {} of the mean luminance; before it was {}.",
+            " Its noise (the mean of the pixels' standard errors, cut off at white) is {} of the mean luminance; before it was {}.",
             share(after),
             share(before)
         ),

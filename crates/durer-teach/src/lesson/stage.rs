@@ -1,6 +1,6 @@
 //! A scene that can be rendered without parts of its light and with common mistakes.
 
-use super::topics::{Carriage, Glass, Look, Shot};
+use super::topics::{Carriage, Glass, Look, Shot, Topic};
 use crate::mistakes::{Variant, of_name};
 use durer_diag::{Diagnostics, Files};
 use durer_formats::Decoder;
@@ -113,17 +113,18 @@ impl Stage {
         let shown = match shot.value {
             Some("rays") => self.directions()?,
             value => {
-                self.arrange(&shot.look);
+                let look = self.carried(shot.look);
+                self.arrange(&look);
                 let color = value.is_none();
-                let noise = shot.look.paths.map(|_| "variance");
+                let noise = look.paths.map(|_| "variance");
                 let aovs: Vec<_> = value.into_iter().chain(noise).filter_map(Aov::from_name).collect();
-                let settings = self.settings(&shot.look);
-                let sampling = self.sampling(&shot.look);
-                let method = self.method(&shot.look);
+                let settings = self.settings(&look);
+                let sampling = self.sampling(&look);
+                let method = self.method(&look);
                 let mut job = Job { color, aovs, settings, sampling, method, ..self.job.clone() };
                 let mut rendered = render(&self.world, &job, control)?;
                 if value == Some("depth") && job.depth_range.is_none() {
-                    job.depth_range = depth_range(&rendered.layers[0].image);
+                    job.depth_range = depth_range(self.distances());
                     rendered = render(&self.world, &job, control)?;
                 }
                 let noise = noise.and_then(|_| noise_of(&rendered.layers[0].image, &rendered.layers[1].image));
@@ -197,6 +198,28 @@ impl Stage {
         }
     }
 
+    /// Returns true if no light of the scene is of a kind that Whitted's method knows.
+    pub(super) fn needs_paths(&self) -> bool {
+        self.has_paths() && self.lights.is_empty()
+    }
+
+    /// Returns a look with paths in place of Whitted's method where that shows no light: direct light
+    /// is the same step with either.
+    fn carried(&self, look: Look) -> Look {
+        match self.needs_paths() && look.lights && look.paths.is_none() && look.bounces == 0 {
+            true => Look { paths: Some(Carriage::PLAIN), sampled: true, ..look },
+            false => look,
+        }
+    }
+
+    /// Returns the reason if a topic takes light that only Whitted's method shows step by step, and
+    /// that method does not know the scene's light.
+    pub(super) fn method_lacks(&self, topic: &Topic) -> Option<&'static str> {
+        let bounces = topic.shots.iter().any(|shot| shot.look.bounces > 0 && shot.look.paths.is_none());
+        (self.needs_paths() && bounces)
+            .then_some("its light comes from surfaces or from all around, which Whitted's method does not know")
+    }
+
     /// Returns true if the job uses path tracing.
     pub(super) fn has_paths(&self) -> bool {
         self.job.method.transport().is_some()
@@ -223,6 +246,14 @@ impl Stage {
         Ok(Shown { layer, values: Image::from_pixels(width, height, values)?, noise: None })
     }
 
+    /// Returns t of the first hit of each ray through a pixel's centre that hits something.
+    fn distances(&self) -> Vec<f32> {
+        let raster = self.raster();
+        let ray = |place| center_ray(&self.world, &raster, place);
+        let hits = self.job.whole().places().filter_map(|place| self.world.intersect(&ray(place)?, &mut ()));
+        hits.map(|at| at.hit.t).filter(|t| t.is_finite()).collect()
+    }
+
     /// Describes a picture that is not compared with another, in a sentence; `None` if it shows
     /// nothing.
     pub(super) fn facts(&self, shot: &Shot, shown: &Shown) -> Option<String> {
@@ -243,7 +274,7 @@ impl Stage {
                 })
             }
             Some("depth") => {
-                let hits: Vec<f32> = values.iter().map(|value| value.x).filter(|t| t.is_finite()).collect();
+                let hits = self.distances();
                 let least = hits.iter().copied().reduce(f32::min)?;
                 let most = hits.iter().copied().reduce(f32::max)?;
                 let share = percent(hits.len(), values.len());
@@ -270,7 +301,9 @@ impl Stage {
                 colors.sort_unstable();
                 colors.dedup();
                 let count = colors.len();
-                (count > 1).then(|| format!("The picture has {count} different colours, including the background."))
+                let sky =
+                    if self.distances().len() < values.len() { ", that of the background among them" } else { "" };
+                (count > 1).then(|| format!("The picture has {count} different colours{sky}."))
             }
         }
     }
@@ -292,8 +325,7 @@ impl Stage {
 
 /// Returns a useful depth range for a scene with an infinite ground: from the minimum to three
 /// times as far from it as the median.
-fn depth_range(depths: &Image) -> Option<(f32, f32)> {
-    let mut depths: Vec<f32> = depths.pixels.iter().map(|depth| depth.x).filter(|depth| depth.is_finite()).collect();
+fn depth_range(mut depths: Vec<f32>) -> Option<(f32, f32)> {
     depths.sort_by(f32::total_cmp);
     let (least, most) = (*depths.first()?, *depths.last()?);
     let end = most.min(least + 3.0 * (depths[depths.len() / 2] - least));

@@ -141,3 +141,43 @@ fn moved_normals_are_transformed_by_the_matrix_itself() {
         assert!((surface.n_geo - Vec3::new(0.3, 0.8, z).normalize()).length() < 1e-6);
     }
 }
+
+/// A ball of radius 1 in the middle of the picture, seen from 5 away: rays that miss are no hits.
+#[test]
+fn distances_are_those_of_the_rays_that_hit() {
+    let mut stage = stage("whitted.txt", 24);
+    let words = |stage: &mut Stage| {
+        let topic = TOPICS.iter().find(|topic| topic.name == "distance").unwrap();
+        let steps = steps(topic, stage, Transfer::Srgb, false, &Control::default()).unwrap();
+        steps[0].words.clone()
+    };
+    let text = "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }
+        Lights { DirectionalLight { direction 0 -1 -1 color 1 1 1 } }
+        Group { Sphere { center 0 0 0 radius 1 } }";
+    let folder = Path::new(".");
+    let (world, _) = durer_render::compile::testing::try_read(text, Dialect::Durer.rules(), AccelKind::Bvh, folder);
+    stage.world = world.unwrap();
+    (stage.job.width, stage.job.height) = (100, 100);
+    let words = words(&mut stage);
+    // The ball covers a circle of half the angle asin(1/5): 24.7 % of the picture.
+    assert!(words.starts_with("24.") && words.contains("from 4.00 to 4.8"), "{words}");
+}
+
+/// What shines in the Cornell box is a surface: its direct light is shown by paths, and mirrors in
+/// our own scene.
+#[test]
+fn a_scene_without_lights_of_whitteds_method_is_shown_by_paths() {
+    let mut stage = stage("cornell-box.txt", 32);
+    stage.job.method = Method::PATH;
+    stage.job.sampling = Sampling::Filtered { samples: 4, filter: Filter::default() };
+    let mut teacher = Teacher::new(stage, Transfer::Srgb);
+    let mut of = |name: &str| {
+        let topic = TOPICS.iter().find(|topic| topic.name == name).unwrap();
+        teacher.steps(topic, &Control::default()).unwrap()
+    };
+    let diffuse = of("diffuse");
+    let most = diffuse[0].after.layer.image.pixels.iter().map(|pixel| pixel.max_element()).fold(0.0, f32::max);
+    assert!(!diffuse[0].ours && most > 0.3, "{most}");
+    let mirrors = of("reflection");
+    assert!(mirrors[0].ours && mirrors[0].lacking.contains("Whitted's method does not know"), "{}", mirrors[0].lacking);
+}

@@ -38,6 +38,12 @@ pub struct Carriage {
     pub disperses: bool,
 }
 
+impl Carriage {
+    /// Paths with both ways to sample lights, in red, green and blue.
+    pub const PLAIN: Carriage =
+        Carriage { direct: Direct::Both, photons: false, color: ColorMode::Rgb, disperses: true };
+}
+
 /// Behaviour of glass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Glass {
@@ -135,7 +141,7 @@ const SAMPLED: Look = Look { sampled: true, ..FRESNEL };
 const fn paths(bounces: u32, carriage: Carriage) -> Look {
     Look { bounces, sampled: true, paths: Some(carriage), ..FRESNEL }
 }
-const BOTH: Carriage = Carriage { direct: Direct::Both, photons: false, color: ColorMode::Rgb, disperses: true };
+const BOTH: Carriage = Carriage::PLAIN;
 const fn straight(direct: Direct) -> Look {
     paths(0, Carriage { direct, ..BOTH })
 }

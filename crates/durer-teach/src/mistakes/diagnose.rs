@@ -2,15 +2,13 @@
 
 use super::habits::Turn;
 use super::pictures::View;
+use super::question::{Diagnosis, MAX_OFF, Named, Question, prepared, values};
 use super::search::{Fit, difference, differing, fit, sampled};
+use super::speckles;
 use super::table::{Formulas, MISTAKES, Mistake, Values};
-use super::{Variant, speckles};
-use durer_image::Transfer;
-use durer_image::compare::{Picture, Scale};
-use durer_render::render::Job;
-use durer_render::world::World;
+use super::variant::Variant;
+use durer_image::compare::Scale;
 use durer_scene::math::Vec3;
-use durer_scene::scene::Scene;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -31,63 +29,11 @@ const BEST: usize = 12;
 /// Only the `CLOSEST` best trials are tried at all pixels, unless they explain more than this.
 const CLOSE: f64 = 0.8;
 const CLOSEST: usize = 5;
-/// Share of pixels in which the scene's own picture may differ from the reference; above it,
-/// nothing is reported.
-const MAX_OFF: f64 = 0.25;
 /// Half a step of eight bits, and minimum number of pixels with different rounding.
 const HALF: f32 = 0.5 / 255.0;
 const FEWEST_ROUNDED: usize = 30;
 /// Maximum number of pairs that are tried.
 const MAX_PAIRS: usize = 3000;
-
-/// Two pictures, and the scene of the reference.
-#[derive(Clone, Copy, Debug)]
-pub struct Question<'a> {
-    /// The scene as written.
-    pub scene: &'a Scene,
-    /// The scene compiled with the rules of the reference.
-    pub world: &'a World,
-    /// The job of the reference: the pictures' size, without a crop.
-    pub job: &'a Job,
-    /// Transfer curve of the eight-bit pictures.
-    pub transfer: Transfer,
-    /// The correct picture.
-    pub reference: &'a Picture,
-    /// The picture to diagnose.
-    pub test: &'a Picture,
-}
-
-/// Mistakes that together explain a picture.
-#[derive(Clone, Debug)]
-pub struct Named {
-    /// The mistakes, each with its value.
-    pub mistakes: Vec<(&'static Mistake, f32)>,
-    /// Share of the squared difference that they explain, without rounding.
-    pub explained: f64,
-    /// Share of the differing pixels that they reproduce.
-    pub matched: f64,
-}
-
-/// Result of a diagnosis.
-#[derive(Clone, Debug, Default)]
-pub struct Diagnosis {
-    /// Share of the pixels in which the scene's own picture differs from the reference.
-    pub off: f64,
-    /// Explanations of the picture, more than one if several give the same picture; empty if none
-    /// does.
-    pub named: Vec<Named>,
-    /// The closest trials, including those that do not explain the picture.
-    pub tried: Vec<Named>,
-    /// Formulas for describing the mistakes.
-    pub formulas: Formulas,
-}
-
-impl Diagnosis {
-    /// Returns true if the scene and the options reproduce the reference.
-    pub fn is_of_scene(&self) -> bool {
-        self.off <= MAX_OFF
-    }
-}
 
 /// A trial: mistakes, their picture, and its fit.
 #[derive(Clone, Debug)]
@@ -134,24 +80,6 @@ struct Search<'a> {
     question: &'a Question<'a>,
     view: View<'a>,
     base: Variant<'a>,
-}
-
-/// Converts a picture's values to a scale.
-fn values(picture: &Picture, scale: Scale, transfer: Transfer) -> Vec<Vec3> {
-    let pixels = picture.image.pixels.iter();
-    match picture.scale == scale {
-        true => pixels.map(|v| if v.is_finite() { *v } else { Vec3::ZERO }).collect(),
-        false => pixels.map(|light| Vec3::from(transfer.encode_pixel(*light).map(f32::from)) / 255.0).collect(),
-    }
-}
-
-/// Returns the reference's values, the view, and the scene without mistakes.
-fn prepared<'a>(question: &Question<'a>) -> (Vec<Vec3>, View<'a>, Variant<'a>) {
-    let screen = [question.reference, question.test].iter().any(|picture| picture.scale == Scale::Display);
-    let scale = if screen { Scale::Display } else { Scale::Linear };
-    let base = Variant::new(question.scene, question.world.clone(), question.job.settings);
-    let view = View { job: question.job, scale, transfer: question.transfer, brightest: 1.0 };
-    (values(question.reference, scale, question.transfer), view, base)
 }
 
 /// Tries all mistakes. `told` receives the progress, from 0 to 1.
@@ -216,7 +144,7 @@ fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     let trials = search.trials(close.map(|(_, trial)| trial.mistakes).collect(), &full);
     told(0.5);
     let tried = tried(&trials);
-    let single = decided(trials, &full, &Bars::SINGLE);
+    let single = decided(trials, &full, &Bars::NEARLY);
     if single.first().is_some_and(|named| Bars::CLEAR.passes(&named.fit())) {
         return Diagnosis { off, named: single, tried, ..Diagnosis::default() };
     }
@@ -229,7 +157,11 @@ fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     // Two mistakes always explain more than one; require much more.
     let rest = |named: &[Named]| named.first().map_or(1.0, |named| 1.0 - named.explained);
     let named = if rest(&pairs) < 0.35 * rest(&single) { pairs } else { single };
-    Diagnosis { off, named, tried: [tried, tried_pairs].concat(), ..Diagnosis::default() }
+    let tried = [tried, tried_pairs].concat();
+    match named.first().is_none_or(|named| Bars::SINGLE.passes(&named.fit())) {
+        true => Diagnosis { off, named, tried, ..Diagnosis::default() },
+        false => Diagnosis { off, nearly: named.into_iter().next(), tried, ..Diagnosis::default() },
+    }
 }
 
 /// Returns the trials at all pixels, best first.
@@ -437,9 +369,12 @@ struct Bars {
 }
 
 impl Bars {
+    /// Fit of a mistake beside which something more is different.
+    const NEARLY: Bars = Bars { explained: 0.985, matched: 0.9 };
     // The right mistake leaves only rounding at edges; a larger rest means another mistake.
-    const SINGLE: Bars = Bars { explained: 0.985, matched: 0.9 };
-    const PAIR: Bars = Bars { explained: 0.985, matched: 0.95 };
+    const SINGLE: Bars = Bars { explained: 0.99, matched: 0.95 };
+    /// Two mistakes fit more pictures by chance than one.
+    const PAIR: Bars = Bars { explained: 0.995, matched: 0.97 };
     /// Minimum fit with a fitted value.
     const FITTED: Bars = Bars { explained: 0.999, matched: 0.97 };
     /// Fit at which the search stops.

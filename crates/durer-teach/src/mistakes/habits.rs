@@ -24,6 +24,39 @@ pub enum Pick {
     LastTriangle,
     /// The nearest, but spheres are not hit from inside.
     NearRoots,
+    /// The nearest that is seen from its front; with `true` of triangles alone.
+    Fronts(bool),
+    /// The nearest object, of meshes the first triangle in the file that is hit.
+    FirstOfMesh,
+    /// The nearest object, of meshes the last triangle in the file that is hit.
+    LastOfMesh,
+    /// The nearest, with wrong roots of spheres.
+    Roots(Roots),
+    /// The nearest, with ray directions moved like points into object space.
+    MovedDirection,
+}
+
+/// Mistakes in the roots of a sphere's equation, with a = d·d and b = d·(o - center).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Roots {
+    /// (-b ± √(b² - 4 a c)) / 2a.
+    FourHalf,
+    /// (-b ± √(b² - 4 a c)) / a.
+    FourWhole,
+    /// (-b ± √(b² - a c)) / 2a.
+    TwiceA,
+}
+
+/// Normal of a sphere at p.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ball {
+    /// norm(p - center).
+    #[default]
+    Right,
+    /// norm(p).
+    Position,
+    /// p - center.
+    Long,
 }
 
 /// Transform of normals from object to world space.
@@ -74,6 +107,8 @@ pub enum Cosine {
     Step,
     /// max(0, N·L) / π.
     OverPi,
+    /// max(0, N·V).
+    View,
 }
 
 /// Half vector of Blinn's highlights.
@@ -113,6 +148,10 @@ pub enum Sum {
     LastOnly,
     /// Each light that is not in shadow replaces those before it.
     LastSeen,
+    /// The greatest of the lights counts, channel by channel.
+    Greatest,
+    /// The greatest of the lights and the ambient light counts, channel by channel.
+    GreatestOfAll,
 }
 
 /// Attenuation of light with distance d, beside the factors of the scene.
@@ -147,6 +186,8 @@ pub enum PointLamp {
     MinusPosition,
     /// L = norm(position), and d = |position|.
     PositionAlone,
+    /// L = norm(position - eye); with `true` d = |position - eye| too.
+    FromEye(bool),
 }
 
 /// Direction of a reflected ray.
@@ -161,6 +202,8 @@ pub enum Mirror {
     Along,
     /// d + 2 (d·N) N.
     Plus,
+    /// N.
+    Normal,
 }
 
 /// Direction of a transmitted ray.
@@ -181,6 +224,12 @@ pub enum Glass {
     RootAdded,
     /// Indices exchanged, in Fresnel's law too.
     Exchanged,
+    /// The part along the normal has the wrong sign.
+    SignChanged,
+    /// The root left out.
+    NoRoot,
+    /// η in place of η² below the root.
+    Unsquared,
 }
 
 /// Fresnel term of glass.
@@ -243,6 +292,8 @@ pub struct Highlights {
     pub two_sided: bool,
     /// Blinn's model also where N·L <= 0.
     pub everywhere: bool,
+    /// Direction R of Phong's model.
+    pub mirror: Mirror,
 }
 
 /// Direction of shadow rays.
@@ -255,6 +306,18 @@ pub enum ShadowWay {
     Away,
     /// Along the normal.
     Normal,
+}
+
+/// End of shadow rays to a point light at distance d.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Reach {
+    /// d.
+    #[default]
+    Right,
+    /// 1.
+    One,
+    /// d²: t goes to d, and the ray's direction has the length d.
+    Squared,
 }
 
 /// Deviations of shadow rays.
@@ -284,6 +347,12 @@ pub struct Shadows {
     pub short: bool,
     /// Highlights remain in shadow.
     pub highlights_left: bool,
+    /// Diffuse light remains in shadow.
+    pub diffuse_left: bool,
+    /// Rays start at the eye.
+    pub from_eye: bool,
+    /// End of rays to point lights at distance d.
+    pub reach: Reach,
     /// If one light is blocked, all direct light is missing; with `true`, also reflected and
     /// transmitted light.
     pub black: Option<bool>,
@@ -316,6 +385,8 @@ pub struct Bounces {
     pub each_light: bool,
     /// Misses return black.
     pub black_sky: bool,
+    /// Directions are normalised.
+    pub unit: bool,
     /// Shadows at the first hit only.
     pub unshadowed: bool,
     /// Start distance.
@@ -359,6 +430,10 @@ pub struct Habits {
     pub diffuse_lightless: bool,
     /// Additional factor of the diffuse term.
     pub diffuse_factor: Option<f32>,
+    /// The diffuse term counts the diffuse colour twice.
+    pub diffuse_twice: bool,
+    /// Normals of spheres.
+    pub balls: Ball,
     /// Colour of camera rays that miss, and true if other rays return it too.
     pub sky: Option<(Color, bool)>,
     /// Lights.
@@ -437,8 +512,8 @@ pub enum Output {
     /// The transfer curve.
     #[default]
     Right,
-    /// 255 times the value, modulo 256.
-    Wrapped,
+    /// This many times the value, modulo 256.
+    Wrapped(u16),
     /// Divided by the brightest value of the picture.
     Scaled,
     /// Rounded instead of truncated, or the reverse.
@@ -469,8 +544,9 @@ pub struct Turn {
     pub columns_back: bool,
     /// Rows run backwards.
     pub rows_back: bool,
-    /// Red and blue are exchanged.
-    pub bgr: bool,
+    /// Order of the channels: 0 as they are, 1 with red and blue exchanged, then the others of
+    /// [`Turn::ORDERS`].
+    pub channels: u8,
     /// Shift of the picture in pixels, to the right and down.
     pub moved: (i32, i32),
     /// Pixels without a source are black instead of repeating the border.
@@ -482,6 +558,9 @@ pub struct Turn {
 }
 
 impl Turn {
+    /// Source channel of red, green and blue.
+    pub const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [2, 1, 0], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1]];
+
     /// Returns true if no source pixel maps to a position.
     pub fn is_empty(self, width: u32, height: u32, (x, y): (u32, u32)) -> bool {
         let out = |at: u32, by: i32, size: u32| !(0..i64::from(size)).contains(&(i64::from(at) - i64::from(by)));

@@ -7,8 +7,11 @@
 
 mod diagnose;
 pub mod habits;
+mod path_habits;
+mod paths;
 mod pictures;
 mod pupil;
+mod question;
 mod search;
 mod speckles;
 mod table;
@@ -17,7 +20,25 @@ mod variant;
 #[cfg(test)]
 mod tests;
 
-pub use diagnose::{Diagnosis, Named, Question, diagnose, off};
+pub use path_habits::Paths;
 pub use pupil::Pupil;
+pub use question::{Diagnosis, Named, Question};
 pub use table::{Formulas, MISTAKES, Mistake, Values, of_name};
 pub use variant::Variant;
+
+/// Tries all mistakes of the job's method. `told` receives the progress, from 0 to 1.
+pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
+    match question.job.method.transport() {
+        Some(_) => paths::diagnose(question, told),
+        None => diagnose::diagnose(question, told),
+    }
+}
+
+/// Returns the share of the reference in which the scene's own picture differs from it: of a sample of
+/// its pixels, or for paths of the blocks that differ by more than noise.
+pub fn off(question: &Question) -> f64 {
+    match question.job.method.transport() {
+        Some(_) => paths::off(question),
+        None => diagnose::off(question),
+    }
+}

@@ -1,6 +1,6 @@
 //! Pixels of a variant's picture.
 
-use super::habits::{Output, Rays};
+use super::habits::{Output, Rays, Turn};
 use super::{Pupil, Variant};
 use durer_image::Transfer;
 use durer_image::compare::{Scale, linear_to_srgb, srgb_to_linear};
@@ -64,9 +64,8 @@ impl View<'_> {
                 *value = Vec3::ZERO;
             }
         }
-        if variant.turn.bgr {
-            values.iter_mut().for_each(|value| *value = Vec3::new(value.z, value.y, value.x));
-        }
+        let order = Turn::ORDERS[usize::from(variant.turn.channels).min(5)];
+        values.iter_mut().for_each(|value| *value = order.map(|channel| value[channel]).into());
         values
     }
 
@@ -95,9 +94,10 @@ impl View<'_> {
             (Output::CurveLess(0.0), Transfer::Srgb) => Transfer::Linear,
             (_, transfer) => transfer,
         };
-        if output == Output::Wrapped && transfer != Transfer::Srgb {
+        if let (Output::Wrapped(most), true) = (output, transfer != Transfer::Srgb) {
             let half = if transfer == Transfer::Linear { 0.5 } else { 0.0 };
-            return light.map(|v| ((v * 255.0 + half).floor() as i64).rem_euclid(256) as f32 / 255.0);
+            let wrapped = |v: f32| ((v * f32::from(most) + half).floor() as i64).rem_euclid(256) as f32 / 255.0;
+            return light.map(wrapped);
         }
         let eight = |transfer: Transfer, v: Vec3| Vec3::from(transfer.encode_pixel(v).map(f32::from)) / 255.0;
         // A second curve applies to values before quantisation.

@@ -3,8 +3,11 @@
 //! It is separate from [`Whitted`], so that the renderer never checks for mistakes. Without
 //! mistakes it returns the same colours bit for bit, which a test verifies.
 
+mod hits;
+
 use super::habits::{
-    Ambient, Behind, Cosine, Fading, Fresnel, Glass, Habits, Half, Mirror, Normals, Pick, PointLamp, ShadowWay, Sum,
+    Ambient, Ball, Behind, Cosine, Fading, Fresnel, Glass, Habits, Half, Mirror, Normals, Pick, PointLamp, Reach,
+    ShadowWay, Sum,
 };
 use super::variant::{Taught, taught};
 use durer_render::integrator::media::Media;
@@ -12,10 +15,11 @@ use durer_render::integrator::media::Passage;
 use durer_render::integrator::spawn::{spawn_ray, to_light};
 use durer_render::integrator::whitted::secondary::{Blend, fresnel_share};
 use durer_render::integrator::{Settings, Whitted, refract};
-use durer_render::world::{Epsilon, Geometry, HighlightModel, Hit, Interaction, Phong, WeightedMaterial, World};
+use durer_render::world::{Epsilon, Geometry, HighlightModel, Interaction, Phong, WeightedMaterial, World};
+use durer_scene::camera::Projection;
 use durer_scene::light::{Emitter, Illumination, Light};
 use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3, fp, gamma, reflect};
-use durer_scene::shape::Surface;
+use durer_scene::shape::{Primitive, Surface};
 use glam::DVec3;
 use smallvec::SmallVec;
 
@@ -57,7 +61,10 @@ impl<'w> Pupil<'w> {
             let from = if behind { f32::NEG_INFINITY } else { rest.rounded.t_min };
             let reaching = Ray64 { rounded: Ray { t_min: from, ..rest.rounded }, ..rest };
             let Some((hit, t)) = self.closest(&reaching) else { break };
-            let at = self.world.interaction(ray, hit);
+            let mut at = self.world.interaction(self.own_ray(ray, hit.object), hit);
+            if self.habits.pick == Pick::MovedDirection {
+                (at.ray, at.surface.position, at.surface.rest) = (*ray, ray.rounded.at(t), Vec3::ZERO);
+            }
             match self.right.passage(&at, &path.media) {
                 Some(Passage { hidden: true, behind, .. }) => (path.media, rest.rounded.t_min) = (behind, hit.t),
                 passage => {
@@ -72,73 +79,6 @@ impl<'w> Pupil<'w> {
             None if self.habits.bounces.black_sky && !path.first => Color::ZERO,
             None => self.world.sky(ray.dir()),
         }
-    }
-
-    /// Returns the selected hit, and the `t` that the tracer assigns to it.
-    fn closest(&self, ray: &Ray64) -> Option<(Hit, f32)> {
-        if self.habits.local_unit {
-            let mut whole = *ray;
-            whole.rounded.t_max = f32::INFINITY;
-            let hits = self.world.hits_of_each(&whole);
-            let seen = hits.map(|hit| (hit, self.own_t(ray, &hit)));
-            return seen.filter(|(_, t)| *t < ray.rounded.t_max).min_by(|a, b| a.1.total_cmp(&b.1));
-        }
-        let hit = match self.habits.pick {
-            Pick::Nearest => self.world.closest(ray, &mut ()),
-            Pick::Last => self.world.all_hits(ray).last(),
-            Pick::FarthestObject => self.world.hits_of_each(ray).max_by(|a, b| a.t.total_cmp(&b.t)),
-            Pick::LastWritten => self.world.hits_of_each(ray).max_by_key(|hit| hit.object),
-            Pick::FirstWritten => self.world.hits_of_each(ray).min_by_key(|hit| hit.object),
-            Pick::FarthestTriangle => self.faces(ray).max_by(|a, b| a.t.total_cmp(&b.t)),
-            Pick::LastTriangle => self.faces(ray).max_by_key(|hit| (hit.object, hit.part)),
-            Pick::NearRoots => self.world.all_hits(ray).find(|hit| !self.leaves_sphere(ray, hit)),
-            Pick::FarSpheres => {
-                let far = |hit: Hit| {
-                    let object = &self.world.objects()[hit.object as usize].geometry;
-                    let sphere = taught(object) == Some(Taught::Sphere);
-                    let mut rest = *ray;
-                    rest.rounded.t_min = hit.t;
-                    let beyond = |hit: &Hit| self.world.hits_of_each(&rest).find(|other| other.object == hit.object);
-                    sphere.then(|| beyond(&hit)).flatten().unwrap_or(hit)
-                };
-                self.world.hits_of_each(ray).map(far).min_by(|a, b| a.t.total_cmp(&b.t))
-            }
-        };
-        hit.map(|hit| (hit, hit.t))
-    }
-
-    /// Iterates over the nearest hit of each object, and all hits of meshes.
-    fn faces<'r>(&'r self, ray: &'r Ray64) -> impl Iterator<Item = Hit> + 'r {
-        let mut known = SmallVec::<[u32; 16]>::new();
-        self.world.all_hits(ray).filter(move |hit| {
-            let is_mesh = matches!(self.world.objects()[hit.object as usize].geometry, Geometry::Mesh(_));
-            let is_new = !known.contains(&hit.object);
-            known.push(hit.object);
-            is_mesh || is_new
-        })
-    }
-
-    /// Returns true if a ray hits a sphere from inside.
-    fn leaves_sphere(&self, ray: &Ray64, hit: &Hit) -> bool {
-        let object = &self.world.objects()[hit.object as usize].geometry;
-        taught(object) == Some(Taught::Sphere) && self.world.interaction(ray, *hit).inside()
-    }
-
-    /// Returns the distance to a hit in object space.
-    fn own_t(&self, ray: &Ray64, hit: &Hit) -> f32 {
-        let to_world = self.world.objects()[hit.object as usize].to_world.as_ref();
-        hit.t * to_world.map_or(1.0, |to_world| to_world.inverse_ray(ray).dir.length())
-    }
-
-    fn occluded(&self, ray: &Ray64) -> bool {
-        if self.habits.local_unit || self.habits.pick == Pick::NearRoots {
-            return self.closest(ray).is_some();
-        }
-        let mut ray = *ray;
-        if self.habits.behind == Some(Behind::All) {
-            ray.rounded.t_min = f32::NEG_INFINITY;
-        }
-        self.world.occluded(&ray, &mut ())
     }
 
     /// Adjusts position and normals of an interaction.
@@ -173,6 +113,18 @@ impl<'w> Pupil<'w> {
                 Normals::Local => local,
                 Normals::Long => to_world.long_normal(local),
                 Normals::ByInverse => to_world.inverse_ray(&Ray::new(Vec3::ZERO, local)).dir.normalize_or(local),
+            };
+        }
+        if let (Geometry::Primitive(Primitive::Sphere(sphere)), ball @ (Ball::Position | Ball::Long)) =
+            (&object.geometry, habits.balls)
+        {
+            let to_world = object.to_world.as_ref();
+            let local = to_world.map_or(surface.position, |to_world| to_world.inverse_point(surface.position));
+            surface.n_shade = match (ball, to_world) {
+                (Ball::Position, Some(to_world)) => to_world.normal((local + object.center).normalize_or_zero()),
+                (Ball::Position, None) => (local + object.center).normalize_or_zero(),
+                (_, Some(_)) => surface.n_shade,
+                (_, None) => surface.n_shade * sphere.radius,
             };
         }
         let is_turned = match taught(&object.geometry) {
@@ -215,6 +167,7 @@ impl<'w> Pupil<'w> {
                 }
             }
             let mut any = world.lights().is_empty();
+            let mut greatest = Color::ZERO;
             for (number, light) in world.lights().iter().enumerate() {
                 let seen = self.illuminated(light, surface.point());
                 let casts = habits.shadows.only_light.is_none_or(|only| only == number);
@@ -228,8 +181,12 @@ impl<'w> Pupil<'w> {
                 if habits.sum == Sum::LastOnly || replaced {
                     color = ambient_seen;
                 }
+                let before = color;
                 for (part, &diffuse) in parts.iter().zip(&diffuse) {
                     let direct = |diffuse| self.direct(part.phong, diffuse, n, ray.dir(), light, &seen);
+                    if habits.shadows.diffuse_left && visible != Color::ONE {
+                        color += part.share * (Color::ONE - visible) * (direct(diffuse) - direct(Color::ZERO));
+                    }
                     if visible != Color::ZERO {
                         let light = part.share * visible * direct(diffuse);
                         let alone = habits.sum == Sum::ClampedLight;
@@ -239,9 +196,18 @@ impl<'w> Pupil<'w> {
                         color += part.share * (Color::ONE - visible) * direct(Color::ZERO);
                     }
                 }
+                if matches!(habits.sum, Sum::Greatest | Sum::GreatestOfAll) {
+                    greatest = greatest.max(color - before);
+                    color = before;
+                }
                 if habits.sum == Sum::ClampedEach {
                     color = color.clamp(Color::ZERO, Color::ONE);
                 }
+            }
+            match habits.sum {
+                Sum::Greatest => color += greatest,
+                Sum::GreatestOfAll => color = color.max(greatest),
+                _ => {}
             }
             if habits.shadows.ambient_too && !any || habits.shadows.ambient_of_any && blocked {
                 color -= ambient_seen;
@@ -311,6 +277,14 @@ impl<'w> Pupil<'w> {
                         seen.to_light = point.position.normalize_or(seen.to_light);
                         (seen.color, seen.distance) = (point.color / (a.x + a.y * d + a.z * d * d), d);
                     }
+                    PointLamp::FromEye(whole) => {
+                        let way = point.position - self.world.camera().pose().center;
+                        seen.to_light = way.normalize_or(seen.to_light);
+                        if whole {
+                            let (a, d) = (point.attenuation.unwrap_or(Vec3::X), way.length());
+                            (seen.color, seen.distance) = (point.color / (a.x + a.y * d + a.z * d * d), d);
+                        }
+                    }
                     PointLamp::MinusPosition => seen.to_light = -point.position.normalize_or(seen.to_light),
                 }
             }
@@ -345,8 +319,10 @@ impl<'w> Pupil<'w> {
             Cosine::Half => 0.5 * cosine + 0.5,
             Cosine::Step => f32::from(cosine > 0.0),
             Cosine::OverPi => cosine.max(0.0) / std::f32::consts::PI,
+            Cosine::View => n.dot(-view).max(0.0),
         };
         let factor = factor * self.habits.diffuse_factor.unwrap_or(1.0);
+        let diffuse = if self.habits.diffuse_twice { diffuse * diffuse } else { diffuse };
         let plain = self.habits.plain_diffuse && diffuse != Color::ZERO;
         let mut color = factor * if plain { Color::ONE } else { diffuse };
         if self.habits.diffuse_lightless {
@@ -361,7 +337,9 @@ impl<'w> Pupil<'w> {
             };
             let base = match model {
                 HighlightModel::Blinn => (cosine > 0.0 || habits.everywhere).then(|| n.dot(half(lamp - view))),
-                HighlightModel::Phong { behind } => (behind || cosine > 0.0).then(|| reflect(view, n).dot(lamp)),
+                HighlightModel::Phong { behind } => {
+                    (behind || cosine > 0.0).then(|| mirrored(view, n, habits.mirror).dot(lamp))
+                }
             };
             if let Some(base) = base {
                 let base = if habits.two_sided { base.abs() } else { base.max(0.0) };
@@ -399,6 +377,12 @@ impl<'w> Pupil<'w> {
             (false, true) => seen.distance,
             (false, false) => seen.distance * (1.0 - gamma(16)),
         };
+        let reach = match habits.reach {
+            _ if seen.distance.is_infinite() => reach,
+            Reach::Right => reach,
+            Reach::One => 1.0,
+            Reach::Squared => seen.distance * seen.distance,
+        };
         let reach = if habits.short && seen.distance.is_infinite() { 1.0 } else { reach };
         let epsilon = habits.epsilon.map(Epsilon::Least).or(rules.epsilon);
         let way = match habits.way {
@@ -407,6 +391,10 @@ impl<'w> Pupil<'w> {
             ShadowWay::Normal => surface.n_shade,
         };
         let mut ray = to_light(surface, way, reach, epsilon);
+        if habits.from_eye {
+            let eye = self.world.camera().pose().center;
+            ray = Ray { t_min: 1e-4, t_max: reach, ..Ray::new(eye, way) }.into();
+        }
         if habits.no_glass {
             return self.visible_through_glass(ray, epsilon);
         }
@@ -459,16 +447,17 @@ impl<'w> Pupil<'w> {
         let n = if ray.dir().dot(n) < 0.0 { n } else { n_geo };
         let Passage { here, there, behind, .. } = passage;
         let eta = match habits.glass {
-            Glass::Right | Glass::Straight | Glass::Outward | Glass::RootAdded => here / there,
+            Glass::Right
+            | Glass::Straight
+            | Glass::Outward
+            | Glass::RootAdded
+            | Glass::SignChanged
+            | Glass::NoRoot
+            | Glass::Unsquared => here / there,
             Glass::Inverted | Glass::Exchanged => there / here,
             Glass::NotSwapped => 1.0 / ior,
         };
-        let mirrored = match habits.mirror {
-            Mirror::Right => reflect(ray.dir(), n),
-            Mirror::Negated => -reflect(ray.dir(), n),
-            Mirror::Along => ray.dir() - ray.dir().dot(n) * n,
-            Mirror::Plus => ray.dir() + 2.0 * ray.dir().dot(n) * n,
-        };
+        let mirrored = mirrored(ray.dir(), n, habits.mirror);
         let rules = self.world.shading_rules();
         let mirrored = if rules.raw_normals && !rules.long_mirrors { mirrored.normalize_or(n_geo) } else { mirrored };
         let n = if rules.raw_normals && !rules.raw_refraction { n.normalize_or(n_geo) } else { n };
@@ -477,6 +466,15 @@ impl<'w> Pupil<'w> {
             (false, Glass::Straight) => Some(ray.dir()),
             (false, Glass::RootAdded) => refract(ray.dir(), n, eta).map(|t| t - 2.0 * t.dot(n) * n),
             (false, Glass::Outward) if leaving => refract(ray.dir(), n, eta).map(|t| t - 2.0 * t.dot(n) * n),
+            (false, Glass::SignChanged | Glass::NoRoot | Glass::Unsquared) => {
+                let c = -ray.dir().dot(n);
+                let squared = if habits.glass == Glass::Unsquared { eta } else { eta * eta };
+                let k = 1.0 - squared * (1.0 - c * c);
+                let root = if habits.glass == Glass::NoRoot { k } else { k.max(0.0).sqrt() };
+                let along = eta * c - root;
+                let along = if habits.glass == Glass::SignChanged { -along } else { along };
+                (k >= 0.0).then_some(eta * ray.dir() + along * n)
+            }
             (false, _) => refract(ray.dir(), n, eta),
         };
         let transmitted = match rules.raw_refraction {
@@ -540,7 +538,19 @@ impl<'w> Pupil<'w> {
             return Color::ZERO;
         }
         let epsilon = self.habits.bounces.epsilon.map(Epsilon::Least).or(self.world.shading_rules().epsilon);
+        let dir = if self.habits.bounces.unit { dir.normalize_or(dir) } else { dir };
         let ray = spawn_ray(surface, dir, f32::INFINITY, epsilon);
         weight * self.trace(&ray, Path { bounces: path.bounces - 1, weight: total, first: false, ..path })
+    }
+}
+
+/// Returns the direction of a reflected ray.
+fn mirrored(d: Vec3, n: Vec3, how: Mirror) -> Vec3 {
+    match how {
+        Mirror::Right => reflect(d, n),
+        Mirror::Negated => -reflect(d, n),
+        Mirror::Along => d - d.dot(n) * n,
+        Mirror::Plus => d + 2.0 * d.dot(n) * n,
+        Mirror::Normal => n,
     }
 }

@@ -211,6 +211,47 @@ fn each_usual_mistake_is_named() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// Further kinds, usual in this course.
+const FURTHER: [(&str, f32); 22] = [
+    ("sphere-normals", 0.0),
+    ("sphere-roots", 0.0),
+    ("triangle-test", 1.0),
+    ("triangle-test", 2.0),
+    ("direction-moved", 0.0),
+    ("rotation-axis", 0.0),
+    ("translation-negated", 0.0),
+    ("scale-inverted", 0.0),
+    ("cosine-of-view", 0.0),
+    ("diffuse-twice", 0.0),
+    ("greatest-light", 0.0),
+    ("exponent-plus-one", 0.0),
+    ("point-light-from-eye", 0.0),
+    ("shadows-from-eye", 0.0),
+    ("shadows-diffuse", 0.0),
+    ("shadows-reach", 0.0),
+    ("mirror-normal", 0.0),
+    ("refraction-formula", 0.0),
+    ("refraction-formula", 2.0),
+    ("bounce-one", 0.0),
+    ("angle-inverted", 0.0),
+    ("channels", 2.0),
+];
+
+#[test]
+fn each_further_mistake_is_named() {
+    let bright = SCENE.replace("0.6 0.5 0.5", "1.1 1.0 1.0");
+    let mut wrong = Vec::new();
+    for (name, value) in FURTHER {
+        let named = found_in(&bright, job(), &[(name, value)]).named;
+        if !named.iter().any(|n| n.mistakes.len() == 1 && n.mistakes[0].0.name == name) {
+            let said: Vec<Vec<_>> =
+                named.iter().map(|n| n.mistakes.iter().map(|m| (m.0.name, m.1)).collect()).collect();
+            wrong.push(format!("{name} {value}: {said:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 /// An unrelated picture matches no mistake, and an unrelated reference is reported as such.
 #[test]
 fn unrelated_pictures_match_no_mistake() {

@@ -1,6 +1,7 @@
 //! A scene with its rules, and the deviations of a student's tracer.
 
 use super::habits::{Aim, Habits, Output, Turn};
+use super::path_habits::Paths;
 use durer_bvh::BuildQuality;
 use durer_render::compile::rules::matrix_rules;
 use durer_render::compile::{self, AccelKind};
@@ -34,6 +35,8 @@ pub struct Variant<'s> {
     pub output: Output,
     /// Deviations of pixel order.
     pub turn: Turn,
+    /// Deviations of a path tracer.
+    pub paths: Paths,
 }
 
 /// Returns true if some light is written with three attenuation factors.
@@ -44,6 +47,9 @@ pub fn three_factors(scene: &Scene) -> bool {
     };
     scene.lights.iter().flatten().any(|light| factors(&light.value))
 }
+
+/// How many times larger a triangle without one of its sides is taken to be.
+const WIDE: f32 = 100.0;
 
 /// Kinds of geometry that the course's programs implement, and can therefore get wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,13 +86,13 @@ pub fn taught(geometry: &Geometry) -> Option<Taught> {
 }
 
 /// Computes the product of a transform's matrices.
-pub type Product = fn(&[MatrixOp], MatrixRules) -> DAffine3;
+pub type Product<'p> = &'p dyn Fn(&[MatrixOp], MatrixRules) -> DAffine3;
 
 impl<'s> Variant<'s> {
     /// Creates a variant without mistakes.
     pub fn new(scene: &'s Scene, world: World, settings: Settings) -> Self {
-        let (habits, aim, output, turn) = Default::default();
-        Variant { scene, world, settings, habits, aim, output, turn }
+        let (habits, aim, output, turn, paths) = Default::default();
+        Variant { scene, world, settings, habits, aim, output, turn, paths }
     }
 
     /// Returns the ray of a pixel through a position in pixels from the upper left corner.
@@ -231,6 +237,26 @@ impl<'s> Variant<'s> {
             }
         }
         self.world.edit().objects.extend(halves);
+        self.rebuild();
+    }
+
+    /// Lets every triangle go on beyond the side opposite a corner, as if that side were not tested.
+    pub fn wedges(&mut self, corner: usize) {
+        for object in &mut self.world.edit().objects {
+            match &mut object.geometry {
+                Geometry::Primitive(shape) => {
+                    if let Primitive::Triangle(triangle) = shape {
+                        let all = triangle.corners();
+                        let [vertex0, vertex1, vertex2] = all.map(|p| all[corner] + WIDE * (p - all[corner]));
+                        *triangle = Triangle { vertex0, vertex1, vertex2 };
+                    }
+                }
+                Geometry::Mesh(tree) => {
+                    *tree = Arc::new(MeshTree::new(tree.mesh.grown(corner, WIDE), BuildQuality::Balanced))
+                }
+                Geometry::Solid(_) => {}
+            }
+        }
         self.rebuild();
     }
 

@@ -3,6 +3,7 @@
 use durer_render::integrator::trace::TermKind;
 use durer_render::integrator::{TraceNode, Tree};
 use durer_render::render::explain::{Explanation, Names};
+use durer_scene::math::Vec3;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 
@@ -48,10 +49,37 @@ pub fn explanation(subject: &Subject, names: &Names) -> Value {
         "lights": lights,
     });
     match subject {
-        Subject::Ray(light) => json["ray"] = json!(light),
-        Subject::Pixel(pixel) => json["pixel"] = json!(pixel),
+        Subject::Ray(light) => {
+            json["ray"] = json!(light);
+            annotate(&light.root, &mut json["ray"], (Vec3::ZERO, Vec3::ZERO), names);
+        }
+        Subject::Pixel(pixel) => {
+            json["pixel"] = json!(pixel);
+            for (i, sample) in pixel.samples.iter().enumerate() {
+                if let Some(light) = &sample.light {
+                    let value = &mut json["pixel"]["samples"][i]["light"];
+                    annotate(&light.root, value, (Vec3::ZERO, Vec3::ZERO), names);
+                }
+            }
+        }
     }
     json
+}
+
+/// Adds to each term the lines that derive its numbers. `at`: direction and normal of the ray that it
+/// belongs to.
+fn annotate(node: &TraceNode, json: &mut Value, at: (Vec3, Vec3), names: &Names) {
+    let lines = names.origins(node, at.0, at.1);
+    if !lines.is_empty() {
+        json["origins"] = lines.into();
+    }
+    let at = match &node.what {
+        TermKind::Ray { ray, hit: Some(hit), .. } => (ray.dir, hit.n),
+        _ => at,
+    };
+    for (i, term) in node.terms.iter().enumerate() {
+        annotate(term, &mut json["terms"][i], at, names);
+    }
 }
 
 fn visit(node: &TraceNode, note: &mut impl FnMut(&TraceNode)) {

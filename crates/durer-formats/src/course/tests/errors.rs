@@ -323,3 +323,21 @@ fn repeated_and_foreign_words_give_one_warning() {
     let shared = "Lights { PointLight { position 0 0 0 color 1 1 1 attenuation 1 0 0 attenuation 1 0 0 } }";
     assert_eq!(findings(shared, Dialect::F12a5).len(), 2, "{:?}", findings(shared, Dialect::F12a5));
 }
+
+#[test]
+fn a_colour_of_the_web_is_told_at_its_own_place() {
+    let text = "Materials { Material { diffuseColor #b38033\n specularColor 1 1 1 } } Group { }";
+    let told = findings(text, Dialect::Durer).join("\n");
+    assert!(told.contains("`diffuseColor` needs number 1 of 3, but `#b38033` begins a comment"), "{told}");
+    assert!(told.contains("0.702 0.502 0.2"), "{told}");
+    // Any other comment says nothing about the value.
+    let told = findings(&text.replace("#b38033", "# brown"), Dialect::Durer).join("\n");
+    assert!(told.contains("but found `specularColor`"), "{told}");
+}
+
+#[test]
+fn a_count_that_is_given_twice_is_told() {
+    let text = "Group { numObjects 1 numObjects 1 Sphere { center 0 0 0 radius 1 } }";
+    let told = findings(text, Dialect::Durer).join("\n");
+    assert!(told.contains("`numObjects` is given twice; the last counts"), "{told}");
+}

@@ -81,6 +81,17 @@ impl Rule {
         (0..reference.pixels.len() as isize).map(|i| self.pixel(reference, i % width, i / width)).collect()
     }
 
+    /// Returns true if the rule determines a pixel; it does not where a shift brings in what the
+    /// reference does not show.
+    pub fn knows(&self, picture: &View, x: isize, y: isize) -> bool {
+        match *self {
+            Rule::Shifted(dx, dy) => {
+                (0..picture.width as isize).contains(&(x - dx)) && (0..picture.height as isize).contains(&(y - dy))
+            }
+            _ => true,
+        }
+    }
+
     /// Applies the rule to a pixel of the reference.
     fn pixel(&self, reference: &View, x: isize, y: isize) -> Vec3 {
         let value = reference.at(x, y);
@@ -90,12 +101,9 @@ impl Rule {
                 let (x, y) = turn.source(reference, x, y);
                 reference.at(x, y)
             }
-            Rule::Shifted(dx, dy) => {
-                let inside = (0..reference.width as isize).contains(&(x - dx))
-                    && (0..reference.height as isize).contains(&(y - dy));
-                // Pixels that enter at the edge are unknown.
-                if inside { reference.at(x - dx, y - dy) } else { value }
-            }
+            // Pixels that enter at the edge are unknown.
+            Rule::Shifted(dx, dy) if self.knows(reference, x, y) => reference.at(x - dx, y - dy),
+            Rule::Shifted(..) => value,
             Rule::Channels(order) => order.map(|channel| value[channel]).into(),
             Rule::Grey => Vec3::splat(value.dot(Vec3::new(0.299, 0.587, 0.114))),
             Rule::Inverted(which) => {
@@ -127,11 +135,6 @@ impl Rule {
             Rule::Blurred => reference.blurred(x, y),
         };
         scale.clamp(made)
-    }
-
-    /// Returns true if the rule moves pixels.
-    pub fn moves(&self) -> bool {
-        matches!(self, Rule::Turned(_) | Rule::Shifted(..))
     }
 
     /// Returns true if the rule has parameters that were fitted to the pictures.

@@ -183,3 +183,23 @@ fn what_is_no_usual_mistake_is_none() {
     let found = findings(&scene, &move |x, y| scene(x, y) + 0.1 * noise(x, y));
     assert!(found.iter().all(|f| f.kind == "noise"), "{found:?}");
 }
+
+/// A nearly black picture can be made from any other by moving and darkening it.
+#[test]
+fn a_nearly_uniform_picture_is_not_made_from_the_reference() {
+    let dark = |x: usize, y: usize| if x + 2 * y > 240 { Vec3::splat(0.012) } else { Vec3::ZERO };
+    let lit = |x: usize, y: usize| if (20..45).contains(&x) && y > 60 { scene(x, y) } else { Vec3::ZERO };
+    let found = findings(&lit, &dark);
+    assert!(found.iter().all(|f| !["shifted", "factor", "range"].contains(&f.kind)), "{found:?}");
+    let found = findings(&lit, &|x, y| if x == 0 && y == 0 { Vec3::splat(0.5) } else { Vec3::ZERO });
+    assert!(found.iter().all(|f| f.kind == "black-parts"), "{found:?}");
+}
+
+/// A mistake that leaves a visible part of the picture unexplained is named with that remark.
+#[test]
+fn what_remains_beside_a_mistake_is_stated() {
+    let spot = |x: usize, y: usize| (60..70).contains(&x) && (50..60).contains(&y);
+    let found = findings(&scene, &move |x, y| 0.5 * scene(x, y) + if spot(x, y) { 0.03 } else { 0.0 });
+    assert!(found.len() == 1 && found[0].explained > 0.95, "{found:?}");
+    assert!(found[0].words.starts_with("nearly: ") && found[0].words.ends_with("something more is different"));
+}

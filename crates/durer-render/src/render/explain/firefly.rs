@@ -2,7 +2,7 @@
 //! it.
 
 use super::Explanation;
-use super::text::number;
+use super::numbers::number;
 use crate::film::luminance_of;
 use crate::integrator::trace::TermKind;
 use crate::integrator::{TraceNode, Tree};

@@ -1,5 +1,7 @@
 //! An explanation as lines of text.
 
+use super::numbers::{number, rgb, vector};
+use super::origins::origins;
 use super::{ErrorBound, Explanation, Mean, SampleAccount};
 use crate::integrator::trace::{Bounce, HitRecord, RayKind, RayRecord, Shadow, TermKind, TermValue};
 use crate::integrator::{TraceNode, Tree};
@@ -92,6 +94,12 @@ impl Names<'_> {
             Some((line, column)) => format!("{name}:{line}:{column}"),
             None => name.to_string(),
         }
+    }
+
+    /// Returns lines that derive the numbers of a term. `dir` and `n`: direction and normal of the ray
+    /// that the term belongs to.
+    pub fn origins(&self, node: &TraceNode, dir: Vec3, n: Vec3) -> Vec<String> {
+        origins(node, (self.scene, self.world), dir, n)
     }
 
     /// Returns the line of a span, with the file's name if it is not the scene's file.
@@ -313,6 +321,7 @@ fn node_lines(
                 Some(hit) => {
                     (below.n, below.material) = (hit.n, Some(hit.material));
                     more.extend(struck_lines(hit, names));
+                    more.extend(names.origins(node, ray.dir, hit.n));
                 }
                 None => more.push("no hit".into()),
             }
@@ -375,6 +384,7 @@ fn node_lines(
         }
         TermKind::Secondary { here, there, fresnel, total } => {
             below.fresnel = *fresnel;
+            more.extend(names.origins(node, at.dir, at.n));
             let mut text = match here == there && fresnel.is_none() {
                 true => "mirrored light".to_string(),
                 false => {
@@ -505,24 +515,6 @@ fn ray_line(ray: &RayRecord) -> String {
     format!("{} + t {}", vector(ray.origin), vector(ray.dir))
 }
 
-fn vector(v: Vec3) -> String {
-    format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
-}
-
-/// Formats a number with four significant digits; 0 without a sign.
-pub fn number(x: f32) -> String {
-    if x == 0.0 || !x.is_finite() {
-        return if x == 0.0 { "0".into() } else { x.to_string() };
-    }
-    let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(f64::from(x));
-    let size = rounded.abs();
-    if (1e-4..1e7).contains(&size) { rounded.to_string() } else { format!("{rounded:e}") }
-}
-
 fn numbers(value: TermValue) -> String {
     format!("({})", value.numbers().iter().map(|x| number(*x)).collect::<Vec<_>>().join(", "))
-}
-
-fn rgb(color: Color) -> String {
-    vector(color)
 }

@@ -43,6 +43,23 @@ pub(in crate::check) fn files<'s>(grid: &ProbeGrid<'s>) -> Vec<MeshFile<'s>> {
     uses.into_iter().filter_map(|(name, objects)| read(grid, name, objects)).collect()
 }
 
+/// Number of triangles of a model above which its meshes are not examined.
+const MAX_MODEL: usize = 300_000;
+
+/// Returns the meshes in memory of a scene that was read from a model.
+pub(in crate::check) fn models<'s>(grid: &ProbeGrid<'s>) -> Vec<MeshFile<'s>> {
+    let mut uses = Uses::new();
+    if let Some(root) = &grid.subject.scene.root {
+        collect(root, &mut uses);
+    }
+    let meshes = &grid.subject.scene.assets.meshes;
+    let own = |(name, objects): (&'s FileName, Vec<&'s Object>)| {
+        let data = meshes.get(&name.path).filter(|data| data.triangles.len() <= MAX_MODEL)?;
+        Some(MeshFile::new(grid, name, u32::MAX, objects, MeshData::clone(data)))
+    };
+    uses.into_iter().filter_map(own).collect()
+}
+
 type Uses<'s> = Vec<(&'s FileName, Vec<&'s Object>)>;
 
 fn collect<'s>(group: &'s Group, uses: &mut Uses<'s>) {
@@ -68,9 +85,15 @@ fn read<'s>(grid: &ProbeGrid<'s>, name: &'s FileName, objects: Vec<&'s Object>) 
     let bytes = files.whole(file).filter(|bytes| bytes.len() <= MAX_BYTES)?;
     // The loader already reported the file's errors.
     let data = read_mesh(bytes, file, &name.path, &mut Diagnostics::default())?;
-    let topology = Topology::of(&data.positions, &data.triangles);
-    let given = Given::of(&data).filter(|_| grid.world().rules().file_normals);
-    Some(MeshFile { name, file, objects, data, topology, given })
+    Some(MeshFile::new(grid, name, file, objects, data))
+}
+
+impl<'s> MeshFile<'s> {
+    fn new(grid: &ProbeGrid, name: &'s FileName, file: u32, objects: Vec<&'s Object>, data: MeshData) -> Self {
+        let topology = Topology::of(&data.positions, &data.triangles);
+        let given = Given::of(&data).filter(|_| grid.world().rules().file_normals);
+        MeshFile { name, file, objects, data, topology, given }
+    }
 }
 
 impl MeshFile<'_> {

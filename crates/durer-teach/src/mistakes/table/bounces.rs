@@ -50,6 +50,14 @@ pub(super) const MISTAKES: &[Mistake] = &[
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
+        "bounce-one",
+        "reflection",
+        "there is one level of secondary rays, not as many as asked for",
+        "trace(ray, bounces), and again while bounces > 0",
+        "trace(ray, 1)",
+        |v, _| v.settings.bounces = v.settings.bounces.min(1),
+    ),
+    row(
         "mirror-in-full",
         "reflection",
         "mirrored light is not multiplied by the mirror's colour",
@@ -78,9 +86,10 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "reflection",
         "the factor 2 of the mirrored direction is missing",
         "R = d - 2 (d.N) N",
-        "R = d - (d.N) N",
-        |v, _| v.habits.bounces.mirror = Mirror::Along,
-    ),
+        "R = {d - (d.N) N|normalize(d - (d.N) N)}",
+        |v, unit| (v.habits.bounces.mirror, v.habits.bounces.unit) = (Mirror::Along, unit > 0.0),
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "mirror-plus",
         "reflection",
@@ -88,6 +97,14 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "R = d - 2 (d.N) N",
         "R = d + 2 (d.N) N",
         |v, _| v.habits.bounces.mirror = Mirror::Plus,
+    ),
+    row(
+        "mirror-normal",
+        "reflection",
+        "mirrored rays go along the normal",
+        "R = d - 2 (d.N) N",
+        "R = N",
+        |v, _| v.habits.bounces.mirror = Mirror::Normal,
     ),
     row(
         "secondary-each-light",
@@ -303,6 +320,18 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "T = eta d + (eta c + sqrt(1 - eta^2 (1 - c^2))) N",
         |v, _| v.habits.bounces.glass = Glass::RootAdded,
     ),
+    row(
+        "refraction-formula",
+        "refraction",
+        "in Snell's law {the part along the normal has the wrong sign|the root is missing|eta below the root is not squared|the part along the normal has the wrong sign|the root is missing|eta below the root is not squared}",
+        "T = eta d + (eta c - sqrt(1 - eta^2 (1 - c^2))) N",
+        "T = {eta d - (eta c - sqrt(1 - eta^2 (1 - c^2))) N|eta d + (eta c - (1 - eta^2 (1 - c^2))) N|eta d + (eta c - sqrt(1 - eta (1 - c^2))) N|eta d - (eta c - sqrt(1 - eta^2 (1 - c^2))) N|eta d + (eta c - (1 - eta^2 (1 - c^2))) N|eta d + (eta c - sqrt(1 - eta (1 - c^2))) N}",
+        |v, how| {
+            v.habits.bounces.glass = [Glass::SignChanged, Glass::NoRoot, Glass::Unsquared][how as usize % 3];
+            v.habits.bounces.unit = how >= 3.0;
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0])),
     row(
         "mirror-factor",
         "reflection",

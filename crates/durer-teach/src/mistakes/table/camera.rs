@@ -66,6 +66,14 @@ pub(super) const MISTAKES: &[Mistake] = &[
         |v, _| v.aim.aspect = Aspect::Turned,
     ),
     row(
+        "angle-inverted",
+        "rays",
+        "the distance to the picture is the tangent of half the angle, not its reciprocal",
+        "D = 1 / tan(angle / 2)",
+        "D = tan(angle / 2)",
+        |v, _| scale(v, |angle| 1.0 / (tan(0.5 * angle) * tan(0.5 * angle))),
+    ),
+    row(
         "angle-not-halved",
         "rays",
         "the field of view is not halved",

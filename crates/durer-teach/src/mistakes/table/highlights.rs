@@ -1,7 +1,7 @@
 //! Mistakes of highlights.
 
 use super::{Mistake, Values, row};
-use crate::mistakes::habits::Half;
+use crate::mistakes::habits::{Half, Mirror};
 use durer_render::world::HighlightModel;
 use durer_scene::math::Color;
 
@@ -52,6 +52,30 @@ pub(super) const MISTAKES: &[Mistake] = &[
             });
         },
     ),
+    row(
+        "exponent-plus-one",
+        "specular",
+        "the highlights' exponent is one {more|less} than it should be",
+        "pow(max(0, base), s)",
+        "pow(max(0, base), s {+|-} 1)",
+        |v, less| {
+            v.phongs(|phong| {
+                if let Some((_, exponent, _)) = &mut phong.highlight {
+                    *exponent += if less == 0.0 { 1.0 } else { -1.0 };
+                }
+            });
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "highlight-mirror",
+        "specular",
+        "the direction R of the highlights {lacks the factor 2|is negated|is the normal}",
+        "R = d - 2 (d.N) N",
+        "R = {d - (d.N) N|2 (d.N) N - d|N}",
+        |v, how| v.habits.highlights.mirror = [Mirror::Along, Mirror::Negated, Mirror::Normal][(how as usize).min(2)],
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
     row(
         "highlight-factor",
         "specular",

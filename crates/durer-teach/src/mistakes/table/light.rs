@@ -364,6 +364,44 @@ pub(super) const MISTAKES: &[Mistake] = &[
         |v, _| v.habits.cosine = Cosine::Step,
     ),
     row(
+        "cosine-of-view",
+        "diffuse",
+        "the diffuse term is times N.V, the direction to the eye, not N.L",
+        "color += kd * max(0, N.L) * I",
+        "color += kd * max(0, N.V) * I",
+        |v, _| v.habits.cosine = Cosine::View,
+    ),
+    row(
+        "diffuse-twice",
+        "diffuse",
+        "the diffuse colour counts twice{ in the diffuse term|, in the ambient term too}",
+        "color += kd * max(0, N.L) * I",
+        "color += kd * kd * max(0, N.L) * I",
+        |v, ambient| match ambient == 0.0 {
+            true => v.habits.diffuse_twice = true,
+            false => v.phongs(|phong| phong.diffuse *= phong.diffuse),
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "greatest-light",
+        "diffuse",
+        "the greatest of the lights counts, not their sum{|, the ambient light among them}",
+        "for each light color += ...",
+        "for each light color = max(color, ...)",
+        |v, all| v.habits.sum = if all == 0.0 { Sum::Greatest } else { Sum::GreatestOfAll },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "point-light-from-eye",
+        "diffuse",
+        "the direction to point lights is taken from the eye, not from the surface{|, and their distance too}",
+        "L = normalize(position - p)",
+        "L = normalize(position - eye)",
+        |v, all| v.habits.lamps.points = PointLamp::FromEye(all > 0.0),
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
         "diffuse-over-pi",
         "diffuse",
         "the diffuse term is divided by pi, unlike in this year's program",

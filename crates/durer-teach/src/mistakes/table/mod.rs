@@ -76,7 +76,7 @@ pub fn of_name(name: &str) -> Option<&'static Mistake> {
 }
 
 /// Builds a row without values.
-const fn row(
+pub(in crate::mistakes) const fn row(
     name: &'static str,
     step: &'static str,
     words: &'static str,
@@ -89,7 +89,7 @@ const fn row(
 
 impl Mistake {
     /// Sets the values to try.
-    const fn with(self, values: Values) -> Mistake {
+    pub(in crate::mistakes) const fn with(self, values: Values) -> Mistake {
         Mistake { values, ..self }
     }
 

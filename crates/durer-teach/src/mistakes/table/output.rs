@@ -49,8 +49,17 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "red and blue are swapped",
         "red, green, blue in the order of the format",
         "blue, green, red",
-        |v, _| v.turn.bgr = true,
+        |v, _| v.turn.channels = 1,
     ),
+    row(
+        "channels",
+        "flat",
+        "the channels are in another order: {green and blue are exchanged|red and green are exchanged|its red, green and blue are green, blue and red|its red, green and blue are blue, red and green}",
+        "red, green, blue in the order of the format",
+        "another order, or a pixel that begins at another byte",
+        |v, order| v.turn.channels = 2 + order as u8,
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
     row(
         "shifted",
         "rays",
@@ -69,11 +78,12 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "wrapped",
         "flat",
-        "values above 1 wrap around in eight bits",
+        "values beyond 1 wrap around in eight bits{|, and are multiplied by 256}",
         "(unsigned char) (min(1, c) * 255)",
-        "(unsigned char) (c * 255)",
-        |v, _| v.output = Output::Wrapped,
-    ),
+        "(unsigned char) (c * {255|256})",
+        |v, more| v.output = Output::Wrapped(255 + more as u16),
+    )
+    .with(Values::Only(&[0.0, 1.0])),
     row(
         "scaled-to-maximum",
         "flat",

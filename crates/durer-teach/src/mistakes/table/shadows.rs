@@ -1,7 +1,7 @@
 //! Mistakes of shadows.
 
 use super::{Mistake, Values, row};
-use crate::mistakes::habits::ShadowWay;
+use crate::mistakes::habits::{Reach, ShadowWay};
 
 pub(super) const MISTAKES: &[Mistake] = &[
     row("no-shadows", "shadows", "there are no shadows", "if (occluded(p, L, d)) continue", "(nothing)", |v, _| {
@@ -125,6 +125,31 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "directional: t_max = infinity",
         "t_max = length(L) = 1",
         |v, _| v.habits.shadows.short = true,
+    ),
+    row(
+        "shadows-reach",
+        "shadows",
+        "shadow rays to point lights end {at distance 1|behind the light: the ray is not normalised, and t goes to the distance}",
+        "occluded if hit at eps < t < distance to the light",
+        "{t < 1 with L = normalize(position - p)|t < distance with L = position - p}",
+        |v, squared| v.habits.shadows.reach = if squared == 0.0 { Reach::One } else { Reach::Squared },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "shadows-from-eye",
+        "shadows",
+        "shadow rays start at the eye, not at the surface",
+        "Ray(p, L)",
+        "Ray(eye, L)",
+        |v, _| v.habits.shadows.from_eye = true,
+    ),
+    row(
+        "shadows-diffuse",
+        "shadows",
+        "diffuse light is there in shadow too: only highlights are missing",
+        "if (!occluded) color += diffuse + specular",
+        "color += diffuse; if (!occluded) color += specular",
+        |v, _| v.habits.shadows.diffuse_left = true,
     ),
     row(
         "shadows-highlights",

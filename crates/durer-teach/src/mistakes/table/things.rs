@@ -1,7 +1,7 @@
 //! Mistakes of hits, normals and transforms.
 
 use super::{Mistake, Values, row};
-use crate::mistakes::habits::{Behind, Normals, Pick};
+use crate::mistakes::habits::{Ball, Behind, Normals, Pick, Roots};
 use crate::mistakes::variant::{Taught, taught};
 use durer_render::world::Geometry;
 use durer_scene::dialect::{Compat, MeshNormals};
@@ -111,6 +111,61 @@ pub(super) const MISTAKES: &[Mistake] = &[
     )
     .with(Values::Only(&[1.0, 2.0, 3.0, 4.0, 5.0])),
     row(
+        "sphere-normals",
+        "normals",
+        "normals of spheres {are taken from the origin, not from the centre|are not normalised}",
+        "N = normalize(p - center)",
+        "N = {normalize(p)|p - center}",
+        |v, how| v.habits.balls = if how == 0.0 { Ball::Position } else { Ball::Long },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "sphere-roots",
+        "distance",
+        "the roots of spheres mix two forms of the formula: {4 a c with half of b|4 a c with half of b, and a in place of 2 a|2 a with half of b}",
+        "D = b^2 - 4 a c with b = 2 d.(o - center), t = (-b - sqrt(D)) / 2a; or D = b^2 - a c with b = d.(o - center), t = (-b - sqrt(D)) / a",
+        "b = d.(o - center), {D = b^2 - 4 a c, t = (-b - sqrt(D)) / 2a|D = b^2 - 4 a c, t = (-b - sqrt(D)) / a|D = b^2 - a c, t = (-b - sqrt(D)) / 2a}",
+        |v, how| {
+            v.habits.pick = Pick::Roots([Roots::FourHalf, Roots::FourWhole, Roots::TwiceA][(how as usize).min(2)]);
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
+    row(
+        "triangle-test",
+        "distance",
+        "triangles lack the test {a >= 0, which is b + c <= 1|b >= 0|c >= 0}: they go on beyond that side",
+        "b >= 0 && c >= 0 && b + c <= 1",
+        "{b >= 0 && c >= 0|c >= 0 && b + c <= 1|b >= 0 && b + c <= 1}",
+        |v, corner| v.wedges(corner as usize),
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
+    row(
+        "backs-culled",
+        "distance",
+        "{surfaces|triangles} that are seen from behind are not hit",
+        "every root counts, from whichever side",
+        "if (dot(N, d) > 0) return false",
+        |v, triangles| v.habits.pick = Pick::Fronts(triangles > 0.0),
+    )
+    .with(Values::Only(&[1.0, 0.0])),
+    row(
+        "mesh-first",
+        "distance",
+        "of a mesh the {first|last} triangle that is hit counts, not the nearest",
+        "for each triangle if (t < best) best = t",
+        "for each triangle {if (hit) return true|if (hit) best = t}",
+        |v, last| v.habits.pick = if last == 0.0 { Pick::FirstOfMesh } else { Pick::LastOfMesh },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "direction-moved",
+        "transforms",
+        "the ray's direction is moved into object space like a point, with the translation",
+        "d' = M^-1 (d, 0)",
+        "d' = M^-1 (d, 1)",
+        |v, _| v.habits.pick = Pick::MovedDirection,
+    ),
+    row(
         "parallelograms",
         "distance",
         "triangles are parallelograms: the test b + c <= 1 is missing",
@@ -184,7 +239,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "M = M1 * M2 * M3",
         "M = M3 * M2 * M1",
         |v, _| {
-            v.place(|ops, rules| {
+            v.place(&|ops, rules| {
                 let reversed: Vec<MatrixOp> = ops.iter().rev().copied().collect();
                 MatrixOp::product(&reversed, rules)
             });
@@ -196,7 +251,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "angles of rotations are interpreted as radians",
         "angle * pi / 180",
         "angle",
-        |v, _| v.place(|ops, rules| turned(ops, rules, f32::to_degrees)),
+        |v, _| v.place(&|ops, rules| turned(ops, rules, f32::to_degrees)),
     ),
     row(
         "rotation-negated",
@@ -204,10 +259,56 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "rotations have the wrong sign",
         "rotation by angle",
         "rotation by -angle, or the transposed matrix",
-        |v, _| v.place(|ops, rules| turned(ops, rules, |angle| -angle)),
+        |v, _| v.place(&|ops, rules| turned(ops, rules, |angle| -angle)),
+    ),
+    row(
+        "rotation-axis",
+        "transforms",
+        "rotations turn about another axis: {x and y|y and z|x and z} are exchanged",
+        "XRotate about (1, 0, 0), YRotate about (0, 1, 0), ZRotate about (0, 0, 1)",
+        "two of them exchanged",
+        |v, which| {
+            let axes: fn(&MatrixOp) -> MatrixOp = match which as u32 {
+                0 => |op| exchanged(op, 0, 1),
+                1 => |op| exchanged(op, 1, 2),
+                _ => |op| exchanged(op, 0, 2),
+            };
+            v.place(&|ops: &[MatrixOp], rules| MatrixOp::product(&ops.iter().map(axes).collect::<Vec<_>>(), rules));
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
+    row(
+        "translation-negated",
+        "transforms",
+        "translations go the other way",
+        "translation by (x, y, z)",
+        "translation by (-x, -y, -z)",
+        |v, _| {
+            v.place(&|ops: &[MatrixOp], rules| {
+                let back = |op: &MatrixOp| if let MatrixOp::Translate(by) = *op { MatrixOp::Translate(-by) } else { *op };
+                MatrixOp::product(&ops.iter().map(back).collect::<Vec<_>>(), rules)
+            });
+        },
+    ),
+    row(
+        "scale-inverted",
+        "transforms",
+        "scales make smaller what they should make larger",
+        "scale by s",
+        "scale by 1 / s",
+        |v, _| {
+            v.place(&|ops: &[MatrixOp], rules| {
+                let inverse = |op: &MatrixOp| match *op {
+                    MatrixOp::Scale(by) => MatrixOp::Scale(by.recip()),
+                    MatrixOp::UniformScale(by) => MatrixOp::UniformScale(by.recip()),
+                    other => other,
+                };
+                MatrixOp::product(&ops.iter().map(inverse).collect::<Vec<_>>(), rules)
+            });
+        },
     ),
     row("transforms-ignored", "transforms", "transforms have no effect", "M = M1 * M2 * M3", "M = identity", |v, _| {
-        v.place(|_, _| DAffine3::IDENTITY)
+        v.place(&|_, _| DAffine3::IDENTITY)
     }),
     row(
         "transforms-inverted",
@@ -215,7 +316,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "objects are transformed by the inverse of M",
         "ray to object space by M^-1",
         "ray to object space by M",
-        |v, _| v.place(|ops, rules| MatrixOp::product(ops, rules).inverse()),
+        |v, _| v.place(&|ops, rules| MatrixOp::product(ops, rules).inverse()),
     ),
     row(
         "plane-negated",
@@ -373,13 +474,13 @@ pub(super) const MISTAKES: &[Mistake] = &[
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
     row("translations-ignored", "transforms", "translations have no effect", "M = T * R * S", "M without T", |v, _| {
-        v.place(|ops, rules| without(ops, rules, |op| matches!(op, MatrixOp::Translate(_))))
+        v.place(&|ops, rules| without(ops, rules, |op| matches!(op, MatrixOp::Translate(_))))
     }),
     row("scales-ignored", "transforms", "scales have no effect", "M = T * R * S", "M without S", |v, _| {
-        v.place(|ops, rules| without(ops, rules, |op| matches!(op, MatrixOp::Scale(_) | MatrixOp::UniformScale(_))));
+        v.place(&|ops, rules| without(ops, rules, |op| matches!(op, MatrixOp::Scale(_) | MatrixOp::UniformScale(_))));
     }),
     row("rotations-ignored", "transforms", "rotations have no effect", "M = T * R * S", "M without R", |v, _| {
-        v.place(|ops, rules| {
+        v.place(&|ops, rules| {
             without(ops, rules, |op| {
                 matches!(op, MatrixOp::XRotate(_) | MatrixOp::YRotate(_) | MatrixOp::ZRotate(_) | MatrixOp::Rotate(..))
             })
@@ -399,6 +500,28 @@ pub(super) const MISTAKES: &[Mistake] = &[
     )
     .with(Values::Only(&[0.0, 1.0])),
 ];
+
+/// Exchanges two axes of a rotation.
+fn exchanged(op: &MatrixOp, a: usize, b: usize) -> MatrixOp {
+    let (axis, angle) = match *op {
+        MatrixOp::XRotate(angle) => (0, angle),
+        MatrixOp::YRotate(angle) => (1, angle),
+        MatrixOp::ZRotate(angle) => (2, angle),
+        MatrixOp::Rotate(mut axis, angle) => {
+            (axis[a], axis[b]) = (axis[b], axis[a]);
+            return MatrixOp::Rotate(axis, angle);
+        }
+        other => return other,
+    };
+    let turned = if axis == a {
+        b
+    } else if axis == b {
+        a
+    } else {
+        axis
+    };
+    [MatrixOp::XRotate(angle), MatrixOp::YRotate(angle), MatrixOp::ZRotate(angle)][turned]
+}
 
 /// Returns the product without some of its matrices.
 fn without(ops: &[MatrixOp], rules: MatrixRules, left_out: fn(&MatrixOp) -> bool) -> DAffine3 {

@@ -1,0 +1,222 @@
+//! Where the numbers of a term come from: the equation of a hit, the matrix of a moved object, the
+//! texels and cells of a colour, and Snell's and Fresnel's laws.
+
+use super::numbers::{number, rgb, vector};
+use crate::integrator::TraceNode;
+use crate::integrator::trace::{HitRecord, RayRecord, TermKind};
+use crate::world::{Geometry, Material, Object, Phong, World};
+use durer_scene::describe::DescribedList;
+use durer_scene::material::Pattern as _;
+use durer_scene::material::Solid;
+use durer_scene::math::Vec3;
+use durer_scene::scene::{Material as Written, Scene};
+use durer_scene::shape::Primitive;
+use durer_scene::texture::Texture;
+use glam::DVec3;
+
+/// Returns lines that derive the numbers of a term of a scene and its world. `dir` and `n`: direction and normal of the ray
+/// that the term belongs to.
+pub fn origins(node: &TraceNode, (scene, world): (&Scene, &World), dir: Vec3, n: Vec3) -> Vec<String> {
+    match &node.what {
+        TermKind::Ray { ray, hit: Some(hit), .. } => of_hit(ray, hit, scene, world),
+        TermKind::Secondary { here, there, fresnel, total } if here != there => {
+            of_refraction(f64::from(*here), f64::from(*there), *fresnel, *total, dir, n)
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn real(x: f64) -> String {
+    number(x as f32)
+}
+
+fn of_hit(ray: &RayRecord, hit: &HitRecord, scene: &Scene, world: &World) -> Vec<String> {
+    let object = &world.objects()[hit.object as usize];
+    let local = hit.local.as_ref().unwrap_or(ray);
+    let mut lines: Vec<String> = equation(object, local, hit.t).into_iter().collect();
+    lines.extend(matrix(object));
+    lines.extend(of_color(hit, scene, world));
+    lines
+}
+
+/// Returns the equation that a hit of a sphere or a plane solves.
+fn equation(object: &Object, ray: &RayRecord, t: f32) -> Option<String> {
+    // Only what gives the hit is stated: an official program may have found another.
+    let is_it = |root: f64| (root - f64::from(t)).abs() <= 1e-3 * root.abs().max(1e-3);
+    let (o, d) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
+    match &object.geometry {
+        Geometry::Primitive(Primitive::Sphere(sphere)) => {
+            // The record is of the space as written, the geometry about its own centre.
+            let (off, r) = (o - (sphere.center + object.center).as_dvec3(), f64::from(sphere.radius));
+            let (a, b, c) = (d.dot(d), d.dot(off), off.dot(off) - r * r);
+            let root = (b * b - a * c).max(0.0).sqrt();
+            let roots = [(-b - root) / a, (-b + root) / a];
+            roots.iter().any(|root| is_it(*root)).then(|| format!(
+                "a t² + 2 b t + c = 0: a = d·d = {}, b = d·(o - C) = {}, c = |o - C|² - r² = {}; t = (-b ± √(b² - a c)) / a = {} \
+                 or {}",
+                real(a),
+                real(b),
+                real(c),
+                real(roots[0]),
+                real(roots[1])
+            ))
+        }
+        Geometry::Primitive(Primitive::Plane(plane)) => {
+            let n = plane.normal.as_dvec3();
+            // Of a plane the geometry is never moved about a centre.
+            let (offset, no, nd) = (f64::from(plane.offset), n.dot(o), n.dot(d));
+            is_it((offset - no) / nd).then(|| {
+                format!(
+                    "t = (offset - n·o) / n·d = ({} - {}) / {} = {}",
+                    real(offset),
+                    real(no),
+                    real(nd),
+                    real((offset - no) / nd)
+                )
+            })
+        }
+        Geometry::Primitive(_) | Geometry::Mesh(_) | Geometry::Solid(_) => None,
+    }
+}
+
+/// Returns the matrix of a moved object.
+fn matrix(object: &Object) -> Option<String> {
+    let to_world = object.to_world.as_ref()?;
+    let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| to_world.vector(axis));
+    let by = object.world_point(-object.center);
+    let row = |i: usize| {
+        let numbers = [columns[0][i], columns[1][i], columns[2][i], by[i]].map(number);
+        format!("({})", numbers.join(" "))
+    };
+    Some(format!("M = {} {} {}; N = norm(M⁻ᵀ n)", row(0), row(1), row(2)))
+}
+
+/// Returns the origin of a surface's colour: the cell or share of a pattern, and texels.
+fn of_color(hit: &HitRecord, scene: &Scene, world: &World) -> Vec<String> {
+    let (mut material, mut lines) = (hit.material, Vec::new());
+    // A pattern may consist of patterns.
+    for _ in 0..8 {
+        let Some(Material::Solid(solid, to_pattern, _)) = world.materials().get(material as usize) else { break };
+        let q = to_pattern.transform_point3(hit.position.as_dvec3());
+        let [first, second] = solid.materials();
+        let share = match solid {
+            Solid::TwoSided(_) | Solid::Mix(_) => None,
+            _ => Some(solid.share(q.as_vec3(), world.shading_rules().conic_rings)),
+        };
+        let Some(share) = share else { break };
+        let (chosen, text) = match solid {
+            Solid::Checkerboard(_) => cell(q, share, [first, second]),
+            _ => (
+                if share == 1.0 {
+                    Some(first)
+                } else if share == 0.0 {
+                    Some(second)
+                } else {
+                    None
+                },
+                format!(
+                    "{} at {}: {} of material {first}, {} of material {second}",
+                    solid.own_keyword(),
+                    vector(q.as_vec3()),
+                    number(share),
+                    number(1.0 - share)
+                ),
+            ),
+        };
+        lines.push(text);
+        let Some(next) = chosen else { break };
+        material = next;
+    }
+    if let Some(Material::Phong(phong)) = world.materials().get(material as usize) {
+        lines.extend(of_texture(hit, material, phong, scene, world));
+    }
+    lines
+}
+
+/// Describes the cell of a checkerboard.
+fn cell(q: DVec3, share: f32, [first, second]: [u32; 2]) -> (Option<u32>, String) {
+    let floor = q.as_vec3().floor();
+    let (parity, chosen) = if share == 1.0 { ("even", first) } else { ("odd", second) };
+    let [x, y, z] = floor.to_array();
+    let text = format!(
+        "checkerboard: {} lies in the cell ({}, {}, {}), and {} + {} + {} is {parity}: material {chosen}",
+        vector(q.as_vec3()),
+        number(x),
+        number(y),
+        number(z),
+        number(x),
+        number(y),
+        number(z)
+    );
+    (Some(chosen), text)
+}
+
+/// Describes the texels of a colour.
+fn of_texture(hit: &HitRecord, material: u32, phong: &Phong, scene: &Scene, world: &World) -> Vec<String> {
+    let (Some(uv), Some(index)) = (hit.uv, phong.texture) else { return Vec::new() };
+    let Some(texture) = world.textures().get(index as usize) else { return Vec::new() };
+    let file = match scene.materials.get(material as usize).map(|written| &written.value) {
+        Some(Written::Phong(own, _)) => own.texture.as_ref(),
+        Some(Written::Principled(own)) => own.base_color_texture.as_ref(),
+        _ => None,
+    };
+    let Some(file) = file else { return Vec::new() };
+    let (width, height) = texture.size();
+    let place = (uv.x * width as f32, (1.0 - uv.y) * height as f32);
+    let mut lines = vec![format!(
+        "texture `{}` of {width} x {height} texels at uv ({}, {}): {} to the right, {} down: {}",
+        file.path,
+        number(uv.x),
+        number(uv.y),
+        number(place.0),
+        number(place.1),
+        rgb(texture.at(uv))
+    )];
+    lines.extend(texels(texture, uv));
+    lines
+}
+
+fn texels(texture: &Texture, uv: durer_scene::math::Vec2) -> Vec<String> {
+    let line = |tap: &durer_scene::texture::Tap| {
+        let (x, y) = tap.place;
+        let stored = tap.bytes.map_or(String::new(), |bytes| {
+            let [r, g, b] = bytes;
+            let plain = Vec3::from(bytes.map(|byte| f32::from(byte) / 255.0));
+            let how = if (plain - tap.color).abs().max_element() < 1e-6 { "/ 255" } else { "by the curve of sRGB" };
+            format!("{r} {g} {b} {how} = ")
+        });
+        format!("{} · texel ({x}, {y}): {stored}{}", number(tap.weight), rgb(tap.color))
+    };
+    texture.taps(uv).iter().map(line).collect()
+}
+
+/// Derives the direction and the share of refracted light.
+fn of_refraction(here: f64, there: f64, fresnel: Option<f32>, total: bool, dir: Vec3, n: Vec3) -> Vec<String> {
+    let (d, n) = (dir.as_dvec3().normalize_or_zero(), n.as_dvec3());
+    let cos_i = d.dot(n).abs().min(1.0);
+    let sin_i = (1.0 - cos_i * cos_i).max(0.0).sqrt();
+    let sin_t = here / there * sin_i;
+    let mut lines = vec![format!(
+        "Snell: sin i = {}, sin t = n₁/n₂ sin i = {} / {} · {} = {}{}",
+        real(sin_i),
+        real(here),
+        real(there),
+        real(sin_i),
+        real(sin_t),
+        if sin_t > 1.0 { ", more than 1" } else { "" }
+    )];
+    let cos_t = (1.0 - sin_t * sin_t).max(0.0).sqrt();
+    let r0 = ((there - here) / (there + here)).powi(2);
+    let c = if here <= there { cos_i } else { cos_t };
+    let r = r0 + (1.0 - r0) * (1.0 - c).powi(5);
+    // Some programs have another R0 on the way out.
+    if let Some(share) = fresnel.filter(|share| !total && (f64::from(*share) - r).abs() < 1e-3) {
+        lines.push(format!(
+            "Fresnel, by Schlick: R0 = ((n₂ - n₁) / (n₂ + n₁))² = {}, cos = {}; R = R0 + (1 - R0) (1 - cos)⁵ = {}",
+            real(r0),
+            real(c),
+            number(share)
+        ));
+    }
+    lines
+}

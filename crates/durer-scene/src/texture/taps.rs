@@ -1,0 +1,73 @@
+//! Texels that a lookup reads, for explanations.
+
+use super::{Texels, Texture};
+use crate::math::{Color, Vec2};
+
+/// A texel of a lookup.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tap {
+    /// Column and row, from the upper left.
+    pub place: (u32, u32),
+    /// Weight in the mean.
+    pub weight: f32,
+    /// The three bytes of the file, if it has eight bits.
+    pub bytes: Option<[u8; 3]>,
+    /// Colour.
+    pub color: Color,
+}
+
+impl Texture {
+    /// Returns the texels that [`Texture::at`] reads and their weights, without those of weight 0;
+    /// their weighted sum is its value, but for the mapping's factors.
+    pub fn taps(&self, uv: Vec2) -> Vec<Tap> {
+        let (width, height) = (f64::from(self.width), f64::from(self.height));
+        // Position of the first texel's corner, its share, and the texel at a column or row.
+        let (x, y, nearest) = match &self.mapping {
+            Some(mapping) => {
+                let place = mapping.place(uv);
+                (f64::from(place.x) * width, f64::from(place.y) * height, mapping.nearest)
+            }
+            None => {
+                let clamped = |v: f64, most: f64| v.max(0.0).min(most);
+                let (u, v) = (f64::from(uv.x), 1.0 - f64::from(uv.y));
+                (clamped(u * width, width) + 0.5, clamped(v * height, height) + 0.5, false)
+            }
+        };
+        let index = |axis: usize, i: i64, size: u32| match &self.mapping {
+            Some(mapping) => mapping.wrap[axis].index(i, size),
+            None => i.clamp(0, i64::from(size) - 1) as u32,
+        };
+        let tap = |i: i64, j: i64, weight: f64| {
+            let place = (index(0, i, self.width), index(1, j, self.height));
+            let at = place.1 as usize * self.width as usize + place.0 as usize;
+            let bytes = match &self.texels {
+                Texels::Eight(texels, _) => Some(texels[at]),
+                Texels::Float(_) => None,
+            };
+            Tap { place, weight: weight as f32, bytes, color: self.color(at).into() }
+        };
+        if nearest {
+            return vec![tap(x.floor() as i64, y.floor() as i64, 1.0)];
+        }
+        let (left, top) = ((x - 0.5).floor(), (y - 0.5).floor());
+        let (a, b) = (x - 0.5 - left, y - 0.5 - top);
+        let (i, j) = (left as i64, top as i64);
+        let mut taps: Vec<Tap> = Vec::new();
+        for (i, j, weight) in
+            [(i, j, (1.0 - a) * (1.0 - b)), (i + 1, j, a * (1.0 - b)), (i, j + 1, (1.0 - a) * b), (i + 1, j + 1, a * b)]
+        {
+            let next = tap(i, j, weight);
+            match taps.iter_mut().find(|known| known.place == next.place) {
+                Some(known) => known.weight += next.weight,
+                None if next.weight > 0.0 => taps.push(next),
+                None => {}
+            }
+        }
+        taps
+    }
+
+    /// Width and height in texels.
+    pub fn size(&self) -> (u32, u32) {
+        (self.width, self.height)
+    }
+}

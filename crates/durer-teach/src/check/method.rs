@@ -1,0 +1,122 @@
+//! Checks of the method against what lights the scene.
+
+use super::colors::background_span;
+use super::finding::{Finding, percent};
+use super::lamps::shining;
+use super::probes::{Probe, ProbeHit};
+use super::scene_probe::SceneProbe;
+use durer_diag::Diagnostic;
+use durer_formats::scene_format_for;
+use durer_render::integrator::Method;
+use durer_render::world::Material;
+use durer_scene::math::{Color, Vec3};
+use durer_scene::scene::Material as Written;
+
+/// Light below which a surface is black in eight bits.
+const BLACK: f32 = 0.001;
+/// Share of the visible surfaces in tenths that is black in a picture without light.
+const MOSTLY: usize = 9;
+/// Number of surfaces below which nothing is judged.
+const FEWEST: usize = 20;
+
+/// Reports a scene whose only light is of a kind that Whitted's method does not know.
+pub(super) fn wrong_integrator(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    if !matches!(scout.subject.job.method, Method::Whitted(_)) || !world.lights().is_empty() {
+        return Vec::new();
+    }
+    let lamp = shining(scout).into_iter().next();
+    let (what, span) = match (lamp, world.environment()) {
+        (Some((object, _)), _) => ("surfaces that shine", Some(scout.object_span(object))),
+        (None, Some(_)) => ("its environment", background_span(scout)),
+        (None, None) => return Vec::new(),
+    };
+    let diagnostic =
+        Diagnostic::warning(format!("the light of this scene comes from {what}, which Whitted's method leaves out"))
+            .effect("nothing is lit: surfaces are black, or of one flat colour")
+            .help("paths bring it: ask for `--integrator path`, or leave `--integrator` away");
+    vec![Finding::from(Diagnostic { span, ..diagnostic }).whole(true)]
+}
+
+/// Reports an environment that is multiplied by 0.
+pub(super) fn black_sky(scout: &SceneProbe) -> Vec<Finding> {
+    let background = &scout.subject.scene.background;
+    if scout.world().environment().is_none() || background.environment_scale != Some(Vec3::ZERO) {
+        return Vec::new();
+    }
+    let alone = scout.world().lights().is_empty() && shining(scout).is_empty();
+    let diagnostic = Diagnostic::warning("the environment is multiplied by 0")
+        .effect(if alone { "nothing else shines: the picture is black" } else { "it gives no light, and is not seen" })
+        .help("`environmentScale` is a factor: `environmentScale 1 1 1` is the picture as it is");
+    let value = background_span(scout).and_then(|block| scout.value(block, &["environmentScale"]));
+    let diagnostic = Diagnostic { span: value.or(background_span(scout)), ..diagnostic.fix_at(value, "1 1 1") };
+    vec![Finding::from(diagnostic).whole(alone)]
+}
+
+/// Reports a path-traced picture in which nearly all surfaces are black although something shines.
+pub(super) fn mostly_black(scout: &SceneProbe) -> Vec<Finding> {
+    if !scout.is_physical() || scout.is_dark() {
+        return Vec::new();
+    }
+    let world = scout.world();
+    let reflects = |seen: &ProbeHit| {
+        let written = scout.subject.scene.materials.get(seen.material as usize).map(|written| &written.value);
+        let dark = match written {
+            Some(Written::Principled(m)) => m.base_color.max_element() < 0.05 && m.base_color_texture.is_none(),
+            _ => false,
+        };
+        !dark
+            && !world.may_shine(seen.material)
+            && !matches!(world.materials()[seen.material as usize], Material::Solid(..))
+    };
+    let own = scout
+        .lit_probes()
+        .filter_map(|(probe, color): (&Probe, Color)| probe.seen.as_ref().filter(|seen| reflects(seen)).map(|_| color));
+    let (all, black) =
+        own.fold((0, 0), |(all, black), color| (all + 1, black + usize::from(color.max_element() < BLACK)));
+    if all < FEWEST || black * 10 < all * MOSTLY {
+        return Vec::new();
+    }
+    let model = scout.subject.files.name(0).is_some_and(|name| scene_format_for(name).is_some());
+    let diagnostic =
+        Diagnostic::warning(format!("{} of what is seen is black: its lights do not reach it", percent(black, all)))
+            .effect("hardly anything but the background is seen")
+            .help(match model {
+                true => "`--studio sun` lights a model from outside; its own lights then do not count",
+                false => {
+                    "move the light to the camera's side, add another, or write `Background { color 0.3 0.3 0.3 }`"
+                }
+            });
+    let span = scout.subject.scene.lights.iter().flatten().next().map(|light| light.span);
+    vec![Finding::from(Diagnostic { span, ..diagnostic }).whole(true)]
+}
+
+/// Reports mirrors that have nothing to show: they are all that is seen, and around them is black.
+pub(super) fn nothing_mirrored(scout: &SceneProbe) -> Vec<Finding> {
+    if scout.is_physical() || scout.subject.job.settings.bounces == 0 {
+        return Vec::new();
+    }
+    let world = scout.world();
+    let mirror = |seen: &ProbeHit| match &world.materials()[seen.material as usize] {
+        Material::Phong(phong) => {
+            (phong.reflective + phong.transparent).max_element() > 0.1
+                && phong.diffuse.max_element() < 0.01
+                && phong.texture.is_none()
+                && phong.noise.is_none()
+        }
+        Material::Solid(..) => false,
+    };
+    let black = |probe: &Probe| probe.color.max_element() < BLACK;
+    let mut seen = scout.seen().peekable();
+    let Some((_, first)) = seen.peek().copied() else { return Vec::new() };
+    let (all, dark) =
+        seen.fold((0, 0), |(all, dark), (probe, hit)| (all + 1, dark + usize::from(mirror(hit) && black(probe))));
+    if dark * 100 < all * 95 {
+        return Vec::new();
+    }
+    let diagnostic = Diagnostic::warning("all that is seen mirrors, and there is nothing to be mirrored")
+        .effect("mirrors show what is around them, and that is black")
+        .help("give the `Background` a `color`, add something to be mirrored, or give the mirror a `diffuseColor`");
+    let span = scout.subject.scene.materials.get(first.material as usize).map(|written| written.span);
+    vec![Finding::from(Diagnostic { span, ..diagnostic }).whole(true)]
+}

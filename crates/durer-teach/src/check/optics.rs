@@ -1,0 +1,115 @@
+//! Checks of layered materials under path tracing: films, scattering bodies, dispersion, and paths
+//! too short for glass.
+
+use super::finding::{Finding, MAX_SOUGHT, number, percent};
+use super::layers::{layers, thickness};
+use super::scene_probe::SceneProbe;
+use durer_diag::{Diagnostic, Severity};
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::material::principled::Walls;
+use durer_scene::scene::{Material as Written, Spanned};
+use durer_scene::spectrum::ColorMode;
+
+/// Thickness in micrometres above which a film shows no colours.
+const THICKEST_FILM: f32 = 10.0;
+/// Mean free path, as a multiple of a body's thickness, above which the body hardly scatters.
+const LONGEST_WAY: f32 = 3.0;
+/// Index of refraction that bends light.
+const BENDS: f32 = 1e-3;
+
+/// A used material: its index, description and parameters.
+type Used<'s> = (usize, &'s Spanned<Written>, &'s PrincipledMaterial);
+
+/// Reports films too thick to show colours: their thickness is in micrometres.
+pub(super) fn thick_film(scout: &SceneProbe) -> Vec<Finding> {
+    let say = |(index, written, m): Used| {
+        if m.thin_film_weight <= 0.0 || m.thin_film_thickness <= THICKEST_FILM {
+            return None;
+        }
+        let thin = number(m.thin_film_thickness / 1000.0);
+        let thick = number(m.thin_film_thickness);
+        let diagnostic = Diagnostic::warning(format!("the film on material {index} is {thick} micrometres thick"))
+            .effect("it shows no colours: they need a film about as thick as light waves are long")
+            .help(format!("`thinFilmThickness` is in micrometres, and {thick} nm are `thinFilmThickness {thin}`"))
+            .fix_at(scout.value(written.span, &["thinFilmThickness"]), thin);
+        Some(Finding::from(scout.at_value(diagnostic, written.span, &["thinFilmThickness"])))
+    };
+    layers(scout).into_iter().filter_map(say).collect()
+}
+
+/// Reports scattering bodies that are thinner than the way light goes between two scatterings.
+pub(super) fn wide_scatter(scout: &SceneProbe) -> Vec<Finding> {
+    let say = |(index, written, m): Used| {
+        let thick = thickness(scout, index)?;
+        let way = m.subsurface_radius * m.subsurface_radius_scale.max_element();
+        if m.subsurface_weight <= 0.0 || m.transmission_weight >= 1.0 || way <= LONGEST_WAY * thick {
+            return None;
+        }
+        let (radius, less) = (number(m.subsurface_radius), number(0.1 * thick));
+        let message = format!("light goes {radius} in material {index} until it is scattered");
+        let diagnostic = Diagnostic::warning(message)
+            .effect(format!(
+                "what is made of it is {} thick: light goes straight through, and its colour is not seen",
+                number(thick)
+            ))
+            .help(format!("`subsurfaceRadius` is in units of the scene: `subsurfaceRadius {less}`, say"))
+            .fix_at(scout.value(written.span, &["subsurfaceRadius"]), less);
+        Some(Finding::from(scout.at_value(diagnostic, written.span, &["subsurfaceRadius"])))
+    };
+    if scout.is_physical() { layers(scout).into_iter().filter_map(say).collect() } else { Vec::new() }
+}
+
+/// Reports glass that should spread colours in a picture that is not computed by wavelength.
+pub(super) fn no_spectrum(scout: &SceneProbe) -> Vec<Finding> {
+    let transport = scout.subject.job.method.transport();
+    if transport.is_none_or(|transport| transport.color == ColorMode::Spectral) {
+        return Vec::new();
+    }
+    let say = |(index, written, m): Used| {
+        if m.transmission_dispersion_scale <= 0.0 || m.transmission_weight < 0.5 || m.walls == Walls::Thin {
+            return None;
+        }
+        let value = scout.value(written.span, &["transmissionDispersionScale"]);
+        let diagnostic = Diagnostic::warning(format!("material {index} spreads colours, and light has none to spread"))
+            .effect("light is red, green and blue here, and bent by one index: no colours are seen")
+            .help("ask for light by wavelength: `--color spectral`");
+        // A model may be made for programs that show it.
+        let severity = if value.is_some() { Severity::Warning } else { Severity::Note };
+        let diagnostic = Diagnostic { severity, ..diagnostic };
+        Some(Finding::from(scout.at_value(diagnostic, written.span, &["transmissionDispersionScale"])))
+    };
+    layers(scout).into_iter().filter_map(say).take(MAX_SOUGHT).collect()
+}
+
+/// Reports glass and mirrors that paths are too short for.
+pub(super) fn short_paths(scout: &SceneProbe) -> Vec<Finding> {
+    let bounces = scout.subject.job.settings.bounces;
+    let say = |(index, written, m): Used| {
+        let rays = scout.material_rays()[index];
+        let bends = m.walls != Walls::Thin && (m.specular_ior - 1.0).abs() > BENDS;
+        let glass = m.transmission_weight > 0.5 && m.base_metalness < 0.5 && m.opacity > 0.5;
+        let mirror = m.base_metalness > 0.9 && m.specular_roughness < 0.2;
+        let (least, what) = match (glass, mirror) {
+            // Light needs one bounce to enter a body and one to leave it.
+            (true, _) if bends => (2, "of glass"),
+            (true, _) => (1, "of glass"),
+            (_, true) => (1, "a mirror"),
+            _ => return None,
+        };
+        if rays == 0 || bounces >= least {
+            return None;
+        }
+        let level = if bounces == 1 { "1 bounce" } else { "no bounces" };
+        let message = format!("material {index} is {what}, and paths have {level} here");
+        let diagnostic = Diagnostic::warning(message)
+            .at(written.span)
+            .label(format!("on {} of what is seen", percent(rays, scout.seen().count())))
+            .effect(match glass {
+                true => "light does not come out of it again: it is black, or nearly so",
+                false => "what it mirrors is black",
+            })
+            .help("ask for more: `--bounces 16`, or leave `--bounces` away");
+        Some(Finding::from(diagnostic))
+    };
+    layers(scout).into_iter().filter_map(say).take(1).collect()
+}

@@ -1,0 +1,94 @@
+//! Deviations of a path tracer from a correct one.
+
+/// Factor of the cosine at a surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Slant {
+    /// cos.
+    #[default]
+    Right,
+    /// Left out.
+    None,
+    /// cos².
+    Twice,
+}
+
+/// Choice of scattered directions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Chosen {
+    /// By the BSDF, divided by its density.
+    #[default]
+    Right,
+    /// By the BSDF, not divided.
+    Undivided,
+    /// Uniform over the hemisphere, divided by the density of the cosine.
+    Uniform,
+    /// By the BSDF, in the frame of the surface taken for the world.
+    LocalFrame,
+    /// By the BSDF, with one random number for two.
+    OneNumber,
+}
+
+/// Factor of a light sample that is left out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Lacks {
+    /// None.
+    #[default]
+    Nothing,
+    /// 1 / d².
+    Distance,
+    /// The cosine at the light.
+    Cosine,
+    /// The light's area.
+    Area,
+    /// The division by the probability of the light among all.
+    Choice,
+    /// The division by the density.
+    Density,
+}
+
+/// Directions of the environment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sky {
+    /// As written.
+    #[default]
+    Right,
+    /// Upside down.
+    UpsideDown,
+    /// Its density lacks the sine of the polar angle.
+    NoSine,
+}
+
+/// Value of a pixel from its samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mean {
+    /// The mean of light.
+    #[default]
+    Light,
+    /// The mean of clamped light.
+    Clamped,
+    /// The mean of display values.
+    Shown,
+}
+
+/// Deviations of a path tracer. The default is a correct one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Paths {
+    /// Cosine at surfaces.
+    pub slant: Slant,
+    /// The matte lobe lacks 1/π; with `true` for light samples alone.
+    pub no_pi: Option<bool>,
+    /// Scattered directions.
+    pub chosen: Chosen,
+    /// Light samples.
+    pub lacks: Lacks,
+    /// Both strategies count in full.
+    pub unweighted: bool,
+    /// What survives roulette is not divided by the probability.
+    pub roulette: bool,
+    /// Emitters shine to both sides.
+    pub two_sided: bool,
+    /// Environment.
+    pub sky: Sky,
+    /// Value of a pixel.
+    pub mean: Mean,
+}

@@ -1,0 +1,120 @@
+//! Means over blocks of a picture, with the variance that noise gives them.
+
+use super::walker::Walker;
+use crate::mistakes::path_habits::Mean;
+use crate::mistakes::pictures::View;
+use crate::mistakes::variant::Variant;
+use durer_render::render::sample_places;
+use durer_scene::math::{Color, Vec2, Vec3};
+use rayon::prelude::*;
+
+/// Number of blocks along the larger side, and paths that a picture takes at most.
+const BLOCKS: u32 = 20;
+const MOST_PATHS: u32 = 300_000;
+/// Samples a pixel at most.
+const MOST_SAMPLES: u32 = 64;
+/// Variance of rounding to eight bits.
+const ROUNDING: f64 = 1.0 / (12.0 * 255.0 * 255.0);
+
+/// Pixels of a picture by block.
+pub struct Blocks {
+    /// Pixels of each block.
+    pub pixels: Vec<Vec<(u32, u32)>>,
+}
+
+/// Mean of each block, and the variance of the mean over the channels.
+#[derive(Clone, Debug)]
+pub struct Means {
+    pub mean: Vec<Vec3>,
+    pub variance: Vec<f64>,
+}
+
+impl Blocks {
+    pub fn new(width: u32, height: u32, samples: u32) -> Self {
+        let side = (width.max(height)).div_ceil(BLOCKS).max(2);
+        let (columns, rows) = (width.div_ceil(side), height.div_ceil(side));
+        let most = (MOST_PATHS / (columns * rows) / samples.clamp(1, MOST_SAMPLES)).max(1) as usize;
+        let block = |i: u32| {
+            let (x, y) = (i % columns * side, i / columns * side);
+            let all: Vec<(u32, u32)> =
+                (y..(y + side).min(height)).flat_map(|y| (x..(x + side).min(width)).map(move |x| (x, y))).collect();
+            // An odd step spreads the pixels over the block.
+            let step = (all.len().div_ceil(most)) | 1;
+            all.into_iter().step_by(step).collect()
+        };
+        Blocks { pixels: (0..columns * rows).map(block).collect() }
+    }
+
+    /// Returns the means of a picture; the variance is that of rounding.
+    pub fn of_picture(&self, width: u32, values: &[Vec3]) -> Means {
+        let mean = |block: &Vec<(u32, u32)>| {
+            let sum: Vec3 = block.iter().map(|&(x, y)| values[(y * width + x) as usize]).sum();
+            sum / block.len() as f32
+        };
+        let variance = self.pixels.iter().map(|block| ROUNDING / block.len() as f64).collect();
+        Means { mean: self.pixels.iter().map(mean).collect(), variance }
+    }
+
+    /// Renders the means of a variant's picture.
+    pub fn render(&self, view: &View, variant: &Variant, seed: u64) -> Means {
+        let (walker, raster) = (Walker::new(variant), variant.raster(view.job.width, view.job.height));
+        let places = sample_places(&variant.world, view.job);
+        let exposed = |light: Color| view.values(variant.output, &[light])[0];
+        // Values and their variances, both of a pixel's mean.
+        let pixel = |&(x, y): &(u32, u32)| {
+            let (mut all, mut weights) = (Vec::new(), 0.0);
+            let mut add = |place: Vec2, lens: Vec2, weight: f32| {
+                if all.len() < MOST_SAMPLES as usize {
+                    let light = variant
+                        .ray(&raster, (x, y), place, lens)
+                        .map_or(Color::ZERO, |ray| walker.radiance(&ray, seed, (x, y), all.len() as u32));
+                    let light = match variant.paths.mean {
+                        Mean::Light => light,
+                        Mean::Clamped => light.clamp(Color::ZERO, Color::ONE),
+                        Mean::Shown => exposed(light),
+                    };
+                    all.push(weight * light);
+                    weights += weight;
+                }
+            };
+            places(x, y, &mut add);
+            let count = all.len().max(1) as f32;
+            let mean = all.iter().sum::<Color>() / weights.max(1e-6);
+            let value = if variant.paths.mean == Mean::Shown { mean } else { exposed(mean) };
+            // The error of the mean, carried through the curve by a step of its size.
+            let spread = all.iter().map(|light| (*light * count / weights.max(1e-6) - mean).length_squared());
+            let error = (spread.sum::<f32>() / (count * (count - 1.0).max(1.0))).sqrt();
+            let step = Color::splat(error / 3.0_f32.sqrt());
+            let moved = if variant.paths.mean == Mean::Shown { mean + step } else { exposed(mean + step) };
+            (value, f64::from((moved - value).length_squared()).max(3.0 * ROUNDING))
+        };
+        let block = |block: &Vec<(u32, u32)>| {
+            let all: Vec<(Vec3, f64)> = block.iter().map(pixel).collect();
+            let count = all.len() as f32;
+            let mean = all.iter().map(|one| one.0).sum::<Vec3>() / count;
+            (mean, all.iter().map(|one| one.1).sum::<f64>() / f64::from(count * count))
+        };
+        let (mean, variance) = self.pixels.par_iter().map(block).unzip();
+        Means { mean, variance }
+    }
+}
+
+impl Means {
+    /// Returns the squared difference of each block beyond what noise explains, and true if it is
+    /// significant. `noise`: variances of both pictures.
+    pub fn beyond(&self, other: &Means, noise: &[f64]) -> Vec<(f64, bool)> {
+        let pairs = self.mean.iter().zip(&other.mean).zip(noise);
+        pairs
+            .map(|((a, b), noise)| {
+                let squared = f64::from((*a - *b).length_squared());
+                ((squared - noise).max(0.0), squared > SIGNIFICANT * noise + SEEN)
+            })
+            .collect()
+    }
+}
+
+/// Squared difference, in variances, that noise does not reach: three channels, four standard
+/// errors.
+const SIGNIFICANT: f64 = 12.0;
+/// Squared difference that is invisible whatever the noise.
+const SEEN: f64 = 3.0 * (1.0 / 255.0) * (1.0 / 255.0);

@@ -1,0 +1,158 @@
+//! Finds the mistake of a path tracer that made a picture.
+
+use super::blocks::{Blocks, Means};
+use super::table::MISTAKES;
+use crate::mistakes::pictures::View;
+use crate::mistakes::question::{Diagnosis, Named, Question, prepared, values};
+use crate::mistakes::table::{Formulas, Mistake};
+use crate::mistakes::variant::Variant;
+use durer_scene::math::Vec3;
+
+/// Share of the blocks that may differ significantly from the scene's own picture; above it nothing
+/// is reported.
+const MAX_OFF: f64 = 0.15;
+/// Share of the blocks that must differ for there to be more than noise.
+const LEAST: f64 = 0.02;
+/// Fit of an explanation: share of the squared difference, and of the differing blocks.
+const EXPLAINED: f64 = 0.95;
+const MATCHED: f64 = 0.9;
+/// Explanations that leave less than this many times the rest of the best one are its rivals.
+const RIVAL: f64 = 3.0;
+/// Ratio of noise above which one picture has more of it.
+const NOISIER: f64 = 1.5;
+
+struct Trial {
+    mistake: (&'static Mistake, f32),
+    made: Means,
+    explained: f64,
+    matched: f64,
+}
+
+/// Returns the share of the blocks in which the scene's own picture differs from the reference by
+/// more than noise.
+pub fn off(question: &Question) -> f64 {
+    let (reference, view, base) = prepared(question);
+    let blocks = blocks(question);
+    let reference = blocks.of_picture(question.job.width, &reference);
+    let base = blocks.render(&view, &base, question.job.seed);
+    share_off(&base, &reference)
+}
+
+fn blocks(question: &Question) -> Blocks {
+    Blocks::new(question.job.width, question.job.height, question.job.sampling.samples())
+}
+
+/// Variances of two pictures of one kind.
+fn noise(base: &Means, other: &Means) -> Vec<f64> {
+    base.variance.iter().zip(&other.variance).map(|(a, b)| 2.0 * a + b).collect()
+}
+
+fn share_off(base: &Means, reference: &Means) -> f64 {
+    let beyond = base.beyond(reference, &noise(base, reference));
+    beyond.iter().filter(|block| block.1).count() as f64 / beyond.len().max(1) as f64
+}
+
+/// Tries the mistakes of path tracers. `told` receives the progress, from 0 to 1.
+pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
+    let (reference_pixels, view, base) = prepared(question);
+    let test_pixels = values(question.test, view.scale, question.transfer);
+    let (width, seed) = (question.job.width, question.job.seed);
+    let blocks = blocks(question);
+    let [reference, test] = [&reference_pixels, &test_pixels].map(|pixels| blocks.of_picture(width, pixels));
+    let own = blocks.render(&view, &base, seed);
+    told(0.1);
+    let off = share_off(&own, &reference);
+    let found =
+        Diagnosis { off, formulas: Formulas::of(question.scene, question.world.rules()), ..Diagnosis::default() };
+    if off > MAX_OFF {
+        return found;
+    }
+    let total = own.beyond(&test, &noise(&own, &test));
+    let differing = total.iter().filter(|block| block.1).count();
+    if (differing as f64) < LEAST * total.len() as f64 {
+        return Diagnosis { remark: Some(of_noise(&reference_pixels, &test_pixels, width as usize)), ..found };
+    }
+    let trials = trials(&view, &base, &blocks, &test, &own, seed, told);
+    let named = decided(trials, &test);
+    Diagnosis { named, ..found }
+}
+
+/// Renders all mistakes and measures how much of the difference they explain.
+fn trials(
+    view: &View,
+    base: &Variant,
+    blocks: &Blocks,
+    test: &Means,
+    own: &Means,
+    seed: u64,
+    told: &(dyn Fn(f64) + Sync),
+) -> Vec<Trial> {
+    let lights = base.world.lights().len();
+    let rows = MISTAKES.iter().flat_map(|row| row.values.numbers(lights).into_iter().map(move |value| (row, value)));
+    let all: Vec<(&'static Mistake, f32)> = rows.collect();
+    let count = all.len();
+    let trial = |(i, mistake): (usize, (&'static Mistake, f32))| {
+        let mut variant = base.clone();
+        (mistake.0.make)(&mut variant, mistake.1);
+        let made = blocks.render(view, &variant, seed);
+        told(0.1 + 0.9 * (i + 1) as f64 / count as f64);
+        let noise = noise(&made, test);
+        let (before, rest) = (own.beyond(test, &noise), made.beyond(test, &noise));
+        let sum = |beyond: &[(f64, bool)]| beyond.iter().map(|block| block.0).sum::<f64>();
+        let (either, agree) = before.iter().zip(&rest).fold((0, 0), |(either, agree), (before, rest)| {
+            (either + usize::from(before.1 || rest.1), agree + usize::from((before.1 || rest.1) && !rest.1))
+        });
+        let explained = 1.0 - sum(&rest) / sum(&before).max(1e-12);
+        Trial { mistake, made, explained, matched: f64::from(agree as u32) / f64::from((either as u32).max(1)) }
+    };
+    all.into_iter().enumerate().map(trial).collect()
+}
+
+/// Returns the mistakes that explain the picture; none if none does, or too many do.
+fn decided(mut trials: Vec<Trial>, test: &Means) -> Vec<Named> {
+    trials.sort_by(|a, b| b.explained.total_cmp(&a.explained));
+    let passes = |trial: &&Trial| trial.explained >= EXPLAINED && trial.matched >= MATCHED;
+    let Some(best) = trials.iter().find(passes) else { return Vec::new() };
+    let rest = |trial: &Trial| 1.0 - trial.explained;
+    let rivals: Vec<&Trial> =
+        trials.iter().filter(passes).filter(|trial| rest(trial) <= RIVAL * rest(best) + 0.005).collect();
+    // Rivals that differ from each other would make the name a guess.
+    let alike = |other: &Trial| {
+        let noise: Vec<f64> = noise(&best.made, test);
+        best.made.beyond(&other.made, &noise).iter().filter(|block| block.1).count() * 20 <= test.mean.len()
+    };
+    if rivals.len() > 3 || !rivals.iter().all(|rival| alike(rival)) {
+        return Vec::new();
+    }
+    let named =
+        |trial: &&Trial| Named { mistakes: vec![trial.mistake], explained: trial.explained, matched: trial.matched };
+    rivals.iter().map(named).collect()
+}
+
+/// Compares the noise of two pictures with the same mean.
+fn of_noise(reference: &[Vec3], test: &[Vec3], width: usize) -> String {
+    // Second differences along rows vanish for smooth shading.
+    let energy = |pixels: &[Vec3]| {
+        let mut all: Vec<f32> = pixels
+            .chunks(width)
+            .flat_map(|row| row.windows(3).map(|p| (p[0] - 2.0 * p[1] + p[2]).length_squared()))
+            .collect();
+        all.sort_by(f32::total_cmp);
+        // Edges are the upper part.
+        let kept = (all.len() * 3 / 4).max(1).min(all.len());
+        all[..kept].iter().map(|e| f64::from(*e)).sum::<f64>().max(1e-9)
+    };
+    let ratio = energy(test) / energy(reference);
+    let times = |ratio: f64| if ratio > 20.0 { "far more than ten".to_string() } else { format!("about {ratio:.1}") };
+    if ratio > NOISIER {
+        format!(
+            "the mean is right, and the noise is not: it has {} times the variance of the reference (fewer samples, or lights \
+             that paths find by chance alone)",
+            times(ratio)
+        )
+    } else if 1.0 / ratio > NOISIER {
+        format!("the mean is right: the reference has {} times the variance (more samples here)", times(1.0 / ratio))
+    } else {
+        "the difference is noise: other random numbers, and nothing else that can be measured".to_string()
+    }
+}

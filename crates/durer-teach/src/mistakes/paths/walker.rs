@@ -1,0 +1,299 @@
+//! A plain path tracer: light samples and scattered directions, weighted by the power heuristic,
+//! with optional mistakes. It shares the library's surfaces, BSDFs and emitters, and has the same
+//! mean as its path tracer for scenes without fog.
+
+use crate::mistakes::path_habits::{Chosen, Lacks, Paths, Sky, Slant};
+use crate::mistakes::variant::Variant;
+use durer_render::integrator::media::Media;
+use durer_render::integrator::spawn::{offset_bound, spawn_ray, to_point};
+use durer_render::integrator::{Settings, Whitted};
+use durer_render::world::emitters::{LightId, LightSample, Receiver};
+use durer_render::world::{Geometry, Interaction, Shading, World};
+use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3, fp};
+use durer_scene::shape::{Primitive, Shape as _};
+use durer_scene::spectrum::{ColorMode, Lanes, Spectrum};
+use std::f32::consts::PI;
+
+/// Random numbers of a sample.
+struct Numbers(u64);
+
+impl Numbers {
+    fn new(seed: u64, (x, y): (u32, u32), sample: u32) -> Self {
+        let mut numbers = Numbers(seed ^ (u64::from(x) << 40 | u64::from(y) << 20 | u64::from(sample)));
+        numbers.next();
+        numbers
+    }
+
+    /// Source: Steele, Lea and Flood, *Fast Splittable Pseudorandom Number Generators*, OOPSLA 2014.
+    fn next(&mut self) -> f32 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut x = self.0;
+        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((x ^ (x >> 31)) >> 40) as f32 / (1_u64 << 24) as f32
+    }
+
+    fn pair(&mut self) -> Vec2 {
+        Vec2::new(self.next(), self.next())
+    }
+}
+
+/// Maximum survival probability in roulette, and the depth from which there is some.
+const MAX_SURVIVAL: f32 = 0.95;
+const SURE: u32 = 3;
+
+/// The tracer of a variant.
+pub struct Walker<'w> {
+    world: &'w World,
+    settings: Settings,
+    habits: Paths,
+    right: Whitted<'w>,
+    lanes: Lanes,
+}
+
+impl<'w> Walker<'w> {
+    /// Creates the tracer of a variant.
+    pub fn new(variant: &'w Variant) -> Self {
+        let (world, settings) = (&variant.world, variant.settings);
+        let right = Whitted { world, settings, cancel: None };
+        Walker { world, settings, habits: variant.paths, right, lanes: Lanes::new(ColorMode::Rgb, 0.5) }
+    }
+
+    /// Returns the radiance along a camera ray, as sample `sample` of a pixel.
+    pub fn radiance(&self, ray: &Ray, seed: u64, pixel: (u32, u32), sample: u32) -> Color {
+        let mut numbers = Numbers::new(seed, pixel, sample);
+        let color = self.lanes.color(self.walk(ray.into(), &mut numbers));
+        if color.is_finite() { color } else { Color::ZERO }
+    }
+
+    fn walk(&self, mut ray: Ray64, numbers: &mut Numbers) -> Spectrum {
+        let (world, lanes) = (self.world, &self.lanes);
+        let mut media = Media::around(world, ray.rounded.origin);
+        let (mut throughput, mut sum) = (Spectrum::ONE, Spectrum::ZERO);
+        // The last vertex with a density, and that density.
+        let mut last: Option<(Receiver, f32)> = None;
+        let mut from_eye = true;
+        let (mut depth, mut layers) = (0, 0);
+        while layers < 1000 {
+            layers += 1;
+            let Some(hit) = world.closest(&ray, &mut ()) else {
+                return sum + throughput * self.background(ray.dir(), last, from_eye);
+            };
+            let at = world.interaction(ray, hit);
+            let passage = self.right.passage(&at, &media);
+            let nothing = passage.as_ref().is_some_and(|p| p.hidden || p.here == p.there && world.is_interface(&at));
+            let opacity = world.opacity(&at);
+            if nothing || opacity < 1.0 && numbers.next() >= opacity {
+                media = passage.filter(|_| nothing).map_or(media, |passage| passage.behind);
+                ray.rounded.t_min = hit.t;
+                continue;
+            }
+            sum += throughput * self.emission(&at, last);
+            if depth > self.settings.bounces {
+                return sum;
+            }
+            let shading =
+                world.shading(&at, passage.as_ref().map_or(1.0, |passage| passage.there / passage.here), lanes);
+            if shading.bsdf.is_black() {
+                return sum;
+            }
+            let n = if shading.bsdf.passes_light() { Vec3::ZERO } else { shading.frame.normal };
+            let receiver = Receiver { point: at.surface.point(), n, far: Receiver::FAR };
+            if shading.bsdf.is_broad() {
+                sum += throughput * self.direct(&at, &shading, &receiver, numbers);
+            }
+            let Some((wi, weight, pdf)) = self.scattered(&shading, numbers) else { return sum };
+            throughput *= weight;
+            let survival = if depth < SURE { 1.0 } else { throughput.max_element().min(MAX_SURVIVAL) };
+            if numbers.next() >= survival {
+                return sum;
+            }
+            if !self.habits.roulette {
+                throughput /= survival;
+            }
+            if pdf > 0.0 {
+                (last, from_eye) = (Some((receiver, pdf)), false);
+            } else {
+                last = None;
+            }
+            if let Some(passage) = passage.filter(|_| wi.dot(shading.n_geo) < 0.0) {
+                media = passage.behind;
+            }
+            ray = spawn_ray(&at.surface, wi, f32::INFINITY, None);
+            depth += 1;
+        }
+        sum
+    }
+
+    /// Returns the weight of a light that a scattered direction hits.
+    fn weight(&self, pdf: f32, light: f32) -> f32 {
+        if self.habits.unweighted { 1.0 } else { power(pdf, light) }
+    }
+
+    fn turned(&self, dir: Vec3) -> Vec3 {
+        if self.habits.sky == Sky::UpsideDown { Vec3::new(dir.x, -dir.y, dir.z) } else { dir }
+    }
+
+    fn background(&self, dir: Vec3, last: Option<(Receiver, f32)>, from_eye: bool) -> Spectrum {
+        let emitters = self.world.emitters();
+        let (_, pdf) = emitters.sky(self.world, dir);
+        let (sky, _) = emitters.sky(self.world, self.turned(dir));
+        let mut light = self.lanes.light(sky);
+        if from_eye {
+            light += emitters.suns(dir).map(|(_, color)| self.lanes.light(color)).sum::<Spectrum>();
+        }
+        let chance = |to: &Receiver| pdf * emitters.chance_of_sky(self.world, to);
+        last.map_or(1.0, |(to, own)| self.weight(own, chance(&to))) * light
+    }
+
+    fn emission(&self, at: &Interaction, last: Option<(Receiver, f32)>) -> Spectrum {
+        let mut color = self.world.emission(at);
+        let emitters = self.world.emitters();
+        if color == Color::ZERO && self.habits.two_sided && self.world.may_shine(at.material) {
+            let mut turned = at.clone();
+            turned.surface.n_geo = -turned.surface.n_geo;
+            turned.surface.n_shade = -turned.surface.n_shade;
+            color = self.world.emission(&turned);
+        }
+        if color == Color::ZERO {
+            return Spectrum::ZERO;
+        }
+        let weight = last.map_or(1.0, |(to, own)| {
+            let way = at.surface.point() - to.point;
+            let wi = at.ray.dir().normalize_or_zero();
+            let light = emitters.pdf_of_hit(self.world, &at.hit, &to, wi, way.length() as f32);
+            self.weight(own, light)
+        });
+        weight * self.lanes.light(color)
+    }
+
+    /// Returns the light of a sampled light, BSDF and cosine included.
+    fn direct(&self, at: &Interaction, shading: &Shading, to: &Receiver, numbers: &mut Numbers) -> Spectrum {
+        let emitters = self.world.emitters();
+        let (choice, u) = (numbers.next(), numbers.pair());
+        let Some(choice) = emitters.choose(self.world, to, choice) else { return Spectrum::ZERO };
+        let Some(light) = emitters.sample(self.world, &choice, to.point, u) else { return Spectrum::ZERO };
+        let (value, bsdf_pdf) = shading.eval(light.wi);
+        let value = self.scaled(value, shading, light.wi, true);
+        if value == Spectrum::ZERO || light.radiance == Color::ZERO {
+            return Spectrum::ZERO;
+        }
+        let reach = light.shadow_reach(offset_bound(&at.surface));
+        let ray = to_point(&at.surface, light.wi, reach);
+        if self.settings.shadows && (ray.rounded.t_max <= ray.rounded.t_min || self.blocked(ray)) {
+            return Spectrum::ZERO;
+        }
+        let pdf = if light.pdf > 0.0 { light.choice * light.pdf } else { light.choice };
+        let weight = if light.pdf == 0.0 || self.habits.unweighted { 1.0 } else { power(pdf, bsdf_pdf) };
+        let radiance = match (choice.is_sky(), self.habits.sky) {
+            (true, Sky::UpsideDown) => emitters.sky(self.world, self.turned(light.wi)).0,
+            (true, Sky::NoSine) => light.radiance / (1.0 - light.wi.y * light.wi.y).max(1e-4).sqrt(),
+            _ => light.radiance,
+        };
+        value * (weight / pdf) * self.lacking(&light, pdf) * self.lanes.light(radiance)
+    }
+
+    fn blocked(&self, mut ray: Ray64) -> bool {
+        for _ in 0..64 {
+            let Some(hit) = self.world.closest(&ray, &mut ()) else { return false };
+            let at = self.world.interaction(ray, hit);
+            if self.world.opacity(&at) > 0.5 && !self.world.is_interface(&at) {
+                return true;
+            }
+            ray.rounded.t_min = hit.t;
+        }
+        true
+    }
+
+    /// Returns the factor by which a light sample is wrong.
+    fn lacking(&self, light: &LightSample, pdf: f32) -> f32 {
+        let extended = light.pdf > 0.0 && light.reach.is_finite();
+        match self.habits.lacks {
+            Lacks::Nothing => 1.0,
+            Lacks::Distance if light.reach.is_finite() => light.reach * light.reach,
+            Lacks::Cosine if extended => 1.0 / light.cosine.max(1e-3),
+            Lacks::Area if extended => match light.light {
+                LightId::Surface(object, part) => self.area(object, part).map_or(1.0, |area| 1.0 / area),
+                LightId::Light(_) | LightId::Environment => 1.0,
+            },
+            Lacks::Choice => light.choice,
+            Lacks::Density => pdf,
+            Lacks::Distance | Lacks::Cosine | Lacks::Area => 1.0,
+        }
+    }
+
+    /// Returns the area of a flat emitter or a sphere.
+    fn area(&self, object: u32, part: u32) -> Option<f32> {
+        let object = &self.world.objects()[object as usize];
+        let of = |corners: &[Vec3]| -> f32 {
+            let p: Vec<Vec3> = corners.iter().map(|corner| object.world_point(*corner)).collect();
+            p.windows(2).skip(1).map(|pair| 0.5 * (pair[0] - p[0]).cross(pair[1] - p[0]).length()).sum()
+        };
+        match &object.geometry {
+            Geometry::Mesh(tree) => Some(of(&tree.mesh.corners(part))),
+            Geometry::Primitive(Primitive::Sphere(_)) => {
+                let radius = 0.5 * object.bounds()?.size().max_element();
+                Some(4.0 * PI * radius * radius)
+            }
+            Geometry::Primitive(shape) => {
+                let polygons = shape.polygons();
+                (!polygons.is_empty()).then(|| polygons.iter().map(|polygon| of(polygon)).sum())
+            }
+            Geometry::Solid(_) => None,
+        }
+    }
+
+    /// Applies mistakes of the cosine and of 1/π to a value of BSDF · cosine.
+    fn scaled(&self, value: Spectrum, shading: &Shading, wi: Vec3, sampled_light: bool) -> Spectrum {
+        let cosine = shading.frame.normal.dot(wi).abs().max(1e-3);
+        let value = match self.habits.slant {
+            Slant::Right => value,
+            Slant::None => value / cosine,
+            Slant::Twice => value * cosine,
+        };
+        match self.habits.no_pi {
+            Some(lights_only) if sampled_light || !lights_only => value * PI,
+            _ => value,
+        }
+    }
+
+    /// Returns a scattered direction, its weight, and its density; 0 for a single direction.
+    fn scattered(&self, shading: &Shading, numbers: &mut Numbers) -> Option<(Vec3, Spectrum, f32)> {
+        let (choice, mut u) = (numbers.next(), numbers.pair());
+        if self.habits.chosen == Chosen::OneNumber {
+            u = Vec2::splat(u.x);
+        }
+        let sample = shading.bsdf.sample(shading.wo, choice, u)?;
+        if sample.pdf == 0.0 {
+            return Some((shading.frame.to_world(sample.wi), sample.weight, 0.0));
+        }
+        if self.habits.chosen == Chosen::Uniform {
+            let (sin, cos) = fp::sin_cos_degrees(f64::from(360.0 * u.x));
+            let side = (1.0 - u.y * u.y).max(0.0).sqrt();
+            let local = Vec3::new(side * cos as f32, side * sin as f32, u.y.max(1e-4));
+            let wi = shading.frame.to_world(local);
+            let pdf = local.z / PI;
+            let value = self.scaled(shading.eval(wi).0, shading, wi, false);
+            return Some((wi, value / pdf, pdf));
+        }
+        let wi = shading.frame.to_world(sample.wi);
+        if (wi.dot(shading.n_geo) < 0.0) != (sample.wi.z < 0.0) && !shading.bsdf.is_fibre() {
+            return None;
+        }
+        let weight = self.scaled(sample.weight, shading, wi, false);
+        Some(match self.habits.chosen {
+            Chosen::Undivided => (wi, weight * sample.pdf, sample.pdf),
+            Chosen::LocalFrame => (sample.wi, weight, sample.pdf),
+            _ => (wi, weight, sample.pdf),
+        })
+    }
+}
+
+/// The power heuristic.
+fn power(a: f32, b: f32) -> f32 {
+    if b == 0.0 {
+        return 1.0;
+    }
+    let ratio = b / a;
+    1.0 / (1.0 + ratio * ratio)
+}
