@@ -31,7 +31,9 @@ impl Limits {
     }
 
     fn is_nearer(&self, t: f32, ties: bool) -> bool {
-        t < self.t_max && self.best.is_none_or(|best| t < best || ties && t == best)
+        // The end of the ray is where the programs begin with their nearest hit.
+        let best = self.best.unwrap_or(self.t_max.min(f32::MAX));
+        t < best || ties && t == best
     }
 }
 
