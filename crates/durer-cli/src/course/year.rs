@@ -12,7 +12,9 @@ use crate::report;
 use durer::LoadOptions;
 use durer::diag::Diagnostic;
 use durer::dialect::Dialect;
+use durer::format::course::Guess;
 use durer::image::Layer;
+use durer::math::Vec3;
 use durer::render::{Control, Job, Sampling};
 use std::path::Path;
 
@@ -30,8 +32,8 @@ const ONE_OF: usize = 1000;
 pub fn open(scene: &Path, options: &LoadOptions, given: &Given, guard: &mut Guard) -> Result<Opened, Failure> {
     let quiet = given.has("--quiet");
     let read = read(scene, options, quiet, guard)?;
-    let open_question = |guess: &&durer::format::course::Guess| guess.is_hinted() || guess.fitting.len() > 1;
-    let Some(guess) = read.loaded.guess.clone().filter(|guess| open_question(&guess)) else {
+    let guess = read.loaded.guess.clone().filter(|guess| guess.is_hinted() || guess.fitting.len() > 1);
+    let Some(guess) = guess else {
         return read.compile(options, guard);
     };
     let mut chosen = read.quiet().compile(options, guard)?;
@@ -60,7 +62,7 @@ pub fn open(scene: &Path, options: &LoadOptions, given: &Given, guard: &mut Guar
 }
 
 /// Why a scene is read as of some year.
-fn note(guess: &durer::format::course::Guess, dialect: Dialect) -> Diagnostic {
+fn note(guess: &Guess, dialect: Dialect) -> Diagnostic {
     match guess.dialect == dialect {
         true => guess.note(),
         false => {
@@ -88,7 +90,7 @@ impl Trial {
     }
 
     fn looks_like(&self, other: &Trial) -> bool {
-        let differs = |(a, b): (&durer::math::Vec3, &durer::math::Vec3)| (*a - *b).abs().max_element() > ALIKE;
+        let differs = |(a, b): (&Vec3, &Vec3)| (*a - *b).abs().max_element() > ALIKE;
         self.nan == other.nan
             && self.layers.iter().zip(&other.layers).all(|(a, b)| {
                 let (a, b) = (&a.image.pixels, &b.image.pixels);

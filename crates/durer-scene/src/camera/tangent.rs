@@ -29,7 +29,7 @@ const QUARTER: [f32; 2] = [7.8539812565e-01, 3.7748947079e-08];
 /// Half of pi in parts: the first 17 bits, the rest, the next 17 bits, and the rest after these.
 const HALF: [f32; 4] = [1.5707855225e+00, 1.0804334124e-05, 1.0804273188e-05, 6.0770999344e-11];
 /// Above this the series is taken of the angle that is missing to a quarter of pi.
-const LARGE: f32 = 0.674339;
+const LARGE: f32 = f32::from_bits(0x3f2c_a140);
 
 /// Below this a straight line is near enough.
 const TINY: f32 = 1.0 / 8192.0;
