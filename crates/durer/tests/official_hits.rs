@@ -344,6 +344,10 @@ fn spheres_are_hit_at_10000_where_a_ray_leaves_them_until_2019() {
         let found = hit(&world(&classic(SUN, &[ball]), dialect), [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]);
         assert_eq!(found.map(|hit| hit.t), Some(10_000.0), "{dialect:?}");
     }
+    // Since 2020 it is hit there.
+    let ball = "Component<Object> { type sphere radius 1 }";
+    let found = hit(&world(&nodes(&[ball]), Dialect::F23), [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]);
+    assert_eq!(found.map(|hit| hit.t), Some(0.0));
 }
 
 #[test]

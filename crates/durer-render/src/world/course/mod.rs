@@ -70,6 +70,9 @@ pub struct HitRules {
     pub closed_planes: bool,
     /// A sphere whose crossings cannot be told is hit at 10000, as in the starters until 2019.
     pub far_spheres: bool,
+    /// A sphere is hit at the very start of a ray too, as in the starter of 2020. On a ground of
+    /// radius 1000 one secondary ray in some starts exactly on it.
+    pub closed_spheres: bool,
     /// The normal of a plane outside of transforms keeps the length that is written.
     pub raw_normals: bool,
     /// Meshes are walked by an octree that loses the far half of cells.
@@ -134,7 +137,7 @@ impl CourseHits {
             match &object.geometry {
                 Geometry::Primitive(Primitive::Sphere(sphere)) => {
                     counter.work(0, 1);
-                    offer(shapes::sphere(sphere, &local, limits, self.rules.far_spheres), 0);
+                    offer(shapes::sphere(sphere, &local, limits, self.rules), 0);
                 }
                 Geometry::Primitive(Primitive::Plane(plane)) => {
                     counter.work(0, 1);

@@ -38,7 +38,7 @@ impl Limits {
 }
 
 /// |o + t d - c|^2 = r^2 by the usual formula, with all its cancellation.
-pub(super) fn sphere(sphere: &Sphere, ray: &Ray, limits: Limits, far: bool) -> Option<Crossing> {
+pub(super) fn sphere(sphere: &Sphere, ray: &Ray, limits: Limits, rules: HitRules) -> Option<Crossing> {
     let Ray { dir, t_min, .. } = *ray;
     let origin = ray.origin - sphere.center;
     let a = dir.dot(dir);
@@ -54,10 +54,14 @@ pub(super) fn sphere(sphere: &Sphere, ray: &Ray, limits: Limits, far: bool) -> O
         return None;
     }
     let t = match () {
+        () if rules.closed_spheres => {
+            let t = if near < t_min { later } else { near };
+            return limits.is_nearer(t, false).then_some(Crossing { t, uv: Vec2::ZERO });
+        }
         () if near > t_min => near,
-        () if later > t_min && (near < t_min || !far) => later,
+        () if later > t_min && (near < t_min || !rules.far_spheres) => later,
         // One crossing is exactly where the ray starts, or none is a number.
-        () if far => 10_000.0,
+        () if rules.far_spheres => 10_000.0,
         () => return None,
     };
     limits.takes(t, false).then_some(Crossing { t, uv: Vec2::ZERO })
