@@ -68,10 +68,8 @@ pub struct HitRules {
     pub tied_triangles: bool,
     /// A plane is hit at the very start of a ray too.
     pub closed_planes: bool,
-    /// A sphere whose crossings cannot be told is hit at 10000, as in the starters until 2019.
-    pub far_spheres: bool,
-    /// A sphere is hit at the very start of a ray too, as in the starter of 2020. On a ground of
-    /// radius 1000 one secondary ray in some starts exactly on it.
+    /// A sphere is hit at the very start of a ray too, as in the starter of 2020. Otherwise it is
+    /// hit at 10000 then, as in the starters before.
     pub closed_spheres: bool,
     /// The normal of a plane outside of transforms keeps the length that is written.
     pub raw_normals: bool,

@@ -59,10 +59,9 @@ pub(super) fn sphere(sphere: &Sphere, ray: &Ray, limits: Limits, rules: HitRules
             return limits.is_nearer(t, false).then_some(Crossing { t, uv: Vec2::ZERO });
         }
         () if near > t_min => near,
-        () if later > t_min && (near < t_min || !rules.far_spheres) => later,
-        // One crossing is exactly where the ray starts, or none is a number.
-        () if rules.far_spheres => 10_000.0,
-        () => return None,
+        () if later > t_min && near < t_min => later,
+        // One crossing is exactly where the ray starts, or both are NaN.
+        () => 10_000.0,
     };
     limits.takes(t, false).then_some(Crossing { t, uv: Vec2::ZERO })
 }
