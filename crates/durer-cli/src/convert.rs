@@ -65,9 +65,6 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let loaded = loaded.ok_or(Failure::Input(None))?;
     // Protect the files that the written text would name.
     loaded.named_files().iter().try_for_each(|path| guard.reads(path))?;
-    if let Some(guess) = loaded.guess.as_ref().filter(|guess| guess.hinted) {
-        report::note(&guess.note());
-    }
     if as_scene.is_some() {
         let mut found = Diagnostics::default();
         let bytes = loaded.write(&name, &mut found);

@@ -1,13 +1,14 @@
 //! `durer course`: the command lines of the course's programs of all years.
 
 mod options;
+mod year;
 
 pub use options::{Program, program};
 
 use crate::diagrams::{self, filter_layer, samples_layer};
 use crate::failure::{Failure, bad, failed};
 use crate::guard::Guard;
-use crate::open::{Opened, open};
+use crate::open::Opened;
 use crate::report::rejected;
 use crate::terminal::say;
 use crate::values::weight;
@@ -60,7 +61,7 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     // Report invalid file names before the work.
     let mut guard = Guard::default();
     let outputs = Outputs::of(&given, options.dialect, &mut guard)?;
-    let opened = open(Path::new(scene), &options, quiet, &mut guard)?;
+    let opened = year::open(Path::new(scene), &options, &given, &mut guard)?;
     let job = job(&given, &opened)?;
     let control = Arc::new(Control { threads: threads(&given)?, memory: MEMORY.bytes(), ..Control::default() });
     let world = &opened.world;

@@ -41,13 +41,14 @@ pub fn read(path: &Path, options: &LoadOptions, quiet: bool, guard: &mut Guard) 
 }
 
 impl Read {
+    /// The same scene, whose warnings are not printed when it is compiled.
+    pub fn quiet(self) -> Self {
+        Read { quiet: true, ..self }
+    }
+
     /// Compiles the scene and prints the diagnostics.
     pub fn compile(mut self, options: &LoadOptions, guard: &mut Guard) -> Result<Opened, Failure> {
         let world = self.loaded.compile(options, &mut self.files, &mut self.diagnostics);
-        let told = self.loaded.guess.as_ref().filter(|guess| guess.hinted);
-        if let (Some(guess), false, true) = (told, self.quiet, world.is_some()) {
-            report::note(&guess.note());
-        }
         report::print(&self.files, &self.diagnostics, self.quiet);
         let world = world.ok_or(Failure::Input(None))?;
         self.loaded.files().iter().try_for_each(|path| guard.reads(path))?;

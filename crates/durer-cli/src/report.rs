@@ -89,8 +89,13 @@ fn cause(world: &World) -> Option<String> {
         Material::Phong(phong) => phong.highlight.is_some_and(|highlight| highlight.1 < 0.0),
         Material::Solid(..) => false,
     };
-    let number = world.materials().iter().position(below)?;
-    Some(format!("the shininess of material {number} is negative, so its highlight is infinite"))
+    if let Some(number) = world.materials().iter().position(below) {
+        return Some(format!("the shininess of material {number} is below 0, and its highlight grows without end"));
+    }
+    let highlights = |material: &Material| matches!(material, Material::Phong(phong) if phong.highlight.is_some());
+    let shines = |number: u32| world.materials().get(number as usize).is_some_and(highlights);
+    let is_long = world.objects().iter().any(|object| object.normal_length > 1.0 && shines(object.material));
+    is_long.then(|| "the normal of a plane is longer than 1, and its highlight exceeds all numbers".into())
 }
 
 /// Returns the failure for an unreadable scene file.

@@ -207,22 +207,66 @@ fn files_are_found_from_the_current_folder_and_beside_the_scene() {
 #[test]
 fn options_of_another_year_do_not_change_the_guess() {
     let place = Place::new();
-    let shiny = plain().replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8");
+    let shiny = plain().replace("diffuseColor 0.8", "specularColor 0.9 0.9 0.9 shininess 20 diffuseColor 0.8");
     place.put("shiny.txt", shiny);
+    // Greys of depths, and highlights, differ between the years.
     for (options, dialect, told) in [
         ("-output o.bmp", "f12a4", false),
         ("-output o.bmp -shadows", "f12a5", true),
         ("-output o.bmp -shade_back", "f12a4", false),
         ("-output o.tga", "f12a4", false),
-        ("-output o.png", "f16", true),
+        ("-output o.png -depth 5 20 d.png", "f16", true),
         ("-output o.tga -grid 3 3 3 -shadows", "f12a5", true),
     ] {
-        let ran = place.gives(0, &format!("course -input shiny.txt -size 4 4 {options}"));
+        let ran = place.gives(0, &format!("course -input shiny.txt -size 40 40 {options}"));
         assert_eq!(ran.err.contains(&format!("note: read as {dialect}")), told, "{options}: {}", ran.err);
         assert_eq!(ran.err.contains("read as"), told, "{options}: {}", ran.err);
+        assert_eq!(ran.err.matches("read as").count(), usize::from(told));
     }
     let ran = place.gives(0, "course -input scene.txt -size 4 4 -output o.png -jitter");
     assert!(!ran.err.contains("read as"), "{}", ran.err);
+}
+
+#[test]
+fn guess_is_reported_only_where_it_changed_the_picture() {
+    let place = Place::new();
+    place.put("matte.txt", plain().replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8"));
+    // Matte things in the light of the sun look the same in 2012 and 2016.
+    let ran = place.gives(0, "course -input matte.txt -size 40 40 -output o.png");
+    assert!(!ran.err.contains("read as"), "{}", ran.err);
+    let official = place.gives(0, "course --dialect f16 -input matte.txt -size 40 40 -output f.png");
+    assert_eq!(place.bytes("o.png"), place.bytes("f.png"), "{}", official.err);
+}
+
+#[test]
+fn year_whose_picture_has_nan_samples_is_not_guessed() {
+    let place = Place::new();
+    let lamp = |falloff: &str| format!("PointLight {{ position 2 4 3 color 0.9 0.9 0.8 {falloff} }}");
+    let sun = "DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 }";
+    let shiny = plain().replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8");
+    // In 2016 both lights divide by zero.
+    place.put("none.txt", shiny.replace(sun, &lamp("")));
+    place.put("zero.txt", shiny.replace(sun, &lamp("falloff 0")));
+    for (scene, options, year) in [
+        ("none", "", "f12a4"),
+        ("none", "-shadows -bounces 2", "f12a5"),
+        ("zero", "", "f12a5"),
+        ("zero", "-shadows", "f12a5"),
+    ] {
+        let ran = place.gives(0, &format!("course -input {scene}.txt -size 30 30 -output o.png {options}"));
+        assert!(!ran.err.contains("not finite"), "{scene} {options}: {}", ran.err);
+        assert!(ran.err.matches("read as").count() <= 1, "{}", ran.err);
+        place.gives(0, &format!("course --dialect {year} -input {scene}.txt -size 30 30 -output y.png {options}"));
+        assert_eq!(place.bytes("o.png"), place.bytes("y.png"), "{scene} {options}");
+    }
+    // Where no other year fits, the picture is made, and says what is wrong with it.
+    place.put("only.txt", shiny.replace(sun, &lamp("falloff 0")).replace("Background {", "Background { cubeMap sky "));
+    std::fs::create_dir(place.path("sky")).unwrap();
+    for face in ["left", "right", "up", "down", "front", "back"] {
+        place.gives(0, &format!("course -input scene.txt -size 4 4 -output sky/{face}.png"));
+    }
+    let ran = place.gives(0, "course -input only.txt -size 30 30 -output o.png");
+    assert!(ran.err.contains("not finite") && ran.err.contains("the first in pixel"), "{}", ran.err);
 }
 
 #[test]

@@ -359,6 +359,7 @@ const F12A5: Rules = Rules {
         MirroredBack,
         TiedTriangles,
         RawRefraction,
+        LongMirrors,
         OctreeHoles,
         OddSizes,
         AnyValues,

@@ -153,7 +153,7 @@ pub fn load_text(
     let dialect = options.dialect.unwrap_or_else(|| {
         let found = match &json {
             // A JSON scene states its dialect, so there is nothing to detect.
-            Some(json) => Guess { dialect: json.dialect(), reasons: Vec::new(), others: Vec::new(), hinted: false },
+            Some(json) => Guess::certain(json.dialect()),
             None => course::guess(&bytes, file, &options.hints, &|name| source.contains(name)),
         };
         guess.insert(found).dialect

@@ -288,3 +288,96 @@ fn glass_of_2012_uses_plane_normals_as_written() {
     assert!((long - 1.92).abs() < 1e-5, "{long}");
     assert!((share(&pane("0 2 0", 0.0), &[Compat::RawRefraction]) - 0.96).abs() < 1e-5);
 }
+
+#[test]
+fn mirrors_of_2012_and_2016_keep_the_length_that_the_normal_of_a_plane_gives_a_ray() {
+    let scene = |center: &str| {
+        format!(
+            "PerspectiveCamera {{ center 0 5 0 direction 0 -1 0 up 0 0 1 angle 40 }}
+             Background {{ color 0 0 0 ambientLight 1 1 1 }}
+             Lights {{ numLights 1 DirectionalLight {{ direction 0 1 0 color 0 0 0 }} }}
+             Materials {{ numMaterials 2
+               PhongMaterial {{ diffuseColor 0 0 0 specularColor 1 1 1 shininess 1 }}
+               PhongMaterial {{ diffuseColor 1 1 1 }} }}
+             Group {{ numObjects 2 MaterialIndex 0 Plane {{ normal 0 2 0 offset 0 }}
+               MaterialIndex 1 Sphere {{ center {center} radius 0.3 }} }}"
+        )
+    };
+    // d - 2 (d·N) N: from (1, -1, 0) it is (1, 7, 0) with this normal, and (1, 1, 0) with a unit one.
+    for dialect in [Dialect::F12a5, Dialect::F16] {
+        let share = |center: &str| seen(&world(&scene(center), dialect), [-5.0, 5.0, 0.0], [1.0, -1.0, 0.0]).x;
+        assert_eq!((share("1 7 0"), share("5 5 0")), (1.0, 0.0), "{dialect:?}");
+    }
+}
+
+#[test]
+fn weights_of_mirrored_rays_below_zero_count_in_2012() {
+    let scene = "PerspectiveCamera { center 0 5 0 direction 0 -1 0 up 0 0 1 angle 40 }
+        Background { color 0.5 0.5 0.5 ambientLight 1 1 1 }
+        Lights { numLights 1 DirectionalLight { direction 0 1 0 color 0 0 0 } }
+        Materials { numMaterials 2
+          PhongMaterial { diffuseColor 0 0 0 specularColor 1 1 1 shininess 1 refractionIndex 1.5 }
+          PhongMaterial { diffuseColor 1 1 1 } }
+        Group { numObjects 2 MaterialIndex 0 Plane { normal 0 2 0 offset 0 }
+          MaterialIndex 1 Sphere { center 0 -2 0 radius 1 } }";
+    // R = 0.04 - 0.96 of the background, and 1 - R of the ball.
+    let light = seen(&world(scene, Dialect::F12a5), [0.0, 5.0, 0.0], [0.0, -1.0, 0.0]).x;
+    assert!((light - (1.92 - 0.92 * 0.5)).abs() < 1e-5, "{light}");
+}
+
+#[test]
+fn highlights_beyond_all_numbers_spoil_black_ones_too() {
+    let plane = |normal: &str| {
+        let plane = format!("Plane {{ normal {normal} offset 0 }}");
+        classic(SUN, &[&plane]).replace("diffuseColor 1 1 1", "diffuseColor 1 1 1 specularColor 0 0 0 shininess 200")
+    };
+    for dialect in [Dialect::F12a4, Dialect::F16] {
+        let light = |normal| seen(&world(&plane(normal), dialect), [0.0, 5.0, 0.0], [0.0, -1.0, 0.0]).x;
+        // The base of the power is 7 with a normal of length 2, and 1 with a unit one.
+        assert!(light("0 2 0").is_nan(), "{dialect:?}");
+        assert_eq!(light("0 1 0"), 1.0, "{dialect:?}");
+    }
+}
+
+#[test]
+fn spheres_are_hit_at_10000_where_a_ray_leaves_them_until_2019() {
+    let ball = "Sphere { center 0 0 0 radius 1 }";
+    for dialect in [Dialect::F12a4, Dialect::F12a5, Dialect::F16] {
+        let found = hit(&world(&classic(SUN, &[ball]), dialect), [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]);
+        assert_eq!(found.map(|hit| hit.t), Some(10_000.0), "{dialect:?}");
+    }
+    // Since 2020 it is hit there.
+    let ball = "Component<Object> { type sphere radius 1 }";
+    let found = hit(&world(&nodes(&[ball]), Dialect::F23), [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]);
+    assert_eq!(found.map(|hit| hit.t), Some(0.0));
+}
+
+#[test]
+fn triangles_of_2012_block_a_ray_that_ends_on_them() {
+    let triangle = "Triangle { vertex0 -1 -1 0 vertex1 1 -1 0 vertex2 0 1 0 }";
+    for (dialect, blocks) in [(Dialect::F12a5, true), (Dialect::F16, false)] {
+        let world = world(&classic(SUN, &[triangle]), dialect);
+        let ends = Ray { t_max: 5.0, ..Ray::new(Vec3::new(0.0, 0.0, 5.0), Vec3::NEG_Z) };
+        assert_eq!(world.occluded(ends, &mut ()), blocks, "{dialect:?}");
+    }
+}
+
+#[test]
+fn normals_of_spheres_are_rounded_as_in_the_program_of_their_year() {
+    // On a ground of radius 1000 they are off by the rounding of the point.
+    let ground = "Sphere { center 0 -1002 0 radius 1000 }";
+    let (eye, dir) = (Vec3::new(1.5, 2.25, 9.0), Vec3::new(0.1, -0.2, -1.0).normalize());
+    for dialect in [Dialect::F12a4, Dialect::F16] {
+        let world = world(&classic(SUN, &[ground]), dialect);
+        let found = world.closest(Ray::new(eye, dir), &mut ()).unwrap();
+        let away = eye + found.t * dir - Vec3::new(0.0, -1002.0, 0.0);
+        assert_eq!(world.interaction(Ray::new(eye, dir), found).surface.n_shade, away / away.length(), "{dialect:?}");
+    }
+    let node = "Transform { translate 0 -1002 0 } Component<Object> { type sphere radius 1000 }";
+    let world = world(&nodes(&[node]), Dialect::F23);
+    let found = world.closest(Ray::new(eye, dir), &mut ()).unwrap();
+    let unit = |v: Vec3| v * (1.0 / v.dot(v).sqrt());
+    let own = eye + Vec3::new(0.0, 1002.0, 0.0);
+    let to = (eye + dir + Vec3::new(0.0, 1002.0, 0.0)) - own;
+    assert_eq!(world.interaction(Ray::new(eye, dir), found).surface.n_shade, unit(unit(own + found.t * to)));
+}

@@ -25,11 +25,23 @@ pub struct Guess {
     pub reasons: Vec<(String, Option<Span>)>,
     /// Other dialects that fit as well.
     pub others: Vec<Dialect>,
-    /// True if hints changed the result of the words alone.
-    pub hinted: bool,
+    /// All dialects that the words and the hints that are not weak leave, the likeliest first.
+    pub fitting: Vec<Dialect>,
+    /// What the words alone tell.
+    pub by_words: Dialect,
 }
 
 impl Guess {
+    /// A dialect that a file names.
+    pub fn certain(dialect: Dialect) -> Self {
+        Guess { dialect, reasons: Vec::new(), others: Vec::new(), fitting: vec![dialect], by_words: dialect }
+    }
+
+    /// True where hints led to another dialect than the words alone.
+    pub fn is_hinted(&self) -> bool {
+        self.dialect != self.by_words
+    }
+
     /// Returns the guess as a note for the user.
     pub fn note(&self) -> Diagnostic {
         let reasons: Vec<&str> = self.reasons.iter().map(|r| r.0.as_str()).collect();
@@ -123,21 +135,20 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         let keep = if nodes { set::F23 } else { 0 };
         narrow(keep, "it has comments, which the course's language lacks".into(), Some(comment.span));
     }
-    // Exclude the year in which a missing `falloff` divides by zero and renders black.
-    let sane = left & !if lacks_falloff(&text, tokens.len()) { set::F16 } else { 0 };
-    if sane != 0 {
-        left = sane;
-    }
     let first = |left: DialectSet| PREFERENCE.into_iter().find(|d| d.is_in(left));
     let by_words = first(left);
-    for hint in hints {
-        // Ignore a hint that contradicts the file or earlier hints: options may be those of another
-        // year.
+    // Hints that count least come last: the years that fit are those before them.
+    let (weak, strong): (Vec<&Hint>, Vec<&Hint>) = hints.iter().partition(|hint| hint.weak);
+    let mut fitting = left;
+    for hint in strong.into_iter().chain(weak) {
+        // A hint that contradicts the file and the hints before it tells nothing: options may be
+        // another year's.
         let keep = left & hint.set;
         if keep != 0 && keep != left && !(hint.weak && reasons.is_empty()) {
             left = keep;
             reasons.push((hint.set, hint.why.clone(), None));
         }
+        fitting = if hint.weak { fitting } else { left };
     }
     // Drop reasons that later ones make redundant.
     for i in (0..reasons.len()).rev() {
@@ -147,15 +158,15 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         }
     }
     let reasons = reasons.into_iter().map(|(_, why, span)| (why, span)).collect();
-    let mut candidates = PREFERENCE.into_iter().filter(|d| d.is_in(left));
-    let dialect = candidates.next().unwrap_or(Dialect::Durer);
-    Guess { dialect, reasons, others: candidates.collect(), hinted: by_words.is_some_and(|first| first != dialect) }
-}
-
-/// True if some point light has no `falloff`.
-fn lacks_falloff<'a>(text: &impl Fn(usize) -> std::borrow::Cow<'a, str>, count: usize) -> bool {
-    let block = |start: usize| (start..count).map(text).take_while(|word| *word != "}");
-    (0..count).any(|i| text(i) == "PointLight" && block(i).all(|word| word != "falloff"))
+    let of = |set: DialectSet| PREFERENCE.into_iter().filter(move |d| d.is_in(set));
+    let dialect = first(left).unwrap_or(Dialect::Durer);
+    Guess {
+        dialect,
+        reasons,
+        others: of(left).filter(|other| *other != dialect).collect(),
+        fitting: of(fitting).collect(),
+        by_words: by_words.unwrap_or(dialect),
+    }
 }
 
 fn names(set: DialectSet) -> String {

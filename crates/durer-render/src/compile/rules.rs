@@ -50,7 +50,8 @@ pub fn hit_rules(rules: &Rules) -> Option<HitRules> {
         triangle_matrix: rules.arithmetic == Arithmetic::Of2012,
         tied_triangles: rules.has(Compat::TiedTriangles),
         closed_planes: rules.has(Compat::ClosedPlanes),
-        far_spheres: rules.arithmetic == Arithmetic::Of2016,
+        closed_spheres: vectors == Vectors::Glm,
+        raw_normals: rules.has(Compat::RawNormals),
         octree: rules.has(Compat::OctreeHoles),
     })
 }

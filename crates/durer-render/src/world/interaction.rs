@@ -74,6 +74,9 @@ impl World {
         object.own_surface(ray, point, &crossing, hit.part, rules, &mut at.surface);
         (at.ray, at.hit, at.material, at.width) = (*ray, hit, self.material_of(&hit), 0.0);
         object.place(&mut at.surface, ray, &crossing, rules);
+        if let Some(n) = self.course_normal(&ray.rounded, &hit) {
+            at.surface.n_shade = n;
+        }
         if let Geometry::Solid(_) = &object.geometry {
             at.surface.solid = Some(hit.object);
         }

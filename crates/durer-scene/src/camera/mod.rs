@@ -9,6 +9,7 @@ mod pose;
 pub mod raster;
 mod ray_cone;
 mod sheet;
+mod tangent;
 
 pub mod cave;
 pub mod cube_map;

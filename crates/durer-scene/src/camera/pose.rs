@@ -1,6 +1,7 @@
 //! Position and orientation of a camera.
 
 use super::Projection;
+use super::tangent::tangent;
 use crate::math::{Ray, Vec3, fp};
 use glam::{DMat3, DVec3};
 use std::f32::consts::PI;
@@ -55,11 +56,10 @@ impl Aim {
 
     /// Distance of the screen that spans an angle in degrees.
     pub(super) fn distance(self, angle: f32) -> f32 {
-        let tan = |x: f32| fp::tan_f64(f64::from(x)) as f32;
         let radians = (PI_F64 * f64::from(angle) / 180.0) as f32;
         match self {
-            Aim::Of2020 => 1.0 / tan(angle / 180.0 * PI / 2.0),
-            Aim::Of2016 => 1.0 / tan(radians / 2.0),
+            Aim::Of2020 => 1.0 / tangent(angle / 180.0 * PI / 2.0),
+            Aim::Of2016 => 1.0 / tangent(radians / 2.0),
             _ => (1.0 / fp::tan_f64(f64::from(radians) / 2.0)) as f32,
         }
     }

@@ -109,5 +109,25 @@ fn distinctive_words_decide_the_guess() {
     let hint = Hint { set: Dialect::F16 as u8, why: "the output is a PNG file".into(), weak: false };
     let guess = guess(b"PerspectiveCamera { }", 0, &[hint], &|_| false);
     assert_eq!((guess.dialect, guess.others.len()), (Dialect::F16, 0));
+    assert_eq!((guess.by_words, guess.is_hinted()), (Dialect::F12a4, true));
     assert!(guess.note().message.ends_with("the output is a PNG file"));
+}
+
+#[test]
+fn weak_hints_choose_among_the_years_that_fit_and_rule_none_out() {
+    let hint = |set, weak| Hint { set, why: "of a reason".into(), weak };
+    let (shadows, png) = (hint(set::ALL & !set::F12A4, false), hint(set::F16 | set::F23, true));
+    let scene = b"PerspectiveCamera { } Materials { Material { shininess 3 } }";
+    let found = guess(scene, 0, &[png.clone()], &|_| false);
+    assert_eq!((found.dialect, found.by_words), (Dialect::F16, Dialect::F12a4));
+    assert_eq!(found.fitting, [Dialect::F12a4, Dialect::F12a5, Dialect::F16]);
+    // In whatever order they come.
+    for hints in [[png.clone(), shadows.clone()], [shadows, png.clone()]] {
+        let found = guess(scene, 0, &hints, &|_| false);
+        assert_eq!(found.dialect, Dialect::F16);
+        assert_eq!(found.fitting, [Dialect::F12a5, Dialect::F16]);
+    }
+    // Alone it tells nothing.
+    let found = guess(b"PerspectiveCamera { }", 0, &[png], &|_| false);
+    assert_eq!(found.dialect, Dialect::F12a4);
 }

@@ -113,8 +113,9 @@ impl Direct {
     #[inline(always)]
     pub(super) fn is_dark(&self, phong: &Phong) -> bool {
         let highlight = |(specular, exponent, _)| {
-            // Exponent 0 gives 1.
-            specular != Color::ZERO && (self.base.is_some_and(|base| base > 0.0) || exponent <= 0.0)
+            // Exponent 0 gives 1. A base above 1, of a normal that is longer, may give infinity.
+            let shows = |base: f32| base > if specular == Color::ZERO { 1.0 } else { 0.0 };
+            self.base.is_some_and(shows) || specular != Color::ZERO && exponent <= 0.0
         };
         self.diffuse == Color::ZERO && !(self.base.is_some() && phong.highlight.is_some_and(highlight))
     }

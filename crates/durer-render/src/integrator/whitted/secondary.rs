@@ -87,7 +87,7 @@ impl Whitted<'_> {
         let transmitted = match transparent == Color::ZERO {
             true => None,
             // With a normal that is not unit length, the transmitted direction differs too.
-            false if rules.raw_refraction => refract(dir, n, here / there).map(|through| through.normalize_or(dir)),
+            false if rules.raw_refraction => refract_raw(dir, n, here / there).map(|through| through.normalize_or(dir)),
             false => refract(dir, n, here / there),
         };
         // If one of the two is switched off, the other gets all the light.
@@ -154,7 +154,8 @@ impl Whitted<'_> {
         queue: &mut Queue,
         tally: &mut T,
     ) {
-        if factor.max_element() <= 0.0 {
+        // Below 0 where Schlick's formula meets a normal that is not of length 1.
+        if factor == Color::ZERO {
             return;
         }
         let &mut Segment { weight, bounces, camera, secondary, .. } = queue.segment(parent);
@@ -225,6 +226,13 @@ pub fn fresnel_share(dir: Vec3, n: Vec3, transmitted: Vec3, (here, there): (f32,
     let rest = 1.0 - cosine;
     let square = rest * rest;
     r0 + (1.0 - r0) * square * square * rest
+}
+
+/// [`refract`] in the order of the program of 2012, which rounds otherwise.
+fn refract_raw(d: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
+    let cosine = -d.dot(n);
+    let radicand = 1.0 - eta * eta * (1.0 - cosine * cosine);
+    if radicand >= 0.0 { Some((eta * cosine - radicand.sqrt()) * n + eta * d) } else { None }
 }
 
 /// Refracts a direction by Snell's law at a surface whose normal `n` is on the ray's side; `None`

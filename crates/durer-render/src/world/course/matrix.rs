@@ -61,6 +61,15 @@ impl Matrix {
         Vec3::new(row(0), row(1), row(2))
     }
 
+    /// A normal's image under the transpose.
+    pub fn across(&self, n: Vec3, vectors: Vectors) -> Vec3 {
+        let [x, y, z] = [0, 1, 2].map(|column| {
+            let [a, b, c] = [0, 1, 2].map(|row| self.0[column][row] * n[row]);
+            vectors.sum_from(a) + b + c
+        });
+        Vec3::new(x, y, z)
+    }
+
     /// True if the matrix and its inverse are finite.
     pub fn is_regular(&self) -> bool {
         let inverse = self.inverse(Vectors::Vecmath);

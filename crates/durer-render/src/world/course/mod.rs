@@ -9,7 +9,7 @@ mod matrix;
 mod octree;
 mod shapes;
 
-use super::{Geometry, Hit, MeshTree, Object, World};
+use super::{Accel, Geometry, Hit, MeshTree, Object, World};
 use durer_bvh::{Bvh, TraversalCounter};
 use durer_scene::light::{Emitter as _, Light};
 use durer_scene::math::{Aabb, Ray, Ray64, Vec3};
@@ -39,6 +39,14 @@ impl Vectors {
         }
     }
 
+    /// The direction that an octree is walked along: of length 1 in the course's own arithmetic.
+    fn walked(self, dir: Vec3) -> Vec3 {
+        match self {
+            Vectors::Vecmath => self.unit(dir),
+            Vectors::Glm => dir,
+        }
+    }
+
     /// Normalizes a vector; NaN for a zero vector.
     pub fn unit(self, v: Vec3) -> Vec3 {
         match self {
@@ -60,9 +68,11 @@ pub struct HitRules {
     pub tied_triangles: bool,
     /// True if a plane is also hit at the very start of a ray.
     pub closed_planes: bool,
-    /// True if a sphere is hit at 10000 when its crossings are NaN or one is exactly at the ray's
-    /// start, as in the starter code of 2016.
-    pub far_spheres: bool,
+    /// A sphere is hit at the very start of a ray too, as in the starter of 2020. Otherwise it is
+    /// hit at 10000 then, as in the starters before.
+    pub closed_spheres: bool,
+    /// The normal of a plane outside of transforms keeps the length that is written.
+    pub raw_normals: bool,
     /// True to traverse meshes by an octree that loses the far half of cells.
     pub octree: bool,
 }
@@ -125,7 +135,7 @@ impl CourseHits {
             match &object.geometry {
                 Geometry::Primitive(Primitive::Sphere(sphere)) => {
                     counter.work(0, 1);
-                    offer(shapes::sphere(sphere, &local, limits, self.rules.far_spheres), 0);
+                    offer(shapes::sphere(sphere, &local, limits, self.rules), 0);
                 }
                 Geometry::Primitive(Primitive::Plane(plane)) => {
                     counter.work(0, 1);
@@ -172,6 +182,30 @@ impl CourseHits {
         local
     }
 
+    /// The normal of a sphere or a plane in world space; `None` for anything else. On a ground of
+    /// radius 1000, or a plane of another length than 1, its rounding decides where mirrored rays
+    /// hit the ground again.
+    fn normal(&self, objects: &[Object], ray: &Ray, hit: &Hit) -> Option<Vec3> {
+        let (thing, vectors) = (&self.things[hit.object as usize], self.rules.vectors);
+        let own = match &objects[hit.object as usize].geometry {
+            Geometry::Primitive(Primitive::Sphere(sphere)) => {
+                let local = self.local(thing, ray);
+                vectors.unit(local.origin + hit.t * local.dir - sphere.center)
+            }
+            Geometry::Primitive(Primitive::Plane(plane)) if self.rules.raw_normals || vectors == Vectors::Glm => {
+                plane.normal
+            }
+            Geometry::Primitive(Primitive::Plane(plane)) => vectors.unit(plane.normal),
+            _ => return None,
+        };
+        let moved = |n, inverse: &Matrix| vectors.unit(inverse.across(n, vectors));
+        let n = match vectors {
+            Vectors::Vecmath => thing.inverses.iter().rev().fold(own, moved),
+            Vectors::Glm => moved(own, thing.inverses.first().unwrap_or(&Matrix::IDENTITY)),
+        };
+        n.is_finite().then_some(n)
+    }
+
     /// Returns the size in bytes.
     pub fn memory_usage(&self) -> usize {
         let walk = |thing: &Thing| match thing.walk.as_deref() {
@@ -195,7 +229,7 @@ impl Thing {
     ) -> Option<(Crossing, u32)> {
         let mut best: Option<(Crossing, u32)> = None;
         match self.walk.as_deref()? {
-            Walk::Octree(octree) => octree.walk(ray, &mut |part| {
+            Walk::Octree(octree) => octree.walk(ray.origin, rules.vectors.walked(ray.dir), &mut |part| {
                 counter.work(0, 1);
                 if let Some(crossing) = shapes::triangle(tree.mesh.corners(part), ray, limits, rules) {
                     limits.best = Some(crossing.t);
@@ -237,6 +271,14 @@ impl Walk {
 }
 
 impl World {
+    /// The normal at a hit where the official program's rounding of it counts.
+    pub(super) fn course_normal(&self, ray: &Ray, hit: &Hit) -> Option<Vec3> {
+        match self.accel() {
+            Accel::Course(hits) => hits.normal(self.objects(), ray, hit),
+            _ => None,
+        }
+    }
+
     /// Returns the direction and distance to a light as in the official program; `None` with
     /// Dürer's own arithmetic, or for lights that the course does not have.
     pub fn course_way(&self, light: usize, point: Vec3) -> Option<(Vec3, f32)> {

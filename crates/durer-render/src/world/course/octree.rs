@@ -8,7 +8,7 @@
 //! Source: Revelles, Ureña, Lastra, *An Efficient Parametric Algorithm for Octree Traversal*, WSCG
 //! 2000; the constants are the starter code's.
 
-use durer_scene::math::{Aabb, Ray, Vec3};
+use durer_scene::math::{Aabb, Vec3};
 use std::ops::Range;
 
 /// Number of triangles above which a cell is divided.
@@ -83,11 +83,11 @@ impl Octree {
         }
     }
 
-    /// Offers the triangles of the cells that a ray visits, in order of visits; some more than
-    /// once.
-    pub fn walk(&self, ray: &Ray, offer: &mut impl FnMut(u32)) {
+    /// Offers the triangles of the cells that a ray from `origin` visits, in that order; some more
+    /// than once.
+    pub fn walk(&self, mut origin: Vec3, mut dir: Vec3, offer: &mut impl FnMut(u32)) {
         // Mirror the axes along which the ray runs backwards, and the children with them.
-        let (mut origin, mut dir, mut mirrored) = (ray.origin, ray.dir, 0);
+        let mut mirrored = 0;
         for axis in 0..3 {
             if dir[axis] < 0.0 {
                 origin[axis] = (self.bounds.max + self.bounds.min)[axis] - origin[axis];

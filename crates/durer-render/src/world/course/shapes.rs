@@ -31,12 +31,14 @@ impl Limits {
     }
 
     fn is_nearer(&self, t: f32, ties: bool) -> bool {
-        t < self.t_max && self.best.is_none_or(|best| t < best || ties && t == best)
+        // The end of the ray is where the programs begin with their nearest hit.
+        let best = self.best.unwrap_or(self.t_max.min(f32::MAX));
+        t < best || ties && t == best
     }
 }
 
 /// Solves |o + t d - c|^2 = r^2 by the quadratic formula, without protection from cancellation.
-pub(super) fn sphere(sphere: &Sphere, ray: &Ray, limits: Limits, far: bool) -> Option<Crossing> {
+pub(super) fn sphere(sphere: &Sphere, ray: &Ray, limits: Limits, rules: HitRules) -> Option<Crossing> {
     let Ray { dir, t_min, .. } = *ray;
     let origin = ray.origin - sphere.center;
     let a = dir.dot(dir);
@@ -52,11 +54,14 @@ pub(super) fn sphere(sphere: &Sphere, ray: &Ray, limits: Limits, far: bool) -> O
         return None;
     }
     let t = match () {
+        () if rules.closed_spheres => {
+            let t = if near < t_min { later } else { near };
+            return limits.is_nearer(t, false).then_some(Crossing { t, uv: Vec2::ZERO });
+        }
         () if near > t_min => near,
-        () if later > t_min && (near < t_min || !far) => later,
-        // A crossing is exactly at the ray's start, or the crossings are NaN.
-        () if far => 10_000.0,
-        () => return None,
+        () if later > t_min && near < t_min => later,
+        // One crossing is exactly where the ray starts, or both are NaN.
+        () => 10_000.0,
     };
     limits.takes(t, false).then_some(Crossing { t, uv: Vec2::ZERO })
 }

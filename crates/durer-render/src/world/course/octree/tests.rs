@@ -1,4 +1,5 @@
 use super::*;
+use durer_scene::math::Ray;
 use durer_scene::math::random::Random;
 
 /// Boxes of small triangles in a cube from -1 to 1.
@@ -15,7 +16,7 @@ fn boxes(count: usize, random: &mut Random) -> Vec<Aabb> {
 
 fn visited(octree: &Octree, ray: &Ray) -> Vec<u32> {
     let mut found = Vec::new();
-    octree.walk(ray, &mut |i| found.push(i));
+    octree.walk(ray.origin, ray.dir, &mut |i| found.push(i));
     found
 }
 

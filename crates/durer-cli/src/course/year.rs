@@ -1,0 +1,100 @@
+//! The year of a scene whose words and options leave several open.
+//!
+//! Small pictures decide: of the years that fit, the guessed one counts unless its picture has NaN
+//! samples and another's has none.
+
+use super::job;
+use super::options::Given;
+use crate::failure::{Failure, failed};
+use crate::guard::Guard;
+use crate::open::{Opened, read};
+use crate::report;
+use durer::LoadOptions;
+use durer::diag::Diagnostic;
+use durer::dialect::Dialect;
+use durer::format::course::Guess;
+use durer::image::Layer;
+use durer::math::Vec3;
+use durer::render::{Control, Job, Sampling};
+use std::path::Path;
+
+/// Most pixels across and down a small picture.
+const SIDE: u32 = 64;
+
+/// Pixels that look alike differ by at most this much in a channel.
+const ALIKE: f32 = 2.0 / 255.0;
+
+/// At most one of so many pixels may look different in pictures that are the same.
+const ONE_OF: usize = 1000;
+
+/// Opens a scene under the year that fits best. Prints its warnings, and a note where hints
+/// outside the scene's words changed the picture.
+pub fn open(scene: &Path, options: &LoadOptions, given: &Given, guard: &mut Guard) -> Result<Opened, Failure> {
+    let quiet = given.has("--quiet");
+    let read = read(scene, options, quiet, guard)?;
+    let guess = read.loaded.guess.clone().filter(|guess| guess.is_hinted() || guess.fitting.len() > 1);
+    let Some(guess) = guess else {
+        return read.compile(options, guard);
+    };
+    let mut chosen = read.quiet().compile(options, guard)?;
+    let mut trial = Trial::of(&chosen, given)?;
+    let mut under = |dialect| {
+        let options = LoadOptions { dialect: Some(dialect), ..options.clone() };
+        let opened = self::read(scene, &options, true, guard)?.compile(&options, guard)?;
+        Ok::<_, Failure>((Trial::of(&opened, given)?, opened))
+    };
+    if trial.nan > 0 {
+        let others = guess.fitting.iter().filter(|other| **other != guess.dialect);
+        let mut tried = others.filter_map(|other| under(*other).ok());
+        if let Some(sound) = tried.find(|(trial, _)| trial.nan == 0) {
+            (trial, chosen) = sound;
+        }
+    }
+    let dialect = chosen.loaded.dialect;
+    if !quiet && dialect != guess.by_words {
+        let is_same = under(guess.by_words).is_ok_and(|(by_words, _)| by_words.looks_like(&trial));
+        if !is_same {
+            report::note(&note(&guess, dialect));
+        }
+    }
+    report::print(&chosen.files, &chosen.diagnostics, quiet);
+    Ok(chosen)
+}
+
+/// Why a scene is read as of some year.
+fn note(guess: &Guess, dialect: Dialect) -> Diagnostic {
+    match guess.dialect == dialect {
+        true => guess.note(),
+        false => {
+            let (dialect, other) = (dialect.name(), guess.dialect.name());
+            Diagnostic::note(format!("read as {dialect}: the picture of {other} has NaN samples")).code("dialect")
+        }
+    }
+}
+
+/// A small picture.
+struct Trial {
+    layers: Vec<Layer>,
+    /// Number of its samples that are NaN.
+    nan: u64,
+}
+
+impl Trial {
+    fn of(opened: &Opened, given: &Given) -> Result<Self, Failure> {
+        let job = job(given, opened)?;
+        let times = job.width.max(job.height).div_ceil(SIDE);
+        let [width, height] = [job.width, job.height].map(|length| (length / times).max(1));
+        let job = Job { width, height, sampling: Sampling::Center, ..job };
+        let rendered = durer::render::render(&opened.world, &job, &Control::default()).map_err(failed)?;
+        Ok(Trial { nan: rendered.statistics.rejected, layers: rendered.pictures })
+    }
+
+    fn looks_like(&self, other: &Trial) -> bool {
+        let differs = |(a, b): (&Vec3, &Vec3)| (*a - *b).abs().max_element() > ALIKE;
+        self.nan == other.nan
+            && self.layers.iter().zip(&other.layers).all(|(a, b)| {
+                let (a, b) = (&a.image.pixels, &b.image.pixels);
+                a.len() == b.len() && a.iter().zip(b).filter(|pair| differs(*pair)).count() * ONE_OF <= a.len()
+            })
+    }
+}
