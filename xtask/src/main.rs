@@ -1,6 +1,7 @@
 //! Commands for developers of Dürer.
 
 mod additions;
+mod attack;
 mod bench_files;
 mod bench_pictures;
 mod bench_rays;
@@ -18,6 +19,7 @@ mod page;
 mod peers;
 mod prose;
 mod sheet;
+mod soak;
 mod solids;
 mod teach;
 mod torture;
@@ -48,8 +50,14 @@ const USAGE: &str = "Commands:
   cargo xtask torture [--kills 100] [--offsets 50] [--seed 1]
       Kill the program at random times while it works and saves, and go on with what it left; give it full disks and
       disks that cannot be written.
+  cargo xtask attack [KIND] [--count N] [--seed N] [--only ENDING]
+      Hostile inputs by kind, or all kinds: names, templates, growth, signals, far, kills, mutated. Each counts what it
+      tried and what fell. --only: mutated files with this ending. Mutated files that fell are in target/attack.
   cargo xtask cost
       What exact sums cost, what a second thread brings, how soon a cancelled render ends.
+  cargo xtask soak [--minutes 2] [--seed N]
+      Random scenes and files of all formats under all integrators, in one process and by the command: one hash whenever a
+      job repeats, no growth of memory, no handle left.
   cargo xtask solids
       A million random points against the Boolean of the parts of random solids, and the cost of rays at solids of a
       thousand parts beside that at the same parts as plain objects.
@@ -113,6 +121,7 @@ fn main() -> anyhow::Result<ExitCode> {
             Ok(ExitCode::SUCCESS)
         }
         Some("additions") => additions::run(&arguments[1..]),
+        Some("attack") => attack::run(&arguments[1..]),
         Some("bench-files") => bench_files::run(&arguments[1..]),
         Some("bench-pictures") => bench_pictures::run(&arguments[1..]),
         Some("course") => course::run(&arguments[1..]),
@@ -123,6 +132,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("bitterli") => bitterli::run(&arguments[1..]),
         Some("sheet") => sheet::run(&arguments[1..]),
         Some("cost") => cost::run(&arguments[1..]),
+        Some("soak") => soak::run(&arguments[1..]),
         Some("solids") => solids::run(),
         Some("teach") => teach::run(&arguments[1..]),
         Some("long") => long::run(&arguments[1..]),

@@ -15,6 +15,7 @@ mod files;
 #[cfg(feature = "fs")]
 pub mod folder;
 mod gltf;
+mod growth;
 pub mod json;
 mod lamps;
 mod medium;

@@ -1,5 +1,6 @@
 //! Names: of materials, and of objects that are defined once and used many times.
 
+use crate::growth::MAX_OBJECTS;
 use super::lexer::TokenKind;
 use super::nodes::paint;
 use super::reader::Reader;
@@ -7,9 +8,6 @@ use super::words::dialects_of;
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::dialect::set;
 use durer_scene::scene::{Group, Node, Object};
-
-/// Objects of a scene that uses defined ones, each counted as often as it is there.
-const MAX_OBJECTS: usize = 1 << 20;
 
 impl Reader<'_, '_> {
     /// The name of a material, between its keyword and its block.

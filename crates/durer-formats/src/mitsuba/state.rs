@@ -15,8 +15,6 @@ use std::collections::{BTreeMap, HashSet};
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Objects of a scene, those of instances counted each time.
-const MAX_OBJECTS: usize = 1 << 20;
 /// Plugins in plugins, those counted to which others refer.
 pub(super) const DEEPEST: u32 = 32;
 
@@ -33,7 +31,6 @@ pub(super) struct Reader<'a> {
     pub meshes: BTreeMap<String, Option<Arc<MeshData>>>,
     /// What shape groups hold, and how many objects that is.
     pub groups: BTreeMap<Key, (Rc<Group>, usize)>,
-    pub count: usize,
     /// Whether the shape at hand is turned inside out: the index inside of its glass is outside.
     pub inside_out: bool,
     pub infinite: Option<Infinite>,
@@ -52,7 +49,6 @@ impl<'a> Reader<'a> {
             numbers: BTreeMap::new(),
             meshes: BTreeMap::new(),
             groups: BTreeMap::new(),
-            count: 0,
             inside_out: false,
             infinite: None,
             emitters_only: false,
@@ -163,17 +159,12 @@ impl<'a> Reader<'a> {
     }
 
     /// Whether so many objects more are allowed.
-    pub fn room_for(&mut self, more: usize, at: Span) -> bool {
-        let before = self.count;
-        self.count = self.count.saturating_add(more);
-        if before <= MAX_OBJECTS && self.count > MAX_OBJECTS {
-            self.said.bad(at, format!("more than {MAX_OBJECTS} objects, those of instances counted, are too many"));
-        }
-        self.count <= MAX_OBJECTS
+    pub fn room_for(&self, more: usize, at: Span) -> bool {
+        self.loader.growth.has_objects(more, self.said, at)
     }
 
     /// Adds an object to others.
-    pub fn add(&mut self, objects: &mut Vec<Object>, object: Object) {
+    pub fn add(&self, objects: &mut Vec<Object>, object: Object) {
         if self.room_for(1, object.span) {
             objects.push(object);
         }

@@ -5,6 +5,7 @@ use super::lexer::Lexer;
 use super::made::{AreaLight, Infinite, Made, Texture};
 use super::params::{Param, Params};
 use super::transform::Transforms;
+use crate::growth::Growth;
 use crate::medium::Medium;
 use crate::model::Input;
 use crate::said::Said;
@@ -16,9 +17,6 @@ use glam::DAffine3;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
-
-/// Objects of a scene, those of instances counted each time.
-const MAX_OBJECTS: usize = 1 << 20;
 
 /// What `Attribute` may be said of: places in [`State::given`].
 pub(super) const SHAPE: usize = 0;
@@ -95,7 +93,7 @@ pub(super) struct Reader<'a> {
     pub objects: BTreeMap<String, Rc<Group>>,
     /// The object that is being defined.
     pub defining: Option<(String, Group)>,
-    pub count: usize,
+    pub growth: Growth,
     /// Triangles that were made of few numbers.
     pub grown: usize,
     /// Files that were included.
@@ -133,7 +131,7 @@ impl<'a> Reader<'a> {
             filled: BTreeMap::new(),
             objects: BTreeMap::new(),
             defining: None,
-            count: 0,
+            growth: Growth::within(input.memory),
             grown: 0,
             included: 0,
             camera: None,
@@ -169,20 +167,9 @@ impl<'a> Reader<'a> {
 
     /// Adds an object to the scene, or to what is being defined.
     pub fn add(&mut self, object: Object) {
-        self.count += 1;
         match &mut self.defining {
             Some((_, group)) => group.objects.push(object),
             None => self.scene.root.get_or_insert_default().objects.push(object),
         }
-    }
-
-    /// Whether so many objects more are allowed.
-    pub fn room_for(&mut self, more: usize, at: Span) -> bool {
-        self.count = self.count.saturating_add(more);
-        if self.count > MAX_OBJECTS {
-            self.said.bad(at, format!("more than {MAX_OBJECTS} objects, those of instances counted, are too many"));
-            return false;
-        }
-        true
     }
 }
