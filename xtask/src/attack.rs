@@ -134,7 +134,11 @@ fn templates(attack: &Attack) -> Result<Outcome> {
 
 fn kills(attack: &Attack) -> Result<Outcome> {
     let done = crate::torture::kills_in(&attack.durer, attack.folder.path(), attack.count, attack.seed);
-    Ok(Outcome { tried: attack.count, fallen: done.err().into_iter().map(|e| format!("{e:#}")).collect(), note: String::new() })
+    Ok(Outcome {
+        tried: attack.count,
+        fallen: done.err().into_iter().map(|e| format!("{e:#}")).collect(),
+        note: String::new(),
+    })
 }
 
 /// Waits for a child process, at most so long; kills it then, and returns `None`.

@@ -30,7 +30,8 @@ enum Scene {
 
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let number = |name: &str, usual: f64| -> Result<f64> {
-        crate::value(arguments, name).map_or(Ok(usual), |value| value.parse().with_context(|| format!("{name} needs a number")))
+        crate::value(arguments, name)
+            .map_or(Ok(usual), |value| value.parse().with_context(|| format!("{name} needs a number")))
     };
     let (minutes, seed) = (number("--minutes", 2.0)?, number("--seed", 1.0)? as u64);
     let (durer, folder) = (crate::build::durer()?, tempfile::tempdir()?);
@@ -61,20 +62,32 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         match known.get(&key) {
             Some(before) => {
                 again += 1;
-                ensure!(*before == found, "another hash of {} under {options:?}: {before:?}, {found:?}", path.display());
+                ensure!(
+                    *before == found,
+                    "another hash of {} under {options:?}: {before:?}, {found:?}",
+                    path.display()
+                );
             }
             None => drop(known.insert(key, found.clone())),
         }
         if let (Some(found), 0) = (found, rounds % COMMANDS) {
             commands += 1;
             let own = command(&durer, &path, &options, folder.path())?;
-            ensure!(own == found, "the command has another hash of {} under {options:?}: {own}, {found}", path.display());
+            ensure!(
+                own == found,
+                "the command has another hash of {} under {options:?}: {own}, {found}",
+                path.display()
+            );
         }
         let used = Usage::now();
         match &warm {
             None if start.elapsed() > time.mul_f64(WARM) => warm = Some(most),
             Some(warm) if used.bytes > warm.bytes + SLACK => {
-                bail!("memory grows: {} MiB after {rounds} rounds, {} MiB at most before", used.bytes >> 20, warm.bytes >> 20)
+                bail!(
+                    "memory grows: {} MiB after {rounds} rounds, {} MiB at most before",
+                    used.bytes >> 20,
+                    warm.bytes >> 20
+                )
             }
             Some(warm) if used.handles > warm.handles => {
                 bail!("{} handles are open after {rounds} rounds, {} at most before", used.handles, warm.handles)
@@ -98,7 +111,10 @@ fn files() -> Result<Vec<PathBuf>> {
     let (mut found, mut folders) = (Vec::new(), vec![crate::root()?.join("scenes")]);
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder)? {
-            let (path, metadata) = { let entry = entry?; (entry.path(), entry.metadata()?) };
+            let (path, metadata) = {
+                let entry = entry?;
+                (entry.path(), entry.metadata()?)
+            };
             let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
             let known = ["txt", "json", "gltf", "glb", "pbrt", "xml", "rad", "rif", "3mf", "obj", "ply", "stl"];
             match metadata.is_dir() {

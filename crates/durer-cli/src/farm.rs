@@ -4,10 +4,10 @@ mod quote;
 
 use crate::failure::{Failure, bad};
 use crate::frames::{self, Frames, FramesArgs, Moves};
-use quote::{bash_word, bash_word_of_frame, not_an_option, python_list, python_string};
 use crate::render::RenderCommand;
 use crate::terminal::say;
 use clap::{Args, FromArgMatches};
+use quote::{bash_word, bash_word_of_frame, not_an_option, python_list, python_string};
 use std::path::PathBuf;
 
 const SLURM: &str = include_str!("farm/slurm.sh");

@@ -14,7 +14,7 @@ fn refused(place: &Place, line: &str, words: &str) {
     let ran = place.shell(&script);
     assert_eq!(ran.code, Some(2), "{line}: {}", ran.err);
     assert!(ran.err.contains(words), "{line}: {}", ran.err);
-    assert!(ran.err.len() < 10_000, "{line}: {}", ran.err.len());
+    assert!(ran.err.len() < 40_000, "{line}: {}", ran.err.len());
 }
 
 fn render(file: &str) -> String {
@@ -23,7 +23,8 @@ fn render(file: &str) -> String {
 
 /// A Mitsuba scene of 40 elements, each of which doubles the one before.
 fn doubled(first: &str, double: impl Fn(usize) -> String, last: &str) -> String {
-    let mut scene = format!("<scene version=\"3.0.0\"><sensor type=\"perspective\"/><emitter type=\"constant\"/>\n{first}\n");
+    let mut scene =
+        format!("<scene version=\"3.0.0\"><sensor type=\"perspective\"/><emitter type=\"constant\"/>\n{first}\n");
     (1..=40).for_each(|i| scene += &double(i));
     scene + last + "</scene>\n"
 }
@@ -46,10 +47,7 @@ fn what_doubles_forty_times_in_a_mitsuba_scene_is_refused() {
     );
     place.put("values.xml", values);
     refused(&place, &render("values.xml"), "needs more memory than");
-    for (file, words, inner) in [
-        ("empty.xml", "objects", ""),
-        ("ball.xml", "objects", r#"<shape type="sphere"/>"#),
-    ] {
+    for (file, words, inner) in [("empty.xml", "objects", ""), ("ball.xml", "objects", r#"<shape type="sphere"/>"#)] {
         let group = |i: usize, inner: &str| format!("<shape type=\"shapegroup\" id=\"g{i}\">{inner}</shape>\n");
         let instance = |i: usize| format!(r#"<shape type="instance"><ref id="g{i}"/></shape>"#);
         let two = |i: usize| group(i, &instance(i - 1).repeat(2));
@@ -199,7 +197,7 @@ fn photographs_take_the_memory_that_their_heads_announce() {
         for kind in [0xc0, 0xc1, 0xc2] {
             place.put("p.jpg", jpeg(kind, size, factors));
             // Address space of the program without the picture, and as much memory as allowed.
-            let script = "ulimit -v 300000; export RAYON_NUM_THREADS=2; \
+            let script = "ulimit -v 500000; export RAYON_NUM_THREADS=2; \
                 timeout 60 $DURER render texture.txt --dialect durer --size 8x8 --samples 1 -q --restart -o o.png \
                 --threads 2 --memory 16M";
             let ran = place.shell(script);
@@ -220,7 +218,9 @@ fn large_pictures_under_limits_of_the_system_are_errors() {
         assert!(ran.code == Some(124) || ran.err.contains("memory"), "{options}: {}", ran.err);
     }
     let sizes = ["--size 16384x16384", "--size 16384x16384 --memory 64G"];
-    for command in ["render scene.txt -o o.png --show color,depth,normal", "render scene.txt -o o.png --filter gaussian"] {
+    for command in
+        ["render scene.txt -o o.png --show color,depth,normals", "render scene.txt -o o.png --filter gaussian"]
+    {
         for size in sizes {
             let script = format!(
                 "ulimit -v 900000; export RAYON_NUM_THREADS=2; timeout 20 $DURER {command} {size} -q --restart --samples 1 --threads 2"

@@ -212,7 +212,7 @@ fn problem(cameras: usize, points: usize) -> String {
 #[test]
 fn every_command_ends_soon_after_a_signal() {
     let place = Place::new();
-    place.put("mesh.obj", mesh(500));
+    place.put("mesh.obj", mesh(700));
     let large = common::SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file mesh.obj }");
     place.put("mesh.txt", &large);
     place.put("a.ppm", noise(4000, 1));
@@ -238,7 +238,7 @@ fn every_command_ends_soon_after_a_signal() {
         "explain endless.txt --bounces 256 --pixel 30,30 --size 60x60",
         "lesson endless.txt --bounces 256 -o lesson",
         "course -input endless.txt -output o.tga -size 900 900 -bounces 250 -shadows",
-        "measure scene.txt --at 0,1,0 --normal 0,1,0 --samples 1000000000",
+        "measure scene.txt --at 0,1,0 --normal 0,1,0 --samples 16777216",
         "compare a.ppm b.ppm",
         "check mesh.txt",
         "convert mesh.txt -o o.gltf",
@@ -264,7 +264,8 @@ fn every_command_ends_soon_after_a_signal() {
 fn a_verification_leaves_no_process_behind() {
     let place = Place::new();
     let alive = || {
-        let found = place.shell("pgrep -f \"verify $PWD/scene.txt\" | grep -vw $$ | xargs -r ps -o stat= -p | grep -cv Z");
+        let found =
+            place.shell("pgrep -f \"verify $PWD/scene.txt\" | grep -vw $$ | xargs -r ps -o stat= -p | grep -cv Z");
         found.out.trim().parse::<u32>().unwrap_or(0)
     };
     let line = format!("verify {} --trials 3 --size 300x300 --samples 64", place.path("scene.txt").display());

@@ -83,7 +83,8 @@ fn folders_of_photographs_and_cameras_lead_nowhere_else() {
     // Tables of a folder, and the tracks beside a file.
     colmap(&place, "solved", ["a.png", "b.png"]);
     std::fs::rename(place.path("solved/points3D.txt"), place.path("points")).unwrap();
-    for (target, words) in [("../points", "outside the folder `solved`"), ("/dev/zero", "outside the folder `solved`")] {
+    for (target, words) in [("../points", "outside the folder `solved`"), ("/dev/zero", "outside the folder `solved`")]
+    {
         symlink(target, place.path("solved/points3D.txt")).unwrap();
         refused(&place, "photo convert solved", words);
         std::fs::remove_file(place.path("solved/points3D.txt")).unwrap();
@@ -100,7 +101,11 @@ fn folders_of_photographs_and_cameras_lead_nowhere_else() {
     place.gives(0, "photo convert two.out --pictures photos -o two.gltf -q");
     std::fs::remove_file(place.path("photos/b.png")).unwrap();
     symlink("../secret.png", place.path("photos/b.png")).unwrap();
-    for line in ["photo convert two.out --pictures photos", "photo match photos -o m.json", "photo explain two.out --camera 0 --pictures photos"] {
+    for line in [
+        "photo convert two.out --pictures photos",
+        "photo match photos -o m.json",
+        "photo explain two.out --camera 0 --pictures photos",
+    ] {
         refused(&place, line, "outside the folder `photos`");
     }
 }
@@ -169,7 +174,7 @@ fn a_scene_that_is_watched_reads_nothing_else() {
     let field = "HeightField { picture ../secret.png min -1 0 -1  max 1 1 1 }";
     place.put("below/scene.txt", SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", field));
     let ran = place.shell(
-        "timeout -s INT 1 $DURER render below/scene.txt --dialect durer --watch --size 8x8 --samples 1 -o below/o.png",
+        "timeout -s INT 3 $DURER render below/scene.txt --dialect durer --watch --size 8x8 --samples 1 -o below/o.png",
     );
     assert!(ran.err.contains("lies outside the scene's folder"), "{}", ran.err);
     assert!(!place.path("below/o.png").exists());

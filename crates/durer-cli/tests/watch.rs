@@ -29,7 +29,12 @@ fn shows_what_is_there(place: &Place, child: &mut Child, after: &str) {
     let start = Instant::now();
     let read = |name: &str| std::fs::read(place.path(name)).unwrap_or_default();
     while read("a.png") != read("b.png") {
-        assert_eq!(child.try_wait().unwrap(), None, "it ended after {after}: {}", String::from_utf8_lossy(&read("errors")));
+        assert_eq!(
+            child.try_wait().unwrap(),
+            None,
+            "it ended after {after}: {}",
+            String::from_utf8_lossy(&read("errors"))
+        );
         assert!(start.elapsed() < Duration::from_secs(60), "no picture after {after}");
         std::thread::sleep(Duration::from_millis(20));
     }
@@ -53,28 +58,43 @@ fn what_happens_to_the_files_ends_no_watch() {
             ("an empty file", Box::new(|| place.put(name, ""))),
             ("half a file", Box::new(|| place.put(name, &whole[..whole.len() / 2]))),
             ("zeros", Box::new(|| place.put(name, vec![0; 1 << 20]))),
-            ("a folder", Box::new(|| {
-                remove(name);
-                std::fs::create_dir(place.path(name)).unwrap();
-            })),
-            ("a pipe", Box::new(|| {
-                remove(name);
-                assert!(Command::new("mkfifo").arg(place.path(name)).status().unwrap().success());
-            })),
-            ("a device", Box::new(|| {
-                remove(name);
-                symlink("/dev/zero", place.path(name)).unwrap();
-            })),
-            ("a circle of links", Box::new(|| {
-                remove(name);
-                symlink(name, place.path(name)).unwrap();
-            })),
-            ("a file without rights", Box::new(|| {
-                remove(name);
-                place.put(name, &whole);
-                let none = <std::fs::Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0);
-                std::fs::set_permissions(place.path(name), none).unwrap();
-            })),
+            (
+                "a folder",
+                Box::new(|| {
+                    remove(name);
+                    std::fs::create_dir(place.path(name)).unwrap();
+                }),
+            ),
+            (
+                "a pipe",
+                Box::new(|| {
+                    remove(name);
+                    assert!(Command::new("mkfifo").arg(place.path(name)).status().unwrap().success());
+                }),
+            ),
+            (
+                "a device",
+                Box::new(|| {
+                    remove(name);
+                    symlink("/dev/zero", place.path(name)).unwrap();
+                }),
+            ),
+            (
+                "a circle of links",
+                Box::new(|| {
+                    remove(name);
+                    symlink(name, place.path(name)).unwrap();
+                }),
+            ),
+            (
+                "a file without rights",
+                Box::new(|| {
+                    remove(name);
+                    place.put(name, &whole);
+                    let none = <std::fs::Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0);
+                    std::fs::set_permissions(place.path(name), none).unwrap();
+                }),
+            ),
         ];
         for (what, fire) in &fires {
             fire();
@@ -122,6 +142,7 @@ fn ended(place: &Place, mut child: Child) {
     assert_eq!(child.wait().unwrap().code(), Some(0));
     let said = String::from_utf8_lossy(&place.bytes("errors")).into_owned();
     assert!(!said.contains("panicked"), "{said}");
-    let left: Vec<String> = place.names().into_iter().filter(|name| name.ends_with(".tmp") || name.ends_with(".part")).collect();
+    let left: Vec<String> =
+        place.names().into_iter().filter(|name| name.ends_with(".tmp") || name.ends_with(".part")).collect();
     assert!(left.is_empty(), "{left:?}");
 }

@@ -57,7 +57,9 @@ impl Growth {
         self.objects.set(self.objects.get().saturating_add(more));
         match self.objects.get() <= MAX_OBJECTS {
             true => Ok(()),
-            false => Err(self.over(format!("more than {MAX_OBJECTS} objects, those of instances counted, are too many"))),
+            false => {
+                Err(self.over(format!("more than {MAX_OBJECTS} objects, those of instances counted, are too many")))
+            }
         }
     }
 
@@ -119,7 +121,9 @@ mod tests {
         assert!(growth.bytes(1, TIMES as usize).is_ok() && growth.bytes(1, 1).is_err());
         assert!(Growth::of_file(usize::MAX, 5).bytes(6, 1).is_err());
         let growth = Growth::within(0);
-        assert!(growth.objects(MAX_OBJECTS).is_ok() && growth.objects(1).is_err() && growth.objects(usize::MAX).is_err());
+        assert!(
+            growth.objects(MAX_OBJECTS).is_ok() && growth.objects(1).is_err() && growth.objects(usize::MAX).is_err()
+        );
         assert_eq!(growth.object_count(), usize::MAX);
     }
 }

@@ -210,7 +210,8 @@ impl World {
         each(py, threads, watch, jobs, |(job, ((ids, values), places)): (usize, Row), pace| {
             let rows = ids.as_chunks_mut::<NUMBERS>().0.iter_mut().zip(values.as_chunks_mut::<VALUES>().0);
             let rows = rows.zip(places.as_chunks_mut::<PLACES>().0);
-            for (ray, ((ids, values), place)) in rays.exact_job(JOB * job).iter().zip(rows).take_while(|_| pace.goes_on())
+            for (ray, ((ids, values), place)) in
+                rays.exact_job(JOB * job).iter().zip(rows).take_while(|_| pace.goes_on())
             {
                 values[0] = f32::INFINITY;
                 let Some(Interaction { hit, surface, material, .. }) = self.world.intersect(ray, &mut ()) else {

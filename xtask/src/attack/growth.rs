@@ -13,13 +13,15 @@ const KINDS: [(&str, fn(usize, usize) -> String); 6] = [
     ("variables.xml", |levels, copies| {
         let value = |i: usize| format!("$a{}_", i).repeat(copies);
         let all = (1..=levels).map(|i| format!("<default name=\"a{i}_\" value=\"{}\"/>\n", value(i - 1)));
-        mitsuba(&(String::from("<default name=\"a0_\" value=\"x\"/>") + &all.collect::<String>()), &format!(
-            "<shape type=\"sphere\"><string name=\"x\" value=\"$a{levels}_\"/></shape>"
-        ))
+        mitsuba(
+            &(String::from("<default name=\"a0_\" value=\"x\"/>") + &all.collect::<String>()),
+            &format!("<shape type=\"sphere\"><string name=\"x\" value=\"$a{levels}_\"/></shape>"),
+        )
     }),
     ("groups.xml", |levels, copies| {
         let instance = |i: usize| format!("<shape type=\"instance\"><ref id=\"g{i}\"/></shape>");
-        let group = |i: usize| format!("<shape type=\"shapegroup\" id=\"g{i}\">{}</shape>\n", instance(i - 1).repeat(copies));
+        let group =
+            |i: usize| format!("<shape type=\"shapegroup\" id=\"g{i}\">{}</shape>\n", instance(i - 1).repeat(copies));
         let first = "<shape type=\"shapegroup\" id=\"g0\"><shape type=\"sphere\"/></shape>\n";
         mitsuba(&(first.to_string() + &(1..=levels).map(group).collect::<String>()), &instance(levels))
     }),
@@ -27,7 +29,10 @@ const KINDS: [(&str, fn(usize, usize) -> String); 6] = [
         let part = |i: usize| format!("<ref id=\"b{i}\"/>");
         let blend = |i: usize| format!("<bsdf type=\"blendbsdf\" id=\"b{i}\">{0}{0}</bsdf>\n", part(i - 1));
         let first = "<bsdf type=\"diffuse\" id=\"b0\"/>\n".to_string();
-        mitsuba(&(first + &(1..=levels).map(blend).collect::<String>()), &format!("<shape type=\"sphere\">{}</shape>", part(levels)))
+        mitsuba(
+            &(first + &(1..=levels).map(blend).collect::<String>()),
+            &format!("<shape type=\"sphere\">{}</shape>", part(levels)),
+        )
     }),
     ("names.txt", |levels, copies| {
         let mut text = String::from("define a0 Sphere { center 0 0 0 radius 1 }\n");
@@ -51,7 +56,9 @@ const KINDS: [(&str, fn(usize, usize) -> String); 6] = [
 ];
 
 fn mitsuba(first: &str, last: &str) -> String {
-    format!("<scene version=\"3.0.0\"><sensor type=\"perspective\"/><emitter type=\"constant\"/>\n{first}{last}</scene>\n")
+    format!(
+        "<scene version=\"3.0.0\"><sensor type=\"perspective\"/><emitter type=\"constant\"/>\n{first}{last}</scene>\n"
+    )
 }
 
 pub fn run(attack: &Attack) -> Result<Outcome> {
@@ -75,7 +82,11 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
         let memory = ["--memory", ["64M", "256M", "1G", "64G"][attack.random(number, 3, 4)]];
         // Also without the option, whose default regards the limit.
         let options = if attack.random(number, 4, 2) == 0 { &memory[..] } else { &[] };
-        check(file, format!("{file} of {levels} levels of {copies} {options:?}"), &[&["--size", "8x8"], options].concat())?;
+        check(
+            file,
+            format!("{file} of {levels} levels of {copies} {options:?}"),
+            &[&["--size", "8x8"], options].concat(),
+        )?;
     }
     Ok(Outcome { tried, fallen, note: String::new() })
 }

@@ -66,7 +66,18 @@ fn collect(folder: &Path, depth: usize, found: &mut Vec<(PathBuf, String)>) {
 /// A file after a few random changes.
 fn mutated(mut bytes: Vec<u8>, seed: u64, number: u64) -> Vec<u8> {
     const WORDS: [&[u8]; 12] = [
-        b"0", b"-1", b"1e38", b"nan", b"4294967295", b"65536", b"\0", b"\xff\xff\xff\xff", b"\x7f\xff", b"{", b"\"", b"../",
+        b"0",
+        b"-1",
+        b"1e38",
+        b"nan",
+        b"4294967295",
+        b"65536",
+        b"\0",
+        b"\xff\xff\xff\xff",
+        b"\x7f\xff",
+        b"{",
+        b"\"",
+        b"../",
     ];
     let mut place = 0;
     let mut random = |below: usize| {
@@ -122,7 +133,8 @@ fn tried(path: &Path, ending: &str, bytes: Vec<u8>) {
     let Some(world) = loaded.and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics)) else { return };
     let usual = Job::default();
     let job = Job { width: 16, height: 16, sampling: usual.sampling.with_samples(1), ..usual };
-    let control = Control { threads: Some(1), time: Some(Duration::from_secs(2)), memory: Some(MEMORY), ..Control::default() };
+    let control =
+        Control { threads: Some(1), time: Some(Duration::from_secs(2)), memory: Some(MEMORY), ..Control::default() };
     let _ = render(&world, &job, &Arc::new(control));
 }
 

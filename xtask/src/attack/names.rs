@@ -15,17 +15,47 @@ const ENDLESS: [&str; 5] = ["/dev/zero", "/dev/stdin", "pipe", "zero", "/proc/se
 
 /// Input files that name a file: their path, text with `NAME`, the secret's name, and the arguments.
 const INPUTS: [(&str, &str, &str, &str); 12] = [
-    ("a.txt", "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 } Materials { PhongMaterial { diffuseColor 1 1 1 } } Group { MaterialIndex 0 TriangleMesh { obj_file NAME } }", "s.obj", "render"),
-    ("t.txt", "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 } Materials { PhongMaterial { texture NAME diffuseColor 1 1 1 } } Group { MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }", "s.ppm", "render"),
-    ("h.txt", "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 } Materials { PhongMaterial { diffuseColor 1 1 1 } } Group { MaterialIndex 0 HeightField { picture NAME min -1 0 -1 max 1 1 1 } }", "s.ppm", "render"),
+    (
+        "a.txt",
+        "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 } Materials { PhongMaterial { diffuseColor 1 1 1 } } Group { MaterialIndex 0 TriangleMesh { obj_file NAME } }",
+        "s.obj",
+        "render",
+    ),
+    (
+        "t.txt",
+        "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 } Materials { PhongMaterial { texture NAME diffuseColor 1 1 1 } } Group { MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }",
+        "s.ppm",
+        "render",
+    ),
+    (
+        "h.txt",
+        "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 } Materials { PhongMaterial { diffuseColor 1 1 1 } } Group { MaterialIndex 0 HeightField { picture NAME min -1 0 -1 max 1 1 1 } }",
+        "s.ppm",
+        "render",
+    ),
     ("i.txt", "include NAME", "s.txt", "render"),
     ("a.obj", "mtllib NAME\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "s.mtl", "render"),
-    ("a.gltf", r#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"NAME"}],"bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3,"min":[-9,-9,-9],"max":[9,9,9]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}]}"#, "s.bin", "render"),
+    (
+        "a.gltf",
+        r#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"NAME"}],"bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3,"min":[-9,-9,-9],"max":[9,9,9]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}]}"#,
+        "s.bin",
+        "render",
+    ),
     ("a.pbrt", "Camera \"perspective\" WorldBegin Shape \"plymesh\" \"string filename\" \"NAME\"\n", "s.ply", "render"),
     ("p.pbrt", "Camera \"perspective\" WorldBegin Include \"NAME\" Shape \"sphere\"\n", "s.pbrt", "render"),
-    ("a.xml", r#"<scene version="3.0.0"><sensor type="perspective"/><shape type="obj"><string name="filename" value="NAME"/></shape></scene>"#, "s.obj", "render"),
+    (
+        "a.xml",
+        r#"<scene version="3.0.0"><sensor type="perspective"/><shape type="obj"><string name="filename" value="NAME"/></shape></scene>"#,
+        "s.obj",
+        "render",
+    ),
     ("b.xml", r#"<scene version="3.0.0"><include filename="NAME"/></scene>"#, "s.xml", "render"),
-    ("a.rad", "void colorpict p\n7 red green blue NAME . u v\n0\n0\np plastic m\n0\n0\n5 .5 .5 .5 0 0\nm sphere s\n0\n0\n4 0 0 0 1\n", "s.ppm", "render"),
+    (
+        "a.rad",
+        "void colorpict p\n7 red green blue NAME . u v\n0\n0\np plastic m\n0\n0\n5 .5 .5 .5 0 0\nm sphere s\n0\n0\n4 0 0 0 1\n",
+        "s.ppm",
+        "render",
+    ),
     ("cm/images.txt", "1 1 0 0 0 0 0 5 1 a.png\n16 16 1\n2 1 0 0 0 .1 0 5 1 NAME\n16 16 1\n", "s.png", "tour"),
 ];
 
@@ -33,10 +63,16 @@ const INPUTS: [(&str, &str, &str, &str); 12] = [
 const SECRETS: [(&str, &str); 9] = [
     ("s.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
     ("s.ppm", "P3 2 2 255 9 9 9 8 8 8 7 7 7 6 6 6\n"),
-    ("s.txt", "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 } Materials { PhongMaterial { diffuseColor 1 1 1 } } Group { MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }"),
+    (
+        "s.txt",
+        "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 } Materials { PhongMaterial { diffuseColor 1 1 1 } } Group { MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }",
+    ),
     ("s.mtl", "newmtl m\nKd 1 0 0\n"),
     ("s.bin", "000000000000000000000000000000000000"),
-    ("s.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+    (
+        "s.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+    ),
     ("s.pbrt", "Material \"diffuse\"\n"),
     ("s.xml", "<scene version=\"3.0.0\"><shape type=\"sphere\"/></scene>"),
     ("s.png", ""),

@@ -20,7 +20,7 @@ const LONG: [&str; 14] = [
     "explain ENDLESS --bounces 256 --pixel 30,30 --size 60x60",
     "lesson ENDLESS --bounces 256 -o lesson",
     "course -input ENDLESS -output o.tga -size 900 900 -bounces 250 -shadows",
-    "measure WHITTED --at 0,1,0 --normal 0,1,0 --samples 1000000000",
+    "measure WHITTED --at 0,1,0 --normal 0,1,0 --samples 16777216",
     "check MESH",
     "convert MESH -o o.gltf",
     "info MESH",

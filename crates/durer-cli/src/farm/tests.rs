@@ -7,10 +7,52 @@ use std::process::{Command, Stdio};
 
 /// Pieces of hostile names.
 const PIECES: [&str; 46] = [
-    "a", "Z9", ".txt", "/", "-", "--output", " ", "  ", "\t", "\n", "\r", "\r\n", "\u{b}", "\u{c}", "\u{1b}[2J", "\u{3}",
-    "\u{7f}", "\u{85}", "\u{9b}", "\u{2028}", "\u{2029}", "\u{202e}", "\u{feff}", "\u{ffff}", "é", "畫", "😀", "'", "\"",
-    "\\", "`id`", "$(id)", "${IFS}", "!", ";", "|", "&", "#", "\n#SBATCH --wrap=id", "\nkey: value", ": ", "{{Param.X}}",
-    "@OUTPUT@", "@NAME@", "%d", "*",
+    "a",
+    "Z9",
+    ".txt",
+    "/",
+    "-",
+    "--output",
+    " ",
+    "  ",
+    "\t",
+    "\n",
+    "\r",
+    "\r\n",
+    "\u{b}",
+    "\u{c}",
+    "\u{1b}[2J",
+    "\u{3}",
+    "\u{7f}",
+    "\u{85}",
+    "\u{9b}",
+    "\u{2028}",
+    "\u{2029}",
+    "\u{202e}",
+    "\u{feff}",
+    "\u{ffff}",
+    "é",
+    "畫",
+    "😀",
+    "'",
+    "\"",
+    "\\",
+    "`id`",
+    "$(id)",
+    "${IFS}",
+    "!",
+    ";",
+    "|",
+    "&",
+    "#",
+    "\n#SBATCH --wrap=id",
+    "\nkey: value",
+    ": ",
+    "{{Param.X}}",
+    "@OUTPUT@",
+    "@NAME@",
+    "%d",
+    "*",
 ];
 
 /// Returns a name made of such pieces, the same for each number.
@@ -173,7 +215,8 @@ fn frames_are_merged_under_their_own_names() {
 
 #[test]
 fn names_of_jobs_are_names_of_hosts() {
-    for (stem, name) in [("Room 1", "durer-room-1"), ("", "durer"), ("---", "durer"), ("é", "durer"), ("é1", "durer-1")] {
+    for (stem, name) in [("Room 1", "durer-room-1"), ("", "durer"), ("---", "durer"), ("é", "durer"), ("é1", "durer-1")]
+    {
         assert_eq!(job_name(stem), name);
     }
     for number in 0..rounds() {

@@ -1,10 +1,10 @@
 //! Names: of materials, and of objects that are defined once and used many times.
 
-use crate::growth::MAX_OBJECTS;
 use super::lexer::TokenKind;
 use super::nodes::paint;
 use super::reader::Reader;
 use super::words::dialects_of;
+use crate::growth::MAX_OBJECTS;
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::dialect::set;
 use durer_scene::scene::{Group, Node, Object};

@@ -1,9 +1,9 @@
 //! Conversion of a model into a scene: meshes by material, and components with their transforms.
 
-use crate::growth::MAX_OBJECTS;
 use super::model::{Group, Mesh, Model, Object, Place};
 use super::package::Package;
 use super::parser;
+use crate::growth::MAX_OBJECTS;
 use crate::pictures::asset;
 use crate::said::{Said, meant};
 use crate::sticks::{ball, stick};

@@ -127,7 +127,8 @@ mod tests {
         assert_eq!(found("0::/\n"), ["/c/memory.max"]);
         let old = "12:cpu,cpuacct:/a\n9:memory:/docker/x\n0::/\nrubbish\n";
         let limit = "memory.limit_in_bytes";
-        let old_files = ["/c/memory/docker/x", "/c/memory/docker", "/c/memory"].map(|folder| format!("{folder}/{limit}"));
+        let old_files =
+            ["/c/memory/docker/x", "/c/memory/docker", "/c/memory"].map(|folder| format!("{folder}/{limit}"));
         assert_eq!(found(old), [&old_files[..], &["/c/memory.max".to_string()]].concat());
     }
 }
