@@ -1,6 +1,7 @@
 //! Commands for developers of Dürer.
 
 mod additions;
+mod attack;
 mod bench_files;
 mod bench_pictures;
 mod bench_rays;
@@ -18,6 +19,7 @@ mod page;
 mod peers;
 mod prose;
 mod sheet;
+mod soak;
 mod solids;
 mod teach;
 mod torture;
@@ -47,8 +49,15 @@ const USAGE: &str = "Commands:
       differences from the hashes in FILE.
   cargo xtask torture [--kills 100] [--offsets 50] [--seed 1]
       Kill the program at random times while it renders and saves, and resume; run it on full and read-only disks.
+  cargo xtask attack [KIND] [--count N] [--seed N] [--only EXTENSION]
+      Hostile inputs by kind, or of all kinds: names, templates, growth, signals, far, kills, mutated. Prints what was
+      tried and what failed. --only: mutate only files with this extension. Mutated files that failed are in
+      target/attack.
   cargo xtask cost
       Cost of exact sums, speedup of a second thread, latency of cancelling a render.
+  cargo xtask soak [--minutes 2] [--seed N]
+      Random scenes and files of all formats with all integrators, in one process and by the command: the same hash
+      when a job repeats, no memory growth, no leaked handles.
   cargo xtask solids
       Compare a million random points in random solids with the Boolean of the parts, and measure the cost of rays at
       solids of a thousand parts against the same parts as plain objects.
@@ -114,6 +123,7 @@ fn main() -> anyhow::Result<ExitCode> {
             Ok(ExitCode::SUCCESS)
         }
         Some("additions") => additions::run(&arguments[1..]),
+        Some("attack") => attack::run(&arguments[1..]),
         Some("bench-files") => bench_files::run(&arguments[1..]),
         Some("bench-pictures") => bench_pictures::run(&arguments[1..]),
         Some("course") => course::run(&arguments[1..]),
@@ -124,6 +134,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("bitterli") => bitterli::run(&arguments[1..]),
         Some("sheet") => sheet::run(&arguments[1..]),
         Some("cost") => cost::run(&arguments[1..]),
+        Some("soak") => soak::run(&arguments[1..]),
         Some("solids") => solids::run(),
         Some("teach") => teach::run(&arguments[1..]),
         Some("long") => long::run(&arguments[1..]),

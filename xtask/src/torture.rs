@@ -19,8 +19,9 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         crate::value(arguments, name)
             .map_or(Ok(usual), |value| value.parse().with_context(|| format!("{name} needs a number")))
     };
-    let bench =
-        Bench { durer: durer()?, scene: crate::root()?.join("scenes/whitted.txt"), folder: tempfile::tempdir()? };
+    let folder = tempfile::tempdir()?;
+    let scene = crate::root()?.join("scenes/whitted.txt");
+    let bench = Bench { durer: durer()?, scene, folder: folder.path().into() };
     kills(&bench, number("--kills", 100)?, number("--seed", 1)?)?;
     full_disks(&bench, number("--offsets", 50)?)?;
     Ok(ExitCode::SUCCESS)
@@ -29,7 +30,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
 struct Bench {
     durer: PathBuf,
     scene: PathBuf,
-    folder: tempfile::TempDir,
+    folder: PathBuf,
 }
 
 impl Bench {
@@ -42,7 +43,7 @@ impl Bench {
 
     /// Creates an empty folder.
     fn place(&self, name: &str) -> Result<PathBuf> {
-        let place = self.folder.path().join(name);
+        let place = self.folder.join(name);
         fs::create_dir_all(&place)?;
         Ok(place)
     }
@@ -59,6 +60,12 @@ fn names(folder: &Path) -> Result<Vec<String>> {
 
 fn last_line(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).lines().last().unwrap_or_default().to_string()
+}
+
+/// Kills renders of a program in a folder: see [`kills`].
+pub fn kills_in(durer: &Path, folder: &Path, count: u64, seed: u64) -> Result<()> {
+    let scene = crate::root()?.join("scenes/whitted.txt");
+    kills(&Bench { durer: durer.into(), scene, folder: folder.into() }, count, seed)
 }
 
 /// Kills the program at random times until it was killed often enough; it must finish with the same

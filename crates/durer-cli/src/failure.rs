@@ -75,7 +75,7 @@ pub fn failed(error: RenderError) -> Failure {
     match error {
         RenderError::Cancelled => Failure::Interrupted("nothing was written".into()),
         RenderError::Panic(_) => error.into(),
-        RenderError::Memory { .. } => bad(format!("{error}; see --memory")),
+        RenderError::Memory { .. } | RenderError::NoMemory(_) => bad(format!("{error}; see --memory")),
         _ => bad(error.to_string()),
     }
 }

@@ -1,10 +1,13 @@
 //! `durer farm`: job files for existing render farms, based on `--shard` and `durer merge`.
 
+mod quote;
+
 use crate::failure::{Failure, bad};
 use crate::frames::{self, Frames, FramesArgs, Moves};
 use crate::render::RenderCommand;
 use crate::terminal::say;
 use clap::{Args, FromArgMatches};
+use quote::{bash_word, bash_word_of_frame, not_an_option, python_list, python_string};
 use std::path::PathBuf;
 
 const SLURM: &str = include_str!("farm/slurm.sh");
@@ -42,9 +45,26 @@ pub struct FarmArgs {
     pub options: Vec<String>,
 }
 
-/// Prints the filled-in template.
+/// Prints the job file.
 pub fn run(args: &FarmArgs) -> Result<(), Failure> {
     check_options(&args.options)?;
+    say(job_file(args)?.trim_end());
+    Ok(())
+}
+
+/// Characters of a job's name: Kubernetes allows 63, of which indices take some.
+const LONGEST_NAME: usize = 52;
+
+/// Returns the name of a job: letters, digits and dashes.
+fn job_name(stem: &str) -> String {
+    let allowed = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
+    let name: String = stem.trim_matches(|c: char| !c.is_ascii_alphanumeric()).chars().map(allowed).collect();
+    let name = &name[..name.len().min(LONGEST_NAME - "durer-".len())];
+    format!("durer-{name}").trim_end_matches('-').into()
+}
+
+/// Fills in the template.
+fn job_file(args: &FarmArgs) -> Result<String, Failure> {
     let text =
         |path: &std::path::Path| path.to_str().map(String::from).ok_or_else(|| bad(format!("{path:?} is not UTF-8")));
     let scene = text(&args.scene)?;
@@ -53,12 +73,7 @@ pub fn run(args: &FarmArgs) -> Result<(), Failure> {
     let stem = args.scene.file_stem().and_then(|stem| stem.to_str()).unwrap_or("picture").to_string();
     let output = args.output.as_deref().map_or_else(|| Ok(format!("{stem}.exr")), text)?;
     let output = if frames.is_some() { frames::pattern(&output) } else { output };
-    let quoted =
-        |word: &str| shlex::try_quote(word).map(String::from).map_err(|_| bad(format!("{word:?} cannot be quoted")));
-    let options = args.options.iter().map(|word| quoted(word)).collect::<Result<Vec<_>, _>>()?.join(" ");
-    // Job names consist of letters, digits and dashes.
-    let name: String = stem.to_lowercase().chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
-    let name = format!("durer-{}", name.trim_matches('-'));
+    let options: Vec<String> = args.options.iter().map(|word| bash_word(word)).collect();
     let template = match args.template.as_str() {
         "slurm" => SLURM,
         "k8s" => KUBERNETES,
@@ -66,6 +81,7 @@ pub fn run(args: &FarmArgs) -> Result<(), Failure> {
         _ => DASK,
     };
     let shards = args.shards.unwrap_or(if frames.is_some() { 1 } else { 16 });
+    let is_animation = frames.is_some();
     let (numbers, moves) = frames.unwrap_or((Frames { first: 0, last: 0, step: 1 }, Moves::Names));
     let Some(tasks) = numbers.count().checked_mul(shards) else {
         return Err(bad(format!("{} frames of {shards} shards are too many tasks", numbers.count())));
@@ -78,23 +94,24 @@ pub fn run(args: &FarmArgs) -> Result<(), Failure> {
         Moves::Time(rate) => (format!("--fps {rate} "), format!(r#", "--at", str(frame / {rate:?})"#)),
         Moves::Names => (String::new(), String::new()),
     };
-    let filled = chosen(template, frames.is_some())
-        .replace("@NAME@", &name)
-        .replace("@SHARDS@", &shards.to_string())
-        .replace("@TASKS@", &tasks.to_string())
-        .replace("@FIRST@", &numbers.first.to_string())
-        .replace("@LAST@", &numbers.last.to_string())
-        .replace("@STEP@", &numbers.step.to_string())
-        .replace("@MOVING@", &moving)
-        .replace("@MOVING_WORDS@", &words)
-        .replace("@SCENE@", &quoted(&scene)?)
-        .replace("@OUTPUT@", &quoted(&output)?)
-        .replace("@OPTIONS@", &options)
-        .replace("@SCENE_JSON@", &serde_json::json!(scene).to_string())
-        .replace("@OUTPUT_JSON@", &serde_json::json!(output).to_string())
-        .replace("@WORDS_JSON@", &serde_json::json!(args.options).to_string());
-    say(filled.trim_end());
-    Ok(())
+    let values = [
+        ("NAME", job_name(&stem)),
+        ("SHARDS", shards.to_string()),
+        ("TASKS", tasks.to_string()),
+        ("FIRST", numbers.first.to_string()),
+        ("LAST", numbers.last.to_string()),
+        ("STEP", numbers.step.to_string()),
+        ("MOVING", moving),
+        ("MOVING_WORDS", words),
+        ("SCENE", bash_word(&not_an_option(&scene))),
+        ("OUTPUT", bash_word(&not_an_option(&output))),
+        ("OUTPUT_OF_FRAME", bash_word_of_frame(&not_an_option(&output))),
+        ("OPTIONS", options.join(" ")),
+        ("SCENE_PYTHON", python_string(&scene)),
+        ("OUTPUT_PYTHON", python_string(&output)),
+        ("WORDS_PYTHON", python_list(&args.options)),
+    ];
+    Ok(filled(&chosen(template, is_animation), &values))
 }
 
 /// Checks the render options.
@@ -126,3 +143,23 @@ fn chosen(template: &str, frames: bool) -> String {
         })
         .collect()
 }
+
+/// Replaces each `@KEY@` of a template by its value, in one pass: values are never searched.
+fn filled(template: &str, values: &[(&str, String)]) -> String {
+    let (mut made, mut rest) = (String::new(), template);
+    while let Some((before, after)) = rest.split_once('@') {
+        made += before;
+        let known = after.split_once('@').and_then(|(key, after)| {
+            let (_, value) = values.iter().find(|(known, _)| *known == key)?;
+            Some((value, after))
+        });
+        match known {
+            Some((value, after)) => (made, rest) = (made + value, after),
+            None => (made, rest) = (made + "@", after),
+        }
+    }
+    made + rest
+}
+
+#[cfg(test)]
+mod tests;

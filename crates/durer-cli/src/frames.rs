@@ -106,7 +106,7 @@ impl FramesArgs {
 }
 
 /// Finds `%d` or `%04d` in a name: start, end, and number of digits.
-fn place(name: &str) -> Option<(usize, usize, usize)> {
+pub fn place(name: &str) -> Option<(usize, usize, usize)> {
     name.match_indices('%').find_map(|(from, _)| {
         let digits: String = name[from + 1..].chars().take_while(char::is_ascii_digit).collect();
         let to = from + 1 + digits.len();

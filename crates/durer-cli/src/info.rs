@@ -204,7 +204,7 @@ impl Counted {
                 count.object_cost = Some(bvh.sah_cost()).filter(|cost| cost.is_finite());
                 bvh.memory_usage()
             }
-            Accel::Grid { grid, parts } => grid.memory_usage() + size_of_val(&**parts),
+            Accel::Grid { grid, parts, wide } => grid.memory_usage() + size_of_val(&**parts) + size_of_val(&**wide),
             Accel::Course(hits) => hits.memory_usage(),
             Accel::None => 0,
         };

@@ -27,7 +27,13 @@ pub struct LiveArgs {
 }
 
 pub fn run(args: &LiveArgs) -> Result<(), Failure> {
-    if let Err(error) = std::fs::File::open(&args.scene) {
+    // Opening a pipe would block.
+    let opened = match std::fs::metadata(&args.scene) {
+        Ok(metadata) if !metadata.is_file() => return Err(bad(format!("{}: not a file", args.scene.display()))),
+        Ok(_) => std::fs::File::open(&args.scene).map(drop),
+        Err(error) => Err(error),
+    };
+    if let Err(error) = opened {
         return Err(bad(format!("{}: {error}", args.scene.display())));
     }
     let server = Server::bind(args.port, Some(args.scene.clone()));

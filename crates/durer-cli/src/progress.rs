@@ -4,6 +4,7 @@ use crate::failure::{Failure, interrupted_by};
 use durer::render::{Control, RenderError};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
+use std::process::{Child, Command, Output, Stdio};
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::time::{Duration, Instant};
@@ -45,11 +46,11 @@ fn interrupt(signal: u8) {
     match &mut *phase {
         Phase::Rendering(control) if !control.cancel.swap(true, Relaxed) => {}
         Phase::Saving(asked @ false) => *asked = true,
-        Phase::Idle => crate::terminal::end(0),
+        Phase::Idle => end(0),
         phase => {
             let what =
                 if matches!(phase, Phase::Harmless) { "nothing was written" } else { "not everything was saved" };
-            crate::terminal::end(Failure::Interrupted(what.into()).report())
+            end(Failure::Interrupted(what.into()).report())
         }
     }
 }
@@ -112,13 +113,45 @@ pub fn watch<T>(
     render: impl FnOnce() -> Result<T, RenderError>,
 ) -> Result<T, RenderError> {
     *locked(&PHASE) = Phase::Rendering(Arc::clone(control));
-    let visible = !quiet && std::io::stderr().is_terminal();
-    let result = if visible { with_bar(control, render) } else { render() };
+    let result = show(control, quiet, render);
     *locked(&PHASE) = Phase::Harmless;
     result
 }
 
-fn with_bar<T>(control: &Control, render: impl FnOnce() -> Result<T, RenderError>) -> Result<T, RenderError> {
+/// Runs work with a progress bar (on a terminal). There is nothing to save, so signals end the
+/// program at once.
+pub fn show<T>(control: &Control, quiet: bool, work: impl FnOnce() -> T) -> T {
+    if !quiet && std::io::stderr().is_terminal() { with_bar(control, work) } else { work() }
+}
+
+/// Process that runs on behalf of this one, and ends with it.
+static CHILD: Mutex<Option<Child>> = Mutex::new(None);
+
+/// Runs a command to its end and returns its output. Signals that end the program end it too.
+pub fn run_child(command: &mut Command) -> std::io::Result<Output> {
+    let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
+    *locked(&CHILD) = Some(child);
+    loop {
+        let mut child = locked(&CHILD);
+        if child.as_mut().map_or(Ok(None), Child::try_wait)?.is_some() {
+            let ended = child.take().ok_or(std::io::ErrorKind::Interrupted)?;
+            return ended.wait_with_output();
+        }
+        drop(child);
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+/// Ends the program, and the process that runs on its behalf.
+fn end(code: u8) {
+    if let Some(child) = locked(&CHILD).as_mut() {
+        // It may have ended already.
+        let _ = child.kill();
+    }
+    crate::terminal::end(code)
+}
+
+fn with_bar<T>(control: &Control, render: impl FnOnce() -> T) -> T {
     let (finished, wait) = mpsc::channel::<()>();
     std::thread::scope(|scope| {
         let show = move || {

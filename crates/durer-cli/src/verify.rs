@@ -15,9 +15,8 @@ use durer::render::{Control, LEAST_ADAPTIVE, PartialRender, RenderError};
 use durer::world::World;
 use std::ffi::OsString;
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
-use std::sync::Arc;
-use std::sync::atomic::Ordering::Relaxed;
+use std::process::Command;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Render a scene in many ways and check that the film is always the same
 #[derive(Args)]
@@ -81,16 +80,16 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
         worlds.push((name, opened.world));
     }
     let Some(job) = wanted else { return Ok(()) };
-    let control = Arc::new(Control::default());
+    let control = Control::default();
     control.all.store(args.trials.into(), Relaxed);
-    let plain = || Way::PLAIN.make(&worlds[0].1, &job, &control.cancel);
-    let made = progress::watch(&control, args.quiet, || {
-        let plain = plain().map_err(cancelled)?;
+    let never = AtomicBool::new(false);
+    let made = progress::show(&control, args.quiet, || {
+        let plain = Way::PLAIN.make(&worlds[0].1, &job, &never).map_err(cancelled)?;
         for number in 0..u64::from(args.trials) {
             let way = Way::numbered(number, &job, worlds.len());
             let (structure, world) = &worlds[way.world];
             let way_name = format!("{structure}, {way}");
-            match way.make(world, &job, &control.cancel) {
+            match way.make(world, &job, &never) {
                 Err(WayError::Cancelled) => return Err(RenderError::Cancelled),
                 Err(error) => return Ok(Err(format!("way {number} ({way_name}) failed: {error}"))),
                 Ok(other) => {
@@ -135,7 +134,7 @@ fn hash_at(level: &str) -> anyhow::Result<String> {
     arguments.retain(|a| a != "--quiet" && a != "-q" && !a.to_string_lossy().starts_with("--trials="));
     arguments.extend(["--quiet", "--trials", "10"].map(OsString::from));
     let mut command = Command::new(std::env::current_exe()?);
-    let output = command.args(arguments).env("DURER_SIMD", level).stdin(Stdio::null()).output()?;
+    let output = progress::run_child(command.args(arguments).env("DURER_SIMD", level))?;
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     text.lines().last().map(str::to_string).with_context(|| String::from_utf8_lossy(&output.stderr).trim().to_string())
 }

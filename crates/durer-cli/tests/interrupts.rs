@@ -170,3 +170,109 @@ fn watch_renders_saved_changes_until_ctrl_c() {
     assert_eq!(status.code(), Some(0));
     assert!(!place.path("a.png.part").exists());
 }
+
+/// A grid of triangles, as an OBJ file.
+fn mesh(side: usize) -> String {
+    let mut mesh = String::new();
+    for i in 0..side * side {
+        let (x, y) = (i % side, i / side);
+        mesh += &format!("v {x} {y} {}\n", (x * 7 + y * 13) % 5);
+    }
+    for i in (0..side * (side - 1)).filter(|i| (i + 1) % side != 0) {
+        mesh += &format!("f {} {} {}\n", i + 1, i + 2, i + 1 + side);
+    }
+    mesh
+}
+
+/// Pixels of noise in which features are found, as a PPM file.
+fn noise(side: usize, seed: u32) -> Vec<u8> {
+    let mut bytes = format!("P6 {side} {side} 255\n").into_bytes();
+    let mut state = seed.wrapping_mul(2_654_435_761).max(1);
+    bytes.extend((0..3 * side * side).map(|_| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 24) as u8
+    }));
+    bytes
+}
+
+/// A bundle adjustment problem: cameras that see random points.
+fn problem(cameras: usize, points: usize) -> String {
+    let number = |i: usize| ((i * 7919) % 1000) as f64 / 500.0 - 1.0;
+    let mut text = format!("{cameras} {points} {}\n", cameras * points);
+    for i in 0..cameras * points {
+        text += &format!("{} {} {} {}\n", i % cameras, i / cameras, 300.0 * number(i), 300.0 * number(i + 17));
+    }
+    for i in 0..cameras {
+        text += &format!("0.1\n{}\n0.2\n{}\n0\n-5\n500\n0\n0\n", 0.1 * number(i), number(i));
+    }
+    (0..3 * points).for_each(|i| text += &format!("{}\n", number(3 * i)));
+    text
+}
+
+#[test]
+fn every_command_ends_soon_after_a_signal() {
+    let place = Place::new();
+    place.put("mesh.obj", mesh(700));
+    let large = common::SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file mesh.obj }");
+    place.put("mesh.txt", &large);
+    place.put("a.ppm", noise(4000, 1));
+    place.put("b.ppm", noise(4000, 2));
+    place.put("problem.txt", problem(60, 2000));
+    std::fs::create_dir(place.path("photos")).unwrap();
+    for i in 0..6 {
+        let picture = durer::image::read(&noise(1200, i), "a.ppm").unwrap();
+        let layer = durer::image::Layer::color("", picture);
+        let mut file = Vec::new();
+        let format = durer::image::format_for("a.png").unwrap();
+        format.write(&[layer], &durer::image::WriteOptions::default(), &mut file).unwrap();
+        place.put(&format!("photos/{i}.png"), file);
+    }
+    for line in [
+        "render endless.txt --bounces 256 -o o.png --restart",
+        "render mesh.txt --accel none -o o.png --restart",
+        "render mesh.txt --accel grid --size 3000x3000 -o o.png --restart",
+        "render endless.txt --bounces 256 --shard 1/2 -o o.part --restart",
+        "verify mesh.txt --accel none --trials 1000000",
+        "verify endless.txt --bounces 256",
+        "verify scene.txt --trials 1000000",
+        "explain endless.txt --bounces 256 --pixel 30,30 --size 60x60",
+        "lesson endless.txt --bounces 256 -o lesson",
+        "course -input endless.txt -output o.tga -size 900 900 -bounces 250 -shadows",
+        "measure scene.txt --at 0,1,0 --normal 0,1,0 --samples 16777216",
+        "compare a.ppm b.ppm",
+        "check mesh.txt",
+        "convert mesh.txt -o o.gltf",
+        "photo match photos -o matches.json",
+        "photo solve problem.txt -o solved.txt",
+    ] {
+        for (signal, code) in [("INT", 130), ("TERM", 143)] {
+            let (ran, latency) = place.signalled(line, Duration::from_millis(400), &[signal]);
+            assert_eq!(ran.code, Some(code), "{line}: {}", ran.err);
+            // An idle machine takes half a second at most.
+            assert!(latency < Duration::from_secs(3), "{line}: {latency:?}");
+            println!("{line}: {latency:?} after {signal}");
+        }
+    }
+    for line in ["live scene.txt", "render scene.txt --size 8x8 --samples 1 --watch -o w.png"] {
+        let (ran, latency) = place.signalled(line, Duration::from_millis(600), &["TERM"]);
+        assert!(ran.code == Some(0) && latency < Duration::from_secs(3), "{line}: {:?} {latency:?}", ran.code);
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_verification_leaves_no_process_behind() {
+    let place = Place::new();
+    let alive = || {
+        let found =
+            place.shell("pgrep -f \"verify $PWD/scene.txt\" | grep -vw $$ | xargs -r ps -o stat= -p | grep -cv Z");
+        found.out.trim().parse::<u32>().unwrap_or(0)
+    };
+    let line = format!("verify {} --trials 3 --size 300x300 --samples 64", place.path("scene.txt").display());
+    // Both while the program itself renders and while one with other instructions does.
+    for after in [300, 2000, 6000] {
+        let _ = place.signalled(&line, Duration::from_millis(after), &["TERM"]);
+        std::thread::sleep(Duration::from_millis(200));
+        assert_eq!(alive(), 0, "after {after} ms");
+    }
+}

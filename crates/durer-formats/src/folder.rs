@@ -163,6 +163,17 @@ impl FolderSource {
         })
     }
 
+    /// Path of an existing file after links are resolved, if it may be read.
+    ///
+    /// # Errors
+    ///
+    /// [`SourceError`]: there is no such file, or it lies outside the allowed folders.
+    pub fn allowed(&self, path: &Path) -> Result<PathBuf, SourceError> {
+        let name = || path.display().to_string();
+        let real = path.canonicalize().map_err(|error| SourceError::Io { name: name(), error })?;
+        if self.allows(&real) { Ok(real) } else { Err(SourceError::Outside { name: name() }) }
+    }
+
     fn allows(&self, real: &Path) -> bool {
         let below = |folder: &PathBuf| folder.canonicalize().is_ok_and(|folder| real.starts_with(folder));
         self.allowed.is_empty() || self.allowed.iter().any(below)

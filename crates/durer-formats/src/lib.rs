@@ -19,6 +19,7 @@ mod files;
 pub mod folder;
 #[cfg(feature = "gltf")]
 mod gltf;
+mod growth;
 pub mod json;
 mod lamps;
 mod medium;

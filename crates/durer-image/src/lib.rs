@@ -30,7 +30,7 @@ pub use error::ImageError;
 pub use formats::{
     Depth, FORMATS, Format, Raster, RowFormat, RowWriter, Strip, WriteOptions, extension_of, format_for,
 };
-pub use limits::{checked_count, pixel_limit};
+pub use limits::{can_allocate, checked_count, pixel_limit};
 pub use read::{Encoded, read, read_srgb, read8};
 #[cfg(feature = "fs")]
 pub use save::{Destination, SaveError, save, save_all};

@@ -35,6 +35,14 @@ pub(super) fn room_for<T: Clone>(count: usize, thing: T) -> Result<Vec<T>, Image
     Ok(all)
 }
 
+/// Returns true if so many bytes can be allocated now. Where a limit of the system forbids it, large
+/// work is refused by an error before it begins.
+pub fn can_allocate(bytes: u64) -> bool {
+    let length = usize::try_from(bytes).unwrap_or(usize::MAX);
+    // The system gives no pages before something is written to them.
+    Vec::<u8>::new().try_reserve_exact(length).is_ok()
+}
+
 /// Number of pixels of a picture, if its size is valid.
 ///
 /// # Errors

@@ -120,7 +120,9 @@ pub(super) fn remove_stale(folder: &Path) {
         if !name.starts_with(PREFIX) || !name.ends_with(SUFFIX) {
             continue;
         }
-        let Ok(file) = File::open(entry.path()) else { continue };
+        // Opening a pipe would block.
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        let Some(file) = is_file.then(|| File::open(entry.path()).ok()).flatten() else { continue };
         let free = rustix::fs::flock(&file, rustix::fs::FlockOperation::NonBlockingLockExclusive).is_ok();
         let age = entry.metadata().and_then(|data| data.modified()).ok().and_then(|time| time.elapsed().ok());
         if free && (name.starts_with(READY) || age.is_some_and(|age| age > PATIENCE)) {

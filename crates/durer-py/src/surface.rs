@@ -146,8 +146,8 @@ fn rows<T: numpy::Element + Copy + Default + Send + Sync>(
 ) -> PyResult<Vec<T>> {
     let mut values = zeros::<T>(py, threads, 3 * hits.triangles.len());
     let jobs = values.as_chunks_mut().0.chunks_mut(JOB).enumerate().collect();
-    each(py, threads, None, jobs, |(job, rows): (usize, &mut [[T; 3]])| {
-        for (i, row) in rows.iter_mut().enumerate() {
+    each(py, threads, None, jobs, |(job, rows): (usize, &mut [[T; 3]]), pace| {
+        for (i, row) in rows.iter_mut().enumerate().take_while(|_| pace.goes_on()) {
             let i = JOB * job + i;
             *row = hits.face(i).map_or([missing; 3], |face| of(&face, i));
         }

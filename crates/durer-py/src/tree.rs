@@ -1,7 +1,7 @@
 //! Trees of triangles, and queries on them.
 
 use crate::rays::{Array, Asked, JOB, Points, Rays, points};
-use crate::work::{each, install};
+use crate::work::{Pace, each, install};
 use durer::bvh::{BuildQuality, Instance, InstanceBvh, InstanceHit, TriangleBvh, TriangleHit};
 use durer::math::{Affine, Ray, Ray64, Vec3};
 use glam::{DAffine3, DMat3, DVec3};
@@ -56,43 +56,47 @@ impl From<InstanceHit> for Row {
 const MISS: Row = Row(f32::INFINITY, -1, -1, [0.0; 2]);
 
 impl Tree {
-    fn closest_of(&self, rays: &Rays, first: usize, mut put: impl FnMut(usize, Row)) {
+    fn closest_of(&self, rays: &Rays, first: usize, pace: &Pace, mut put: impl FnMut(usize, Row)) {
         match &self.target {
             Target::Mesh(tree) => {
                 let rays = rays.job(first, self.center);
                 let mut hits = vec![None; rays.len()];
-                tree.closest_batch(&rays, &mut hits);
+                pace.ranges(rays.len(), |range| tree.closest_batch(&rays[range.clone()], &mut hits[range]));
                 for (i, hit) in hits.into_iter().enumerate() {
                     put(i, hit.map_or(MISS, Row::from));
                 }
             }
             Target::Placed(scene) => {
-                for (i, ray) in rays.exact_job(first).iter().enumerate() {
+                for (i, ray) in rays.exact_job(first).iter().enumerate().take_while(|_| pace.goes_on()) {
                     put(i, scene.closest(ray).map_or(MISS, Row::from));
                 }
             }
         }
     }
 
-    fn occluded_of(&self, rays: &Rays, first: usize, answers: &mut [bool]) {
+    fn occluded_of(&self, rays: &Rays, first: usize, pace: &Pace, answers: &mut [bool]) {
         match &self.target {
-            Target::Mesh(tree) => tree.occluded_batch(&rays.job(first, self.center), answers),
+            Target::Mesh(tree) => {
+                let rays = rays.job(first, self.center);
+                pace.ranges(rays.len(), |range| tree.occluded_batch(&rays[range.clone()], &mut answers[range]));
+            }
             Target::Placed(scene) => {
                 let rays = rays.exact_job(first);
-                answers.iter_mut().zip(&rays).for_each(|(answer, ray)| *answer = scene.occluded(ray));
+                let pairs = answers.iter_mut().zip(&rays).take_while(|_| pace.goes_on());
+                pairs.for_each(|(answer, ray)| *answer = scene.occluded(ray));
             }
         }
     }
 
-    fn all_hits_of(&self, rays: &Rays, first: usize, mut take: impl FnMut(usize, Vec<Row>)) {
+    fn all_hits_of(&self, rays: &Rays, first: usize, pace: &Pace, mut take: impl FnMut(usize, Vec<Row>)) {
         match &self.target {
             Target::Mesh(tree) => {
-                for (i, ray) in rays.job(first, self.center).iter().enumerate() {
+                for (i, ray) in rays.job(first, self.center).iter().enumerate().take_while(|_| pace.goes_on()) {
                     take(i, tree.all_hits(ray).into_iter().map(Row::from).collect());
                 }
             }
             Target::Placed(scene) => {
-                for (i, ray) in rays.exact_job(first).iter().enumerate() {
+                for (i, ray) in rays.exact_job(first).iter().enumerate().take_while(|_| pace.goes_on()) {
                     take(i, scene.all_hits(ray).into_iter().map(Row::from).collect());
                 }
             }
@@ -219,8 +223,8 @@ impl Tree {
         let objects = object.chunks_mut(JOB).map(Some).chain(std::iter::repeat_with(|| None));
         let found = t.chunks_mut(JOB).zip(uv.as_chunks_mut().0.chunks_mut(JOB)).zip(triangle.chunks_mut(JOB));
         let jobs = found.zip(objects).enumerate().collect();
-        each(py, threads, watch, jobs, |(job, (((t, uv), triangle), mut object))| {
-            self.closest_of(&rays, JOB * job, |i, row| {
+        each(py, threads, watch, jobs, |(job, (((t, uv), triangle), mut object)), pace| {
+            self.closest_of(&rays, JOB * job, pace, |i, row| {
                 (t[i], triangle[i], uv[i]) = (row.0, row.1, row.3);
                 object.iter_mut().for_each(|object| object[i] = row.2);
             });
@@ -241,7 +245,7 @@ impl Tree {
         let count = rays.count;
         let mut answers = vec![false; count];
         let jobs = answers.chunks_mut(JOB).enumerate().collect();
-        each(py, threads, watch, jobs, |(job, to)| self.occluded_of(&rays, JOB * job, to))?;
+        each(py, threads, watch, jobs, |(job, to), pace| self.occluded_of(&rays, JOB * job, pace, to))?;
         Ok(answers.into_pyarray(py))
     }
 
@@ -257,8 +261,8 @@ impl Tree {
         let count = rays.count;
         let mut counts = vec![0; count];
         let jobs = counts.chunks_mut(JOB).enumerate().collect();
-        each(py, threads, watch, jobs, |(job, to): (usize, &mut [i32])| {
-            self.all_hits_of(&rays, JOB * job, |i, hits| to[i] = hits.len() as i32);
+        each(py, threads, watch, jobs, |(job, to): (usize, &mut [i32]), pace| {
+            self.all_hits_of(&rays, JOB * job, pace, |i, hits| to[i] = hits.len() as i32);
         })?;
         Ok(counts.into_pyarray(py))
     }
@@ -276,8 +280,8 @@ impl Tree {
         let mut counts = vec![0; count];
         let mut rows: Vec<Vec<Row>> = vec![Vec::new(); count.div_ceil(JOB)];
         let jobs = counts.chunks_mut(JOB).zip(&mut rows).enumerate().collect();
-        each(py, threads, watch, jobs, |(job, (counts, rows)): (usize, (&mut [i64], &mut Vec<Row>))| {
-            self.all_hits_of(&rays, JOB * job, |i, hits| {
+        each(py, threads, watch, jobs, |(job, (counts, rows)): (usize, (&mut [i64], &mut Vec<Row>)), pace| {
+            self.all_hits_of(&rays, JOB * job, pace, |i, hits| {
                 counts[i] = hits.len() as i64;
                 rows.extend(hits);
             });
@@ -302,8 +306,9 @@ impl Tree {
         let places = Points::new(&places)?;
         let mut answers = vec![false; places.count()];
         let jobs = answers.chunks_mut(JOB).enumerate().collect();
-        each(py, threads, watch, jobs, |(job, to): (usize, &mut [bool])| {
-            to.iter_mut().enumerate().for_each(|(i, to)| *to = self.contains_point(places.at(JOB * job + i)));
+        each(py, threads, watch, jobs, |(job, to): (usize, &mut [bool]), pace| {
+            let own = to.iter_mut().enumerate().take_while(|_| pace.goes_on());
+            own.for_each(|(i, to)| *to = self.contains_point(places.at(JOB * job + i)));
         })?;
         Ok(answers.into_pyarray(py))
     }
@@ -332,8 +337,8 @@ impl Tree {
         let (mut near, mut uv) = (vec![f64::NAN; 3 * count], vec![0.0; 2 * count]);
         let numbers = distance.chunks_mut(JOB).zip(triangle.chunks_mut(JOB));
         let jobs = numbers.zip(near.chunks_mut(3 * JOB)).zip(uv.chunks_mut(2 * JOB)).enumerate();
-        each(py, threads, watch, jobs.collect(), |(job, (((distance, triangle), near), uv))| {
-            for i in 0..distance.len() {
+        each(py, threads, watch, jobs.collect(), |(job, (((distance, triangle), near), uv)), pace| {
+            for i in (0..distance.len()).take_while(|_| pace.goes_on()) {
                 if let Some(found) = tree.nearest_point(places.seen_from(self.center, JOB * job + i), within) {
                     (distance[i], triangle[i]) = (found.distance, found.triangle as i32);
                     near[3 * i..3 * i + 3].copy_from_slice(&(found.point + self.center).to_array());

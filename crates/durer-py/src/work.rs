@@ -8,10 +8,12 @@ use durer::threads;
 use pyo3::prelude::*;
 use rayon::ThreadPool;
 use rayon::prelude::*;
+use std::cell::RefCell;
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Interval of checking signals and reporting progress.
 pub const LOOK: Duration = Duration::from_millis(50);
@@ -51,30 +53,72 @@ pub fn look(watch: Option<&Py<PyAny>>, done: u64, all: u64) -> PyResult<()> {
     })
 }
 
+/// Tells a job whether it goes on. A single item may take milliseconds, so jobs ask for each item or
+/// for few.
+pub struct Pace<'a> {
+    stop: &'a AtomicBool,
+    /// Work of the calling thread looks for signals itself: the time of the last look, and the
+    /// exception.
+    own: Option<RefCell<(Instant, PyResult<()>)>>,
+}
+
+impl Pace<'_> {
+    /// Returns true if the work goes on.
+    pub fn goes_on(&self) -> bool {
+        if let Some(own) = &self.own {
+            let mut own = own.borrow_mut();
+            if own.0.elapsed() > LOOK && own.1.is_ok() {
+                *own = (Instant::now(), look(None, 0, 0));
+                // The look may take time too.
+                own.0 = Instant::now();
+                self.stop.store(own.1.is_err(), Relaxed);
+            }
+        }
+        !self.stop.load(Relaxed)
+    }
+
+    /// Divides a number of items into ranges that are small if items take long.
+    pub fn ranges(&self, count: usize, mut work: impl FnMut(Range<usize>)) {
+        const MOST: usize = 128;
+        let (mut from, mut step) = (0, 8);
+        while from < count && self.goes_on() {
+            let (to, start) = ((from + step).min(count), Instant::now());
+            work(from..to);
+            step = if start.elapsed() < LOOK / 10 { MOST.min(4 * step) } else { 1.max(step / 4) };
+            from = to;
+        }
+    }
+}
+
 /// Runs all jobs; stops after Ctrl-C or an exception of `watch`.
 pub fn each<J: Send>(
     py: Python,
     asked: Option<usize>,
     watch: Option<Py<PyAny>>,
     mut jobs: Vec<J>,
-    work: impl Fn(J) + Sync + Send,
+    work: impl Fn(J, &Pace) + Sync + Send,
 ) -> PyResult<()> {
+    let (all, done, stop) = (jobs.len() as u64, AtomicUsize::new(0), AtomicBool::new(false));
+    let alone = |jobs: Vec<J>| {
+        let pace = Pace { stop: &stop, own: Some(RefCell::new((Instant::now(), Ok(())))) };
+        jobs.into_iter().take_while(|_| pace.goes_on()).for_each(|job| work(job, &pace));
+        pace.own.map_or(Ok(()), |own| own.into_inner().1)
+    };
     // Too little work for threads.
     if jobs.len() <= 1 {
-        py.detach(|| jobs.drain(..).for_each(work));
+        py.detach(|| alone(std::mem::take(&mut jobs)))?;
         return py.check_signals();
     }
-    let (all, done, stop) = (jobs.len() as u64, AtomicUsize::new(0), AtomicBool::new(false));
     let one = |job| {
-        if !stop.load(Relaxed) {
-            work(job);
+        let pace = Pace { stop: &stop, own: None };
+        if pace.goes_on() {
+            work(job, &pace);
             done.fetch_add(1, Relaxed);
         }
     };
     let result = py.detach(|| {
         let Some(pool) = pool(asked) else {
-            jobs.into_iter().for_each(one);
-            return Ok(());
+            return alone(jobs);
         };
         let mut result = Ok(());
         pool.in_place_scope(|scope| {

@@ -207,10 +207,12 @@ impl World {
         let mut places = vec![f64::NAN; PLACES * count];
         let numbers = ids.chunks_mut(NUMBERS * JOB).zip(values.chunks_mut(VALUES * JOB));
         let jobs = numbers.zip(places.chunks_mut(PLACES * JOB)).enumerate().collect();
-        each(py, threads, watch, jobs, |(job, ((ids, values), places)): (usize, Row)| {
+        each(py, threads, watch, jobs, |(job, ((ids, values), places)): (usize, Row), pace| {
             let rows = ids.as_chunks_mut::<NUMBERS>().0.iter_mut().zip(values.as_chunks_mut::<VALUES>().0);
             let rows = rows.zip(places.as_chunks_mut::<PLACES>().0);
-            for (ray, ((ids, values), place)) in rays.exact_job(JOB * job).iter().zip(rows) {
+            for (ray, ((ids, values), place)) in
+                rays.exact_job(JOB * job).iter().zip(rows).take_while(|_| pace.goes_on())
+            {
                 values[0] = f32::INFINITY;
                 let Some(Interaction { hit, surface, material, .. }) = self.world.intersect(ray, &mut ()) else {
                     continue;
@@ -241,8 +243,10 @@ impl World {
         let count = rays.count;
         let mut answers = vec![false; count];
         let jobs = answers.chunks_mut(JOB).enumerate().collect();
-        each(py, threads, watch, jobs, |(job, to): (usize, &mut [bool])| {
-            to.iter_mut().zip(&rays.exact_job(JOB * job)).for_each(|(to, ray)| *to = self.world.occluded(ray, &mut ()));
+        each(py, threads, watch, jobs, |(job, to): (usize, &mut [bool]), pace| {
+            let rays = rays.exact_job(JOB * job);
+            let pairs = to.iter_mut().zip(&rays).take_while(|_| pace.goes_on());
+            pairs.for_each(|(to, ray)| *to = self.world.occluded(ray, &mut ()));
         })?;
         Ok(answers.into_pyarray(py))
     }

@@ -247,6 +247,33 @@ except KeyboardInterrupt:
     assert process.communicate(timeout=60)[0] == "stopped\n"
 
 
+@pytest.mark.parametrize("query", ["count(points, [0, 0, 1])", "closest(points, [0, 0, 1])", "nearest(points)"])
+def test_control_c_stops_a_few_slow_rays(query):
+    """Fewer rays than a thread takes at once, each through thousands of triangles that lie on each other."""
+    code = f"""
+import durer, numpy as np
+corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], dtype=np.float32)
+heights = np.arange(100_000, dtype=np.float32)[:, None, None] * [0, 0, 1e-6]
+vertices = (corners + heights).reshape(-1, 3)
+mesh = durer.Mesh(vertices, np.arange(len(vertices)).reshape(-1, 3))
+points = np.full((2000, 3), 0.25) - [0, 0, 1]
+print("ready", flush=True)
+try:
+    while True:
+        mesh.{query}
+except KeyboardInterrupt:
+    print("stopped", flush=True)
+"""
+    process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == "ready\n"
+    time.sleep(0.3)
+    start = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    assert process.communicate(timeout=60)[0] == "stopped\n"
+    # An idle machine takes a tenth of a second.
+    assert time.monotonic() - start < 2
+
+
 def _in_child(queue):
     mesh = durer.Mesh(CUBE, CUBE_FACES)
     queue.put(int(mesh.count(np.full((10_000, 3), 0.5), [0, 0, 1]).sum()))

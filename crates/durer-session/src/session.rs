@@ -447,8 +447,12 @@ fn picture((head, bytes): Shown) -> Message {
 }
 
 fn read(path: &Path) -> Result<Arc<[u8]>, String> {
-    let bytes = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
-    Ok(bytes.into())
+    let wrong = |error: std::io::Error| format!("{}: {error}", path.display());
+    // Reading a pipe or a device may never end.
+    if !std::fs::metadata(path).map_err(wrong)?.is_file() {
+        return Err(format!("{}: not a file", path.display()));
+    }
+    Ok(std::fs::read(path).map_err(wrong)?.into())
 }
 
 /// Decodes base64, with or without padding.

@@ -21,7 +21,7 @@ use durer_scene::scene::Staging;
 use durer_scene::source::Digest;
 use durer_scene::spectrum::Curve;
 use std::cell::RefCell;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 /// Memory limit for pictures, in bytes.
@@ -170,21 +170,35 @@ fn folder() -> PathBuf {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     let make = || {
         let folder = tempfile::tempdir().expect("cannot create a temporary folder").keep();
-        let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\n\
-                    f 1/1 3/3 2/2\nf 1/1 2/2 4/3\nf 1/1 4/2 3/3\nf 2/1 3/2 4/3\n";
-        let picture = [b"P6 2 2 255\n".as_slice(), &[9, 200, 30, 0, 0, 0, 255, 255, 255, 80, 90, 100]].concat();
-        std::fs::write(folder.join("a.obj"), mesh).expect("cannot write the mesh");
-        std::fs::write(folder.join("a.ppm"), picture).expect("cannot write the picture");
+        write_files(&folder).expect("it can be written");
         folder
     };
     FOLDER.get_or_init(make).clone()
+}
+
+/// Writes the files that random scenes name into a folder.
+///
+/// # Errors
+///
+/// Those of writing.
+pub fn write_files(folder: &Path) -> std::io::Result<()> {
+    let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\n\
+                f 1/1 3/3 2/2\nf 1/1 2/2 4/3\nf 1/1 4/2 3/3\nf 2/1 3/2 4/3\n";
+    let picture = [b"P6 2 2 255\n".as_slice(), &[9, 200, 30, 0, 0, 0, 255, 255, 255, 80, 90, 100]].concat();
+    std::fs::write(folder.join("a.obj"), mesh)?;
+    std::fs::write(folder.join("a.ppm"), picture)
+}
+
+/// Returns the text of a scene that bytes determine, which can be rendered.
+pub fn random_scene(bytes: &[u8]) -> String {
+    write(&Random::tame(bytes).scene(Dialect::Durer), Dialect::Durer)
 }
 
 /// Builds a random scene from bytes; its text reads back as the same scene, and its picture is the
 /// same with BVH, grid and brute force.
 pub fn ways(data: &[u8]) {
     let scene = Random::tame(data).scene(Dialect::Durer);
-    let text = write(&scene, Dialect::Durer);
+    let text = random_scene(data);
     let path = folder().join("scene.txt");
     let settings = Settings { bounces: 2, ..Job::default().settings };
     // Use path tracing for physical scenes.

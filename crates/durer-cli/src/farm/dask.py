@@ -15,16 +15,16 @@ from distributed import Client
 @frames
 @frames
 @frames def world(frame):
-@frames     words = [*@WORDS_JSON@@MOVING_WORDS@]
-@frames     return durer.load(numbered(@SCENE_JSON@, frame), words=[numbered(word, frame) for word in words])
+@frames     words = [*@WORDS_PYTHON@@MOVING_WORDS@]
+@frames     return durer.load(numbered(@SCENE_PYTHON@, frame), words=[numbered(word, frame) for word in words])
 @frames
 @frames
 if __name__ == "__main__":
     client = Client(sys.argv[1]) if len(sys.argv) > 1 else Client(threads_per_worker=1)
-@still     pictures = durer.farm.render(@SCENE_JSON@, client=client, shards=@SHARDS@, words=@WORDS_JSON@)
-@still     pictures.save(@OUTPUT_JSON@)
+@still     pictures = durer.farm.render(@SCENE_PYTHON@, client=client, shards=@SHARDS@, words=@WORDS_PYTHON@)
+@still     pictures.save(@OUTPUT_PYTHON@)
 @still     print(pictures.hash)
 @frames     for frame, pictures in zip(FRAMES, durer.farm.frames(map(world, FRAMES), client=client, shards=@SHARDS@)):
-@frames         pictures.save(numbered(@OUTPUT_JSON@, frame))
+@frames         pictures.save(numbered(@OUTPUT_PYTHON@, frame))
 @frames         print(frame, pictures.hash)
     client.close()

@@ -8,7 +8,7 @@
 @frames # One shard of @SHARDS@ of one frame of @FIRST@-@LAST@:@STEP@. A repeated task continues its saved work.
 @frames # When all tasks have finished:
 @frames #   for frame in $(seq @FIRST@ @STEP@ @LAST@); do
-@frames #       durer merge shards/@NAME@/"$frame".*.part -o "$(printf @OUTPUT@ "$frame")"
+@frames #       durer merge shards/@NAME@/"$frame".*.part -o @OUTPUT_OF_FRAME@
 @frames #   done
 set -euo pipefail
 mkdir -p shards/@NAME@

@@ -4,6 +4,7 @@ use super::written::TEXT;
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
 use crate::output::save_silently;
+use durer::format::folder::FolderSource;
 use durer::image::Destination;
 use std::collections::BTreeSet;
 use std::io::ErrorKind;
@@ -12,6 +13,9 @@ use std::path::{Path, PathBuf};
 /// First line of a lesson's text.
 pub const MARK: &str =
     "<!-- Written by durer lesson, which also replaces or removes the files that are linked here. -->";
+
+/// Bytes of a lesson's text, at most.
+const LONGEST: u64 = 16 << 20;
 
 /// The folder of a lesson.
 pub struct Folder {
@@ -36,7 +40,8 @@ impl Folder {
         if !new {
             Destination::new(path.join(TEXT))?;
         }
-        let own = std::fs::read_to_string(path.join(TEXT)).map(|text| linked(&text)).unwrap_or_default();
+        let text = FolderSource::new(&path).budget(LONGEST).read_path(&path.join(TEXT), TEXT);
+        let own = text.map(|text| linked(&String::from_utf8_lossy(&text))).unwrap_or_default();
         own.iter().try_for_each(|name| guard.claim("--output", &path.join(name)))?;
         Ok(Folder { path, new, own })
     }

@@ -1,19 +1,53 @@
 //! Input files: photographs, and cameras with points.
+//!
+//! Files that the user names may lie anywhere. Files that another file names, and those found in a
+//! folder, must lie in or below that folder after links are resolved, as the files of a scene.
 
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
-use durer_photo::format::inputs;
+use durer::format::folder::FolderSource;
+use durer::options::Memory;
+use durer::source::SourceError;
+use durer_photo::format::{inputs, read_by};
 use durer_photo::{Error, Reconstruction};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 pub fn wrong(error: Error) -> Failure {
     bad(error.to_string())
 }
 
-/// Reads a file.
-pub fn bytes(path: &Path, guard: &mut Guard) -> Result<Vec<u8>, Failure> {
+/// Reads a file that the user named.
+pub fn bytes(path: &Path, guard: &mut Guard) -> Result<Arc<[u8]>, Failure> {
     guard.reads(path)?;
-    std::fs::read(path).map_err(|error| bad(format!("cannot read `{}`: {error}", path.display())))
+    let read = within(FolderSource::new(".").allow_outside(), path);
+    read.map_err(|error| bad(error.to_string()))
+}
+
+/// Reads a file that a reconstruction names, or that was found in a folder.
+pub fn bytes_below(folder: &Path, name: &Path, guard: &mut Guard) -> Result<Arc<[u8]>, Failure> {
+    let path = folder.join(name);
+    let read = within(FolderSource::new(folder), &path).map_err(|error| match error {
+        SourceError::Outside { .. } => bad(outside(&path, folder)),
+        error => bad(error.to_string()),
+    })?;
+    guard.reads(&path)?;
+    Ok(read)
+}
+
+fn outside(path: &Path, folder: &Path) -> String {
+    format!(
+        "`{}` lies outside the folder `{}`\nhelp: copy it into the folder: only files in and below it are read",
+        path.display(),
+        folder.display()
+    )
+}
+
+/// Reads a regular file that a source allows, if it fits into memory.
+fn within(source: FolderSource, path: &Path) -> Result<Arc<[u8]>, SourceError> {
+    let most = Memory::default().bytes().unwrap_or(u64::MAX).min(FolderSource::DEFAULT_BUDGET);
+    let real = source.allowed(path)?;
+    source.budget(most).read_path(&real, &path.to_string_lossy())
 }
 
 /// Runs `work` on a number of threads; all processors if `None`.
@@ -41,6 +75,11 @@ pub fn photographs(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     }
 }
 
+/// Returns the folder of a file.
+fn folder_of(file: &Path) -> &Path {
+    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 pub fn name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
@@ -49,7 +88,17 @@ pub fn name(path: &Path) -> String {
 /// are used, in order.
 pub fn read(file: &Path, pictures: Option<&Path>, guard: &mut Guard) -> Result<Reconstruction, Failure> {
     inputs(file).iter().try_for_each(|path| guard.reads(path))?;
-    let mut all = durer_photo::format::read(file).map_err(wrong)?;
+    let folder = if file.is_dir() { file } else { folder_of(file) };
+    let mut open = |path: &Path| {
+        // The user named the file itself; it names the others, or its folder contains them.
+        let source = FolderSource::new(folder);
+        let source = if path == file { source.allow_outside() } else { source };
+        within(source, path).map_err(|error| match error {
+            SourceError::Outside { .. } => Error::new(outside(path, folder)),
+            error => Error::new(error.to_string()),
+        })
+    };
+    let mut all = read_by(file, &mut open).map_err(wrong)?;
     let Some(folder) = pictures.filter(|_| all.lenses.iter().any(|lens| lens.size == [0, 0])) else { return Ok(all) };
     let paths = photographs(folder)?;
     if paths.len() != all.views.len() {
@@ -62,7 +111,8 @@ pub fn read(file: &Path, pictures: Option<&Path>, guard: &mut Guard) -> Result<R
         )));
     }
     for (i, path) in paths.iter().enumerate() {
-        let size = durer_photo::photo::size(&path.to_string_lossy(), &bytes(path, guard)?).map_err(wrong)?;
+        let content = bytes_below(folder, Path::new(path.file_name().unwrap_or_default()), guard)?;
+        let size = durer_photo::photo::size(&path.to_string_lossy(), &content).map_err(wrong)?;
         all.set_picture(i, &name(path), size);
     }
     Ok(all)

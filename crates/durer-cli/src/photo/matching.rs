@@ -1,7 +1,7 @@
 //! `durer photo match`: finds and matches features.
 
 use super::args::MatchArgs;
-use super::inputs::{bytes, name, photographs, threaded, wrong};
+use super::inputs::{bytes_below, name, photographs, threaded, wrong};
 use crate::failure::Failure;
 use crate::guard::Guard;
 use crate::output::save;
@@ -10,6 +10,7 @@ use crate::terminal::complain;
 use crate::terminal::say;
 use durer_photo::matching::{GUESS, Matches, Options, describe, match_all};
 use durer_photo::photo;
+use std::path::Path;
 
 /// Share of the progress bar for features; matching takes the rest.
 const FEATURES: f64 = 0.5;
@@ -39,7 +40,9 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         for (i, path) in paths.iter().enumerate() {
             // Process one photograph at a time: they are large, and feature detection uses all
             // threads.
-            let photo = photo::read(&name(path), &bytes(path, &mut Guard::default())?).map_err(wrong)?;
+            let own = Path::new(path.file_name().unwrap_or_default());
+            let content = bytes_below(&args.folder, own, &mut Guard::default())?;
+            let photo = photo::read(&name(path), &content).map_err(wrong)?;
             doubts.extend(photo.exif.doubt.as_ref().map(|doubt| format!("{}: {doubt}", photo.name)));
             described.push(threaded(args.run.threads, || describe(&photo, &options))?);
             tell(FEATURES * (i + 1) as f64 / paths.len() as f64);

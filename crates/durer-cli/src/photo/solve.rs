@@ -18,7 +18,7 @@ pub fn run(args: &SolveArgs) -> Result<(), Failure> {
     let mut guard = Guard::default();
     let mut results = Results::new(&args.results, &mut guard)?;
     let is_file = !args.file.is_dir();
-    let content = if is_file { bytes(&args.file, &mut guard)? } else { Vec::new() };
+    let content = if is_file { bytes(&args.file, &mut guard)? } else { [].into() };
     let file = args.file.to_string_lossy();
     let (mut all, control) = match is_matches(&content) {
         true => {

@@ -1,7 +1,7 @@
 //! `durer photo tour`: an HTML page for walking among photographs.
 
 use super::args::TourArgs;
-use super::inputs::{bytes, read, wrong};
+use super::inputs::{bytes_below, read, wrong};
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
 use crate::output::save;
@@ -11,6 +11,7 @@ use base64::engine::general_purpose::STANDARD;
 use durer_photo::photo;
 use durer_photo::tour::shown;
 use serde_json::json;
+use std::path::Path;
 
 /// Page template without data.
 const PAGE: &str = include_str!("tour.html");
@@ -26,7 +27,8 @@ pub fn run(args: &TourArgs) -> Result<(), Failure> {
     let names: Vec<String> = photographs.iter().map(|shown| shown.name.clone()).collect();
     let pictures = progress::each(&names, photographs.iter().collect(), args.quiet, |shown| {
         let path = args.pictures.join(&shown.name);
-        let photo = photo::read(&path.to_string_lossy(), &bytes(&path, &mut guard)?).map_err(wrong)?;
+        let content = bytes_below(&args.pictures, Path::new(&shown.name), &mut guard)?;
+        let photo = photo::read(&path.to_string_lossy(), &content).map_err(wrong)?;
         if photo.size() != shown.size {
             let ([w, h], [x, y]) = (photo.size(), shown.size);
             return Err(bad(format!(

@@ -4,12 +4,10 @@ use super::lexer::TokenKind;
 use super::nodes::paint;
 use super::reader::Reader;
 use super::words::dialects_of;
+use crate::growth::MAX_OBJECTS;
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::dialect::set;
 use durer_scene::scene::{Group, Node, Object};
-
-/// Maximum number of objects in a scene with `use`, counting each use.
-const MAX_OBJECTS: usize = 1 << 20;
 
 impl Reader<'_, '_> {
     /// Reads the name of a material, between its keyword and its block.

@@ -36,7 +36,7 @@ impl Model<'_> {
         }
         let view = at.need("bufferView")?;
         let packed = self.views[view.index(self.views.len())?].clone()?.slice?;
-        let mesh = match decoded(packed.bytes(), self.left.get()) {
+        let mesh = match decoded(packed.bytes(), self.work.left().min(self.kept.left())) {
             Ok(mesh) => mesh,
             Err(message) => {
                 at.error("compressed-data", format!("the Draco data are damaged: {message}"));

@@ -21,6 +21,7 @@ mod texture;
 mod variants;
 mod write;
 
+use super::growth::{Growth, TooMuch};
 use super::model::{Input, SceneFormat};
 use super::report::Report;
 use accessor::Accessor;
@@ -35,7 +36,7 @@ use durer_scene::texture::Mapping;
 use json::{At, Findings};
 use primitive::Primitives;
 use serde_json::Value;
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use write::write;
 
@@ -97,8 +98,10 @@ struct Model<'a> {
     skins: Vec<Option<Skin>>,
     cameras: Vec<Option<CameraData>>,
     lights: Vec<Option<LightData>>,
-    /// Remaining budget of decoded bytes.
-    left: Cell<u64>,
+    /// What is decoded, each time that it is: time and memory stay in proportion to the file.
+    work: Growth,
+    /// Objects, and bytes that are kept.
+    kept: Growth,
     /// Codes of the warnings that were reported.
     said: RefCell<BTreeSet<&'static str>>,
 }
@@ -180,14 +183,15 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
         skins: Vec::new(),
         cameras: Vec::new(),
         lights: Vec::new(),
-        left: Cell::new(0),
+        work: Growth::of_file(0, u64::MAX),
+        kept: Growth::within(input.memory),
         said: RefCell::default(),
     };
     // Each step needs the ones before it.
     model.buffers = model.buffers(&root);
     let slices = model.buffers.iter().flatten().filter_map(|buffer| buffer.slice.as_ref());
     let bytes: u64 = slices.map(|slice| slice.bytes().len() as u64).sum();
-    model.left.set((256 << 20) + 64 * bytes);
+    model.work.feed(bytes as usize);
     model.views = model.views(&root);
     model.accessors = model.accessors(&root);
     model.unpack_primitives(&root);
@@ -314,13 +318,27 @@ impl Model<'_> {
     }
 
     fn charge_at(&self, count: usize, size: usize, pointer: &dyn Fn() -> String) -> Option<()> {
-        let left = self.left.get().checked_sub((count as u64).saturating_mul(size as u64));
-        self.left.set(left.unwrap_or(0));
-        if left.is_none() {
+        let counted = self.work.bytes(count, size);
+        if counted.is_err() {
             let message = "the file repeats its data so often that they exceed the memory limit";
             self.findings.say(Diagnostic::error, "too-large", &pointer(), message);
         }
-        left.map(|_| ())
+        counted.ok()
+    }
+
+    /// Counts bytes that are kept.
+    fn keep(&self, count: usize, size: usize, at: &At) -> Option<()> {
+        self.told(self.kept.bytes(count, size), &|| at.pointer())
+    }
+
+    /// Reports growth beyond a limit, once.
+    fn told(&self, counted: Result<(), TooMuch>, pointer: &dyn Fn() -> String) -> Option<()> {
+        let found = counted.map_err(|TooMuch { message, is_first }| {
+            if is_first {
+                self.findings.say(Diagnostic::error, "too-large", &pointer(), &message);
+            }
+        });
+        found.ok()
     }
 
     /// Returns all rows of an accessor.
@@ -336,6 +354,7 @@ impl Model<'_> {
         of: impl Fn([f32; N]) -> T + Sync + Send,
     ) -> Option<Vec<T>> {
         self.charge(accessor.count, 4 * N, at)?;
+        self.keep(accessor.count, size_of::<T>(), at)?;
         Some(accessor.rows(of))
     }
 }

@@ -224,7 +224,7 @@ impl Model<'_> {
             if let Some(pose) = &primitive.pose {
                 let weights = if node.weights.is_empty() { &self.weights[mesh] } else { &node.weights };
                 if pose.moves(weights, bones.is_some()) {
-                    if self.charge_at(data.bytes(), 1, &pointer).is_none() {
+                    if self.copied(&data, &pointer).is_none() {
                         return;
                     }
                     data = primitive.posed(pose, weights, bones.as_deref()).into();
@@ -237,11 +237,15 @@ impl Model<'_> {
             // Joint transforms already include the transform to world space.
             let here = if bones.is_some() { DAffine3::IDENTITY } else { maps[number] };
             let own = [DAffine3::IDENTITY];
-            for (copy, place) in node.copies.as_deref().unwrap_or(&own).iter().enumerate() {
+            let copies = node.copies.as_deref().unwrap_or(&own);
+            if self.told(self.kept.objects(copies.len()), &pointer).is_none() {
+                return;
+            }
+            for (copy, place) in copies.iter().enumerate() {
                 let mut instance = Instance { to_world: here * *place, name: name.clone(), data: data.clone(), span };
                 if matrix_of(instance.to_world).is_none() {
                     let is_sheet = is_sheet(instance.to_world);
-                    if is_sheet && self.charge_at(data.bytes(), 1, &pointer).is_none() {
+                    if is_sheet && self.copied(&data, &pointer).is_none() {
                         return;
                     }
                     let flat = is_sheet.then(|| flattened(&data, instance.to_world)).flatten();
@@ -256,6 +260,12 @@ impl Model<'_> {
                 scene.root.get_or_insert_default().objects.extend(object);
             }
         }
+    }
+
+    /// Counts a copy of a mesh.
+    fn copied(&self, data: &MeshData, pointer: &dyn Fn() -> String) -> Option<()> {
+        self.charge_at(data.bytes(), 1, pointer)?;
+        self.told(self.kept.bytes(data.bytes(), 1), pointer)
     }
 
     /// Reports that a node is left out.

@@ -127,6 +127,12 @@ impl Model<'_> {
         }
         let mut pose = self.pose(at, &attributes, count);
         let order = self.order(at, count)?;
+        // Corners, with their normals and coordinates; a strip has a triangle for nearly each number.
+        let triangles = if mode == TRIANGLES { order.len() / 3 } else { order.len() };
+        let lists = 1 + usize::from(has_normals) + usize::from(!data.uvs.is_empty());
+        self.keep(triangles, 12 * lists, at)?;
+        // Marks of the vertices in use.
+        self.keep(count, 5, at)?;
         data.triangles = match mode {
             TRIANGLES => order.as_chunks::<3>().0.par_iter().copied().collect(),
             // Every other triangle of a strip has reversed winding.
@@ -165,6 +171,7 @@ impl Model<'_> {
         self.once_at("points-and-lines", &at.pointer(), &message);
         // Each becomes a dozen vertices.
         self.charge(order.len(), 12 * 64, at)?;
+        self.keep(order.len(), 12 * 64, at)?;
         let strip = || order.windows(2).map(|pair| [pair[0], pair[1]]);
         let lines: Vec<[u32; 2]> = match mode {
             LINES => order.as_chunks::<2>().0.to_vec(),
@@ -221,7 +228,10 @@ impl Model<'_> {
 
     /// Returns the vertex indices of the primitive in order.
     fn order(&self, at: &At, count: usize) -> Option<Vec<u32>> {
-        let Some(indices) = at.get("indices") else { return Some((0..count as u32).collect()) };
+        let Some(indices) = at.get("indices") else {
+            self.keep(count, 4, at)?;
+            return Some((0..count as u32).collect());
+        };
         let accessor = self.accessor(&indices)?;
         if accessor.width != 1 || !matches!(accessor.component, Component::U8 | Component::U16 | Component::U32) {
             indices.error("MESH_PRIMITIVE_INDICES_ACCESSOR_INVALID_FORMAT", "indices must be unsigned integers");
@@ -232,6 +242,7 @@ impl Model<'_> {
             indices.error("MESH_PRIMITIVE_INDICES_ACCESSOR_WITH_BYTESTRIDE", message);
         }
         self.charge(accessor.count, 4, &indices)?;
+        self.keep(accessor.count, 4, &indices)?;
         let order = accessor.wholes();
         let most = u32::MAX >> (32 - 8 * accessor.component.size());
         let greatest = order.par_iter().copied().max().unwrap_or(0);

@@ -4,6 +4,7 @@
 //! Mitsuba 0.6 (`toWorld`) are read as current names (`to_world`).
 
 use super::plugin::{Plugin, Property, Value};
+use crate::growth::Growth;
 use crate::model::Input;
 use crate::said::{Said, meant};
 use crate::xml::{Attribute, Piece, Tag, Xml, utf8};
@@ -21,6 +22,8 @@ use std::sync::Arc;
 const DEEPEST: usize = 15;
 const MAX_FILES: usize = 4096;
 const MAX_ELEMENTS: usize = 1 << 22;
+/// Bytes of a value with its variables replaced.
+const MAX_VALUE: usize = 1 << 20;
 
 /// Tags of plugins; `camera` is of Mitsuba 0.6.
 const CLASSES: [&str; 14] = [
@@ -71,6 +74,7 @@ pub(super) struct Loader<'a> {
     open: Vec<String>,
     files: usize,
     elements: usize,
+    pub growth: Growth,
     /// True if the file is older than Mitsuba 2.
     pub(super) is_old: bool,
 }
@@ -109,6 +113,7 @@ impl<'a> Loader<'a> {
             open: Vec::new(),
             files: 0,
             elements: 0,
+            growth: Growth::of_file(input.bytes.len(), input.memory),
             is_old: false,
         }
     }
@@ -314,6 +319,7 @@ impl<'a> Loader<'a> {
                 return Ok(());
             }
         };
+        self.growth.feed(bytes.len());
         let file = self.input.files.borrow_mut().add(name.clone(), bytes.clone());
         self.file(&bytes, file, name, parent)
     }
@@ -357,6 +363,14 @@ impl<'a> Loader<'a> {
             let found = self.variables.iter().rev().find(|(name, _)| rest.starts_with(name.as_str()));
             match found {
                 Some((name, value)) => {
+                    if made.len() + value.len() > MAX_VALUE {
+                        let message = format!("with its variables replaced, this is longer than {MAX_VALUE} bytes");
+                        self.said.bad(attribute.at, message);
+                        return None;
+                    }
+                    if !self.growth.has_bytes(value.len(), 1, self.said, attribute.at) {
+                        return None;
+                    }
                     made.push_str(value);
                     rest = &rest[name.len()..];
                 }

@@ -28,6 +28,17 @@ impl Made {
         Made::Layers(Box::new(matte(Vec3::splat(grey))))
     }
 
+    /// Number of materials in it, at most `most + 1`: a material may stand in it many times.
+    pub fn count(&self, most: usize) -> usize {
+        match self {
+            Made::Mix(a, b, ..) | Made::Sides(a, b) => {
+                let first = 1 + a.count(most);
+                if first > most { first } else { first + b.count(most - first) }
+            }
+            _ => 1,
+        }
+    }
+
     /// Copy with `change` applied to all layers.
     pub fn changed(&self, change: &impl Fn(&mut PrincipledMaterial)) -> Made {
         match self {

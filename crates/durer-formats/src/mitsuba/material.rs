@@ -48,6 +48,9 @@ const KNOWN: [&str; 18] = [
 /// Index of refraction of air.
 const AIR: f32 = 1.000277;
 
+/// Materials in one, those that stand in it many times counted each time.
+const MAX_PARTS: usize = 4096;
+
 impl Reader<'_> {
     /// Material of a plugin.
     pub fn material(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<Made> {
@@ -58,10 +61,22 @@ impl Reader<'_> {
         if self.too_deep(depth, plugin.at) {
             return Rc::new(Made::matte(0.5));
         }
-        let made = self.made(plugin, depth);
+        let mut made = self.made(plugin, depth);
         plugin.finish(self.said);
+        if !self.has_room_for(&made, plugin.at) {
+            made = Rc::new(Made::matte(0.5));
+        }
         self.materials.insert(key, made.clone());
         made
+    }
+
+    /// Whether a material is of so few others that it may be copied.
+    fn has_room_for(&self, made: &Made, at: Span) -> bool {
+        let count = made.count(MAX_PARTS);
+        if count > MAX_PARTS {
+            self.said.bad(at, format!("a material of more than {MAX_PARTS} others is too large"));
+        }
+        count <= MAX_PARTS && self.loader.growth.has_bytes(count, size_of::<PrincipledMaterial>(), self.said, at)
     }
 
     fn made(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<Made> {
@@ -361,7 +376,8 @@ impl Reader<'_> {
         if let Some((medium, _)) = inside {
             made = Rc::new(filled(&made, &medium));
         }
-        let number = self.numbered(&made, shine, bsdf.map_or(at, |bsdf| bsdf.at));
+        let at = bsdf.map_or(at, |bsdf| bsdf.at);
+        let number = if self.has_room_for(&made, at) { self.numbered(&made, shine, at) } else { None };
         self.numbers.insert(key, number);
         number
     }

@@ -110,16 +110,17 @@ impl Reader<'_> {
         let (group, count) = match self.groups.get(&group.key()) {
             Some(known) => known.clone(),
             None => {
-                let (mut inner, before) = (Vec::new(), self.count);
+                let (mut inner, before) = (Vec::new(), self.loader.growth.object_count());
                 for (_, part) in self.parts(&group, Some("shape")) {
                     self.shape(&part, &mut inner, depth + 1);
                 }
-                let made = (Rc::new(Group { objects: inner }), self.count - before);
+                let made = (Rc::new(Group { objects: inner }), self.loader.growth.object_count() - before);
                 self.groups.insert(group.key(), made.clone());
                 made
             }
         };
-        if self.room_for(count, property.at) {
+        // The instance counts too: what it shows may be empty.
+        if self.room_for(count + 1, property.at) {
             let inner = Object { node: Node::Group((*group).clone()), material: None, span: plugin.at };
             objects.push(inner.placed(map));
         }

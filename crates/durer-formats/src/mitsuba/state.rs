@@ -15,8 +15,6 @@ use std::collections::{BTreeMap, HashSet};
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Maximum number of objects in a scene, counting those of every instance.
-const MAX_OBJECTS: usize = 1 << 20;
 /// Maximum depth of nested plugins, counting references.
 pub(super) const DEEPEST: u32 = 32;
 
@@ -34,7 +32,6 @@ pub(super) struct Reader<'a> {
     pub meshes: BTreeMap<String, Option<Arc<MeshData>>>,
     /// Contents of shape groups, with their number of objects.
     pub groups: BTreeMap<Key, (Rc<Group>, usize)>,
-    pub count: usize,
     /// True if the current shape is turned inside out: the interior index of its glass is outside.
     pub inside_out: bool,
     pub infinite: Option<Infinite>,
@@ -53,7 +50,6 @@ impl<'a> Reader<'a> {
             numbers: BTreeMap::new(),
             meshes: BTreeMap::new(),
             groups: BTreeMap::new(),
-            count: 0,
             inside_out: false,
             infinite: None,
             emitters_only: false,
@@ -165,17 +161,12 @@ impl<'a> Reader<'a> {
     }
 
     /// Counts `more` objects; returns false and reports an error if the limit is exceeded.
-    pub fn room_for(&mut self, more: usize, at: Span) -> bool {
-        let before = self.count;
-        self.count = self.count.saturating_add(more);
-        if before <= MAX_OBJECTS && self.count > MAX_OBJECTS {
-            self.said.bad(at, format!("too many objects: more than {MAX_OBJECTS}, counting those of every instance"));
-        }
-        self.count <= MAX_OBJECTS
+    pub fn room_for(&self, more: usize, at: Span) -> bool {
+        self.loader.growth.has_objects(more, self.said, at)
     }
 
     /// Adds an object to a list.
-    pub fn add(&mut self, objects: &mut Vec<Object>, object: Object) {
+    pub fn add(&self, objects: &mut Vec<Object>, object: Object) {
         if self.room_for(1, object.span) {
             objects.push(object);
         }

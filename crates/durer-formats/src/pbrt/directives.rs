@@ -397,7 +397,7 @@ impl Reader<'_> {
             let help = meant(name, self.objects.keys().map(String::as_str));
             return self.said.bad_with(at, format!("unknown object `{name}`"), help);
         };
-        if !self.room_for(group.objects.len(), at) {
+        if !self.growth.has_objects(group.objects.len() + 1, self.said, at) {
             return;
         }
         let inner = Object { node: Node::Group((*group).clone()), material: None, span: at };

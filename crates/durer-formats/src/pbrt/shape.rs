@@ -128,7 +128,7 @@ impl Reader<'_> {
             }
             return;
         };
-        if self.room_for(0, at) {
+        if self.growth.has_objects(1, self.said, at) {
             let inner = Object { node: made.node, material: Some(material), span: at };
             self.add(inner.placed(made.map));
         }

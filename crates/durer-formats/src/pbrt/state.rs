@@ -5,6 +5,7 @@ use super::lexer::Lexer;
 use super::made::{AreaLight, Infinite, Made, Texture};
 use super::params::{Param, Params};
 use super::transform::Transforms;
+use crate::growth::Growth;
 use crate::medium::Medium;
 use crate::model::Input;
 use crate::said::Said;
@@ -16,9 +17,6 @@ use glam::DAffine3;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
-
-/// Maximum number of objects in a scene, counting those of every instance.
-const MAX_OBJECTS: usize = 1 << 20;
 
 /// Targets of `Attribute`: indices into [`State::given`].
 pub(super) const SHAPE: usize = 0;
@@ -95,7 +93,7 @@ pub(super) struct Reader<'a> {
     pub objects: BTreeMap<String, Rc<Group>>,
     /// Object being defined.
     pub defining: Option<(String, Group)>,
-    pub count: usize,
+    pub growth: Growth,
     /// Number of triangles tessellated from compact shapes so far.
     pub grown: usize,
     /// Number of files included so far.
@@ -133,7 +131,7 @@ impl<'a> Reader<'a> {
             filled: BTreeMap::new(),
             objects: BTreeMap::new(),
             defining: None,
-            count: 0,
+            growth: Growth::within(input.memory),
             grown: 0,
             included: 0,
             camera: None,
@@ -168,20 +166,9 @@ impl<'a> Reader<'a> {
 
     /// Adds an object to the scene or to the object being defined.
     pub fn add(&mut self, object: Object) {
-        self.count += 1;
         match &mut self.defining {
             Some((_, group)) => group.objects.push(object),
             None => self.scene.root.get_or_insert_default().objects.push(object),
         }
-    }
-
-    /// Counts `more` objects; returns false and reports an error if the limit is exceeded.
-    pub fn room_for(&mut self, more: usize, at: Span) -> bool {
-        self.count = self.count.saturating_add(more);
-        if self.count > MAX_OBJECTS {
-            self.said.bad(at, format!("too many objects: more than {MAX_OBJECTS}, counting those of every instance"));
-            return false;
-        }
-        true
     }
 }

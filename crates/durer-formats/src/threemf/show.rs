@@ -3,6 +3,7 @@
 use super::model::{Group, Mesh, Model, Object, Place};
 use super::package::Package;
 use super::parser;
+use crate::growth::MAX_OBJECTS;
 use crate::pictures::asset;
 use crate::said::{Said, meant};
 use crate::sticks::{ball, stick};
@@ -17,10 +18,8 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Limits on the depth of nested objects, on the number of scene objects (those of a component
-/// count for each use), and on the number of parts.
+/// Limits on the depth of nested objects and on the number of parts.
 const DEEPEST: u32 = 32;
-const MAX_OBJECTS: usize = 1 << 20;
 const MAX_PARTS: usize = 4096;
 
 /// Builder of the scene.

@@ -18,6 +18,7 @@ use crate::{Error, Lens, Pose, Reconstruction};
 use nalgebra::{Matrix3, Vector2, Vector3};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use text::Words;
 
 pub use crate::known::Control;
@@ -129,11 +130,12 @@ fn square(lens: &Lens, format: &str) -> Result<(), Error> {
     Err(Error::new(format!("{format} supports square pixels only, but a lens has the aspect {}", lens.aspect)))
 }
 
+/// Returns the bytes of a file, by its path.
+pub type Open<'a> = dyn FnMut(&Path) -> Result<Arc<[u8]>, Error> + 'a;
+
 /// Reads a file and decompresses it if it was compressed by gzip or bzip2.
-fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
-    let file = path.to_string_lossy();
-    let bytes = std::fs::read(path).map_err(|error| Error::of(&file, format!("cannot read the file: {error}")))?;
-    packed::unpacked(&file, bytes)
+fn bytes(path: &Path, open: &mut Open) -> Result<Arc<[u8]>, Error> {
+    packed::unpacked(&path.to_string_lossy(), open(path)?)
 }
 
 /// Files that [`read`] reads for a path.
@@ -156,10 +158,18 @@ fn tracks_of(path: &Path) -> Option<PathBuf> {
 /// Reads cameras and points. The extension determines the format, ignoring a final `.gz` or `.bz2`;
 /// a folder is in COLMAP's format.
 pub fn read(path: &Path) -> Result<Reconstruction, Error> {
+    read_by(path, &mut |path| {
+        let read = std::fs::read(path).map(Into::into);
+        read.map_err(|error| Error::of(&path.to_string_lossy(), format!("cannot read it: {error}")))
+    })
+}
+
+/// Reads cameras and points as [`read`] does. `open` reads the files, which are those of [`inputs`].
+pub fn read_by(path: &Path, open: &mut Open) -> Result<Reconstruction, Error> {
     let file = path.to_string_lossy();
     if path.is_dir() {
         let paths = inputs(path);
-        let contents = paths.iter().map(|path| bytes(path)).collect::<Result<Vec<_>, _>>()?;
+        let contents = paths.iter().map(|path| bytes(path, open)).collect::<Result<Vec<_>, _>>()?;
         let names: Vec<_> = paths.iter().map(|path| path.to_string_lossy()).collect();
         let tables = [0, 1, 2].map(|i| (&*names[i], &*contents[i]));
         return match paths[0].extension().is_some_and(|end| end == "bin") {
@@ -167,7 +177,7 @@ pub fn read(path: &Path) -> Result<Reconstruction, Error> {
             false => colmap_text::read(&file, tables),
         };
     }
-    let content = bytes(path)?;
+    let content = bytes(path, open)?;
     match packed::plain(path).extension().and_then(|end| end.to_str()) {
         Some("out") => bundler::read(&file, &content),
         Some("txt") => bal::read(&file, &content),
@@ -178,7 +188,7 @@ pub fn read(path: &Path) -> Result<Reconstruction, Error> {
         }
         Some("json") if content.trim_ascii_start().starts_with(b"{") => fspy::read_camera(&file, &content),
         Some("json") => {
-            let tracks = tracks_of(path).map(|path| Ok((path.to_string_lossy().into_owned(), bytes(&path)?)));
+            let tracks = tracks_of(path).map(|path| Ok((path.to_string_lossy().into_owned(), bytes(&path, open)?)));
             let tracks = tracks.transpose()?;
             opensfm::read(&file, &content, tracks.as_ref().map(|(name, bytes)| (&**name, &**bytes)))
         }

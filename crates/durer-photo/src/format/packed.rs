@@ -3,12 +3,13 @@
 use crate::Error;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Maximum length of a decompressed file, since a small file could fill the memory otherwise.
 const LONGEST: u64 = 4 << 30;
 
 /// Decompresses a file if it begins with the signature of gzip or bzip2.
-pub fn unpacked(file: &str, bytes: Vec<u8>) -> Result<Vec<u8>, Error> {
+pub fn unpacked(file: &str, bytes: Arc<[u8]>) -> Result<Arc<[u8]>, Error> {
     let (packed, mut reader): (_, Box<dyn Read + '_>) = match bytes.get(..3) {
         Some([0x1f, 0x8b, _]) => ("gzip", Box::new(flate2::read::MultiGzDecoder::new(&*bytes))),
         Some(b"BZh") => ("bzip2", Box::new(bzip2::read::MultiBzDecoder::new(&*bytes))),
@@ -20,8 +21,7 @@ pub fn unpacked(file: &str, bytes: Vec<u8>) -> Result<Vec<u8>, Error> {
     if plain.len() as u64 > LONGEST {
         return Err(Error::of(file, format!("it is longer than {} GiB after decompression", LONGEST >> 30)));
     }
-    drop(reader);
-    Ok(plain)
+    Ok(plain.into())
 }
 
 /// Removes the extension of gzip or bzip2 from a path.

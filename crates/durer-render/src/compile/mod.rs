@@ -26,7 +26,7 @@ use durer_scene::shape::{Mesh, Primitive, Shape, Triangle};
 use durer_scene::source::AssetSource;
 use durer_scene::texture::Sky;
 use durer_scene::texture::sky::SUN_RADIUS;
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 pub use kept::{Kept, Reuse};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -267,6 +267,16 @@ fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Res
             }
         }
     }
+    let mut wide = Vec::new();
+    if cells.is_none() {
+        let outliers = outliers(&boxes);
+        wide = outliers.iter().map(|&i| parts[i]).collect();
+        // From the last to the first, so that the indices stay valid.
+        for &i in outliers.iter().rev() {
+            parts.remove(i);
+            boxes.remove(i);
+        }
+    }
     let bounds = boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union);
     if bounds.is_empty() {
         return Ok(Accel::None);
@@ -280,7 +290,33 @@ fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Res
         let help = format!("use 1 to {most} cells; large objects must not overlap too many of them");
         Box::new(Diagnostic::error(message).help(help))
     })?;
-    Ok(Accel::Grid { grid, parts })
+    Ok(Accel::Grid { grid, parts, wide })
+}
+
+/// Returns the few boxes that reach so far beyond the others that a grid around them has all others in
+/// one cell, by ascending index.
+fn outliers(boxes: &[Aabb]) -> Vec<usize> {
+    /// More are not tested for every ray.
+    const MOST: usize = 64;
+    /// Maximum number of cells along an axis: see `Grid::suitable`.
+    const RATIO: f64 = 256.0;
+    if boxes.len() < 2 {
+        return Vec::new();
+    }
+    let middle = [0, 1, 2].map(|axis| {
+        let mut centers: Vec<f32> = boxes.iter().map(|b| b.center()[axis]).collect();
+        let half = centers.len() / 2;
+        f64::from(*centers.select_nth_unstable_by(half, f32::total_cmp).1)
+    });
+    let middle = DVec3::from_array(middle);
+    let reach = |b: &Aabb| (b.min.as_dvec3() - middle).abs().max((b.max.as_dvec3() - middle).abs()).max_element();
+    let mut far: Vec<(f64, usize)> = boxes.iter().enumerate().map(|(i, b)| (reach(b), i)).collect();
+    far.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let first = far.len().saturating_sub(MOST + 1).max(far.len() / 2);
+    let gap = (first..far.len() - 1).find(|&i| far[i].0 * RATIO < far[i + 1].0);
+    let mut found: Vec<usize> = gap.map_or(&[][..], |i| &far[i + 1..]).iter().map(|&(_, i)| i).collect();
+    found.sort_unstable();
+    found
 }
 
 /// Warns of a sun below the horizon.

@@ -3,6 +3,7 @@
 use super::testing::try_read;
 use super::*;
 use durer_scene::dialect::Dialect;
+use durer_scene::math::Ray;
 use std::path::Path;
 
 const CAMERA: &str = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }\n";
@@ -245,4 +246,28 @@ fn tables_of_a_material_are_computed_before_rays_are_traced() {
         }
         assert_eq!(own.tables.prepared(), opaque_glass_coat, "{words}");
     }
+}
+
+#[test]
+fn what_reaches_far_beyond_the_others_is_no_part_of_a_grid() {
+    let balls: String = (0..500).map(|i| format!("Sphere {{ center {} {} 0 radius 0.4 }} ", i % 25, i / 25)).collect();
+    for far in ["Cylinder { base 0 0 -3 top 0 0.1 -1.2e15 radius 1 }", "Sphere { center 0 1e12 -9 radius 7e11 }"] {
+        let text = format!("{CAMERA}Group {{ {far} {balls} }}");
+        let read = |accel| try_read(&text, Dialect::Durer.rules(), accel, Path::new(".")).0.unwrap();
+        let world = read(AccelKind::Grid(None));
+        let Accel::Grid { grid, wide, parts } = world.accel() else { panic!("a grid") };
+        assert_eq!((wide.as_slice(), parts.len()), (&[(0, 0)][..], 500));
+        assert!(grid.cell_size().max_element() < 5.0, "{}", grid.cell_size());
+        let tree = read(AccelKind::Bvh);
+        let mut random = durer_scene::math::random::Random(5);
+        for _ in 0..500 {
+            let ray = Ray::new(Vec3::new(12.0, 10.0, 20.0), 0.4 * random.point() - Vec3::Z);
+            assert_eq!(world.closest(&ray, &mut ()), tree.closest(&ray, &mut ()), "{ray:?}");
+            assert_eq!(world.occluded(&ray, &mut ()), tree.occluded(&ray, &mut ()), "{ray:?}");
+        }
+    }
+    // A ground and what stands on it are one grid.
+    let text = format!("{CAMERA}Group {{ Sphere {{ center 0 -100 0 radius 99 }} {balls} }}");
+    let (world, _) = try_read(&text, Dialect::Durer.rules(), AccelKind::Grid(None), Path::new("."));
+    assert!(matches!(world.unwrap().accel(), Accel::Grid { wide, .. } if wide.is_empty()));
 }

@@ -46,6 +46,9 @@ pub enum RenderError {
         /// Bytes allowed.
         allowed: u64,
     },
+    /// The system has less memory than the render needs.
+    #[error("rendering needs about {} of memory, and the system has less to give", at_least(*.0))]
+    NoMemory(u64),
     /// The part belongs to another scene.
     #[error("this part belongs to another scene")]
     OtherScene,

@@ -47,7 +47,7 @@ pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image
 
 /// Returns the grid's cells with exact overlaps: the grid for rays has a margin for rounding.
 fn occupied(world: &World) -> Option<Grid> {
-    let Accel::Grid { grid, parts } = world.accel() else { return None };
+    let Accel::Grid { grid, parts, .. } = world.accel() else { return None };
     let object = |part: usize| &world.objects()[parts[part].0 as usize];
     // A sphere occupies cells by the distance of the centres alone, as in the course's programs:
     // also beyond its bounds.

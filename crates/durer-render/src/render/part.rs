@@ -7,7 +7,7 @@ use super::passes::{self, Passes};
 use super::{Crop, Job, Sampling};
 use crate::film::{Film, Packed, Rejected};
 use crate::world::{DisplayRules, World};
-use durer_image::checked_count;
+use durer_image::{can_allocate, checked_count};
 use durer_scene::math::Vec3;
 use durer_scene::source::Digest;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -156,6 +156,10 @@ impl PartialRender {
         }
         let from = shard.range(job.sampling.samples()).0;
         let count = if job.wants_samples() { blocks.count() } else { 0 };
+        let needed = (count * size_of::<BlockSamples>() + ray_blocks.count() * size_of::<Option<BlockAovs>>()) as u64;
+        if !can_allocate(needed) {
+            return Err(RenderError::NoMemory(needed));
+        }
         let sampled = BlockSamples { from, to: from, ..BlockSamples::default() };
         let rays = if job.ray_aovs().next().is_some() { vec![None; ray_blocks.count()] } else { Vec::new() };
         let state = Mutex::new(State { samples: vec![sampled; count], rays });

@@ -13,6 +13,7 @@ use crate::integrator::Integrate;
 use crate::threads;
 use crate::world::World;
 use durer_bvh::RayCount;
+use durer_image::can_allocate;
 use rayon::prelude::*;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -93,7 +94,7 @@ impl PartialRender {
     /// the work continues. After a slow call, skips ends of passes for ten times as long.
     ///
     /// # Errors
-    /// [`RenderError::OtherScene`], [`RenderError::Memory`].
+    /// [`RenderError::OtherScene`], [`RenderError::Memory`], [`RenderError::NoMemory`].
     pub fn render(
         &self,
         world: &World,
@@ -123,6 +124,9 @@ impl PartialRender {
         }
         let (start, stop) = (Instant::now(), AtomicBool::new(control.cancel.load(Relaxed)));
         let (all, done) = self.work();
+        if done == 0 && !can_allocate(needed) {
+            return Err(RenderError::NoMemory(needed));
+        }
         if control.goes_on {
             control.done.fetch_add(done, Relaxed);
         } else {

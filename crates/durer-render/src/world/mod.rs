@@ -75,6 +75,8 @@ pub enum Accel {
         grid: Grid,
         /// Object and part of each element of the grid.
         parts: Vec<(u32, u32)>,
+        /// Object and part of the few that reach far beyond the grid. Every ray tests them.
+        wide: Vec<(u32, u32)>,
     },
     /// Brute force.
     None,
@@ -218,8 +220,12 @@ impl World {
                     ray.rounded.t_max
                 });
             }
-            Accel::Grid { grid, parts } => {
+            Accel::Grid { grid, parts, wide } => {
                 let outer = ray.rounded;
+                for &(object, part) in wide {
+                    let found = self.objects()[object as usize].part((object, part), ray, counter);
+                    offer(&mut best, ray, object, found);
+                }
                 grid.traverse(&outer, counter, |item, _, counter| {
                     let (object, part) = parts[item];
                     let found = self.objects()[object as usize].part((object, part), ray, counter);
@@ -282,11 +288,18 @@ impl World {
                 found |= self.closest_of(bvh, item, ray, true, counter).1.is_some();
                 if found { f32::NEG_INFINITY } else { t_max }
             }),
-            Accel::Grid { grid, parts } => grid.traverse(outer, counter, |item, t_max, counter| {
-                let (object, part) = parts[item];
-                found |= self.objects()[object as usize].part((object, part), ray, counter).is_some();
-                if found { f32::NEG_INFINITY } else { t_max }
-            }),
+            Accel::Grid { grid, parts, wide } => {
+                found = wide.iter().any(|&(object, part)| {
+                    self.objects()[object as usize].part((object, part), ray, counter).is_some()
+                });
+                if !found {
+                    grid.traverse(outer, counter, |item, t_max, counter| {
+                        let (object, part) = parts[item];
+                        found |= self.objects()[object as usize].part((object, part), ray, counter).is_some();
+                        if found { f32::NEG_INFINITY } else { t_max }
+                    });
+                }
+            }
             Accel::Course(hits) => found = hits.closest(self.objects(), ray, counter).is_some(),
             Accel::None => {
                 found = self

@@ -1,13 +1,15 @@
-//! Memory limits: bytes, or a share of the machine.
+//! Memory limits: bytes, or a share of what the machine gives to the process.
 
+use std::path::{Path, PathBuf};
 use sysinfo::System;
 
-/// A limit of memory. The default is 80 percent of the machine.
+/// A limit of memory. The default is 80 percent of what the process may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Memory {
     /// Bytes.
     Bytes(u64),
-    /// Percent of the memory of the machine, or of the control group of the process.
+    /// Percent of the memory of the machine, of the control groups of the process, or of its
+    /// remaining address space, whichever is least.
     Percent(f64),
 }
 
@@ -52,10 +54,53 @@ impl Memory {
         system.refresh_memory();
         // Without /proc the size is unknown, and asking for control groups would fail.
         let machine = Some(system.total_memory()).filter(|&bytes| bytes > 0)?;
-        let of_group = system.cgroup_limits().map(|limits| limits.total_memory).filter(|&bytes| bytes > 0);
-        let all = of_group.unwrap_or(machine).min(machine);
+        let all = [of_groups(), address_space()].into_iter().flatten().fold(machine, u64::min);
         Some((all as f64 * percent / 100.0) as u64)
     }
+}
+
+/// Returns the least memory limit of the control groups that contain this process, as containers and
+/// Slurm set them.
+fn of_groups() -> Option<u64> {
+    let groups = std::fs::read_to_string("/proc/self/cgroup").ok()?;
+    let limit = |file: &PathBuf| std::fs::read_to_string(file).ok()?.trim().parse().ok();
+    limit_files(&groups, Path::new("/sys/fs/cgroup")).iter().filter_map(limit).filter(|&bytes| bytes > 0).min()
+}
+
+/// Returns the files that may limit memory, for the text of `/proc/self/cgroup`: those of each group
+/// and of the groups around it. In a container the path may be that of the host, and then only the
+/// root exists.
+///
+/// Source: *Control Group v2* and *Memory Resource Controller*, Linux kernel documentation.
+fn limit_files(groups: &str, root: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for line in groups.lines() {
+        let mut fields = line.splitn(3, ':').skip(1);
+        let (Some(controllers), Some(path)) = (fields.next(), fields.next()) else { continue };
+        let (root, file) = match controllers {
+            "" => (root.to_path_buf(), "memory.max"),
+            v1 if v1.split(',').any(|name| name == "memory") => (root.join("memory"), "memory.limit_in_bytes"),
+            _ => continue,
+        };
+        let group = root.join(path.trim_start_matches('/'));
+        files.extend(group.ancestors().take_while(|folder| folder.starts_with(&root)).map(|folder| folder.join(file)));
+    }
+    files
+}
+
+/// Returns the remaining address space if it is limited (`ulimit -v`).
+#[cfg(unix)]
+fn address_space() -> Option<u64> {
+    let limit = rustix::process::getrlimit(rustix::process::Resource::As).current?;
+    // The first number is the size of the address space in pages.
+    let sizes = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
+    let pages: u64 = sizes.split_whitespace().next().and_then(|pages| pages.parse().ok()).unwrap_or(0);
+    Some(limit.saturating_sub(pages * rustix::param::page_size() as u64))
+}
+
+#[cfg(not(unix))]
+fn address_space() -> Option<u64> {
+    None
 }
 
 #[cfg(test)]
@@ -70,5 +115,20 @@ mod tests {
         assert_eq!(Memory::parse("80%"), Ok(Memory::Percent(80.0)));
         assert!(["", "0", "-1G", "G", "12Q", "0%", "101%", "nan", "x%"].map(Memory::parse).iter().all(Result::is_err));
         assert!(Memory::Percent(80.0).bytes() < Memory::Percent(100.0).bytes());
+    }
+
+    #[test]
+    fn groups_around_the_own_one_limit_memory_too() {
+        let found = |text: &str| -> Vec<String> {
+            limit_files(text, Path::new("/c")).iter().map(|file| file.display().to_string()).collect()
+        };
+        let slurm = ["/c/slurm/job_1/memory.max", "/c/slurm/memory.max", "/c/memory.max"];
+        assert_eq!(found("0::/slurm/job_1\n"), slurm);
+        assert_eq!(found("0::/\n"), ["/c/memory.max"]);
+        let old = "12:cpu,cpuacct:/a\n9:memory:/docker/x\n0::/\nrubbish\n";
+        let limit = "memory.limit_in_bytes";
+        let old_files =
+            ["/c/memory/docker/x", "/c/memory/docker", "/c/memory"].map(|folder| format!("{folder}/{limit}"));
+        assert_eq!(found(old), [&old_files[..], &["/c/memory.max".to_string()]].concat());
     }
 }

@@ -65,8 +65,8 @@ pub(super) const READING: &[Row] = &[
         "memory",
         OptionForm::Value("SIZE"),
         |to, text| Ok(to.memory = Memory::parse(text)?),
-        "Memory limit of scene and picture: bytes as in 512M or 8G, or a percentage of the machine's or control group's \
-         memory [default: 80%]",
+        "Memory limit of scene and picture: bytes as in 512M or 8G, or a percentage of what the machine, its control \
+         groups and `ulimit -v` leave [default: 80%]",
     ),
     row(
         "accel",

@@ -1,0 +1,181 @@
+//! Names in inputs: files outside the folder, pipes and devices are neither read nor waited for.
+#![cfg(unix)]
+
+mod common;
+
+use common::{Place, Ran, SCENE};
+use std::os::unix::fs::symlink;
+use std::process::Command;
+
+/// A COLMAP folder of two photographs of 32 x 32 pixels.
+fn colmap(place: &Place, folder: &str, names: [&str; 2]) {
+    std::fs::create_dir_all(place.path(folder)).unwrap();
+    place.put(&format!("{folder}/cameras.txt"), "1 PINHOLE 32 32 30 30 16 16\n");
+    let [a, b] = names;
+    let images = format!("1 1 0 0 0 0 0 5 1 {a}\n16 16 1\n2 1 0 0 0 .1 0 5 1 {b}\n16 16 1\n");
+    place.put(&format!("{folder}/images.txt"), images);
+    place.put(&format!("{folder}/points3D.txt"), "1 0 0 0 255 0 0 0.1 1 0 2 0\n");
+}
+
+fn picture(place: &Place, path: &str) {
+    place.gives(0, &format!("render scene.txt --size 32x32 --samples 1 -q --restart -o {path}"));
+}
+
+fn fifo(place: &Place, name: &str) {
+    assert!(Command::new("mkfifo").arg(place.path(name)).status().unwrap().success());
+}
+
+/// Runs a command, which must end within ten seconds.
+fn ends(place: &Place, line: &str) -> Ran {
+    let ran = place.shell(&format!("timeout 10 $DURER {line}"));
+    assert_ne!(ran.code, Some(124), "{line} does not end");
+    ran
+}
+
+#[track_caller]
+fn refused(place: &Place, line: &str, words: &str) {
+    let ran = ends(place, line);
+    assert_eq!(ran.code, Some(2), "{line}: {}", ran.err);
+    assert!(ran.err.contains(words), "{line}: {}", ran.err);
+}
+
+#[test]
+fn a_tour_embeds_only_pictures_of_its_folder() {
+    let place = Place::new();
+    std::fs::create_dir_all(place.path("photos/more")).unwrap();
+    for path in ["secret.png", "photos/a.png", "photos/more/b.png"] {
+        picture(&place, path);
+    }
+    symlink("../secret.png", place.path("photos/link.png")).unwrap();
+    symlink("/dev/zero", place.path("photos/zero.png")).unwrap();
+    symlink("more/b.png", place.path("photos/inner.png")).unwrap();
+    fifo(&place, "photos/pipe.png");
+    let absolute = place.path("secret.png").display().to_string();
+    for (name, words) in [
+        ("../secret.png", "outside the folder `photos`"),
+        ("more/../../secret.png", "outside the folder `photos`"),
+        (&absolute, "outside the folder `photos`"),
+        ("link.png", "outside the folder `photos`"),
+        ("/dev/zero", "outside the folder `photos`"),
+        ("/proc/self/environ", "outside the folder `photos`"),
+        ("zero.png", "outside the folder `photos`"),
+        ("pipe.png", "is not a regular file"),
+        ("more", "is not a regular file"),
+        ("none.png", "No such file"),
+    ] {
+        colmap(&place, "solved", ["a.png", name]);
+        refused(&place, "photo tour solved --pictures photos -o t.html -q", words);
+        assert!(!place.path("t.html").exists(), "{name}");
+    }
+    colmap(&place, "solved", ["a.png", "more/b.png"]);
+    place.gives(0, "photo tour solved --pictures photos -o t.html -q");
+    colmap(&place, "solved", ["a.png", "inner.png"]);
+    place.gives(0, "photo tour solved --pictures photos -o t.html -q");
+}
+
+#[test]
+fn folders_of_photographs_and_cameras_lead_nowhere_else() {
+    let place = Place::new();
+    std::fs::create_dir(place.path("photos")).unwrap();
+    for path in ["secret.png", "photos/a.png", "photos/b.png"] {
+        picture(&place, path);
+    }
+    // Tables of a folder, and the tracks beside a file.
+    colmap(&place, "solved", ["a.png", "b.png"]);
+    std::fs::rename(place.path("solved/points3D.txt"), place.path("points")).unwrap();
+    for (target, words) in [("../points", "outside the folder `solved`"), ("/dev/zero", "outside the folder `solved`")]
+    {
+        symlink(target, place.path("solved/points3D.txt")).unwrap();
+        refused(&place, "photo convert solved", words);
+        std::fs::remove_file(place.path("solved/points3D.txt")).unwrap();
+    }
+    fifo(&place, "solved/points3D.txt");
+    refused(&place, "photo convert solved", "is not a regular file");
+    std::fs::create_dir(place.path("sfm")).unwrap();
+    place.put("sfm/reconstruction.json", "[]");
+    symlink("../points", place.path("sfm/tracks.csv")).unwrap();
+    refused(&place, "photo convert sfm/reconstruction.json", "outside the folder `sfm`");
+    // Photographs whose sizes a Bundler file lacks.
+    let bundle = "# Bundle file v0.3\n2 0\n30 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 0\n30 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0\n";
+    place.put("two.out", bundle);
+    place.gives(0, "photo convert two.out --pictures photos -o two.gltf -q");
+    std::fs::remove_file(place.path("photos/b.png")).unwrap();
+    symlink("../secret.png", place.path("photos/b.png")).unwrap();
+    for line in [
+        "photo convert two.out --pictures photos",
+        "photo match photos -o m.json",
+        "photo explain two.out --camera 0 --pictures photos",
+    ] {
+        refused(&place, line, "outside the folder `photos`");
+    }
+}
+
+#[test]
+fn pipes_and_devices_that_are_named_are_refused() {
+    let place = Place::new();
+    fifo(&place, "pipe.txt");
+    fifo(&place, "pipe.png");
+    fifo(&place, "pipe.json");
+    picture(&place, "a.png");
+    place.put("points", "0 0 0 1 1\n");
+    for line in [
+        "photo convert pipe.txt",
+        "photo solve pipe.json -o o.out",
+        "photo camera pipe.png --points points",
+        "photo camera a.png --points pipe.txt",
+        "photo place scene.txt --backplate pipe.png -o o.png",
+        "photo camera a.png --points /dev/zero",
+        "render pipe.txt -o o.png",
+        "check pipe.txt",
+        "compare a.png pipe.png",
+        "merge pipe.txt -o o.png",
+        "convert pipe.txt -o o.gltf",
+    ] {
+        refused(&place, line, "is not a regular file");
+    }
+    refused(&place, "live pipe.txt", "not a file");
+    // A folder of pictures may contain anything.
+    std::fs::create_dir(place.path("one")).unwrap();
+    std::fs::create_dir(place.path("two")).unwrap();
+    picture(&place, "one/a.png");
+    fifo(&place, "two/a.png");
+    assert_ne!(ends(&place, "compare one two").code, Some(0));
+}
+
+#[test]
+fn a_lesson_waits_for_no_pipe_and_reads_no_device() {
+    for target in ["pipe.txt", "/dev/zero"] {
+        let place = Place::new();
+        std::fs::create_dir(place.path("lesson")).unwrap();
+        fifo(&place, "pipe.txt");
+        symlink(place.path(target), place.path("lesson/lesson.md")).unwrap();
+        let ran = ends(&place, "lesson scene.txt -o lesson --size 16x12 --samples 1 -q");
+        assert_ne!(ran.code, Some(0), "{target}");
+    }
+}
+
+#[test]
+fn pipes_with_names_of_temporary_files_delay_no_save() {
+    let place = Place::new();
+    // A render that is killed while it saves leaves such a name; ask the program for one.
+    let ran = place.shell("$DURER render scene.txt --size 8x8 --samples 1 -q -o o.png; ls -a");
+    assert_eq!(ran.code, Some(0), "{}", ran.err);
+    for name in [".durer-ready-1.tmp", ".durer-1.tmp", ".durer-x.tmp"] {
+        fifo(&place, name);
+    }
+    assert_eq!(ends(&place, "render scene.txt --size 8x8 --samples 1 -q --restart -o o.png").code, Some(0));
+}
+
+#[test]
+fn a_scene_that_is_watched_reads_nothing_else() {
+    let place = Place::new();
+    picture(&place, "secret.png");
+    std::fs::create_dir(place.path("below")).unwrap();
+    let field = "HeightField { picture ../secret.png min -1 0 -1  max 1 1 1 }";
+    place.put("below/scene.txt", SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", field));
+    let ran = place.shell(
+        "timeout -s INT 3 $DURER render below/scene.txt --dialect durer --watch --size 8x8 --samples 1 -o below/o.png",
+    );
+    assert!(ran.err.contains("lies outside the scene's folder"), "{}", ran.err);
+    assert!(!place.path("below/o.png").exists());
+}

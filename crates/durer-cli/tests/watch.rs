@@ -1,0 +1,148 @@
+//! `--watch` while its files are replaced, removed, half written, and saved a thousand times a second.
+#![cfg(unix)]
+
+mod common;
+
+use common::{Place, SCENE};
+use std::os::unix::fs::symlink;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+const MESH: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+fn scene(color: &str) -> String {
+    let mesh = SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file mesh.obj }");
+    mesh.replace("0.8 0.3 0.2", color)
+}
+
+fn watching(place: &Place) -> Child {
+    place.put("scene.txt", scene("0.5 0.5 0.5"));
+    place.put("mesh.obj", MESH);
+    let errors = std::fs::File::create(place.path("errors")).unwrap();
+    let line = "render scene.txt -o a.png --watch --size 16x16 --samples 2 --dialect durer";
+    place.command(line).stdout(Stdio::null()).stderr(errors).spawn().unwrap()
+}
+
+/// Waits until the picture is that of the files as they are, rendered once.
+fn shows_what_is_there(place: &Place, child: &mut Child, after: &str) {
+    place.gives(0, "render scene.txt -o b.png --size 16x16 --samples 2 --dialect durer --quiet --restart");
+    let start = Instant::now();
+    let read = |name: &str| std::fs::read(place.path(name)).unwrap_or_default();
+    while read("a.png") != read("b.png") {
+        assert_eq!(
+            child.try_wait().unwrap(),
+            None,
+            "it ended after {after}: {}",
+            String::from_utf8_lossy(&read("errors"))
+        );
+        assert!(start.elapsed() < Duration::from_secs(60), "no picture after {after}");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+#[test]
+fn what_happens_to_the_files_ends_no_watch() {
+    let place = Place::new();
+    let mut child = watching(&place);
+    shows_what_is_there(&place, &mut child, "the start");
+    let pause = || std::thread::sleep(Duration::from_millis(120));
+    let remove = |name: &str| {
+        let path = place.path(name);
+        let _ = std::fs::remove_file(&path).or_else(|_| std::fs::remove_dir(&path));
+    };
+    for name in ["scene.txt", "mesh.obj"] {
+        let whole = if name == "scene.txt" { scene("0.9 0.1 0.1") } else { MESH.replace("v 1 0 0", "v 2 0 0") };
+        type Fire<'a> = (&'a str, Box<dyn Fn() + 'a>);
+        let fires: [Fire; 9] = [
+            ("a removal", Box::new(|| remove(name))),
+            ("an empty file", Box::new(|| place.put(name, ""))),
+            ("half a file", Box::new(|| place.put(name, &whole[..whole.len() / 2]))),
+            ("zeros", Box::new(|| place.put(name, vec![0; 1 << 20]))),
+            (
+                "a folder",
+                Box::new(|| {
+                    remove(name);
+                    std::fs::create_dir(place.path(name)).unwrap();
+                }),
+            ),
+            (
+                "a pipe",
+                Box::new(|| {
+                    remove(name);
+                    assert!(Command::new("mkfifo").arg(place.path(name)).status().unwrap().success());
+                }),
+            ),
+            (
+                "a device",
+                Box::new(|| {
+                    remove(name);
+                    symlink("/dev/zero", place.path(name)).unwrap();
+                }),
+            ),
+            (
+                "a circle of links",
+                Box::new(|| {
+                    remove(name);
+                    symlink(name, place.path(name)).unwrap();
+                }),
+            ),
+            (
+                "a file without rights",
+                Box::new(|| {
+                    remove(name);
+                    place.put(name, &whole);
+                    let none = <std::fs::Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0);
+                    std::fs::set_permissions(place.path(name), none).unwrap();
+                }),
+            ),
+        ];
+        for (what, fire) in &fires {
+            fire();
+            pause();
+            remove(name);
+            // By rename, as editors save.
+            place.put("new", &whole);
+            std::fs::rename(place.path("new"), place.path(name)).unwrap();
+            shows_what_is_there(&place, &mut child, &format!("{what} in place of {name}"));
+        }
+    }
+    // Times of files that jump to the past and to the future.
+    for date in ["1970-01-01", "2001-01-01", "2099-01-01", "1960-01-01"] {
+        place.put("scene.txt", scene(if date < "2001" { "0.1 0.9 0.2" } else { "0.1 0.2 0.9" }));
+        let _ = Command::new("touch").args(["-d", date]).arg(place.path("scene.txt")).status();
+        shows_what_is_there(&place, &mut child, date);
+    }
+    ended(&place, child);
+}
+
+#[test]
+fn a_thousand_saves_a_second_end_in_the_last_picture() {
+    let place = Place::new();
+    let mut child = watching(&place);
+    shows_what_is_there(&place, &mut child, "the start");
+    for number in 0..2000 {
+        let text = scene(&format!("0.{:03} 0.5 0.5", number % 1000));
+        match number % 3 {
+            0 => place.put("scene.txt", &text[..text.len() / 2]),
+            1 => place.put("scene.txt", &text),
+            _ => {
+                place.put("new", &text);
+                std::fs::rename(place.path("new"), place.path("scene.txt")).unwrap();
+            }
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    place.put("scene.txt", scene("0.25 0.5 0.75"));
+    shows_what_is_there(&place, &mut child, "2000 saves");
+    ended(&place, child);
+}
+
+fn ended(place: &Place, mut child: Child) {
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+    let said = String::from_utf8_lossy(&place.bytes("errors")).into_owned();
+    assert!(!said.contains("panicked"), "{said}");
+    let left: Vec<String> =
+        place.names().into_iter().filter(|name| name.ends_with(".tmp") || name.ends_with(".part")).collect();
+    assert!(left.is_empty(), "{left:?}");
+}

@@ -1,0 +1,170 @@
+//! `cargo xtask attack`: hostile inputs, each kind a subcommand that counts what it tried and what
+//! fell.
+
+mod far;
+mod growth;
+mod mutated;
+mod names;
+mod signals;
+
+use crate::build::durer;
+use anyhow::{Context, Result, bail};
+use durer::sampler::hash;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Output, Stdio};
+use std::time::{Duration, Instant};
+
+/// A kind of attack, its default count, and what the count counts.
+struct Kind {
+    name: &'static str,
+    count: u64,
+    of: &'static str,
+    run: fn(&Attack) -> Result<Outcome>,
+}
+
+const KINDS: [Kind; 7] = [
+    Kind { name: "names", count: 2000, of: "names that lead out of a folder", run: names::run },
+    Kind { name: "templates", count: 10_000, of: "names in each job file", run: templates },
+    Kind { name: "growth", count: 200, of: "small files of large things", run: growth::run },
+    Kind { name: "signals", count: 100, of: "signals during all commands", run: signals::run },
+    Kind { name: "far", count: 500, of: "closed rooms far from the origin", run: far::run },
+    Kind { name: "kills", count: 100, of: "kills during renders", run: kills },
+    Kind { name: "mutated", count: 20_000, of: "mutated files", run: mutated::run },
+];
+
+/// What an attack uses.
+struct Attack {
+    durer: PathBuf,
+    folder: tempfile::TempDir,
+    count: u64,
+    seed: u64,
+    /// Words after the options of all attacks, for `mutated`.
+    only: String,
+}
+
+/// What an attack found.
+struct Outcome {
+    tried: u64,
+    /// A line for each that fell.
+    fallen: Vec<String>,
+    /// Anything else worth a line.
+    note: String,
+}
+
+pub fn run(arguments: &[String]) -> Result<ExitCode> {
+    if arguments.first().is_some_and(|word| word == mutated::WORKER) {
+        return mutated::work(&arguments[1..]);
+    }
+    let number = |name: &str| -> Result<Option<u64>> {
+        let value = crate::value(arguments, name);
+        value.map(|value| value.parse().with_context(|| format!("{name} needs a number"))).transpose()
+    };
+    let asked = arguments.first().filter(|word| !word.starts_with('-'));
+    let kinds: Vec<&Kind> = KINDS.iter().filter(|kind| asked.is_none_or(|asked| asked == kind.name)).collect();
+    if kinds.is_empty() {
+        bail!("there is no such attack; these are: {}", KINDS.map(|kind| kind.name).join(", "));
+    }
+    let (durer, seed) = (durer()?, number("--seed")?.unwrap_or(1));
+    let only = crate::value(arguments, "--only").cloned().unwrap_or_default();
+    let mut fallen = 0;
+    for kind in kinds {
+        let count = number("--count")?.unwrap_or(kind.count);
+        let folder = tempfile::tempdir()?;
+        let start = Instant::now();
+        let attack = Attack { durer: durer.clone(), folder, count, seed, only: only.clone() };
+        let found = (kind.run)(&attack).with_context(|| kind.name)?;
+        let (tried, fell, seconds) = (found.tried, found.fallen.len(), start.elapsed().as_secs_f64());
+        println!("{:<10}{tried:>9} {}: {fell} fell, {seconds:.0} s{}", kind.name, kind.of, found.note);
+        found.fallen.iter().take(20).for_each(|line| println!("    {line}"));
+        fallen += fell;
+    }
+    Ok(if fallen == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+impl Attack {
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn put(&self, name: &str, content: impl AsRef<[u8]>) -> Result<()> {
+        let path = self.path(name);
+        std::fs::create_dir_all(path.parent().context("a folder")?)?;
+        Ok(std::fs::write(path, content)?)
+    }
+
+    /// A random number below another, the same for each place.
+    fn random(&self, number: u64, place: u32, below: u64) -> usize {
+        (hash(self.seed, number as u32, place, (number >> 32) as u32, 0) % below.max(1)) as usize
+    }
+
+    /// Runs the program in the folder under limits of address space (KiB) and time (seconds).
+    fn limited(&self, arguments: &[&str], space: u64, seconds: u64) -> Result<Output> {
+        let limit = format!("ulimit -v {space}; exec timeout -s KILL {seconds} \"$0\" \"$@\"");
+        let mut command = Command::new("bash");
+        command.args(["-c", &limit]).arg(&self.durer).args(arguments).current_dir(self.folder.path());
+        command.env("RAYON_NUM_THREADS", "2").stdin(Stdio::null());
+        Ok(command.output()?)
+    }
+}
+
+/// Returns why a run is not one that ends by itself with a picture or an error.
+fn broken(output: &Output) -> Option<String> {
+    let said = String::from_utf8_lossy(&output.stderr);
+    let last = said.lines().last().unwrap_or_default();
+    match output.status.code() {
+        Some(0..=2) if !said.contains("panicked") => None,
+        // `timeout` kills with 137.
+        Some(137) => Some("no end".into()),
+        Some(code) => Some(format!("exit code {code}: {last}")),
+        None => Some(format!("{}: {last}", output.status)),
+    }
+}
+
+/// The property tests of job files, with as many names as asked.
+fn templates(attack: &Attack) -> Result<Outcome> {
+    let rounds = attack.count.div_ceil(2000).to_string();
+    let mut command = Command::new(crate::cargo());
+    command.args(["test", "--quiet", "--package", "durer-cli", "--lib", "--", "farm::", "--nocapture"]);
+    let output = command.env("DURER_ROUNDS", rounds).current_dir(crate::root()?).output()?;
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    let skipped: Vec<&str> = said.lines().filter(|line| line.contains("skipped")).collect();
+    let fallen = if output.status.success() { Vec::new() } else { said.lines().map(String::from).collect() };
+    Ok(Outcome { tried: attack.count, fallen, note: skipped.iter().map(|line| format!("; {line}")).collect() })
+}
+
+fn kills(attack: &Attack) -> Result<Outcome> {
+    let done = crate::torture::kills_in(&attack.durer, attack.folder.path(), attack.count, attack.seed);
+    Ok(Outcome {
+        tried: attack.count,
+        fallen: done.err().into_iter().map(|e| format!("{e:#}")).collect(),
+        note: String::new(),
+    })
+}
+
+/// Waits for a child process, at most so long; kills it then, and returns `None`.
+fn wait_for(child: &mut std::process::Child, most: Duration) -> Result<Option<Duration>> {
+    let start = Instant::now();
+    while start.elapsed() < most {
+        if child.try_wait()?.is_some() {
+            return Ok(Some(start.elapsed()));
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child.kill()?;
+    child.wait()?;
+    Ok(None)
+}
+
+/// Returns the inputs of earlier attacks, if they are at hand.
+fn inputs() -> Vec<PathBuf> {
+    let folder = crate::corpus().join("faults/attack");
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_file()).collect();
+    paths.sort();
+    paths
+}
+
+/// Returns the name of a file.
+fn name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
