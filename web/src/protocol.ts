@@ -28,7 +28,7 @@ id: number,
  */
 event: Event, };
 
-export type Request = { "kind": "open", 
+export type Request = { "kind": "rays", columns: number, rows: number, row: number | null } | { "kind": "walk", structure: Structure, origin: [number, number, number], direction: [number, number, number] } | { "kind": "boxes" } | { "kind": "values", left: number, top: number, width: number, height: number } | { "kind": "crop", crop: [number, number, number, number] | null } | { "kind": "denoise", on: boolean } | { "kind": "epsilon", epsilon: number | null } | { "kind": "tree" } | { "kind": "material", number: number, name: string, values: Array<number> } | { "kind": "as_text" } | { "kind": "pack" } | { "kind": "lesson" } | { "kind": "open", 
 /**
  * The name of the file; its ending says the format.
  */
@@ -154,7 +154,7 @@ force: boolean, } | { "kind": "pause",
  */
 pause: boolean, } | { "kind": "close" };
 
-export type Event = { "kind": "opened", 
+export type Event = { "kind": "rays", rays: Array<RayAccount | null> } | { "kind": "walk", walk: WalkAccount } | { "kind": "boxes", boxes: Array<BoxState> } | { "kind": "values", left: number, top: number, width: number, height: number, values: Array<number | null> } | { "kind": "tree", nodes: Array<TreeNode>, materials: Array<MaterialState> } | { "kind": "packed", names: Array<string>, sizes: Array<number> } | { "kind": "lesson", text: string | null } | { "kind": "opened", 
 /**
  * The program's version.
  */
@@ -532,7 +532,7 @@ full_height: number,
 /**
  * Samples that each pixel has.
  */
-samples: number, 
+region: [number, number, number, number], noise: number | null, left_ms: number | null, denoised: boolean, samples: number, 
 /**
  * Samples that each pixel gets.
  */
@@ -839,3 +839,12 @@ required: boolean,
  * Meaning and unit.
  */
 doc: string, };
+
+export type Structure = "tree" | "grid" | "nothing";
+export type RayAccount = { origin: [number, number, number], direction: [number, number, number], t: number | null, object: number | null };
+export type WalkTest = { object: number, t: number | null };
+export type WalkStep = { bounds: [[number, number, number], [number, number, number]] | null, level: number, tests: Array<WalkTest>, closest: number | null };
+export type WalkAccount = { steps: Array<WalkStep>, visits: number, tests: number, objects: number, hit: WalkTest | null, boxes: Array<BoxState> };
+export type BoxState = { level: number, corners: Array<number> };
+export type TreeNode = { name: string, place: Place | null, material: number | null, nodes: Array<TreeNode> };
+export type MaterialState = { name: string, place: Place | null, fields: Array<FieldState> };

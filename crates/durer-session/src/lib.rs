@@ -10,8 +10,10 @@ mod candidates;
 mod display;
 mod document;
 mod export;
+mod fields;
 mod host;
 mod language;
+mod model;
 mod motion;
 mod outlines;
 pub mod protocol;
@@ -19,6 +21,7 @@ mod rows;
 mod session;
 mod terms;
 mod viewer;
+mod walk;
 
 pub use host::Host;
 pub use session::{Clock, Session, Start};

@@ -1,4 +1,4 @@
-import type { ComponentType } from "preact";
+import type { ComponentChild, ComponentType } from "preact";
 
 /** A step of the lecture. */
 export interface Topic {
@@ -6,9 +6,9 @@ export interface Topic {
   id: string;
   title: string;
   /** One sentence for slides. */
-  lead: string;
+  lead: ComponentChild;
   /** What is new, for one who has read what comes before. */
-  text: string[];
+  text: ComponentChild[];
   Figure: ComponentType;
-  questions: { ask: string; answer: string }[];
+  questions: { ask: ComponentChild; answer: ComponentChild }[];
 }
