@@ -1,7 +1,9 @@
+import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 import { differing } from "../src/lecture/figures/epsilon";
 import { lesson, settings } from "../src/lecture/lesson";
 import { blocks } from "../src/lecture/markdown";
+import { topics } from "../src/lecture/topics";
 
 const text = `# Balls
 One sentence of **lead**.
@@ -85,5 +87,12 @@ describe("wrong pixels", () => {
     const a = Uint8Array.of(10, 10, 10, 255, 0, 0, 0, 255, 9, 9, 9, 0);
     const b = Uint8Array.of(12, 8, 10, 255, 0, 9, 0, 255, 9, 9, 9, 255);
     expect(differing(a, b)).toBe(1);
+  });
+});
+
+describe("the documentation", () => {
+  it("names all figures of the lecture", () => {
+    const docs = readFileSync(new URL("../../docs/live.md", import.meta.url), "utf8");
+    for (const topic of topics) expect(docs, topic.id).toContain(`\`${topic.id}\``);
   });
 });

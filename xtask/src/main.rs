@@ -89,9 +89,9 @@ const USAGE: &str = "Commands:
       pictures there.
   cargo xtask sheet [--samples 32] [--front] [--only TEXT] [--keep FOLDER]
       The sample models, rendered without any option, or from the front, beside the pictures that came with them, as sheets.
-  cargo xtask page [--check]
+  cargo xtask page [--check | --measure]
       Build the page of `durer live` from web/ (Node and npm), which is committed in web/dist. --check: is it what the
-      sources build?
+      sources build? --measure: pictures a second, random edits, memory, hostile clients (Chromium).
   cargo xtask playground -o FOLDER
       The same page as static files, over WebAssembly. It takes the target wasm32-unknown-unknown and the command
       wasm-bindgen, of the version in crates/durer-wasm/Cargo.toml.

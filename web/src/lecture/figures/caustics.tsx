@@ -13,11 +13,11 @@ type Way = "path" | "photons";
 
 function CausticsFigure() {
   const [way, setWay] = useState<Way>("photons");
-  const [power, setPower] = useState(14);
+  const [power, setPower] = useState(10);
   const [radius, setRadius] = useState(0.05);
-  const [step, setStep] = useState(4);
+  const [step, setStep] = useState(3);
   const [head, setHead] = useState<PictureHead | null>(null);
-  const [place, setPlace] = useState({ x: 0.73, y: 0.785 });
+  const [place, setPlace] = useState({ x: 0.78, y: 0.935 });
   const pixel = { x: Math.floor(place.x * width), y: Math.floor(place.y * height) };
   const photons = Math.round(10 ** (2 + power / 5));
   const samples = 2 ** step;
@@ -130,7 +130,7 @@ function CausticsFigure() {
 export const caustics: Topic = {
   id: "caustics",
   title: "Caustics by photons",
-  lead: "Glass gathers light to bright spots. From the eye they are hard to find, from the lamp they are easy.",
+  lead: "Glass gathers light to bright spots. They are hard to find from the eye, and easy from the lamp.",
   text: [
     "A path from the eye that hits the floor would have to go on in just the direction in which the glass bends it to the lamp. By chance that hardly happens, and when it does it counts so much that the picture is full of bright dots. Toward the lamp no shadow ray helps: the glass is in its way and bends it.",
     "So photons are sent from the lamp first. Those that went through mirror or glass are kept where they land. The picture then looks up how many landed near each point: many in a small disc is bright. A large disc is smooth and blurred, a small one sharp and noisy; Dürer makes it smaller from sample to sample.",

@@ -14,7 +14,7 @@ import type { Topic } from "../topic";
 
 /** Height of the hole, and rays that are sent at it and beside it. */
 const high = 0.2;
-const aims = Array.from({ length: 13 }, (_, i) => (i - 6) / 4);
+const aims = Array.from({ length: 25 }, (_, i) => (i - 12) / 10);
 const garden = `MaterialIndex 1 Sphere { center -0.9 -0.3 -3 radius 0.7 }
   MaterialIndex 2 Cone { base 0.9 -1 -3.6 top 0.9 1.3 -3.6 baseRadius 0.75 }
   MaterialIndex 3 Box { min 2 -1 -4.6 max 3 0.4 -3.8 }`;
@@ -50,8 +50,8 @@ function ObscuraFigure() {
   const text = sceneOf({ paper, materials, group: `${room}\n${garden}` });
   const session = useScene(text);
   const [eye, setEye] = useState<Eye>({
-    target: [0, 0.1, -0.9],
-    distance: 13,
+    target: [0.3, 0.35, -2.3],
+    distance: 16,
     yaw: 1.15,
     pitch: 0.3,
     angle: 38,
