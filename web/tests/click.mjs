@@ -447,6 +447,32 @@ await test("the camera is written into the text", wide, async (page) => {
   await page.getByRole("button", { name: "Write into the scene", disabled: true }).waitFor();
 });
 
+// `durer lesson web/tests/lesson/monday.md` is behind this address.
+if (process.env.LESSON) {
+  await test("a lesson of one's own", wide, async (page) => {
+    await page.goto(process.env.LESSON.split("#")[0] + "#/lesson");
+    await page.getByRole("heading", { name: "What a ball looks like" }).waitFor();
+    await page.waitForSelector(".equation .numbers");
+    await page.getByRole("button", { name: /How many points/ }).click();
+    await page.waitForSelector(".answer");
+    await shot(page, "lesson-1");
+    await page.keyboard.press("Escape");
+    await page.getByRole("link", { name: "On a floor" }).click();
+    await page.waitForFunction(() =>
+      /480 × 480 pixels|\d+ × \d+ pixels/.test(document.querySelector(".equations")?.textContent ?? ""),
+    );
+    await page.waitForFunction(() => document.querySelectorAll(".account li").length > 0);
+    const box = await page.locator(".picks").boundingBox();
+    await page.mouse.click(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
+    await page.waitForFunction(() => /Diffuse/.test(document.querySelector(".account").textContent));
+    await shot(page, "lesson-2");
+    await page.getByRole("link", { name: "Its normals" }).click();
+    await page.getByRole("heading", { name: "Its normals" }).waitFor();
+    await page.waitForTimeout(1500);
+    await shot(page, "lesson-3");
+  });
+}
+
 if (process.env.OFFLINE) {
   await test("without a network", wide, async (page) => {
     await open(page);
