@@ -57,11 +57,15 @@ export function useOpened(scene: OwnScene, options: Setting[], picture: string) 
   if (!engine) throw new Error("a figure stands in a lecture");
   const session = useMemo(() => engine.session(), [engine]);
   const [size, setSize] = useState<[number, number]>([480, 360]);
+  const [refused, setRefused] = useState<string | null>(null);
   const key = JSON.stringify(options);
   useEffect(() => {
     session.tell({ kind: "open", name: scene.name, text: scene.text });
     return session.on((event) => {
-      if (event.kind === "scene" && event.contents) setSize(fitted(event.contents.job.size));
+      if (event.kind === "refused") setRefused(event.why);
+      if (event.kind !== "scene") return;
+      setRefused(event.contents ? null : (event.findings[0]?.message ?? "the scene has errors"));
+      if (event.contents) setSize(fitted(event.contents.job.size));
     });
   }, [session, scene.name, scene.text]);
   useEffect(() => {
@@ -69,7 +73,7 @@ export function useOpened(scene: OwnScene, options: Setting[], picture: string) 
     session.tell({ kind: "show", picture, stops: 0, tone: "none" });
   }, [session, key, picture]);
   useEffect(() => () => session.close(), [session]);
-  return { session, size };
+  return { session, size, refused };
 }
 
 function fitted([width, height]: [number, number]): [number, number] {

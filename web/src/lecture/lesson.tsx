@@ -85,7 +85,7 @@ function SceneFigure({ label, name, options }: { label: string; name: string; op
   const given = settings(options);
   const picture = given.find((option) => option.name === "show")?.value ?? "color";
   const job = given.filter((option) => option.name !== "show");
-  const { session, size } = useOpened({ title: label, name, text: null }, job, picture);
+  const { session, size, refused } = useOpened({ title: label, name, text: null }, job, picture);
   const [head, setHead] = useState<PictureHead | null>(null);
   const [width, height] = size;
   return (
@@ -108,7 +108,7 @@ function SceneFigure({ label, name, options }: { label: string; name: string; op
               {width} × {height} pixels, <b>{(head.rays / 1e3).toFixed(0)}</b> thousand rays
             </>
           ) : (
-            `reading ${name} …`
+            (refused ?? `reading ${name} …`)
           )
         }
       >

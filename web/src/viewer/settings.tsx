@@ -3,6 +3,7 @@ import { Dragged } from "../ui/dragged";
 import { Slider } from "../ui/slider";
 import { Switch } from "../ui/switch";
 import { type Store, useStore } from "./store";
+import { whole } from "./zoom";
 
 /** The camera's fields, how the picture is shown, and how it is made. */
 export function Settings({ store }: { store: Store }) {
@@ -160,6 +161,7 @@ function Job({ store }: { store: Store }) {
           value={size}
           onChange={(event) => {
             const [width = 512, height = 512] = event.currentTarget.value.split("x").map(Number);
+            store.look(whole);
             store.session.tell({ kind: "size", width, height });
           }}
         >

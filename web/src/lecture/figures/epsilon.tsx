@@ -8,7 +8,7 @@ import { Rendered } from "../rendered";
 import type { Topic } from "../topic";
 
 const [width, height] = [320, 240];
-/** A ball on a floor, and a thin wall on it: what starts too far off the floor is already behind the wall. */
+/** A ring and a thin wall on a floor: what starts too far off the floor is already behind the wall. */
 const text = `PerspectiveCamera { center 0.2 1.5 5.4 direction 0 -0.3 -1 up 0 1 0 angle 40 }
 Background { color 0.72 0.78 0.86 ambientLight 0.16 0.16 0.18 }
 Lights { PointLight { position -3.2 3.4 2 color 0.9 0.9 0.86 } }
@@ -19,8 +19,8 @@ Materials {
 }
 Group {
   MaterialIndex 0 Plane { normal 0 1 0 offset -0.8 }
-  MaterialIndex 1 Sphere { center -0.75 0 0 radius 0.8 }
-  MaterialIndex 2 Box { min 0.75 -0.8 -1.2 max 0.82 0.6 0.9 }
+  MaterialIndex 1 Torus { center -0.75 -0.22 0 axis 0.35 1 0.5 majorRadius 0.62 minorRadius 0.26 }
+  MaterialIndex 2 Transform { Translate 0.8 -0.1 -0.1 YRotate 8 Box { min -0.03 -0.7 -1 max 0.03 0.7 1 } }
 }
 `;
 const options = [{ name: "samples", value: "1" }];
@@ -132,15 +132,15 @@ export const epsilon: Topic = {
   lead: "A shadow ray starts on a surface. Rounding may put it just inside, and the surface shades itself.",
   text: [
     "The point of a hit is rounded, so it lies a little above or a little below the surface. From below, the shadow ray meets the very surface that it leaves: dark spots, the acne. The usual cure is an epsilon: hits with a smaller t do not count.",
-    "But how small is small? Too small, and spots remain; too large, and the ray starts behind what stands close by: light leaks at the foot of the wall and below the ball. In a scene of another size, another epsilon is right.",
+    "But how small is small? Too small, and spots remain; too large, and the ray starts behind what stands close by: light leaks at the foot of the wall and below the ring. In a scene of another size, another epsilon is right.",
     "Dürer takes none. It knows a bound on the rounding error of every point and starts just outside of it, and its test of a ray against the edge of two triangles is exact, so that no ray slips between.",
   ],
   Figure: EpsilonFigure,
   questions: [
     {
-      ask: "Why does the ball show more spots than the floor?",
+      ask: "Why does the ring show spots, and the floor none?",
       answer:
-        "The floor’s points are rounded along one axis only, and its height is often exact. On the ball all three numbers are rounded.",
+        "The floor’s height is one number, which needs no rounding: its points lie exactly on it. On the ring all three numbers are rounded.",
     },
     {
       ask: "Where does the light leak first when epsilon grows?",

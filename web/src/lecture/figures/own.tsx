@@ -61,7 +61,7 @@ function OwnFigure() {
   const [head, setHead] = useState<PictureHead | null>(null);
   const step = steps.find((known) => known.id === id) ?? steps[0];
   const options: Setting[] = step.options.map(([name, value]) => ({ name, value }));
-  const { session, size } = useOpened(own, options, step.picture);
+  const { session, size, refused } = useOpened(own, options, step.picture);
   const [width, height] = size;
   return (
     <Figure
@@ -91,7 +91,7 @@ function OwnFigure() {
               {own.title}: {width} × {height} pixels, <b>{(head.rays / 1e3).toFixed(0)}</b> thousand rays
             </>
           ) : (
-            "…"
+            (refused ?? "…")
           )
         }
       >
