@@ -1,5 +1,7 @@
 /** Keeps the page for times without a network: what was once fetched is answered from memory where the network fails. */
 const name = "durer";
+/** The folder of the library that this browser runs. */
+const level = new URL(self.location.href).searchParams.get("level");
 const files = [
   "./",
   "index.html",
@@ -9,8 +11,8 @@ const files = [
   "inter-latin-wght-normal.woff2",
   "inter-latin-ext-wght-normal.woff2",
   "inter-greek-wght-normal.woff2",
-  "wasm/durer_wasm.js",
-  "wasm/durer_wasm_bg.wasm",
+  `wasm/${level}/durer_wasm.js`,
+  `wasm/${level}/durer_wasm_bg.wasm`,
 ];
 
 self.addEventListener("install", (event) => {

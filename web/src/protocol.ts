@@ -30,11 +30,11 @@ event: Event, };
 
 export type Request = { "kind": "open", 
 /**
- * Name of the file; its extension selects the format.
+ * The name of the file; its ending says the format. Empty for the server's own file.
  */
 name: string, 
 /**
- * Text of the scene; `None` opens the server's file.
+ * The text; `None` for a file.
  */
 text: string | null, } | { "kind": "give", 
 /**
@@ -140,7 +140,71 @@ direction: [number, number, number],
 /**
  * End of the ray, in lengths of `direction`; `None` for an infinite ray.
  */
-t_max: number | null, } | { "kind": "outlines" } | { "kind": "language" } | { "kind": "export", 
+t_max: number | null, } | { "kind": "rays", 
+/**
+ * Columns of the raster.
+ */
+columns: number, 
+/**
+ * Rows of the raster.
+ */
+rows: number, 
+/**
+ * The only row that is asked for; `None` for all.
+ */
+row: number | null, } | { "kind": "walk", 
+/**
+ * The structure.
+ */
+structure: Structure, 
+/**
+ * Origin of the ray.
+ */
+origin: [number, number, number], 
+/**
+ * Its direction, of any length.
+ */
+direction: [number, number, number], } | { "kind": "boxes" } | { "kind": "values", 
+/**
+ * First column.
+ */
+left: number, 
+/**
+ * First row.
+ */
+top: number, 
+/**
+ * Columns.
+ */
+width: number, 
+/**
+ * Rows.
+ */
+height: number, } | { "kind": "crop", 
+/**
+ * The part; `None` for the whole picture.
+ */
+crop: [number, number, number, number] | null, } | { "kind": "denoise", 
+/**
+ * True for on.
+ */
+on: boolean, } | { "kind": "epsilon", 
+/**
+ * Least `t`; `None` for the exact starts of rays.
+ */
+epsilon: number | null, } | { "kind": "tree" } | { "kind": "material", 
+/**
+ * Number of the material.
+ */
+number: number, 
+/**
+ * Name of the field.
+ */
+name: string, 
+/**
+ * Its numbers.
+ */
+values: Array<number>, } | { "kind": "as_text" } | { "kind": "pack" } | { "kind": "lesson" } | { "kind": "outlines" } | { "kind": "language" } | { "kind": "export", 
 /**
  * Name of the file; its extension selects the format.
  */
@@ -214,7 +278,59 @@ pixel: PixelAccount, } | { "kind": "cast",
 /**
  * The results.
  */
-cast: CastAccount, } | { "kind": "outlines", 
+cast: CastAccount, } | { "kind": "rays", 
+/**
+ * The rays.
+ */
+rays: Array<RayAccount | null>, } | { "kind": "walk", 
+/**
+ * The way.
+ */
+walk: WalkAccount, } | { "kind": "boxes", 
+/**
+ * The boxes, level by level, up to a limit.
+ */
+boxes: Array<BoxState>, } | { "kind": "values", 
+/**
+ * First column.
+ */
+left: number, 
+/**
+ * First row.
+ */
+top: number, 
+/**
+ * Columns.
+ */
+width: number, 
+/**
+ * Rows.
+ */
+height: number, 
+/**
+ * The numbers: linear light, or what another picture shows.
+ */
+values: Array<number | null>, } | { "kind": "tree", 
+/**
+ * The objects.
+ */
+nodes: Array<TreeNode>, 
+/**
+ * The materials, by number.
+ */
+materials: Array<MaterialState>, } | { "kind": "packed", 
+/**
+ * Names; the text comes first.
+ */
+names: Array<string>, 
+/**
+ * Numbers of bytes.
+ */
+sizes: Array<number>, } | { "kind": "lesson", 
+/**
+ * Its Markdown; `None` if the server has none.
+ */
+text: string | null, } | { "kind": "outlines", 
 /**
  * Outlines, one per object, up to a limit.
  */
@@ -538,6 +654,23 @@ samples: number,
  */
 all_samples: number, 
 /**
+ * The part that follows, in pixels of the whole picture: first column, first row, width and
+ * height. A coarse one may reach beyond the edge.
+ */
+region: [number, number, number, number], 
+/**
+ * Visible error, the quantity that `durer render --noise-threshold` limits, once it is known.
+ */
+noise: number | null, 
+/**
+ * Milliseconds until it is finished, once they are known.
+ */
+left_ms: number | null, 
+/**
+ * True if it is denoised.
+ */
+denoised: boolean, 
+/**
  * Number of rays traced.
  */
 rays: number, 
@@ -796,6 +929,122 @@ far: boolean,
  * Keyword and line of the light.
  */
 name: string, };
+
+export type Structure = "tree" | "grid" | "nothing";
+
+export type RayAccount = { 
+/**
+ * Origin.
+ */
+origin: [number, number, number], 
+/**
+ * Direction, of length 1.
+ */
+direction: [number, number, number], 
+/**
+ * Position of the first hit along the ray.
+ */
+t: number | null, 
+/**
+ * Number of the object that is hit.
+ */
+object: number | null, };
+
+export type WalkTest = { 
+/**
+ * Number of the object.
+ */
+object: number, 
+/**
+ * Position of its first hit along the ray.
+ */
+t: number | null, };
+
+export type WalkStep = { 
+/**
+ * Two opposite corners; `None` for objects outside the structure.
+ */
+bounds: [[number, number, number], [number, number, number]] | null, 
+/**
+ * Depth of a box in its tree.
+ */
+level: number, 
+/**
+ * Objects that are tested there.
+ */
+tests: Array<WalkTest>, 
+/**
+ * Least `t` after it.
+ */
+closest: number | null, };
+
+export type WalkAccount = { 
+/**
+ * Visited boxes or cells, in order.
+ */
+steps: Array<WalkStep>, 
+/**
+ * Number of visited nodes or cells.
+ */
+visits: number, 
+/**
+ * Number of tests against objects.
+ */
+tests: number, 
+/**
+ * Number of objects.
+ */
+objects: number, 
+/**
+ * The first hit.
+ */
+hit: WalkTest | null, 
+/**
+ * Boxes of the tree, or cells with objects in them, up to a limit.
+ */
+boxes: Array<BoxState>, };
+
+export type BoxState = { 
+/**
+ * Depth; 0 for the box around everything.
+ */
+level: number, 
+/**
+ * Its eight corners, three numbers each: bit 0 of a corner's number is x, bit 1 y, bit 2 z.
+ */
+corners: Array<number>, };
+
+export type TreeNode = { 
+/**
+ * Its keyword or file.
+ */
+name: string, 
+/**
+ * Place in the scene's text.
+ */
+place: Place | null, 
+/**
+ * Number of its material.
+ */
+material: number | null, 
+/**
+ * Nodes below it.
+ */
+nodes: Array<TreeNode>, };
+
+export type MaterialState = { 
+/**
+ * Its keyword.
+ */
+name: string, 
+/**
+ * Place in the scene's text.
+ */
+place: Place | null, 
+/**
+ * Its fields.
+ */
+fields: Array<FieldState>, };
 
 export type Word = { 
 /**

@@ -1,7 +1,7 @@
 /**
  * The same bits: hashes of the library as WebAssembly, under Node, beside those of the command.
  *
- *     node tests/hashes.mjs PLAYGROUND COMMAND [SCENES...]
+ *     [LEVEL=scalar] node tests/hashes.mjs PLAYGROUND COMMAND [SCENES...]
  */
 import { execFileSync } from "node:child_process";
 import { existsSync, readdirSync, readFileSync } from "node:fs";
@@ -9,8 +9,9 @@ import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 
 const [playground, command, ...wanted] = process.argv.slice(2);
-const wasm = await import(pathToFileURL(resolve(playground, "wasm/durer_wasm.js")).href);
-await wasm.default({ module_or_path: readFileSync(join(playground, "wasm/durer_wasm_bg.wasm")) });
+const module = resolve(playground, "wasm", process.env.LEVEL ?? "simd128");
+const wasm = await import(pathToFileURL(join(module, "durer_wasm.js")).href);
+await wasm.default({ module_or_path: readFileSync(join(module, "durer_wasm_bg.wasm")) });
 
 const folder = resolve(import.meta.dirname, "../../scenes");
 const some = [

@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { Engine, type LineEvents } from "../src/engine/engine";
+import { level } from "../src/engine/level";
 import { decode } from "../src/engine/wire";
 import type { Answer, Ask } from "../src/protocol";
 
@@ -53,5 +54,11 @@ describe("an engine", () => {
     const waiting = engine.session().ask({ kind: "language" }, "language");
     events?.closed("the server has ended");
     await expect(waiting).rejects.toThrow("the server has ended");
+  });
+});
+
+describe("the level of the library", () => {
+  it("is SIMD where vectors are known", () => {
+    expect(level()).toBe("simd128");
   });
 });

@@ -4,12 +4,16 @@ use crate::{cargo, root, value};
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode};
+use std::process::{Command, ExitCode, Stdio};
 
 /// Builds the page into `web/dist`; with `--check`, compares the result with `web/dist` instead.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let web = root()?.join("web");
+    if arguments.iter().any(|argument| argument == "--measure") {
+        return measure(&web);
+    }
     if !arguments.iter().any(|argument| argument == "--check") {
         build(&web, &web.join("dist"))?;
         return Ok(ExitCode::SUCCESS);
@@ -31,10 +35,48 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(ExitCode::FAILURE)
 }
 
-fn build(web: &Path, into: &Path) -> Result<()> {
-    if !web.join("node_modules/vite").exists() {
-        call(Command::new("npm").arg("ci").current_dir(web))?;
+/// Measures the page: pictures a second and the time to the first, in Chromium, for a small scene and
+/// a large one; then 10,000 random edits, memory over 1,000, and hostile clients.
+fn measure(web: &Path) -> Result<ExitCode> {
+    let root = root()?;
+    let durer = crate::build::durer()?;
+    install(web)?;
+    for scene in [root.join("scenes/whitted.txt"), crate::corpus().join("meshes/dragon.ply")] {
+        if !scene.exists() {
+            println!("skipped: there is no {}", scene.display());
+            continue;
+        }
+        let mut live = Command::new(&durer).arg("live").arg(&scene).stdout(Stdio::piped()).spawn()?;
+        let mut address = String::new();
+        let output = live.stdout.take().context("the server prints nothing")?;
+        BufReader::new(output).read_line(&mut address)?;
+        println!("{}", scene.display());
+        let measured = call(Command::new("node").args(["tests/measure.mjs", address.trim()]).current_dir(web));
+        live.kill()?;
+        live.wait()?;
+        measured?;
     }
+    let test = |package: &str, file: &str| {
+        let mut command = Command::new(cargo());
+        command.args(["test", "--release", "-p", package, "--test", file]).env("DURER_EDITS", "3334");
+        call(&mut command)
+    };
+    test("durer-session", "edits")?;
+    test("durer-session", "memory")?;
+    test("durer-live", "clients")?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn install(web: &Path) -> Result<()> {
+    if web.join("node_modules/vite").exists() {
+        return Ok(());
+    }
+    // Not `npm ci`: the lock file names an optional package for Windows that not every registry has.
+    call(Command::new("npm").args(["install", "--no-audit", "--no-fund"]).current_dir(web))
+}
+
+fn build(web: &Path, into: &Path) -> Result<()> {
+    install(web)?;
     call(Command::new("npx").args(["tsc", "--noEmit"]).current_dir(web))?;
     call(Command::new("npx").args(["vite", "build", "--emptyOutDir", "--outDir"]).arg(into).current_dir(web))
 }
@@ -49,25 +91,25 @@ fn files(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
     Ok(all)
 }
 
-/// Writes the page, the WebAssembly library, and the service worker that caches both for offline
-/// use.
-pub fn playground(arguments: &[String]) -> Result<ExitCode> {
-    let root = root()?;
-    let folder = PathBuf::from(value(arguments, "-o").context("missing -o FOLDER")?);
-    let target =
-        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from).join("playground");
-    let flags = format!("{} -C target-feature=+simd128", std::env::var("RUSTFLAGS").unwrap_or_default());
-    let manifest = root.join("crates/durer-wasm/Cargo.toml");
+/// SIMD levels of the library as WebAssembly, with their target features. The worker takes the first
+/// that the browser knows.
+const LEVELS: [(&str, &str); 2] = [("simd128", "+simd128"), ("scalar", "-simd128")];
+
+/// Builds the library as WebAssembly at a level.
+fn module(root: &Path, level: &str, feature: &str, folder: &Path) -> Result<()> {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
+    let target = target.join("playground").join(level);
+    let flags = format!("{} -C target-feature={feature}", std::env::var("RUSTFLAGS").unwrap_or_default());
     let wasm = "wasm32-unknown-unknown";
     call(
         Command::new(cargo())
             .args(["build", "--release", "--target", wasm, "--manifest-path"])
-            .arg(&manifest)
+            .arg(root.join("crates/durer-wasm/Cargo.toml"))
             .arg("--target-dir")
             .arg(&target)
             .env("RUSTFLAGS", flags.trim()),
     )?;
-    fs::create_dir_all(folder.join("wasm"))?;
+    fs::create_dir_all(folder)?;
     let bindgen = std::env::var_os("WASM_BINDGEN").unwrap_or_else(|| "wasm-bindgen".into());
     call(
         Command::new(bindgen)
@@ -79,14 +121,23 @@ pub fn playground(arguments: &[String]) -> Result<ExitCode> {
                 "--remove-producers-section",
                 "--out-dir",
             ])
-            .arg(folder.join("wasm"))
+            .arg(folder)
             .arg(target.join(wasm).join("release/durer_wasm.wasm")),
-    )?;
+    )
+}
+
+/// Writes the page, the library as WebAssembly, and what keeps both for times without a network.
+pub fn playground(arguments: &[String]) -> Result<ExitCode> {
+    let root = root()?;
+    let folder = PathBuf::from(value(arguments, "-o").context("say where it goes: -o FOLDER")?);
+    for (level, feature) in LEVELS {
+        module(&root, level, feature, &folder.join("wasm").join(level))?;
+    }
     for (name, bytes) in files(&root.join("web/dist"))? {
         fs::write(folder.join(name), bytes)?;
     }
     fs::copy(root.join("web/playground/offline.js"), folder.join("offline.js"))?;
-    let size = fs::metadata(folder.join("wasm/durer_wasm_bg.wasm"))?.len();
+    let size = fs::metadata(folder.join("wasm").join(LEVELS[0].0).join("durer_wasm_bg.wasm"))?.len();
     println!("{}: any web server can serve it; the library takes {} KiB", folder.display(), size / 1024);
     Ok(ExitCode::SUCCESS)
 }

@@ -3,9 +3,11 @@
 use super::build::{self, BuildSettings};
 use super::lanes::{Available, Kernel, Lanes};
 use super::node::{self, LEAF, WideNode};
+use super::shown::{self, TreeBox};
 use super::traverse::{NodeHits, TraversalRay, Visitor, traverse};
 use super::{TraversalCounter, TraversalStats};
 use crate::math::{Aabb, Ray};
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// A bounding volume hierarchy of eight-wide nodes over numbered primitives.
@@ -98,14 +100,29 @@ impl Bvh {
     /// Traverses leaf by leaf; see [`Bvh::traverse`]. `leaf` is a trait object, so that the
     /// traversal is compiled once, here, and not for each caller.
     fn walk_leaves(&self, ray: &Ray, leaf: Leaf) {
-        self.level.run(Walk { bvh: self, ray, things: Things { nodes: &self.nodes, counter: (), leaf } });
+        self.level.run(Walk { bvh: self, ray, visitor: Things { nodes: &self.nodes, counter: (), leaf } });
     }
 
     /// Traverses as [`Bvh::walk_leaves`] does and returns the number of visited nodes.
     fn walk_counting(&self, ray: &Ray, leaf: Leaf) -> u64 {
         let mut counts = TraversalStats::default();
-        self.level.run(Walk { bvh: self, ray, things: Things { nodes: &self.nodes, counter: &mut counts, leaf } });
+        self.level.run(Walk { bvh: self, ray, visitor: Things { nodes: &self.nodes, counter: &mut counts, leaf } });
         counts.nodes
+    }
+
+    /// Iterates over the boxes of the tree, level by level.
+    pub fn boxes(&self) -> impl Iterator<Item = TreeBox> {
+        shown::boxes(&self.nodes).map(|(_, found)| found)
+    }
+
+    /// Traverses the tree as [`Bvh::traverse`] does, and returns the boxes of the visited nodes and
+    /// leaves in the order of the visits. For drawings: it also walks over the whole tree.
+    pub fn visits(&self, ray: &Ray, mut test: impl FnMut(usize, f32) -> f32) -> Vec<TreeBox> {
+        let boxes: BTreeMap<u32, TreeBox> = shown::boxes(&self.nodes).collect();
+        let mut codes = Vec::new();
+        let leaf: Leaf = &mut |things, t_max| things.fold(t_max, |t_max, thing| test(thing, t_max));
+        self.level.run(Walk { bvh: self, ray, visitor: Recorder { codes: &mut codes, counter: (), leaf } });
+        codes.iter().filter_map(|code| boxes.get(code).cloned()).collect()
     }
 }
 
@@ -113,13 +130,13 @@ impl Bvh {
 /// `t_max`.
 type Leaf<'a> = &'a mut dyn FnMut(Range<usize>, f32) -> f32;
 
-struct Walk<'a, T> {
+struct Walk<'a, V> {
     bvh: &'a Bvh,
     ray: &'a Ray,
-    things: Things<'a, T>,
+    visitor: V,
 }
 
-impl<T: TraversalCounter> Kernel for Walk<'_, T> {
+impl<V: Visitor> Kernel for Walk<'_, V> {
     type Output = ();
 
     #[inline(always)]
@@ -129,9 +146,9 @@ impl<T: TraversalCounter> Kernel for Walk<'_, T> {
         }
         let (nodes, reach, t_max) = (&self.bvh.nodes, self.bvh.bounds.reach(), self.ray.t_max);
         if let Some(boxes) = TraversalRay::new(self.ray, reach) {
-            traverse::<L, _, true>(lanes, nodes, &boxes, t_max, &mut self.things);
+            traverse::<L, _, true>(lanes, nodes, &boxes, t_max, &mut self.visitor);
         } else if let Some(boxes) = TraversalRay::robust(self.ray, reach) {
-            traverse::<L, _, false>(lanes, nodes, &boxes, t_max, &mut self.things);
+            traverse::<L, _, false>(lanes, nodes, &boxes, t_max, &mut self.visitor);
         }
     }
 }
@@ -169,6 +186,35 @@ impl<T: TraversalCounter> Visitor for Things<'_, T> {
 
     #[inline(always)]
     fn leaf<L: Lanes, const FAST: bool>(&mut self, _: L, leaf: u32, t_max: f32) -> f32 {
+        let (first, count) = node::items(leaf);
+        (self.leaf)(first..first + count, t_max)
+    }
+}
+
+/// Visitor that records the codes of visited nodes and leaves.
+struct Recorder<'a> {
+    codes: &'a mut Vec<u32>,
+    counter: (),
+    leaf: Leaf<'a>,
+}
+
+impl Visitor for Recorder<'_> {
+    type TraversalCounter = ();
+
+    const ANY: bool = false;
+
+    fn counter(&mut self) -> &mut () {
+        &mut self.counter
+    }
+
+    #[inline(always)]
+    fn enter(&mut self, offset: usize) {
+        self.codes.push(offset as u32);
+    }
+
+    #[inline(always)]
+    fn leaf<L: Lanes, const FAST: bool>(&mut self, _: L, leaf: u32, t_max: f32) -> f32 {
+        self.codes.push(leaf);
         let (first, count) = node::items(leaf);
         (self.leaf)(first..first + count, t_max)
     }

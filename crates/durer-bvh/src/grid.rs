@@ -129,8 +129,13 @@ impl Grid {
 
     /// Number of primitives that overlap a cell.
     pub fn occupancy(&self, cell: [u32; 3]) -> usize {
+        self.primitives(cell).len()
+    }
+
+    /// Numbers of the primitives that overlap a cell.
+    pub fn primitives(&self, cell: [u32; 3]) -> &[u32] {
         let i = self.number(cell);
-        (self.starts[i + 1] - self.starts[i]) as usize
+        &self.items[self.starts[i] as usize..self.starts[i + 1] as usize]
     }
 
     /// Size of the lists in bytes.
@@ -212,10 +217,7 @@ impl Grid {
         if slip > PAD * finest && is_sound(ray) {
             return self.walk_wide(ray, slip.into(), offer);
         }
-        self.walk_cells(ray, |grid, cell, t_max| {
-            let i = grid.number(cell);
-            offer(&grid.items[grid.starts[i] as usize..grid.starts[i + 1] as usize], t_max)
-        });
+        self.walk_cells(ray, |grid, cell, t_max| offer(grid.primitives(cell), t_max));
         true
     }
 

@@ -16,6 +16,7 @@ pub mod math;
 mod node;
 mod packs;
 mod parallel;
+mod shown;
 mod traverse;
 mod triangles;
 pub mod watertight;
@@ -28,6 +29,7 @@ pub use grid::Grid;
 pub use instances::{Instance, InstanceBvh, InstanceHit};
 pub use lanes::{SimdLevel, UnknownSimdLevel};
 pub use packs::{PackHit, PrimitivePacks};
+pub use shown::TreeBox;
 pub use triangles::{Facing, HeightGrid, NearestPoint, TriangleBvh, TriangleHit};
 
 /// Counter of the work of rays. `()` counts nothing, at no cost.

@@ -134,6 +134,10 @@ pub(super) trait Visitor {
 
     fn counter(&mut self) -> &mut Self::TraversalCounter;
 
+    /// Called for each visited node with its offset.
+    #[inline(always)]
+    fn enter(&mut self, _: usize) {}
+
     /// Prefetches hit children, of which the given one is likely to be next.
     fn fetch<L: Lanes>(&self, _: L, _: &NodeHits<L>, _: u32) {}
 
@@ -167,6 +171,7 @@ pub(super) fn traverse<L: Lanes, V: Visitor, const FAST: bool>(
                 let mut address = child as usize;
                 loop {
                     visitor.counter().work(1, 0);
+                    visitor.enter(address);
                     let met = intersect_node::<L, FAST>(lanes, &slabs, address, limit);
                     if met.mask == 0 {
                         break 'visit;

@@ -31,15 +31,17 @@ use written::{Lesson, PAGE, TEXT};
   durer lesson scene.txt -o lesson/ --size 400x300 --samples 64
   durer lesson scene.txt -o lesson/ --dialect f04 --shadows --bounces 4 --transfer course
   durer lesson scenes/plates.txt -o lesson/ --samples 32
+  durer lesson monday.md
 
-FOLDER gets a self-contained page, index.html, and the same text as lesson.md with its pictures as files. An existing folder
+A Markdown file is a lesson of your own: its figures are named in it, as docs/live.md explains, and it is shown in the browser.
+Of a scene, FOLDER gets a self-contained page, index.html, and the same text as lesson.md with its pictures as files. An existing folder
 keeps its other files; files of an earlier lesson are replaced.
 Pass the same options as to `durer render`: with the whitted integrator, the last step is that picture. Without --size, the
 longer side has 256 pixels. A step that the scene cannot show uses a small built-in scene, and says so.
 With --integrator path or photons, the default of some scenes, the lesson continues with soft shadows, bounces, the two ways
 to sample lights, caustics and spectra, as far as the scene has them.")]
 pub struct LessonArgs {
-    /// Scene file
+    /// Scene file, or a lesson in Markdown
     pub scene: PathBuf,
     /// Folder to write [default: the scene's name with -lesson, in the current folder]
     #[arg(short, long, value_name = "FOLDER")]
@@ -62,6 +64,9 @@ pub struct LessonArgs {
 /// Default length of the longer side in pixels.
 const SIDE: u32 = 256;
 pub fn run(args: &LessonArgs) -> Result<(), Failure> {
+    if args.scene.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("md")) {
+        return crate::live::lesson(&args.scene);
+    }
     let stem = Path::new(args.scene.file_stem().unwrap_or_default());
     let mut guard = Guard::default();
     let folder = Folder::new(args.output.clone().unwrap_or_else(|| lengthened(stem, "-lesson")), &mut guard)?;

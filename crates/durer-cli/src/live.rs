@@ -3,8 +3,8 @@
 use crate::failure::{Failure, bad};
 use crate::terminal::say;
 use clap::Args;
-use durer_live::Server;
-use std::path::PathBuf;
+use durer_live::{Server, Start};
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 /// Show a scene in the browser: edit it, orbit it, and explain its pixels
@@ -27,20 +27,34 @@ pub struct LiveArgs {
 }
 
 pub fn run(args: &LiveArgs) -> Result<(), Failure> {
+    readable(&args.scene)?;
+    serve(Start { file: Some(args.scene.clone()), lesson: None }, args.port, args.open)
+}
+
+/// Fails if a file cannot be opened.
+fn readable(path: &Path) -> Result<(), Failure> {
     // Opening a pipe would block.
-    let opened = match std::fs::metadata(&args.scene) {
-        Ok(metadata) if !metadata.is_file() => return Err(bad(format!("{}: not a file", args.scene.display()))),
-        Ok(_) => std::fs::File::open(&args.scene).map(drop),
+    let opened = match std::fs::metadata(path) {
+        Ok(metadata) if !metadata.is_file() => return Err(bad(format!("{}: not a file", path.display()))),
+        Ok(_) => std::fs::File::open(path).map(drop),
         Err(error) => Err(error),
     };
-    if let Err(error) = opened {
-        return Err(bad(format!("{}: {error}", args.scene.display())));
-    }
-    let server = Server::bind(args.port, Some(args.scene.clone()));
-    let server = server.map_err(|error| bad(format!("port {}: {error}", args.port)))?;
-    let address = server.address().map_err(anyhow::Error::from)?;
+    opened.map_err(|error| bad(format!("{}: {error}", path.display())))
+}
+
+/// Serves a teacher's lesson.
+pub fn lesson(path: &Path) -> Result<(), Failure> {
+    readable(path)?;
+    serve(Start { file: None, lesson: Some(path.to_path_buf()) }, 0, false)
+}
+
+fn serve(start: Start, port: u16, open: bool) -> Result<(), Failure> {
+    let page = if start.lesson.is_some() { "#/lesson" } else { "" };
+    let server = Server::bind(port, start);
+    let server = server.map_err(|error| bad(format!("port {port}: {error}")))?;
+    let address = format!("{}{page}", server.address().map_err(anyhow::Error::from)?);
     say(&format!("{address}\nCtrl-C ends"));
-    if args.open {
+    if open {
         let opener = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
         // Ignore errors: the address is printed and can be copied.
         let _ = Command::new(opener).arg(&address).stdout(Stdio::null()).stderr(Stdio::null()).spawn();

@@ -8,10 +8,9 @@ mod head;
 mod page;
 mod socket;
 
-use durer_session::Start;
+pub use durer_session::Start;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::time::Duration;
@@ -38,18 +37,18 @@ pub(crate) struct Shared {
 }
 
 impl Server {
-    /// Listens on `port`, or on any free port if it is 0. `file` is the scene to open.
+    /// Listens on a port, or on any if it is 0, with what a page finds.
     ///
     /// # Errors
     ///
     /// Fails if the port is in use, or if the system provides no random numbers.
-    pub fn bind(port: u16, file: Option<PathBuf>) -> io::Result<Server> {
+    pub fn bind(port: u16, start: Start) -> io::Result<Server> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         listener.set_nonblocking(true)?;
         let mut random = [0_u8; 16];
         getrandom::fill(&mut random).map_err(io::Error::other)?;
         let token = random.iter().map(|byte| format!("{byte:02x}")).collect();
-        let shared = Shared { token, start: Start { file }, open: AtomicUsize::new(0), stop: AtomicBool::new(false) };
+        let shared = Shared { token, start, open: AtomicUsize::new(0), stop: AtomicBool::new(false) };
         Ok(Server { listener, shared: Arc::new(shared) })
     }
 

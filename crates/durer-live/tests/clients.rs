@@ -1,6 +1,6 @@
 //! Clients of the server: pages, other programs, and attackers.
 
-use durer_live::Server;
+use durer_live::{Server, Start};
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ struct Running {
 
 impl Running {
     fn new(file: Option<PathBuf>) -> Running {
-        let server = Server::bind(0, file).unwrap();
+        let server = Server::bind(0, Start { file, lesson: None }).unwrap();
         let (address, stop) = (server.address().unwrap(), Arc::new(AtomicBool::new(false)));
         let stopped = stop.clone();
         let thread = Some(std::thread::spawn(move || server.run(|| stopped.load(Relaxed)).unwrap()));
@@ -183,6 +183,138 @@ fn foreign_origins_and_wrong_tokens_are_refused() {
     socket.send(Message::binary(vec![1, 2, 3])).unwrap();
     ask(&mut socket, serde_json::json!({ "kind": "language" }));
     assert!(hear(&mut socket, "language")["words"].as_array().unwrap().len() > 30);
+}
+
+/// Opens a small scene and edits it to have another number of balls; returns how many objects it has.
+fn objects(socket: &mut WebSocket<TcpStream>, count: usize) -> Option<u64> {
+    let balls: String = (0..count).map(|i| format!("Sphere {{ center {i} 0 0 radius 0.4 }} ")).collect();
+    let text = format!("PerspectiveCamera {{ center 0 0 9 direction 0 0 -1 up 0 1 0 angle 30 }}\nGroup {{ {balls} }}\n");
+    ask(socket, serde_json::json!({ "kind": "open", "name": "balls.txt", "text": text }));
+    hear(socket, "scene")["contents"]["object_count"].as_u64()
+}
+
+#[test]
+fn clients_that_mean_harm_lose_their_connection_and_nobody_else_does() {
+    let server = Running::new(None);
+    let origin = format!("http://{}", server.host());
+    let mut page = server.connect(&origin).unwrap();
+    assert_eq!(objects(&mut page, 3), Some(3));
+    let mut random = 7_u64;
+    let mut garbage = |length: usize| -> Vec<u8> {
+        (0..length)
+            .map(|_| {
+                random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                (random >> 56) as u8
+            })
+            .collect()
+    };
+    // A text of a gibibyte is announced; a frame without a mask; a reserved kind; then noise.
+    let mut attacks = vec![
+        [vec![0x81, 0xff], (1_u64 << 30).to_be_bytes().to_vec(), vec![0; 4]].concat(),
+        [vec![0x81, 0xff], u64::MAX.to_be_bytes().to_vec(), vec![0; 4]].concat(),
+        vec![0x81, 5, b'h', b'e', b'l', b'l', b'o'],
+        vec![0x83, 0x80, 0, 0, 0, 0],
+        // Text that is not UTF-8.
+        vec![0x81, 0x82, 0, 0, 0, 0, 0xff, 0xfe],
+    ];
+    attacks.extend((0..40).map(|i| garbage(1 + 37 * i)));
+    for attack in attacks {
+        let mut socket = server.connect(&origin).unwrap();
+        let stream = socket.get_mut();
+        let _ = stream.write_all(&attack);
+        let _ = stream.shutdown(std::net::Shutdown::Write);
+        // It is closed, with an answer or without.
+        stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+        let mut rest = Vec::new();
+        let _ = stream.read_to_end(&mut rest);
+    }
+    // The page's own session has lost nothing.
+    ask(&mut page, serde_json::json!({ "kind": "cast", "origin": [2, 0, 9], "direction": [0, 0, -1], "t_max": null }));
+    assert_eq!(hear(&mut page, "cast")["cast"]["hit"]["object"], 2);
+}
+
+#[test]
+fn requests_of_any_size_and_form_are_answered() {
+    let server = Running::new(None);
+    let mut page = server.connect(&format!("http://{}", server.host())).unwrap();
+    assert_eq!(objects(&mut page, 2), Some(2));
+    let deep = "[".repeat(200_000);
+    let long = format!("\"{}\"", "a".repeat(4 << 20));
+    for message in [
+        "",
+        "null",
+        "[]",
+        "{}",
+        &deep,
+        &long,
+        r#"{"session":-1,"id":1,"request":{"kind":"outlines"}}"#,
+        r#"{"session":1,"id":1e99,"request":{"kind":"outlines"}}"#,
+        r#"{"session":1,"id":1,"request":{"kind":"size","width":-1,"height":4}}"#,
+        r#"{"session":1,"id":1,"request":{"kind":"crop","crop":[1,2,3]}}"#,
+        r#"{"session":1,"id":1,"request":{"kind":"rays","columns":4294967295,"rows":4294967295,"row":null}}"#,
+        r#"{"session":1,"id":1,"request":{"kind":"values","left":4294967295,"top":0,"width":4294967295,"height":2}}"#,
+        r#"{"session":1,"id":1,"request":{"kind":"explain","x":4294967295,"y":0,"sample":null}}"#,
+        r#"{"session":1,"id":1,"request":{"kind":"walk","structure":"tree","origin":[0,0,0],"direction":[0,0,0]}}"#,
+        r#"{"session":1,"id":1,"request":{"kind":"options","options":[{"name":"samples","value":"99999999999"}]}}"#,
+        r#"{"session":1,"id":1,"request":{"kind":"export","name":"../../etc/passwd"}}"#,
+        r#"{"session":1,"id":1,"request":{"kind":"save","force":true}}"#,
+    ] {
+        page.send(Message::text(message)).unwrap();
+        let why = hear(&mut page, "refused");
+        assert!(why["why"].as_str().is_some_and(|why| why.len() < 1000), "{message:.80}: {why}");
+    }
+    // Pictures of any size and part are made.
+    for request in [
+        r#"{"kind":"size","width":0,"height":0}"#,
+        r#"{"kind":"crop","crop":[4294967295,0,0,4294967295]}"#,
+        r#"{"kind":"size","width":33,"height":7}"#,
+    ] {
+        ask(&mut page, serde_json::from_str(request).unwrap());
+        hear(&mut page, "picture");
+    }
+}
+
+#[test]
+fn a_client_that_does_not_read_keeps_nobody_waiting() {
+    let server = Running::new(None);
+    let origin = format!("http://{}", server.host());
+    let mut deaf = server.connect(&origin).unwrap();
+    assert_eq!(objects(&mut deaf, 5), Some(5));
+    // Megabytes of answers for which it never asks the system.
+    for _ in 0..400 {
+        ask(&mut deaf, serde_json::json!({ "kind": "language" }));
+    }
+    let mut page = server.connect(&origin).unwrap();
+    let start = std::time::Instant::now();
+    assert_eq!(objects(&mut page, 4), Some(4));
+    hear(&mut page, "picture");
+    assert!(start.elapsed() < Duration::from_secs(10), "{:?}", start.elapsed());
+}
+
+#[test]
+fn a_thousand_connections_cost_a_session_nothing() {
+    let server = Running::new(None);
+    let host = format!("Host: {}\r\n", server.host());
+    let mut page = server.connect(&format!("http://{}", server.host())).unwrap();
+    assert_eq!(objects(&mut page, 6), Some(6));
+    let mut held = Vec::new();
+    for i in 0..1000 {
+        held.extend(TcpStream::connect(server.host()).ok());
+        // The system lets a process hold so many and no more.
+        if held.len() > 200 {
+            held.drain(..100);
+        }
+        if i % 100 == 0 {
+            assert_eq!(objects(&mut page, 7 + i), Some(7 + i as u64));
+        }
+    }
+    drop(held);
+    assert_eq!(objects(&mut page, 8), Some(8));
+    let answered = (0..200).any(|_| {
+        std::thread::sleep(Duration::from_millis(20));
+        server.get(server.path(), &host).starts_with("HTTP/1.1 200")
+    });
+    assert!(answered);
 }
 
 #[test]

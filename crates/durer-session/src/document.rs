@@ -7,6 +7,10 @@ use durer::compile::Kept;
 use durer::describe::DescribedList;
 use durer::diag::{self, Diagnostic, Diagnostics, Files, Span};
 use durer::dialect::Dialect;
+use durer::format::beside::{Beside, plain};
+use durer::format::course::write;
+use durer::format::scene::find_scene_format;
+use durer::format::{SceneFormat, mesh_format_for};
 use durer::job::JobContext;
 use durer::render::Job;
 use durer::render::explain::Names;
@@ -44,9 +48,9 @@ impl Document {
         Document { path, bytes, options, compiled: None }
     }
 
-    /// The text; `None` if the file is not UTF-8.
+    /// The text; `None` for a model.
     pub fn text(&self) -> Option<&str> {
-        std::str::from_utf8(&self.bytes).ok()
+        if self.is_model() { None } else { std::str::from_utf8(&self.bytes).ok() }
     }
 
     /// Reads and compiles the text. Returns true on success, and the findings. After errors, the
@@ -60,6 +64,49 @@ impl Document {
         let written = world.camera().clone();
         self.compiled = Some(Compiled { loaded, world, written, files, diagnostics });
         (true, findings)
+    }
+
+    /// True for a file without text of its own: a mesh, glTF, or bytes.
+    pub fn is_model(&self) -> bool {
+        let name = self.path.to_string_lossy();
+        let is_written = |format: &SceneFormat| format.write.is_some();
+        std::str::from_utf8(&self.bytes).is_err()
+            || mesh_format_for(&name).is_some()
+            || find_scene_format(&self.bytes, &name).is_some_and(is_written)
+    }
+
+    /// Changes the scene of a model, and compiles it again. After an error it stays as it is.
+    pub fn change(&mut self, change: impl FnOnce(&mut Scene) -> Result<(), String>) -> Result<(), String> {
+        let compiled = self.compiled.as_mut().ok_or("the scene has errors")?;
+        let before = compiled.loaded.scene.clone();
+        let mut diagnostics = Diagnostics::default();
+        let changed = change(&mut compiled.loaded.scene).and_then(|()| {
+            let world = compiled.loaded.compile(&self.options, &mut compiled.files, &mut diagnostics);
+            world.ok_or_else(|| diagnostics.iter().next().map_or_else(String::new, |error| error.message.clone()))
+        });
+        match changed {
+            Ok(mut world) => {
+                // It is no longer what the file holds.
+                world.edit().camera = compiled.world.camera().clone();
+                world.look_through(compiled.world.camera().clone());
+                compiled.world = world;
+                Ok(())
+            }
+            Err(why) => {
+                compiled.loaded.scene = before;
+                Err(why)
+            }
+        }
+    }
+
+    /// The scene as a text of the language, and the files that the text names. The camera is that of
+    /// the picture.
+    pub fn as_text(&self) -> Result<(String, Vec<Beside>), String> {
+        let compiled = self.compiled.as_ref().ok_or("the scene has errors")?;
+        let stem = plain(&self.path.file_stem().unwrap_or_default().to_string_lossy());
+        let (mut scene, files) = compiled.loaded.put_beside(&stem);
+        scene.camera = Some(compiled.world.camera().clone());
+        Ok((write(&scene, Dialect::Durer), files))
     }
 
     /// Byte range of the camera's statement in the text, from its keyword to its closing brace.

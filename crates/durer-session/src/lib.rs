@@ -9,8 +9,10 @@ mod candidates;
 mod display;
 mod document;
 mod export;
+mod fields;
 mod host;
 mod language;
+mod model;
 mod motion;
 mod outlines;
 pub mod protocol;
@@ -18,6 +20,7 @@ mod rows;
 mod session;
 mod terms;
 mod viewer;
+mod walk;
 
 pub use host::Host;
 pub use session::{Clock, Session, Start};

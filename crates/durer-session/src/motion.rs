@@ -1,8 +1,9 @@
 //! Camera motions.
 
-use crate::protocol::{CameraState, FieldState, Motion};
+use crate::fields::{field_states, set_numbers};
+use crate::protocol::{CameraState, Motion};
 use durer::camera::{Camera, Projection};
-use durer::describe::{DescribedList, Field, Rule, Value};
+use durer::describe::{DescribedList, Value};
 use durer::dialect::Dialect;
 use durer::math::{Aabb, Vec3};
 use durer::world::World;
@@ -92,26 +93,13 @@ fn turned(forward: Vec3, axis: Vec3, right: Vec3, around: f32, towards: f32) -> 
     (Quat::from_axis_angle(axis, around) * pitched).normalize_or(forward)
 }
 
-/// Sets the numbers of a field, named by its keyword in the scene language.
+/// Sets the numbers of a camera's field, by its word in the scene language.
 pub(crate) fn set_field(camera: &mut Camera, word: &str, numbers: &[f32]) -> Result<(), String> {
-    let fields = camera.fields();
-    let at = fields.iter().position(|field| spelled(field) == word).ok_or_else(|| format!("no field `{word}`"))?;
-    let value = match (camera.get(at), numbers) {
-        (Some(Value::Vec3(_)), &[x, y, z]) => Value::Vec3(Vec3::new(x, y, z)),
-        (Some(Value::Int(_)), &[x]) if x >= 0.0 => Value::Int(x as u32),
-        (_, &[x]) => Value::Float(x),
-        _ => return Err(format!("`{word}` takes another type or count of values")),
-    };
-    fields[at].rule.validate(&value).map_err(|wrong| format!("`{word}` {wrong}"))?;
     let mut changed = camera.clone();
-    changed.set(at, value);
+    set_numbers(&mut changed, word, numbers)?;
     changed.validate()?;
     *camera = changed;
     Ok(())
-}
-
-fn spelled(field: &Field) -> &'static str {
-    field.spelling(Dialect::Durer).unwrap_or(field.name)
 }
 
 /// Returns the state of a camera for the page.
@@ -125,32 +113,10 @@ pub(crate) fn state(world: &World, written: &Camera, dialect: Dialect, distance:
         up: frame.up.into(),
         half_width: frame.half_width,
         distance,
-        fields: camera.fields().iter().enumerate().map(|(i, field)| told(field, camera.get(i))).collect(),
+        fields: field_states(camera),
         statement: statement(camera, dialect),
         moved: camera != written,
     }
-}
-
-fn told(field: &Field, value: Option<Value>) -> FieldState {
-    let (least, most) = match field.rule {
-        Rule::Between(low, high) | Rule::From(low, high) => (Some(low), Some(high)),
-        Rule::Positive | Rule::NonNegative => (Some(0.0), None),
-        Rule::Share => (Some(0.0), Some(1.0)),
-        Rule::UpTo(most) => (Some(0.0), Some(most)),
-        _ => (None, None),
-    };
-    let values = match &value {
-        Some(Value::Float(x)) => vec![*x],
-        Some(Value::Int(i)) => vec![*i as f32],
-        Some(Value::Vec3(v)) => v.to_array().to_vec(),
-        _ => Vec::new(),
-    };
-    let text = match value {
-        Some(Value::Word(word)) => word,
-        Some(Value::Path(name)) => name.path,
-        _ => String::new(),
-    };
-    FieldState { name: spelled(field).into(), doc: field.doc.trim().into(), values, text, least, most }
 }
 
 /// Returns the camera as a statement of the scene language.

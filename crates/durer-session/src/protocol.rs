@@ -5,9 +5,11 @@
 //! of this crate generate the TypeScript types in `web/src/protocol.ts` from these.
 
 mod account;
+mod ask;
 mod scene;
 
 pub use account::*;
+pub use ask::*;
 pub use scene::*;
 use serde::{Deserialize, Serialize};
 #[cfg(test)]
@@ -42,12 +44,12 @@ pub struct Answer {
 #[cfg_attr(test, derive(TS))]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Request {
-    /// Opens a scene from its text, or the file that the server was started with. Answer:
-    /// [`Event::Opened`], then [`Event::Scene`].
+    /// Opens a scene by its text, a file beside that of the server, or the server's own file.
+    /// Answer: [`Event::Opened`], then [`Event::Scene`].
     Open {
-        /// Name of the file; its extension selects the format.
+        /// The name of the file; its ending says the format. Empty for the server's own file.
         name: String,
-        /// Text of the scene; `None` opens the server's file.
+        /// The text; `None` for a file.
         text: Option<String>,
     },
     /// Uploads a file that the scene refers to.
@@ -134,6 +136,72 @@ pub enum Request {
         /// End of the ray, in lengths of `direction`; `None` for an infinite ray.
         t_max: Option<f32>,
     },
+    /// Asks for the camera's rays through the middles of the pixels of a coarse raster. Answer:
+    /// [`Event::Rays`].
+    Rays {
+        /// Columns of the raster.
+        columns: u32,
+        /// Rows of the raster.
+        rows: u32,
+        /// The only row that is asked for; `None` for all.
+        row: Option<u32>,
+    },
+    /// Asks how a ray goes through a structure over the objects. Answer: [`Event::Walk`].
+    Walk {
+        /// The structure.
+        structure: Structure,
+        /// Origin of the ray.
+        origin: [f32; 3],
+        /// Its direction, of any length.
+        direction: [f32; 3],
+    },
+    /// Asks for the boxes of the trees over objects and triangles. Answer: [`Event::Boxes`].
+    Boxes,
+    /// Asks for the numbers of some pixels. Answer: [`Event::Values`].
+    Values {
+        /// First column.
+        left: u32,
+        /// First row.
+        top: u32,
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+    /// Renders a part of the picture only: first column, first row, width and height.
+    Crop {
+        /// The part; `None` for the whole picture.
+        crop: Option<[u32; 4]>,
+    },
+    /// Turns denoising of finished pictures on or off.
+    Denoise {
+        /// True for on.
+        on: bool,
+    },
+    /// Starts secondary rays on the surface, and ignores hits nearer than this, as the programs of
+    /// the course do. Answer: [`Event::Scene`].
+    Epsilon {
+        /// Least `t`; `None` for the exact starts of rays.
+        epsilon: Option<f32>,
+    },
+    /// Asks for the groups and materials of the scene. Answer: [`Event::Tree`].
+    Tree,
+    /// Sets a field of a material, in a scene without text. Answer: [`Event::Scene`].
+    Material {
+        /// Number of the material.
+        number: u32,
+        /// Name of the field.
+        name: String,
+        /// Its numbers.
+        values: Vec<f32>,
+    },
+    /// Turns a model into a text of the scene language with files beside it. Answer:
+    /// [`Event::Opened`], then [`Event::Scene`].
+    AsText,
+    /// Asks for the scene's text and its files. Answer: [`Event::Packed`], with their bytes.
+    Pack,
+    /// Asks for the lesson that the server was started with. Answer: [`Event::Lesson`].
+    Lesson,
     /// Requests the outlines of all objects. Answer: [`Event::Outlines`].
     Outlines,
     /// Requests the keywords of the language. Answer: [`Event::Language`].
@@ -212,6 +280,53 @@ pub enum Event {
     Cast {
         /// The results.
         cast: CastAccount,
+    },
+    /// Rays of the camera, row by row; `None` where it sees nothing.
+    Rays {
+        /// The rays.
+        rays: Vec<Option<RayAccount>>,
+    },
+    /// The way of a ray through a structure.
+    Walk {
+        /// The way.
+        walk: WalkAccount,
+    },
+    /// Boxes of the trees.
+    Boxes {
+        /// The boxes, level by level, up to a limit.
+        boxes: Vec<BoxState>,
+    },
+    /// Numbers of pixels, three each, row by row; `None` for infinity.
+    Values {
+        /// First column.
+        left: u32,
+        /// First row.
+        top: u32,
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// The numbers: linear light, or what another picture shows.
+        values: Vec<Option<f32>>,
+    },
+    /// Groups and materials of the scene.
+    Tree {
+        /// The objects.
+        nodes: Vec<TreeNode>,
+        /// The materials, by number.
+        materials: Vec<MaterialState>,
+    },
+    /// The scene's text and its files; their bytes follow, one after the other.
+    Packed {
+        /// Names; the text comes first.
+        names: Vec<String>,
+        /// Numbers of bytes.
+        sizes: Vec<u32>,
+    },
+    /// The lesson.
+    Lesson {
+        /// Its Markdown; `None` if the server has none.
+        text: Option<String>,
     },
     /// Line drawing of the scene.
     Outlines {

@@ -1,11 +1,13 @@
 //! One scene with its camera and its picture, for one viewer.
 
+mod disk;
+
 use crate::document::{Compiled, Document};
 use crate::motion::{distance, moved, set_field, state};
 use crate::outlines::{lamps, outlines};
-use crate::protocol::{CameraState, Choice, Contents, Event, Finding, JobState, Motion, Request, Thing};
+use crate::protocol::{CameraState, Choice, Contents, Event, Finding, JobState, Motion, Request, Structure, Thing};
 use crate::viewer::{Shown, Viewer};
-use crate::{candidates, language, terms};
+use crate::{candidates, language, model, terms, walk};
 use durer::camera::{Camera, PerspectiveCamera, Projection};
 use durer::describe::DescribedList;
 use durer::film::aov::AOVS;
@@ -13,7 +15,7 @@ use durer::image::Tone;
 use durer::integrator::Method;
 use durer::math::{Ray, Vec3};
 use durer::render::explain::explain_of;
-use durer::world::Geometry;
+use durer::world::{Epsilon, Geometry};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -30,6 +32,8 @@ const MAX_BYTES: usize = 256 << 20;
 pub struct Start {
     /// File that is opened and saved if a page does not name one.
     pub file: Option<PathBuf>,
+    /// A teacher's lesson in Markdown; scenes that it names are beside it.
+    pub lesson: Option<PathBuf>,
 }
 
 /// A message to the page, and its payload.
@@ -46,6 +50,8 @@ pub struct Session {
     /// True until the current scene has been checked.
     unchecked: bool,
     paused: bool,
+    /// Least `t` of secondary rays, in place of exact starts.
+    epsilon: Option<f32>,
     /// Stamp of the scene's file when it was last read or saved.
     #[cfg(feature = "fs")]
     stamp: Option<durer::source::Stamp>,
@@ -67,6 +73,7 @@ impl Session {
             distance: 1.0,
             unchecked: false,
             paused: false,
+            epsilon: None,
             #[cfg(feature = "fs")]
             stamp: None,
             #[cfg(feature = "fs")]
@@ -108,10 +115,7 @@ impl Session {
                     return Err(format!("unknown picture `{picture}`"));
                 }
                 (self.viewer.picture, self.viewer.stops, self.viewer.tone) = (picture, stops.clamp(-40.0, 40.0), tone);
-                match self.viewer.again(&*self.clock).filter(|_| same) {
-                    Some((head, bytes)) => say((Event::Picture { head }, bytes)),
-                    None => self.restart(),
-                }
+                if same { self.show_again(say) } else { self.restart() }
             }
             Request::Options { options } => {
                 self.viewer.set_options(&options)?;
@@ -154,12 +158,59 @@ impl Session {
                 let explained = self.explain(x, y, sample)?;
                 tell(explained);
             }
-            Request::Cast { origin, direction, t_max } => {
-                let ray = Ray::new(origin.into(), direction.into());
-                if !(ray.origin.is_finite() && ray.dir.is_finite() && ray.dir != Vec3::ZERO) {
-                    return Err("the ray is invalid: it needs finite numbers and a direction other than 0 0 0".into());
+            Request::Rays { columns, rows, row } => {
+                let rays = walk::rays(&self.compiled()?.world, [columns, rows], row)?;
+                tell(Event::Rays { rays });
+            }
+            Request::Walk { structure, origin, direction } => {
+                let walk = self.walk(structure, origin, direction)?;
+                tell(walk);
+            }
+            Request::Boxes => tell(Event::Boxes { boxes: walk::boxes(&self.compiled()?.world) }),
+            Request::Values { left, top, width, height } => {
+                let values = self.viewer.values([left, top, width, height])?;
+                tell(Event::Values { left, top, width, height, values });
+            }
+            Request::Crop { crop } => {
+                self.viewer.crop = crop;
+                self.restart();
+            }
+            Request::Denoise { on } => {
+                self.viewer.denoises = on;
+                self.show_again(say);
+            }
+            Request::Epsilon { epsilon } => {
+                if epsilon.is_some_and(|epsilon| !(0.0..=1e6).contains(&epsilon)) {
+                    return Err("epsilon is a number from 0".into());
                 }
-                let ray = Ray { t_max: t_max.unwrap_or(f32::INFINITY), ..ray };
+                self.epsilon = epsilon;
+                self.read(false, &mut tell)?;
+            }
+            Request::Tree => {
+                let compiled = self.compiled()?;
+                tell(Event::Tree { nodes: model::nodes(compiled), materials: model::materials(compiled) });
+            }
+            Request::Material { number, name, values } => {
+                let document = self.document.as_mut().filter(|document| document.is_model());
+                let document = document.ok_or("materials of a text are changed in the text")?;
+                document.change(|scene| model::set_material(scene, number, &name, &values))?;
+                self.restart();
+                let contents = Some(self.contents()?);
+                tell(Event::Scene { findings: Vec::new(), contents, ms: 0.0 });
+            }
+            Request::AsText => self.become_text(&mut tell)?,
+            Request::Pack => {
+                let (names, files) = self.pack()?;
+                let sizes = files.iter().map(|bytes| bytes.len() as u32).collect();
+                say((Event::Packed { names, sizes }, files.concat()));
+            }
+            Request::Lesson => {
+                let text = self.start.lesson.as_deref().map(read).transpose()?;
+                let text = text.map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+                tell(Event::Lesson { text });
+            }
+            Request::Cast { origin, direction, t_max } => {
+                let ray = Ray { t_max: t_max.unwrap_or(f32::INFINITY), ..ray_of(origin, direction)? };
                 let cast = candidates::cast(self.compiled()?, &ray);
                 tell(Event::Cast { cast });
             }
@@ -193,6 +244,12 @@ impl Session {
                 self.on_disk = false;
                 (self.beside(&name), text.into_bytes().into())
             }
+            (None, _) if !name.is_empty() => {
+                self.on_disk = false;
+                let path = self.beside(&name);
+                let bytes = read(&path)?;
+                (path, bytes)
+            }
             (None, Some(file)) => {
                 let path = file.clone();
                 let bytes = read(&path)?;
@@ -211,7 +268,8 @@ impl Session {
     /// Path of a scene from a page. It always lies in the folder of the server's file, so the scene
     /// can refer to files in that folder only.
     fn beside(&self, name: &str) -> PathBuf {
-        let folder = self.start.file.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
+        let own = self.start.file.as_deref().or(self.start.lesson.as_deref());
+        let folder = own.and_then(Path::parent).unwrap_or(Path::new(""));
         let name = name.rsplit(['/', '\\']).next().filter(|name| !["", ".", ".."].contains(name));
         folder.join(name.unwrap_or("scene.txt"))
     }
@@ -284,6 +342,10 @@ impl Session {
             }
         } else if let Some(compiled) = &document.compiled {
             self.distance = distance(&compiled.world);
+        }
+        if let (Some(epsilon), Some(compiled)) = (self.epsilon, &mut self.document_mut()?.compiled) {
+            let rules = &mut compiled.world.edit().shading;
+            (rules.epsilon, rules.points_on_ray) = (Some(Epsilon::Least(epsilon)), true);
         }
         self.restart();
         self.unchecked = true;
@@ -368,6 +430,50 @@ impl Session {
         Ok(Event::Explained { pixel: terms::account(compiled, &job, &explanation, sample) })
     }
 
+    fn walk(&mut self, structure: Structure, origin: [f32; 3], direction: [f32; 3]) -> Result<Event, String> {
+        let ray = ray_of(origin, direction)?;
+        Ok(Event::Walk { walk: walk::walk(&self.compiled()?.world, structure, &ray)? })
+    }
+
+    /// Makes a model a text with files, which is then edited.
+    fn become_text(&mut self, tell: &mut dyn FnMut(Event)) -> Result<(), String> {
+        let document = self.document.as_mut().ok_or("no scene is open")?;
+        let (text, files) = document.as_text()?;
+        let given = &mut document.options.given;
+        given.retain(|(name, _)| !files.iter().any(|(known, _)| known == name));
+        given.extend(files.into_iter().map(|(name, bytes)| (name, bytes.into())));
+        let path = document.path.with_extension("txt");
+        self.on_disk = false;
+        self.begin(path, text.into_bytes().into(), tell)
+    }
+
+    /// The text and its files, with their names.
+    fn pack(&self) -> Result<(Vec<String>, Vec<Arc<[u8]>>), String> {
+        let document = self.document.as_ref().ok_or("no scene is open")?;
+        let own = document.path.with_extension("txt").file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let (text, files) = match document.is_model() {
+            true => {
+                let (text, files) = document.as_text()?;
+                (text.into_bytes().into(), files.into_iter().map(|(name, bytes)| (name, bytes.into())).collect())
+            }
+            false => (document.bytes.clone(), document.options.given.clone()),
+        };
+        Ok(std::iter::once((own, text)).chain(files).unzip())
+    }
+
+    /// Shows a finished picture in another way.
+    fn show_again(&mut self, say: &mut dyn FnMut(Message)) {
+        let compiled = self.document.as_ref().and_then(|document| document.compiled.as_ref());
+        match compiled.and_then(|compiled| self.viewer.again(compiled, &*self.clock)) {
+            Some(shown) => say(picture(shown)),
+            None => self.restart(),
+        }
+    }
+
+    fn document_mut(&mut self) -> Result<&mut Document, String> {
+        self.document.as_mut().ok_or_else(|| "no scene is open".into())
+    }
+
     fn restart(&mut self) {
         let now = (self.clock)();
         self.viewer.restart(now);
@@ -394,52 +500,6 @@ impl Session {
             say((Event::Checked { findings }, Vec::new()));
         }
     }
-
-    #[cfg(feature = "fs")]
-    fn save(&mut self, force: bool) -> Result<Event, String> {
-        use durer::format::folder::stamp_of;
-        let document = self.document.as_ref().filter(|_| self.on_disk).ok_or("this scene does not belong to a file")?;
-        if !force && stamp_of(&document.path) != self.stamp {
-            return Ok(Event::Conflict);
-        }
-        durer::image::save(&document.path, &document.bytes).map_err(|error| error.to_string())?;
-        self.stamp = stamp_of(&document.path);
-        Ok(Event::Saved)
-    }
-
-    #[cfg(not(feature = "fs"))]
-    fn save(&mut self, _: bool) -> Result<Event, String> {
-        Err("files cannot be saved here".into())
-    }
-
-    /// Notifies the page if the scene's file changed on disk. The edited text stays; saving it
-    /// reports a conflict.
-    #[cfg(feature = "fs")]
-    pub(crate) fn look_at_disk(&mut self, say: &mut dyn FnMut(Message)) {
-        let Some(document) = self.document.as_ref().filter(|_| self.on_disk) else { return };
-        let stamp = durer::format::folder::stamp_of(&document.path);
-        if stamp == self.stamp || stamp == self.told || stamp.is_none() {
-            return;
-        }
-        let Ok(bytes) = read(&document.path) else { return };
-        if bytes != document.bytes {
-            let Ok(text) = std::str::from_utf8(&bytes) else { return };
-            say((Event::Text { text: text.into(), from_disk: true }, Vec::new()));
-            self.told = stamp;
-        } else {
-            self.stamp = stamp;
-        }
-    }
-
-    /// Accepts the current contents of the file as read, if they equal `text`.
-    #[cfg(feature = "fs")]
-    pub(crate) fn take_over(&mut self, text: &str) {
-        if let Some(document) = self.document.as_ref().filter(|_| self.on_disk)
-            && read(&document.path).is_ok_and(|bytes| *bytes == *text.as_bytes())
-        {
-            self.stamp = durer::format::folder::stamp_of(&document.path);
-        }
-    }
 }
 
 fn picture((head, bytes): Shown) -> Message {
@@ -453,6 +513,15 @@ fn read(path: &Path) -> Result<Arc<[u8]>, String> {
         return Err(format!("{}: not a file", path.display()));
     }
     Ok(std::fs::read(path).map_err(wrong)?.into())
+}
+
+/// A ray of a page.
+fn ray_of(origin: [f32; 3], direction: [f32; 3]) -> Result<Ray, String> {
+    let ray = Ray::new(origin.into(), direction.into());
+    match ray.origin.is_finite() && ray.dir.is_finite() && ray.dir != Vec3::ZERO {
+        true => Ok(ray),
+        false => Err("a ray needs finite numbers, and a direction that is not 0 0 0".into()),
+    }
 }
 
 /// Decodes base64, with or without padding.

@@ -6,7 +6,8 @@ use crate::export::export;
 use crate::protocol::{PictureHead, Setting};
 use durer::RenderJob;
 use durer::job::View;
-use durer::render::{Control, Job, ProgressiveRender, RenderError, Sampling};
+use durer::image::Layer;
+use durer::render::{Control, Crop, Job, ProgressiveRender, RenderError, Sampling};
 
 /// Time budget for a coarse picture in milliseconds: while the camera moves, and otherwise.
 const MOVING: f64 = 24.0;
@@ -19,6 +20,8 @@ const BETWEEN: f64 = 160.0;
 const DIVISORS: [u32; 9] = [1, 2, 3, 4, 5, 6, 8, 12, 16];
 /// Maximum width and height of a picture, in pixels.
 const LARGEST: u32 = 8192;
+/// Maximum number of pixels whose numbers are told at once.
+const MAX_VALUES: u64 = 4096;
 
 /// The picture of a session.
 pub(crate) struct Viewer {
@@ -28,6 +31,10 @@ pub(crate) struct Viewer {
     pub stops: f32,
     pub tone: String,
     pub moving: bool,
+    /// The part that is rendered, in pixels of the whole picture; `None` for all of it.
+    pub crop: Option<[u32; 4]>,
+    /// True if finished colour pictures are denoised.
+    pub denoises: bool,
     options: RenderJob,
     stage: Stage,
     /// Time per pixel with one sample, in milliseconds; `None` if unknown.
@@ -37,7 +44,11 @@ pub(crate) struct Viewer {
     told: f64,
     /// Last finished picture, to show it with other display settings or to export it.
     shown: Option<ProgressiveRender>,
+    /// The same picture denoised, once it was wanted.
+    clean: Option<Layer>,
     rays: u64,
+    /// When the fine picture was begun.
+    began: f64,
 }
 
 /// Stage of the picture.
@@ -62,6 +73,8 @@ impl Viewer {
             stops: 0.0,
             tone: "none".into(),
             moving: false,
+            crop: None,
+            denoises: false,
             options: RenderJob::default(),
             stage: Stage::Rest,
             cost: None,
@@ -69,7 +82,9 @@ impl Viewer {
             changed: 0.0,
             told: 0.0,
             shown: None,
+            clean: None,
             rays: 0,
+            began: 0.0,
         }
     }
 
@@ -94,7 +109,7 @@ impl Viewer {
 
     /// Forgets the measured cost and the last picture, when another scene is opened.
     pub fn forget(&mut self) {
-        (self.cost, self.shown) = (None, None);
+        (self.cost, self.shown, self.clean, self.crop) = (None, None, None, None);
     }
 
     /// Returns true if no picture shows the last change yet.
@@ -113,10 +128,13 @@ impl Viewer {
 
     /// Returns the job of the picture that is shown.
     pub fn job(&self, compiled: &Compiled) -> Result<Job, String> {
-        self.job_of(compiled, &self.picture)
+        let job = self.job_of(compiled, &self.picture)?;
+        let whole = Crop { left: 0, top: 0, width: job.width, height: job.height };
+        let crop = self.crop.map(|[left, top, width, height]| within(Crop { left, top, width, height }, whole));
+        Ok(Job { crop: crop.filter(|crop| *crop != whole).or(job.crop), ..job })
     }
 
-    /// Returns the job of a picture.
+    /// The job of a whole picture.
     pub fn job_of(&self, compiled: &Compiled, picture: &str) -> Result<Job, String> {
         let options = self.options.clone().size((self.width, self.height));
         options.resolve(&compiled.job_context(), Some(&View { crop: None, show: vec![picture.into()] }))
@@ -138,16 +156,24 @@ impl Viewer {
 
     fn coarse(&mut self, compiled: &Compiled, clock: &dyn Fn() -> f64) -> Result<Option<Shown>, String> {
         let job = self.job(compiled)?;
-        let pixels = f64::from(self.width) * f64::from(self.height);
+        let pixels = job.window().pixels() as f64;
         let budget = if self.moving { MOVING } else { RESTING };
         let affordable = |&divisor: &u32| {
             self.cost.map_or(divisor >= 8, |cost| cost * pixels / f64::from(divisor * divisor) <= budget)
         };
         let divisor = DIVISORS.into_iter().find(affordable).unwrap_or(16);
         let side = |side: u32| side.div_ceil(divisor).max(1);
+        let (width, height) = (side(job.width), side(job.height));
+        let whole = Crop { left: 0, top: 0, width, height };
+        let part = |crop: Crop| {
+            let (left, top) = (crop.left / divisor, crop.top / divisor);
+            let (right, bottom) = (side(crop.left + crop.width), side(crop.top + crop.height));
+            within(Crop { left, top, width: right - left, height: bottom - top }, whole)
+        };
         let coarse = Job {
-            width: side(job.width),
-            height: side(job.height),
+            width,
+            height,
+            crop: job.crop.map(part),
             sampling: Sampling::Center,
             noise: None,
             adaptive: false,
@@ -157,8 +183,8 @@ impl Viewer {
         let mut render = ProgressiveRender::new(&compiled.world, &coarse).map_err(wrong)?;
         let control = Control::default();
         while render.next_pass(&compiled.world, &control).map_err(wrong)?.is_some() {}
-        let shown = self.picture_of(&render, [coarse.width, coarse.height], 1, None)?;
-        let made = (clock() - start) / f64::from(coarse.width * coarse.height);
+        let shown = self.picture_of(&render, divisor, 1, None)?;
+        let made = (clock() - start) / coarse.window().pixels() as f64;
         // Average the cost: a first picture with cold caches or a coarse clock soon loses its
         // influence.
         let known = self.cost.map_or(made, |cost| 0.5 * (cost + made));
@@ -167,6 +193,7 @@ impl Viewer {
         if !self.moving {
             let render = ProgressiveRender::new(&compiled.world, &job).map_err(wrong)?;
             self.stage = Stage::Fine(Box::new(render), None);
+            self.began = clock();
         }
         self.told = clock();
         Ok(Some(self.head(shown, None, clock)))
@@ -198,9 +225,14 @@ impl Viewer {
         let mut shown = None;
         if due || finished {
             let hash = finished.then(|| render.part().hash().to_string());
-            let picture = self.picture_of(&render, [self.width, self.height], samples.unwrap_or(1), hash)?;
+            self.clean = if finished { self.denoised(&render, compiled)? } else { None };
+            let (mut head, bytes) = self.picture_of(&render, 1, samples.unwrap_or(1), hash)?;
+            let (all, done) = render.part().work();
+            let elapsed = clock() - self.began;
+            head.noise = render.part().noise();
+            head.left_ms = (done > 0 && !finished).then(|| elapsed * (all - done) as f64 / done as f64);
             self.told = clock();
-            shown = Some(self.head(picture, Some(render.part().job()), clock));
+            shown = Some(self.head((head, bytes), Some(render.part().job()), clock));
         }
         match finished {
             true => self.shown = Some(*render),
@@ -210,32 +242,73 @@ impl Viewer {
     }
 
     /// Encodes the finished picture again with the current display settings.
-    pub fn again(&self, clock: &dyn Fn() -> f64) -> Option<Shown> {
-        let render = self.shown.as_ref().filter(|_| !self.is_busy())?;
-        let job = render.part().job();
+    pub fn again(&mut self, compiled: &Compiled, clock: &dyn Fn() -> f64) -> Option<Shown> {
+        let render = self.shown.take_if(|_| !matches!(self.stage, Stage::Coarse | Stage::Fine(..)))?;
+        let shown = self.encode(&render, compiled);
+        let shown = shown.ok().map(|shown| self.head(shown, Some(render.part().job()), clock));
+        self.shown = Some(render);
+        shown
+    }
+
+    fn encode(&mut self, render: &ProgressiveRender, compiled: &Compiled) -> Result<Shown, String> {
+        if self.clean.is_none() {
+            self.clean = self.denoised(render, compiled)?;
+        }
         let hash = Some(render.part().hash().to_string());
-        let shown = self.picture_of(render, [job.width, job.height], job.sampling.samples(), hash).ok()?;
-        Some(self.head(shown, Some(job), clock))
+        let (mut head, bytes) = self.picture_of(render, 1, render.part().job().sampling.samples(), hash)?;
+        head.noise = render.part().noise();
+        Ok((head, bytes))
+    }
+
+    /// The denoised picture, where it is wanted.
+    fn denoised(&self, render: &ProgressiveRender, compiled: &Compiled) -> Result<Option<Layer>, String> {
+        if !self.denoises || self.picture != "color" {
+            return Ok(None);
+        }
+        Ok(Some(render.part().noisy(&compiled.world, None).map_err(wrong)?.denoised()))
+    }
+
+    /// Numbers of the pixels of a rectangle: those of the colour, or of what another picture shows.
+    pub fn values(&self, [left, top, width, height]: [u32; 4]) -> Result<Vec<Option<f32>>, String> {
+        let render = match &self.stage {
+            Stage::Fine(render, Some(_)) => render,
+            _ => self.shown.as_ref().ok_or("the picture is not finished yet")?,
+        };
+        let window = render.part().job().window();
+        let rect = Crop { left, top, width, height };
+        if rect.pixels() > MAX_VALUES || rect != within(rect, window) {
+            return Err(format!("numbers are told of at most {MAX_VALUES} pixels of the picture"));
+        }
+        let rendered = render.part().pictures().map_err(wrong)?;
+        let layer = rendered.layers.first().ok_or("the job has no picture")?;
+        let pixel = |(x, y): (u32, u32)| {
+            let index = (y - window.top) as usize * window.width as usize + (x - window.left) as usize;
+            layer.image.pixels[index].to_array().map(|value| value.is_finite().then_some(value))
+        };
+        Ok(rect.places().flat_map(pixel).collect())
     }
 
     /// Encodes the finished picture as a file.
     pub fn export(&self, name: &str) -> Result<Vec<u8>, String> {
         let render = self.shown.as_ref().ok_or("the picture is not finished yet")?;
         let mut rendered = render.part().pictures().map_err(|error| error.to_string())?;
-        let layer = if rendered.layers.is_empty() { None } else { Some(rendered.layers.swap_remove(0)) };
+        let made = || (!rendered.layers.is_empty()).then(|| rendered.layers.swap_remove(0));
+        let layer = self.clean.clone().filter(|_| self.denoises).or_else(made);
         export(name, &layer.ok_or("the job has no picture")?, display(self.stops, &self.tone))
     }
 
     fn picture_of(
         &self,
         render: &ProgressiveRender,
-        [width, height]: [u32; 2],
+        divisor: u32,
         samples: u32,
         hash: Option<String>,
     ) -> Result<Shown, String> {
         let rendered = render.part().pictures().map_err(wrong)?;
         let color = self.picture == "color";
-        let layer = rendered.pictures.first().ok_or("the job has no picture")?;
+        let clean = self.clean.as_ref().filter(|_| self.denoises && hash.is_some());
+        let layer = clean.or(rendered.pictures.first()).ok_or("the job has no picture")?;
+        let Crop { left, top, width, height } = render.part().job().window();
         let how = if color { display(self.stops, &self.tone) } else { durer::image::Transfer::Linear.into() };
         let head = PictureHead {
             picture: self.picture.clone(),
@@ -243,6 +316,10 @@ impl Viewer {
             height,
             full_width: self.width,
             full_height: self.height,
+            region: [left, top, width, height].map(|side| side * divisor),
+            noise: None,
+            left_ms: None,
+            denoised: clean.is_some(),
             samples,
             all_samples: samples,
             rays: self.rays as f64,
@@ -256,6 +333,15 @@ impl Viewer {
         let all_samples = job.map_or(head.all_samples, |job| job.sampling.samples());
         (PictureHead { all_samples, ms: clock() - self.changed, ..head }, bytes)
     }
+}
+
+/// The part of a crop that is within a picture: a pixel at least.
+fn within(crop: Crop, whole: Crop) -> Crop {
+    let left = crop.left.clamp(whole.left, whole.left + whole.width - 1);
+    let top = crop.top.clamp(whole.top, whole.top + whole.height - 1);
+    let width = crop.width.clamp(1, whole.left + whole.width - left);
+    let height = crop.height.clamp(1, whole.top + whole.height - top);
+    Crop { left, top, width, height }
 }
 
 fn wrong(error: RenderError) -> String {

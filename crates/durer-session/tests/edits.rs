@@ -55,6 +55,8 @@ fn edits_never_end_a_session() {
     let mut host = Host::new(Start::default(), Arc::new(|| 0.0));
     let mut random = Random(1);
     let mut counts = [0_usize; 2];
+    // `cargo xtask page --measure` makes 10,000.
+    let edits = std::env::var("DURER_EDITS").map_or(1000, |count| count.parse().unwrap());
     for name in ["whitted.txt", "marble.txt", "gear.txt"] {
         let text = std::fs::read_to_string(scenes.join(name)).unwrap();
         let mut ask = |request: serde_json::Value| {
@@ -70,7 +72,7 @@ fn edits_never_end_a_session() {
         };
         assert!(ask(serde_json::json!({ "kind": "open", "name": name, "text": text })));
         ask(serde_json::json!({ "kind": "size", "width": 8, "height": 8 }));
-        for _ in 0..1000 {
+        for _ in 0..edits {
             let mut edited = text.clone();
             for _ in 0..=random.below(3) {
                 edited = changed(&edited, &mut random);

@@ -1,51 +1,10 @@
 //! Pictures of sessions equal those of the library bit by bit, for any history of requests.
 
+mod page;
+
 use durer::prelude::*;
-use durer_session::protocol::{Answer, Event, PictureHead};
-use durer_session::{Host, Start};
-use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-
-/// A host whose clock advances by one millisecond at each reading.
-struct Page(Host);
-
-impl Page {
-    fn new(file: Option<PathBuf>) -> Page {
-        let now = Arc::new(AtomicU64::new(0));
-        Page(Host::new(Start { file }, Arc::new(move || now.fetch_add(1, Relaxed) as f64)))
-    }
-
-    fn ask(&mut self, request: &str) -> Vec<(Event, Vec<u8>)> {
-        let mut all = Vec::new();
-        let ask = format!(r#"{{"session":1,"id":1,"request":{request}}}"#);
-        self.0.receive(&ask, &mut |bytes| all.push(read(&bytes)));
-        all
-    }
-
-    /// Returns all pictures until the session is idle.
-    fn pictures(&mut self) -> Vec<(PictureHead, Vec<u8>)> {
-        let mut all = Vec::new();
-        while self.0.is_busy() {
-            self.0.step(&mut |bytes| {
-                if let (Event::Picture { head }, bytes) = read(&bytes) {
-                    all.push((head, bytes));
-                }
-            });
-        }
-        all
-    }
-}
-
-fn read(bytes: &[u8]) -> (Event, Vec<u8>) {
-    let length = u32::from_le_bytes(bytes[..4].try_into().unwrap()) as usize;
-    let answer: Answer = serde_json::from_slice(&bytes[4..4 + length]).unwrap();
-    (answer.event, bytes[4 + length..].to_vec())
-}
-
-fn scene(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name)
-}
+use durer_session::protocol::Event;
+use page::{Page, scene};
 
 /// Renders a picture in one pass and returns its hash.
 fn hash(scene: &CompiledScene, job: RenderJob) -> String {

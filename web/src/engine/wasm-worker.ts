@@ -1,3 +1,5 @@
+import { level } from "./level";
+
 /**
  * Code of the worker: runs the library as WebAssembly in steps, and handles messages in between.
  */
@@ -21,9 +23,9 @@ function send(bytes: Uint8Array<ArrayBuffer>) {
 }
 
 async function start() {
-  const script = new URL("./wasm/durer_wasm.js", self.location.href);
+  const script = new URL(`./wasm/${level()}/durer_wasm.js`, self.location.href);
   const wasm = (await import(/* @vite-ignore */ script.href)) as Wasm;
-  await wasm.default({ module_or_path: new URL("./wasm/durer_wasm_bg.wasm", self.location.href) });
+  await wasm.default({ module_or_path: new URL("./durer_wasm_bg.wasm", script) });
   const engine = new wasm.Engine();
   const turns = new MessageChannel();
   let busy = false;

@@ -1,5 +1,6 @@
 import { useState } from "preact/hooks";
-import { short } from "../ui/slider";
+import { Slider, short } from "../ui/slider";
+import { Switch } from "../ui/switch";
 import { type Store, useStore } from "../viewer/store";
 import { RaysView } from "./rays-view";
 import { roles } from "./segments";
@@ -15,6 +16,7 @@ export function Explain({ store }: { store: Store }) {
   return (
     <div class="explain">
       <RaysView store={store} />
+      <BoxLevels store={store} />
       {pixel ? (
         <>
           <Legend store={store} />
@@ -59,6 +61,30 @@ function Tab({ name, on, choose }: { name: string; on: boolean; choose(): void }
     <button type="button" role="tab" class="tab" aria-selected={on} onClick={choose}>
       {name}
     </button>
+  );
+}
+
+/** The boxes of the trees in the view, level by level. */
+function BoxLevels({ store }: { store: Store }) {
+  const { boxes, boxLevel } = store;
+  const most = boxes.at(-1)?.level ?? 0;
+  const level = boxLevel === null ? null : Math.min(boxLevel, most);
+  const count = boxes.filter((box) => box.level === level).length;
+  return (
+    <div class="boxes row">
+      <Switch label="Boxes of the tree" on={level !== null} change={(on) => store.showBoxes(on ? 1 : null)} />
+      {level !== null && most > 0 && (
+        <Slider
+          label="level"
+          value={level}
+          min={0}
+          max={most}
+          step={1}
+          text={`${level}: ${count === 1 ? "1 box" : `${count} boxes`}`}
+          change={(next) => store.showBoxes(next)}
+        />
+      )}
+    </div>
   );
 }
 

@@ -1,5 +1,6 @@
 import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import { type Store, useStore } from "../viewer/store";
+import { lines } from "./edges";
 import { frustum, points, roles, segments } from "./segments";
 import {
   add,
@@ -47,7 +48,20 @@ export function RaysView({ store }: { store: Store }) {
   }, []);
   useLayoutEffect(() => {
     if (canvas.current) paint(canvas.current, used, size, store);
-  }, [used, size, theme, store.outlines, store.pixel, store.chosen, store.hovered, store.camera, store.cast]);
+  }, [
+    used,
+    size,
+    theme,
+    store.outlines,
+    store.pixel,
+    store.chosen,
+    store.hovered,
+    store.camera,
+    store.cast,
+    store.boxes,
+    store.boxLevel,
+    store.scan,
+  ]);
 
   const nearest = (x: number, y: number): string | null => {
     if (!canvas.current) return null;
@@ -153,7 +167,27 @@ function paint(canvas: HTMLCanvasElement, eye: Eye, size: { width: number; heigh
     const aspect = head ? head.full_width / head.full_height : 1;
     stroke(context, view, frustum(camera, aspect, camera.distance * 0.35), color("--soft"), 1, 0.8);
   }
-  rays(context, view, store, color);
+  const { boxLevel, scan } = store;
+  if (boxLevel !== null) {
+    for (let level = 0; level <= boxLevel; level++) {
+      const some = lines(store.boxes.filter((box) => box.level === level));
+      stroke(
+        context,
+        view,
+        some,
+        color("--ray-reflected"),
+        level === boxLevel ? 1.4 : 0.7,
+        level === boxLevel ? 0.9 : 0.35,
+      );
+    }
+  }
+  if (scan?.ray) {
+    const { origin, direction, t } = scan.ray;
+    const end = add(origin, mul(t ?? camera?.distance ?? 10, direction));
+    stroke(context, view, [[origin, end]], color(t === null ? "--soft" : "--ray-camera"), 2.4, 1);
+    const seen = t === null ? null : view.point(end);
+    if (seen) dot(context, seen.x, seen.y, 4.5, color("--ray-lit"));
+  } else rays(context, view, store, color);
   for (const lamp of store.lamps) {
     const at = view.point(lamp.at);
     if (at) dot(context, at.x, at.y, 4, color("--ray-scattered"));

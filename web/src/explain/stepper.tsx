@@ -1,15 +1,36 @@
 import { useEffect, useState } from "preact/hooks";
 import type { CastAccount } from "../protocol";
+import { Choice } from "../ui/choice";
 import { short } from "../ui/slider";
 import type { Store } from "../viewer/store";
+import { Code, Player } from "./code";
+import { Scan } from "./scan";
 import { flat } from "./segments";
-import { code, type Step, steps } from "./steps";
+import { type Step, steps } from "./steps";
 
 /** Maximum number of rays in the step-by-step view. */
 const most = 24;
 
-/** Step-by-step run of the algorithm for one pixel. */
+const scopes = [
+  ["pixel", "This pixel"],
+  ["row", "Its row"],
+  ["picture", "The whole picture"],
+] as const;
+type Scope = (typeof scopes)[number][0];
+
+/** The algorithm, step by step: for one pixel, its row, or the whole picture. */
 export function Stepper({ store }: { store: Store }) {
+  const [scope, setScope] = useState<Scope>("pixel");
+  return (
+    <section class="stepper" aria-label="Step by step">
+      <Choice label="Steps of" value={scope} values={scopes} change={(next) => setScope(next)} />
+      {scope === "pixel" ? <PixelSteps store={store} /> : <Scan key={scope} store={store} scope={scope} />}
+    </section>
+  );
+}
+
+/** The algorithm for one pixel. */
+function PixelSteps({ store }: { store: Store }) {
   const [all, setAll] = useState<Step[]>([]);
   const [at, setAt] = useState(0);
   const [plays, setPlays] = useState(false);
@@ -44,51 +65,14 @@ export function Stepper({ store }: { store: Store }) {
   if (!step) return <p class="hint">Click a pixel first.</p>;
   const go = (to: number) => setAt(Math.min(all.length - 1, Math.max(0, to)));
   return (
-    <section class="stepper" aria-label="Step by step">
-      <div class="row">
-        <button type="button" class="button" onClick={() => go(at - 1)} disabled={at === 0}>
-          Back
-        </button>
-        <button
-          type="button"
-          class="button strong"
-          onClick={() => go(at + 1)}
-          disabled={at === all.length - 1}
-        >
-          Next
-        </button>
-        <button type="button" class="button" aria-pressed={plays} onClick={() => setPlays(!plays)}>
-          {plays ? "Pause" : "Play"}
-        </button>
-        <input
-          type="range"
-          aria-label="Step"
-          min={0}
-          max={all.length - 1}
-          step={1}
-          value={at}
-          onInput={(event) => go(event.currentTarget.valueAsNumber)}
-        />
-        <span class="count">
-          {at + 1} of {all.length}
-        </span>
-      </div>
+    <>
+      <Player at={at} count={all.length} plays={plays} go={go} play={setPlays} unit="Step" />
       <p class="sentence" aria-live="polite">
         {step.words}
       </p>
       <p class="closest">closest = {step.closest === undefined ? "–" : short(step.closest)}</p>
-      <ol class="code">
-        {code.map((line, i) => (
-          <li
-            key={line}
-            class={i === step.line ? "now" : ""}
-            aria-current={i === step.line ? "step" : undefined}
-          >
-            {line}
-          </li>
-        ))}
-      </ol>
-    </section>
+      <Code line={step.line} />
+    </>
   );
 }
 

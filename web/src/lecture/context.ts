@@ -1,11 +1,24 @@
 import { createContext } from "preact";
 import { useContext, useEffect, useMemo, useRef, useState } from "preact/hooks";
-import type { Engine, Session } from "../engine/engine";
+import type { Engine, EventOf, Session } from "../engine/engine";
 import type { Vec } from "../explain/space";
-import type { CastAccount, PixelAccount, Setting } from "../protocol";
+import type { CastAccount, Event, PixelAccount, Request, Setting } from "../protocol";
 
 /** The engine that all figures share. */
 export const EngineContext = createContext<Engine | null>(null);
+
+/** The scene that is open in the viewer. */
+export interface OwnScene {
+  /** What it is called. */
+  title: string;
+  /** Name of its file; empty for that of the server. */
+  name: string;
+  /** `null` for a file that the server reads. */
+  text: string | null;
+}
+
+/** The scene of the chapter about one's own. */
+export const OwnSceneContext = createContext<OwnScene>({ title: "", name: "", text: null });
 
 /** Options for figures: few samples, so that pictures finish soon. */
 const few: Setting[] = [{ name: "samples", value: "4" }];
@@ -38,34 +51,63 @@ export function useScene(text: string, options: Setting[] = few): Session {
   return session;
 }
 
-/**
- * Intersects a ray with all objects of a scene, again after each change of the ray or the scene.
- */
-export function useCast(session: Session, origin: Vec, direction: Vec, scene: string): CastAccount | null {
-  const [cast, setCast] = useState<CastAccount | null>(null);
+/** A session with a scene by its name, and a size for the lecture hall with its proportions. */
+export function useOpened(scene: OwnScene, options: Setting[], picture: string) {
+  const engine = useContext(EngineContext);
+  if (!engine) throw new Error("a figure stands in a lecture");
+  const session = useMemo(() => engine.session(), [engine]);
+  const [size, setSize] = useState<[number, number]>([480, 360]);
+  const [refused, setRefused] = useState<string | null>(null);
+  const key = JSON.stringify(options);
+  useEffect(() => {
+    session.tell({ kind: "open", name: scene.name, text: scene.text });
+    return session.on((event) => {
+      if (event.kind === "refused") setRefused(event.why);
+      if (event.kind !== "scene") return;
+      setRefused(event.contents ? null : (event.findings[0]?.message ?? "the scene has errors"));
+      if (event.contents) setSize(fitted(event.contents.job.size));
+    });
+  }, [session, scene.name, scene.text]);
+  useEffect(() => {
+    session.tell({ kind: "options", options });
+    session.tell({ kind: "show", picture, stops: 0, tone: "none" });
+  }, [session, key, picture]);
+  useEffect(() => () => session.close(), [session]);
+  return { session, size, refused };
+}
+
+function fitted([width, height]: [number, number]): [number, number] {
+  const scale = Math.min(1, 480 / Math.max(width, height));
+  return [Math.max(1, Math.round(width * scale)), Math.max(1, Math.round(height * scale))];
+}
+
+/** The latest answer to a question, which is asked anew when it or the scene changes. */
+export function useAnswer<K extends Event["kind"]>(
+  session: Session,
+  request: Request,
+  kind: K,
+  scene: string,
+): EventOf<K> | null {
+  const [answer, setAnswer] = useState<EventOf<K> | null>(null);
   const latest = useRef(0);
   useEffect(() => {
     const number = ++latest.current;
     session
-      .ask({ kind: "cast", origin, direction, t_max: null }, "cast")
-      .then(({ cast }) => number === latest.current && setCast(cast))
+      .ask(request, kind)
+      .then((event) => number === latest.current && setAnswer(event))
       .catch(() => {});
-  }, [session, scene, ...origin, ...direction]);
-  return cast;
+  }, [session, scene, JSON.stringify(request)]);
+  return answer;
+}
+
+/** What all objects of a scene say of a ray. */
+export function useCast(session: Session, origin: Vec, direction: Vec, scene: string): CastAccount | null {
+  return useAnswer(session, { kind: "cast", origin, direction, t_max: null }, "cast", scene)?.cast ?? null;
 }
 
 /** Explains the colour of a pixel of a session's picture. */
 export function usePixel(session: Session, x: number, y: number, key: string): PixelAccount | null {
-  const [pixel, setPixel] = useState<PixelAccount | null>(null);
-  const latest = useRef(0);
-  useEffect(() => {
-    const number = ++latest.current;
-    session
-      .ask({ kind: "explain", x, y, sample: null }, "explained")
-      .then(({ pixel }) => number === latest.current && setPixel(pixel))
-      .catch(() => {});
-  }, [session, x, y, key]);
-  return pixel;
+  return useAnswer(session, { kind: "explain", x, y, sample: null }, "explained", key)?.pixel ?? null;
 }
 
 /** Explains the colour of a ray, as the single pixel of a camera that looks along it. */

@@ -2,10 +2,19 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import type { Engine } from "../engine/engine";
 import { EngineContext } from "./context";
 import { Question } from "./parts";
-import { topics } from "./topics";
+import type { Topic } from "./topic";
+
+interface Props {
+  engine: Engine;
+  /** Name of the page in the address. */
+  name: string;
+  topics: Topic[];
+  /** Where it is open. */
+  topic: string;
+}
 
 /** The lecture: a book whose figures run the ray tracer, and slides with the same content. */
-export function Lecture({ engine, topic }: { engine: Engine; topic: string }) {
+export function Lecture({ engine, name, topics, topic }: Props) {
   const [presents, setPresents] = useState(false);
   const place = useRef<HTMLElement>(null);
   const at = Math.max(
@@ -15,7 +24,7 @@ export function Lecture({ engine, topic }: { engine: Engine; topic: string }) {
   const now = topics[at] ?? topics[0];
   const go = (to: number) => {
     const next = topics[to];
-    if (next) location.hash = `#/lecture/${next.id}`;
+    if (next) location.hash = `#/${name}/${next.id}`;
   };
 
   useEffect(() => {
@@ -56,7 +65,7 @@ export function Lecture({ engine, topic }: { engine: Engine; topic: string }) {
           <ol>
             {topics.map((known) => (
               <li key={known.id}>
-                <a href={`#/lecture/${known.id}`} aria-current={known === now ? "page" : undefined}>
+                <a href={`#/${name}/${known.id}`} aria-current={known === now ? "page" : undefined}>
                   {known.title}
                 </a>
               </li>
@@ -74,14 +83,14 @@ export function Lecture({ engine, topic }: { engine: Engine; topic: string }) {
             </header>
             <now.Figure key={now.id} />
             <div class="prose">
-              {now.text.map((paragraph) => (
-                <p key={paragraph}>{paragraph}</p>
-              ))}
+              {now.text.map((paragraph, i) =>
+                typeof paragraph === "string" ? <p key={i}>{paragraph}</p> : paragraph,
+              )}
             </div>
             {now.questions.length > 0 && (
               <section class="questions" aria-label="Questions">
-                {now.questions.map(({ ask, answer }) => (
-                  <Question key={ask} ask={ask}>
+                {now.questions.map(({ ask, answer }, i) => (
+                  <Question key={`${now.id} ${i}`} ask={ask}>
                     {answer}
                   </Question>
                 ))}

@@ -1,6 +1,9 @@
 import type { ComponentChildren } from "preact";
 import { useState } from "preact/hooks";
 
+export { Choice } from "../ui/choice";
+export { Switch } from "../ui/switch";
+
 /** A figure: a drawing, its controls, and its equations. */
 export function Figure({
   stage,
@@ -53,53 +56,8 @@ export function Sym({
   );
 }
 
-/** A switch, often for a common mistake. */
-export function Switch({ label, on, change }: { label: string; on: boolean; change(on: boolean): void }) {
-  return (
-    <label class="switch">
-      <input
-        type="checkbox"
-        role="switch"
-        aria-checked={on}
-        checked={on}
-        onChange={(event) => change(event.currentTarget.checked)}
-      />
-      <span>{label}</span>
-    </label>
-  );
-}
-
-/** A group of buttons with one selected. */
-export function Choice<T extends string>({
-  label,
-  value,
-  values,
-  change,
-}: {
-  label: string;
-  value: T;
-  values: readonly (readonly [T, string])[];
-  change(value: T): void;
-}) {
-  return (
-    <div class="choice" role="group" aria-label={label}>
-      {values.map(([name, text]) => (
-        <button
-          key={name}
-          type="button"
-          class="button"
-          aria-pressed={name === value}
-          onClick={() => change(name)}
-        >
-          {text}
-        </button>
-      ))}
-    </div>
-  );
-}
-
 /** A question with an answer that can be unfolded. */
-export function Question({ ask, children }: { ask: string; children: ComponentChildren }) {
+export function Question({ ask, children }: { ask: ComponentChildren; children: ComponentChildren }) {
   const [open, setOpen] = useState(false);
   return (
     <div class="question">

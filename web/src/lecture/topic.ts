@@ -1,4 +1,4 @@
-import type { ComponentType } from "preact";
+import type { ComponentChild, ComponentType } from "preact";
 
 /** A topic of the lecture. */
 export interface Topic {
@@ -6,9 +6,9 @@ export interface Topic {
   id: string;
   title: string;
   /** One sentence, shown on slides. */
-  lead: string;
+  lead: ComponentChild;
   /** Paragraphs, for readers of the previous topics. */
-  text: string[];
+  text: ComponentChild[];
   Figure: ComponentType;
-  questions: { ask: string; answer: string }[];
+  questions: { ask: ComponentChild; answer: ComponentChild }[];
 }

@@ -1,4 +1,5 @@
 import type { Store } from "./store";
+import { kept, nearer } from "./zoom";
 
 interface Point {
   x: number;
@@ -9,16 +10,31 @@ interface Point {
  * Translates mouse, touch and keyboard input over a picture to camera motions; returns a cleanup
  * function.
  */
-export function gestures(
-  element: HTMLElement,
-  store: Store,
-  click: (x: number, y: number) => void,
-): () => void {
+export function gestures(element: HTMLElement, store: Store, most: () => number): () => void {
   const pointers = new Map<number, Point>();
   let start: Point | null = null;
   let dragged = false;
   let wheel = 0;
-  const size = () => Math.max(1, element.clientHeight);
+  const frame = () => (element.parentElement ?? element).getBoundingClientRect();
+  const size = () => Math.max(1, frame().height);
+  /** A place of the page in the picture, as shares of its sides. */
+  const share = (x: number, y: number) => {
+    const { left, top, width, height } = frame();
+    const { zoom } = store;
+    return {
+      x: zoom.x + ((x - left) / width - 0.5) / zoom.times,
+      y: zoom.y + ((y - top) / height - 0.5) / zoom.times,
+    };
+  };
+  /** The pixel at a place of the page. */
+  const pixel = (x: number, y: number): [number, number] => {
+    const at = share(x, y);
+    const { full_width, full_height } = store.head ?? { full_width: 1, full_height: 1 };
+    return [
+      clamp(Math.floor(at.x * full_width), full_width),
+      clamp(Math.floor(at.y * full_height), full_height),
+    ];
+  };
   const stop = new AbortController();
   const options = { signal: stop.signal };
 
@@ -44,13 +60,21 @@ export function gestures(
     "pointermove",
     (event) => {
       const last = pointers.get(event.pointerId);
-      if (!last) return;
+      if (!last) return store.point(pixel(event.clientX, event.clientY));
       const before = spread();
       const now = { x: event.clientX, y: event.clientY };
       if (start && Math.hypot(now.x - start.x, now.y - start.y) > 4) dragged = true;
       pointers.set(event.pointerId, now);
       if (!dragged) return;
       const after = spread();
+      const { zoom } = store;
+      if (zoom.times > 1) {
+        const { width, height } = frame();
+        const x = zoom.x - (now.x - last.x) / width / zoom.times;
+        const y = zoom.y - (now.y - last.y) / height / zoom.times;
+        store.look(kept({ ...zoom, x, y }, most()));
+        return;
+      }
       if (before && after) {
         if (after.distance > 0) store.move({ kind: "dolly", factor: before.distance / after.distance }, true);
         const [right, up] = [(after.x - before.x) / size(), (before.y - after.y) / size()];
@@ -67,8 +91,9 @@ export function gestures(
   );
   const release = (event: PointerEvent) => {
     if (!pointers.delete(event.pointerId) || pointers.size > 0) return;
-    if (dragged) store.settle();
-    else if (event.type === "pointerup" && event.button === 0) click(event.clientX, event.clientY);
+    if (dragged && store.zoom.times === 1) store.settle();
+    else if (!dragged && event.type === "pointerup" && event.button === 0)
+      store.explain(...pixel(event.clientX, event.clientY));
     start = null;
   };
   element.addEventListener("pointerup", release, options);
@@ -78,14 +103,32 @@ export function gestures(
     "wheel",
     (event) => {
       event.preventDefault();
+      if (event.altKey || store.zoom.times > 1) {
+        const at = share(event.clientX, event.clientY);
+        store.look(nearer(store.zoom, Math.exp(-event.deltaY * 0.002), at, most()));
+        return;
+      }
       store.move({ kind: "dolly", factor: Math.exp(event.deltaY * (event.ctrlKey ? 0.01 : 0.0012)) }, true);
       clearTimeout(wheel);
       wheel = window.setTimeout(() => store.settle(), 140);
     },
     { ...options, passive: false },
   );
-  element.addEventListener("keydown", (event) => key(event, store), options);
+  element.addEventListener("pointerleave", () => store.point(null), options);
+  element.addEventListener(
+    "keydown",
+    (event) => {
+      if (event.key.toLowerCase() === "z" && !event.ctrlKey && !event.metaKey)
+        store.look(nearer(store.zoom, event.shiftKey ? 0.5 : 2, store.zoom, most()));
+      else key(event, store);
+    },
+    options,
+  );
   return () => stop.abort();
+}
+
+function clamp(x: number, size: number): number {
+  return Math.min(size - 1, Math.max(0, x));
 }
 
 const turn = 0.06;

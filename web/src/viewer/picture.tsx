@@ -1,14 +1,19 @@
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { gestures } from "./gestures";
+import { PixelNumbers } from "./pixel-numbers";
 import { type Store, useStore } from "./store";
+import { nearer, whole } from "./zoom";
 
-/** The picture: drag to orbit, click to explain a pixel. */
+/** A pixel is at most so many pixels of the page wide. */
+const widest = 96;
+
+/** The picture: dragged to go around, clicked to be explained, and seen larger down to single pixels. */
 export function Picture({ store }: { store: Store }) {
   useStore(store);
   const box = useRef<HTMLDivElement>(null);
   const canvas = useRef<HTMLCanvasElement>(null);
   const [space, setSpace] = useState({ width: 0, height: 0 });
-  const { head, pixels, pixel } = store;
+  const { head, pixels, pixel, zoom, scan } = store;
 
   useEffect(() => {
     if (!box.current) return;
@@ -19,49 +24,99 @@ export function Picture({ store }: { store: Store }) {
     return () => observer.disconnect();
   }, []);
 
+  const [fullWidth, fullHeight] = [head?.full_width ?? 1, head?.full_height ?? 1];
+  const room = { width: Math.max(0, space.width - 24), height: Math.max(0, space.height - 24) };
+  const width = Math.min(room.width, (room.height * fullWidth) / fullHeight);
+  const height = (width * fullHeight) / fullWidth;
+  const most = Math.max(1, (widest * fullWidth) / Math.max(1, width));
+  const mostRef = useRef(most);
+  mostRef.current = most;
+
   useEffect(() => {
     if (!canvas.current) return;
-    const element = canvas.current;
-    return gestures(element, store, (x, y) => {
-      const at = element.getBoundingClientRect();
-      const { full_width, full_height } = store.head ?? { full_width: 1, full_height: 1 };
-      const column = Math.floor(((x - at.left) / at.width) * full_width);
-      const row = Math.floor(((y - at.top) / at.height) * full_height);
-      store.explain(clamp(column, full_width), clamp(row, full_height));
-    });
+    return gestures(canvas.current, store, () => mostRef.current);
   }, [store]);
 
   useLayoutEffect(() => {
     if (canvas.current && head && pixels) draw(canvas.current, head.width, head.height, pixels);
   }, [head, pixels]);
 
-  const aspect = head ? head.full_width / head.full_height : 1;
-  const room = { width: Math.max(0, space.width - 24), height: Math.max(0, space.height - 24) };
-  const width = Math.min(room.width, room.height * aspect);
-  const height = width / aspect;
-  const mark = pixel &&
-    head && {
-      left: `calc(50% + ${((pixel.x + 0.5) / head.full_width - 0.5) * width}px)`,
-      top: `calc(50% + ${((pixel.y + 0.5) / head.full_height - 0.5) * height}px)`,
-    };
+  // Pixels of the page for a pixel of the picture, and where its upper left corner is.
+  const scale = (width * zoom.times) / fullWidth;
+  const corner = [width / 2 - zoom.x * fullWidth * scale, height / 2 - zoom.y * fullHeight * scale] as const;
+  const place = (left: number, top: number, columns: number, rows: number) => ({
+    left: `${corner[0] + left * scale}px`,
+    top: `${corner[1] + top * scale}px`,
+    width: `${columns * scale}px`,
+    height: `${rows * scale}px`,
+  });
+  const region = head?.region ?? [0, 0, 1, 1];
   return (
     <div class="picture" ref={box}>
-      <canvas
-        ref={canvas}
-        tabIndex={0}
-        role="img"
-        aria-label={
-          "The picture. Drag or use arrow keys to orbit, w a s d to walk, plus and minus to zoom, click to explain a pixel."
-        }
-        style={{ width: `${width}px`, height: `${height}px` }}
-      />
-      {mark && <div class="mark" style={mark} />}
+      <div class="frame" style={{ width: `${width}px`, height: `${height}px` }}>
+        <canvas
+          ref={canvas}
+          tabIndex={0}
+          role="img"
+          class={scale > 2 ? "squares" : ""}
+          aria-label={
+            "The picture. Drag or use arrow keys to go around, w a s d to walk, plus and minus to come nearer, z to see it larger, click to explain a pixel."
+          }
+          style={place(...region)}
+        />
+        {scan && (
+          <>
+            <div class="unseen" style={place(scan.x + 1, scan.y, fullWidth - scan.x - 1, 1)} />
+            <div class="unseen" style={place(0, scan.y + 1, fullWidth, fullHeight - scan.y - 1)} />
+          </>
+        )}
+        <PixelNumbers store={store} scale={scale} corner={corner} />
+        {pixel && head && (
+          <div
+            class={`mark${scale > 12 ? " framed" : ""}`}
+            style={
+              scale > 12
+                ? place(pixel.x, pixel.y, 1, 1)
+                : { left: place(pixel.x + 0.5, 0, 1, 1).left, top: place(0, pixel.y + 0.5, 1, 1).top }
+            }
+          />
+        )}
+      </div>
+      <div class="zoom row" role="group" aria-label="See the picture larger">
+        {zoom.times > 1 && (
+          <button type="button" class="button" onClick={() => store.look(whole)}>
+            Whole
+          </button>
+        )}
+        {[
+          ["−", 0.5, "Smaller"],
+          ["+", 2, "Larger"],
+        ].map(([sign, factor, name]) => (
+          <button
+            key={name}
+            type="button"
+            class="button icon"
+            aria-label={String(name)}
+            disabled={factor === 0.5 ? zoom.times <= 1 : zoom.times >= most}
+            onClick={() => store.look(nearer(zoom, Number(factor), middle(store), most))}
+          >
+            {sign}
+          </button>
+        ))}
+        {zoom.times > 1 && (
+          <output>{zoom.times < 10 ? zoom.times.toFixed(1) : Math.round(zoom.times)} ×</output>
+        )}
+      </div>
     </div>
   );
 }
 
-function clamp(x: number, size: number): number {
-  return Math.min(size - 1, Math.max(0, x));
+/** Where it becomes larger: at the pixel that is explained, if it is seen. */
+function middle({ pixel, head, zoom }: Store) {
+  if (!pixel || !head) return zoom;
+  const at = { x: (pixel.x + 0.5) / head.full_width, y: (pixel.y + 0.5) / head.full_height };
+  const seen = Math.max(Math.abs(at.x - zoom.x), Math.abs(at.y - zoom.y)) < 0.5 / zoom.times;
+  return seen ? at : zoom;
 }
 
 /** Draws pixels onto a canvas of their size. */

@@ -1,7 +1,9 @@
 import type { FieldState } from "../protocol";
 import { Dragged } from "../ui/dragged";
 import { Slider } from "../ui/slider";
+import { Switch } from "../ui/switch";
 import { type Store, useStore } from "./store";
+import { whole } from "./zoom";
 
 /** Settings of the camera, the display and the renderer. */
 export function Settings({ store }: { store: Store }) {
@@ -111,6 +113,7 @@ function Display({ store }: { store: Store }) {
           ))}
         </select>
       </div>
+      <Switch label="Denoise the finished picture" on={store.denoises} change={(on) => store.denoise(on)} />
       <div class="row">
         {["picture.png", "picture.exr"].map((name) => (
           <button key={name} type="button" class="button" onClick={() => download(store, name)}>
@@ -125,15 +128,20 @@ function Display({ store }: { store: Store }) {
 async function download(store: Store, name: string) {
   try {
     const [, bytes] = await store.session.askBytes({ kind: "export", name }, "exported");
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([bytes]));
-    link.download = name;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+    give(name, bytes);
   } catch (error) {
     store.refused = String(error);
     store.changed();
   }
+}
+
+/** Gives bytes as a file to the one before the page. */
+export function give(name: string, bytes: Uint8Array<ArrayBuffer>) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([bytes]));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
 const sizes = ["256x256", "512x512", "640x480", "1280x720", "1920x1080"];
@@ -153,6 +161,7 @@ function Job({ store }: { store: Store }) {
           value={size}
           onChange={(event) => {
             const [width = 512, height = 512] = event.currentTarget.value.split("x").map(Number);
+            store.look(whole);
             store.session.tell({ kind: "size", width, height });
           }}
         >

@@ -1,6 +1,7 @@
 import { useEffect, useReducer } from "preact/hooks";
 import type { Session } from "../engine/engine";
 import type {
+  BoxState,
   CameraState,
   CastAccount,
   Contents,
@@ -11,9 +12,11 @@ import type {
   Outline,
   PictureHead,
   PixelAccount,
+  RayAccount,
   Setting,
   Word,
 } from "../protocol";
+import { cropOf, whole, type Zoom } from "./zoom";
 
 type Opened = Extract<Event, { kind: "opened" }>;
 
@@ -44,6 +47,16 @@ export class Store {
   lamps: Lamp[] = [];
   words: Word[] = [];
   refused: string | null = null;
+  /** The pixel up to which the algorithm has come, and its ray. */
+  scan: { x: number; y: number; ray: RayAccount | null } | null = null;
+  /** Part of the picture that is seen, as shares of its sides. */
+  zoom: Zoom = whole;
+  denoises = false;
+  under: [number, number] | null = null;
+  /** Boxes of the trees, and the level up to which they are drawn. */
+  boxes: BoxState[] = [];
+  boxLevel: number | null = null;
+  tree: Extract<Event, { kind: "tree" }> | null = null;
   picture = "color";
   stops = 0;
   tone = "none";
@@ -51,6 +64,7 @@ export class Store {
   /** Byte range to show in the editor. */
   jump: { start: number; end: number; count: number } | null = null;
   #listeners = new Set<() => void>();
+  #crop: [number, number, number, number] | null = null;
   #waiting: Motion[] = [];
   #due = false;
 
@@ -104,6 +118,44 @@ export class Store {
     this.options = this.options.filter((option) => option.name !== name);
     if (value !== null) this.options.push({ name, value });
     this.session.tell({ kind: "options", options: this.options });
+    this.changed();
+  }
+
+  /** Sees a part of the picture larger. A part of less than half of it is rendered alone. */
+  look(zoom: Zoom) {
+    this.zoom = zoom;
+    const { full_width, full_height } = this.head ?? { full_width: 1, full_height: 1 };
+    const crop = cropOf(zoom, full_width, full_height);
+    if (JSON.stringify(crop) !== JSON.stringify(this.#crop)) {
+      this.#crop = crop;
+      this.session.tell({ kind: "crop", crop });
+    }
+    this.changed();
+  }
+
+  /** The pixel below the pointer. */
+  point(pixel: [number, number] | null) {
+    if (this.under?.join() === pixel?.join()) return;
+    this.under = pixel;
+    this.changed();
+  }
+
+  denoise(on: boolean) {
+    this.denoises = on;
+    this.session.tell({ kind: "denoise", on });
+    this.changed();
+  }
+
+  /** Draws the boxes of the trees up to a level; `null` for none. */
+  async showBoxes(level: number | null) {
+    this.boxLevel = level;
+    if (level !== null && this.boxes.length === 0) await this.#askBoxes();
+    this.changed();
+  }
+
+  async #askBoxes() {
+    const { boxes } = await this.session.ask({ kind: "boxes" }, "boxes");
+    this.boxes = boxes;
     this.changed();
   }
 
@@ -207,6 +259,9 @@ export class Store {
         this.diskText = null;
         this.conflict = false;
         this.contents = null;
+        this.tree = null;
+        this.zoom = whole;
+        this.#crop = null;
         break;
       case "scene":
         this.findings = event.findings;
@@ -218,6 +273,9 @@ export class Store {
           this.camera = event.contents.camera;
           if (first) this.#frame(event.contents.job.size);
           this.#outlines();
+          this.boxes = [];
+          if (this.boxLevel !== null) this.#askBoxes();
+          if (this.opened?.text === null) this.#askTree();
         }
         break;
       case "checked":
@@ -252,6 +310,11 @@ export class Store {
         this.refused = event.why;
         break;
     }
+    this.changed();
+  }
+
+  async #askTree() {
+    this.tree = await this.session.ask({ kind: "tree" }, "tree");
     this.changed();
   }
 

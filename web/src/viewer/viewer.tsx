@@ -3,6 +3,7 @@ import { Editor } from "../editor/editor";
 import { Findings } from "../editor/findings";
 import { Explain } from "../explain/panel";
 import { giveFiles } from "./file-menu";
+import { Model } from "./model";
 import { Picture } from "./picture";
 import { Settings } from "./settings";
 import { Status } from "./status";
@@ -44,7 +45,7 @@ export function Viewer({ store }: { store: Store }) {
       <section class="pane text" aria-label="Scene">
         <DiskNotice store={store} />
         {store.opened?.text === null ? (
-          <Things store={store} />
+          <Model store={store} />
         ) : (
           <div class="scrolls">
             <Editor store={store} />
@@ -112,24 +113,6 @@ function PictureTabs({ store }: { store: Store }) {
           {names[name] ?? name.replace("-", " ").replace(/^./, (letter) => letter.toUpperCase())}
         </button>
       ))}
-    </div>
-  );
-}
-
-/** Statistics of a model without text. */
-function Things({ store }: { store: Store }) {
-  const { contents } = store;
-  if (!contents) return null;
-  return (
-    <div class="scrolls settings">
-      <h3>
-        {contents.object_count} objects, {contents.triangles.toLocaleString("en")} triangles
-      </h3>
-      <ul class="things">
-        {contents.objects.map((thing, i) => (
-          <li key={i}>{thing.name}</li>
-        ))}
-      </ul>
     </div>
   );
 }

@@ -16,6 +16,7 @@ mod tree;
 
 use super::lanes::{Available, SimdLevel};
 use super::node;
+use super::shown::{self, TreeBox};
 use super::{TraversalCounter, TraversalStats};
 use crate::math::{self, Aabb, Ray, Vec3};
 use crate::watertight::WatertightRay;
@@ -291,6 +292,11 @@ impl TriangleBvh {
     /// Bounding box of all triangles.
     pub fn bounds(&self) -> Aabb {
         self.bounds
+    }
+
+    /// Iterates over the boxes of the tree, level by level.
+    pub fn boxes(&self) -> impl Iterator<Item = TreeBox> {
+        shown::boxes(&self.nodes).map(|(_, found)| found)
     }
 }
 

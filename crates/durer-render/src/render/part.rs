@@ -273,6 +273,21 @@ impl PartialRender {
         statistics
     }
 
+    /// Returns the visible error so far, the quantity that [`Job::noise`] limits: its root mean square
+    /// over the pixels. `None` unless every pixel has two samples.
+    pub fn noise(&self) -> Option<f64> {
+        let (gain, state) = (self.gain(), self.state());
+        let (mut squares, mut pixels) = (0.0, 0);
+        for (index, block) in state.samples.iter().enumerate() {
+            let rect = self.blocks.rect(index);
+            let film = block.film(rect).filter(|_| block.to >= 2)?;
+            let error = passes::error(&film, rect, gain);
+            squares += error * error * rect.pixels() as f64;
+            pixels += rect.pixels();
+        }
+        (pixels > 0).then(|| (squares / pixels as f64).sqrt())
+    }
+
     /// Returns the hash of the film: all sums and values of its window. Equal pictures have equal
     /// hashes, however they were rendered; the cost is excluded.
     pub fn hash(&self) -> Digest {

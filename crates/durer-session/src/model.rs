@@ -1,0 +1,78 @@
+//! What a scene consists of: groups, objects and materials. Models have no text, so their materials
+//! are changed here.
+
+use crate::document::Compiled;
+use crate::fields::{field_states, set_numbers};
+use crate::protocol::{FieldState, MaterialState, TreeNode};
+use durer::describe::DescribedList;
+use durer::dialect::Dialect;
+use durer::scene::{Material, Node, Object, Scene};
+
+/// Maximum number of nodes and of materials.
+const MAX_NODES: usize = 2000;
+
+/// Returns the objects of a scene, as they are grouped.
+pub(crate) fn nodes(compiled: &Compiled) -> Vec<TreeNode> {
+    let mut left = MAX_NODES;
+    let root = compiled.scene().root.iter().flat_map(|group| &group.objects);
+    root.map_while(|object| node(compiled, object, &mut left)).collect()
+}
+
+/// Returns an object with those below it; `None` beyond the maximum.
+fn node(compiled: &Compiled, object: &Object, left: &mut usize) -> Option<TreeNode> {
+    *left = left.checked_sub(1)?;
+    let below: &[Object] = match &object.node {
+        Node::Group(group) => &group.objects,
+        Node::Transform(_, inner) => std::slice::from_ref(inner),
+        Node::Solid(_, parts) => parts,
+        _ => &[],
+    };
+    let name = match &object.node {
+        Node::Group(_) => "Group".into(),
+        Node::Transform(..) => "Transform".into(),
+        Node::Solid(operation, _) => operation.keyword().into(),
+        Node::Primitive(shape) => shape.own_keyword().into(),
+        Node::Mesh(mesh) => mesh.obj_file.path.clone(),
+        Node::Voxels(..) => "VoxelGrid".into(),
+        Node::HeightField(_) => "HeightField".into(),
+    };
+    Some(TreeNode {
+        name,
+        place: compiled.place(object.span),
+        material: object.material,
+        nodes: below.iter().map_while(|object| node(compiled, object, left)).collect(),
+    })
+}
+
+/// Returns the materials with their fields.
+pub(crate) fn materials(compiled: &Compiled) -> Vec<MaterialState> {
+    let all = compiled.scene().materials.iter().take(MAX_NODES);
+    all.map(|material| {
+        let (name, fields) = described(&material.value);
+        MaterialState { name: name.into(), place: compiled.place(material.span), fields }
+    })
+    .collect()
+}
+
+fn described(material: &Material) -> (&'static str, Vec<FieldState>) {
+    fn of(list: &impl DescribedList) -> (&'static str, Vec<FieldState>) {
+        (list.keyword(Dialect::Durer), field_states(list))
+    }
+    match material {
+        Material::Phong(phong, _) => of(&**phong),
+        Material::Principled(layers) => of(&**layers),
+        Material::Hair(hair) => of(hair),
+        Material::Solid(solid, _) => of(solid),
+    }
+}
+
+/// Sets a field of a material.
+pub(crate) fn set_material(scene: &mut Scene, number: u32, name: &str, values: &[f32]) -> Result<(), String> {
+    let material = scene.materials.get_mut(number as usize).ok_or_else(|| format!("there is no material {number}"))?;
+    match &mut material.value {
+        Material::Phong(phong, _) => set_numbers(&mut **phong, name, values),
+        Material::Principled(layers) => set_numbers(&mut **layers, name, values),
+        Material::Hair(hair) => set_numbers(hair, name, values),
+        Material::Solid(solid, _) => set_numbers(solid, name, values),
+    }
+}

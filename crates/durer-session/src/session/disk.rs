@@ -1,0 +1,54 @@
+//! The scene's file: saving, and changes by other programs.
+
+use super::Session;
+#[cfg(feature = "fs")]
+use super::{Message, read};
+use crate::protocol::Event;
+
+impl Session {
+    #[cfg(feature = "fs")]
+    pub(super) fn save(&mut self, force: bool) -> Result<Event, String> {
+        use durer::format::folder::stamp_of;
+        let document = self.document.as_ref().filter(|_| self.on_disk).ok_or("this scene is in no file")?;
+        if !force && stamp_of(&document.path) != self.stamp {
+            return Ok(Event::Conflict);
+        }
+        durer::image::save(&document.path, &document.bytes).map_err(|error| error.to_string())?;
+        self.stamp = stamp_of(&document.path);
+        Ok(Event::Saved)
+    }
+
+    #[cfg(not(feature = "fs"))]
+    pub(super) fn save(&mut self, _: bool) -> Result<Event, String> {
+        Err("files cannot be saved here".into())
+    }
+
+    /// Reads the scene's file again if it was changed. A text that was edited here stays: the page
+    /// hears of the conflict when it saves.
+    #[cfg(feature = "fs")]
+    pub(crate) fn look_at_disk(&mut self, say: &mut dyn FnMut(Message)) {
+        let Some(document) = self.document.as_ref().filter(|_| self.on_disk) else { return };
+        let stamp = durer::format::folder::stamp_of(&document.path);
+        if stamp == self.stamp || stamp == self.told || stamp.is_none() {
+            return;
+        }
+        let Ok(bytes) = read(&document.path) else { return };
+        if bytes != document.bytes {
+            let Ok(text) = std::str::from_utf8(&bytes) else { return };
+            say((Event::Text { text: text.into(), from_disk: true }, Vec::new()));
+            self.told = stamp;
+        } else {
+            self.stamp = stamp;
+        }
+    }
+
+    /// Takes over what is in the scene's file now.
+    #[cfg(feature = "fs")]
+    pub(crate) fn take_over(&mut self, text: &str) {
+        if let Some(document) = self.document.as_ref().filter(|_| self.on_disk)
+            && read(&document.path).is_ok_and(|bytes| *bytes == *text.as_bytes())
+        {
+            self.stamp = durer::format::folder::stamp_of(&document.path);
+        }
+    }
+}

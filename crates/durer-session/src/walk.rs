@@ -1,0 +1,162 @@
+//! Ways of rays: out of the camera, and through structures over the objects.
+
+use crate::protocol::{BoxState, RayAccount, Structure, WalkAccount, WalkStep, WalkTest};
+use durer::bvh::{Bvh, Grid};
+use durer::math::{Aabb, Ray, Ray64, Vec3};
+use durer::render::{center_ray, raster};
+use durer::world::{Accel, Geometry, Object, World};
+
+/// Maximum number of boxes.
+const MAX_BOXES: usize = 3000;
+/// Maximum number of rays, and of objects that a structure is built over for one ray.
+const MAX_RAYS: u32 = 1 << 16;
+const MAX_OBJECTS: usize = 20_000;
+
+/// Returns the camera's rays through the middles of a raster's pixels, row by row.
+pub(crate) fn rays(world: &World, [columns, rows]: [u32; 2], row: Option<u32>) -> Result<Vec<Option<RayAccount>>, String> {
+    let wanted = row.map_or(0..rows, |row| row..row + 1);
+    let is_sound = (1..=MAX_RAYS).contains(&columns) && (1..=MAX_RAYS).contains(&rows) && wanted.end <= rows;
+    if !is_sound || u64::from(columns) * wanted.len() as u64 > MAX_RAYS.into() {
+        return Err(format!("a raster has 1 to {MAX_RAYS} pixels, and the row must be one of its own"));
+    }
+    let raster = raster(world, columns, rows);
+    let one = |(x, y)| {
+        let ray = center_ray(world, &raster, (x, y))?;
+        let hit = world.closest(ray, &mut ());
+        let (t, object) = (hit.map(|hit| hit.t), hit.map(|hit| hit.object));
+        Some(RayAccount { origin: ray.origin.into(), direction: ray.dir.into(), t, object })
+    };
+    Ok(wanted.flat_map(|y| (0..columns).map(move |x| (x, y))).map(one).collect())
+}
+
+/// Tests of a ray against objects, and the nearest hit so far.
+struct Walker<'a> {
+    world: &'a World,
+    ray: Ray64,
+    closest: Option<WalkTest>,
+}
+
+impl Walker<'_> {
+    /// Tests an object.
+    fn test(&mut self, object: u32) -> WalkTest {
+        let t = self.world.hit_of(object, &self.ray).map(|hit| hit.t);
+        let test = WalkTest { object, t };
+        let is_closer = |closest: WalkTest| (t, object) < (closest.t, closest.object);
+        if t.is_some() && self.closest.is_none_or(is_closer) {
+            self.closest = Some(test);
+        }
+        test
+    }
+
+    /// End of the interval in which hits still count.
+    fn end(&self) -> f32 {
+        self.closest.and_then(|closest| closest.t).map_or(self.ray.rounded.t_max, f32::next_up)
+    }
+
+    fn step(&self, bounds: Option<Aabb>, level: u32, tests: Vec<WalkTest>) -> WalkStep {
+        let bounds = bounds.map(|bounds| [bounds.min.into(), bounds.max.into()]);
+        WalkStep { bounds, level, tests, closest: self.closest.and_then(|closest| closest.t) }
+    }
+}
+
+/// Follows a ray through a structure that is built over all objects with an end. Objects without
+/// one, such as planes, are tested first.
+pub(crate) fn walk(world: &World, structure: Structure, ray: &Ray) -> Result<WalkAccount, String> {
+    let objects = world.objects();
+    if objects.len() > MAX_OBJECTS {
+        return Err(format!("the scene has more than {MAX_OBJECTS} objects"));
+    }
+    let mut walker = Walker { world, ray: Ray64::from(*ray), closest: None };
+    let (bounded, endless): (Vec<u32>, Vec<u32>) =
+        (0..objects.len() as u32).partition(|&i| objects[i as usize].bounds().is_some());
+    let boxes: Vec<Aabb> = bounded.iter().filter_map(|&i| objects[i as usize].bounds()).collect();
+    let (mut steps, mut shown, mut visits) = (Vec::new(), Vec::new(), 0);
+    if !endless.is_empty() {
+        let tests = endless.iter().map(|&object| walker.test(object)).collect();
+        steps.push(walker.step(None, 0, tests));
+    }
+    match structure {
+        Structure::Nothing => {
+            for &object in &bounded {
+                let tests = vec![walker.test(object)];
+                steps.push(walker.step(objects[object as usize].bounds(), 0, tests));
+            }
+        }
+        Structure::Tree => {
+            let tree = Bvh::build(&boxes);
+            let mut tested = Vec::new();
+            let visited = tree.visits(ray, |item, _| {
+                let test = walker.test(bounded[tree.primitive_indices()[item] as usize]);
+                tested.push((test, walker.closest));
+                walker.end()
+            });
+            visits = visited.iter().filter(|visit| visit.items.is_empty()).count();
+            let (mut tested, mut closest) = (tested.into_iter(), steps.last().and_then(|step: &WalkStep| step.closest));
+            for visit in visited {
+                let tests: Vec<_> = tested.by_ref().take(visit.items.len()).collect();
+                closest = tests.last().map_or(closest, |(_, closest)| closest.and_then(|closest| closest.t));
+                let tests = tests.into_iter().map(|(test, _)| test).collect();
+                steps.push(WalkStep { closest, ..walker.step(Some(visit.bounds), visit.level, tests) });
+            }
+            shown.extend(tree.boxes().take(MAX_BOXES).map(|found| state(found.level, &found.bounds, |corner| corner)));
+        }
+        Structure::Grid => {
+            let bounds = boxes.iter().fold(Aabb::EMPTY, |all, one| all.union(*one));
+            let overlaps = |i: usize, cell: Aabb| objects[bounded[i] as usize].overlaps(&cell);
+            let grid = Grid::build(bounds, Grid::suitable(bounds, boxes.len()), &boxes, overlaps)
+                .filter(|_| !boxes.is_empty())
+                .ok_or("no grid can be built over these objects")?;
+            grid.walk_cells(ray, |grid, cell, _| {
+                visits += 1;
+                let tests = grid.primitives(cell).iter().map(|&i| walker.test(bounded[i as usize])).collect();
+                steps.push(walker.step(Some(grid.cell_bounds(cell)), 0, tests));
+                walker.end()
+            });
+            let [nx, ny, nz] = grid.counts();
+            let cells = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
+            let full = cells.filter(|&cell| grid.occupancy(cell) > 0).take(MAX_BOXES);
+            shown.extend(full.map(|cell| state(1, &grid.cell_bounds(cell), |corner| corner)));
+        }
+    }
+    let tests = steps.iter().map(|step| step.tests.len() as u32).sum();
+    let (visits, count) = (visits as u32, objects.len() as u32);
+    Ok(WalkAccount { steps, visits, tests, objects: count, hit: walker.closest, boxes: shown })
+}
+
+/// Returns the boxes of the tree over the objects, and below it of the trees over the triangles of
+/// their meshes. A world of few objects has no tree: it is shown the one that it would have.
+pub(crate) fn boxes(world: &World) -> Vec<BoxState> {
+    let bounds: Vec<Aabb> = world.objects().iter().filter_map(Object::bounds).collect();
+    let built;
+    let tree = match world.accel() {
+        Accel::Bvh(tree) if !tree.is_empty() => tree,
+        _ => {
+            built = Bvh::build(&bounds);
+            &built
+        }
+    };
+    let mut all: Vec<BoxState> =
+        tree.boxes().take(MAX_BOXES).map(|found| state(found.level, &found.bounds, |corner| corner)).collect();
+    let below = all.last().map_or(0, |last| last.level);
+    let mut meshes: Vec<BoxState> = Vec::new();
+    for object in world.objects() {
+        let Geometry::Mesh(mesh) = &object.geometry else { continue };
+        let place = |corner| object.world_point(corner);
+        // The mesh's own box is that of its object.
+        let found = mesh.bvh.boxes().filter(|found| found.level > 0).take(MAX_BOXES);
+        meshes.extend(found.map(|found| state(below + found.level, &found.bounds, place)));
+        if meshes.len() > 16 * MAX_BOXES {
+            break;
+        }
+    }
+    meshes.sort_by_key(|found| found.level);
+    all.extend(meshes);
+    all.truncate(MAX_BOXES);
+    all
+}
+
+fn state(level: u32, bounds: &Aabb, place: impl Fn(Vec3) -> Vec3) -> BoxState {
+    let ends = [bounds.min, bounds.max];
+    let corner = |i: usize| place(Vec3::new(ends[i & 1].x, ends[i >> 1 & 1].y, ends[i >> 2].z));
+    BoxState { level, corners: (0..8).flat_map(|i| corner(i).to_array()).collect() }
+}

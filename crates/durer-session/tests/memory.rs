@@ -1,0 +1,34 @@
+//! Memory of a session that is edited for long. A process of its own, since other tests would be
+//! counted.
+
+mod page;
+
+use page::Page;
+use serde_json::json;
+
+/// Resident memory in bytes, where the system tells it.
+fn resident() -> Option<u64> {
+    let pages = std::fs::read_to_string("/proc/self/statm").ok()?;
+    Some(4096 * pages.split(' ').nth(1)?.parse::<u64>().ok()?)
+}
+
+#[test]
+fn memory_stays_flat_over_a_thousand_edits() {
+    let mut page = Page::new(None);
+    let text = std::fs::read_to_string(page::scene("whitted.txt")).unwrap();
+    page.ask(&json!({ "kind": "open", "name": "scene.txt", "text": text }).to_string());
+    page.ask(r#"{"kind":"size","width":48,"height":32}"#);
+    let mut edit = |i: u32| {
+        let moved = format!("{text}\n# {i}\nGroup {{ Sphere {{ center {} 0 0 radius 0.2 }} }}\n", i % 7);
+        let read = page.ask(&json!({ "kind": "edit", "text": moved }).to_string());
+        assert!(!read.is_empty());
+        if i.is_multiple_of(10) {
+            page.pictures();
+        }
+    };
+    (0..200).for_each(&mut edit);
+    let Some(before) = resident() else { return eprintln!("skipped: the system does not tell how much memory is used") };
+    (200..1200).for_each(&mut edit);
+    let after = resident().unwrap();
+    assert!(after < before + (8 << 20), "{} KiB became {} KiB", before >> 10, after >> 10);
+}

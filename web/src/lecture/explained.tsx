@@ -1,0 +1,58 @@
+import { useState } from "preact/hooks";
+import type { Session } from "../engine/engine";
+import { Rows } from "../explain/rows";
+import { flat } from "../explain/segments";
+import type { PictureHead } from "../protocol";
+import { short } from "../ui/slider";
+import { usePixel } from "./context";
+import { Picked } from "./picked";
+import { Rendered } from "./rendered";
+
+interface Props {
+  session: Session;
+  width: number;
+  height: number;
+  label: string;
+  /** Changes with the picture. */
+  scene: string;
+  told?(head: PictureHead): void;
+}
+
+/** A picture, and beside it the terms of the pixel that was clicked last. */
+export function Explained({ session, width, height, label, scene, told }: Props) {
+  const [place, setPlace] = useState({ x: 0.5, y: 0.5 });
+  const [hash, setHash] = useState("");
+  const at = { x: Math.floor(place.x * width), y: Math.floor(place.y * height) };
+  const account = usePixel(session, at.x, at.y, `${scene} ${width} ${hash}`);
+  const terms = flat(account?.tree).slice(0, 12);
+  return (
+    <div class="halves explained">
+      <Picked place={place} pick={setPlace}>
+        <Rendered
+          session={session}
+          width={width}
+          height={height}
+          label={label}
+          told={(head) => {
+            setHash(head.hash ?? "");
+            told?.(head);
+          }}
+        />
+      </Picked>
+      <div class="stage account" tabIndex={0} role="region" aria-label="Terms of the pixel">
+        <h3>
+          Pixel {at.x}, {at.y}:{" "}
+          <b class="sum">{account ? account.color.map((x) => short(x)).join("  ") : "…"}</b>
+        </h3>
+        {terms[0] && <Rows rows={terms[0].term.rows} />}
+        <ul>
+          {terms.slice(1).map(({ path, term }) => (
+            <li key={path} style={{ "--level": path.split(".").length - 2 }}>
+              <span>{term.title}</span> <b>{term.adds.map((x) => short(x, 3)).join("  ")}</b>
+            </li>
+          ))}
+        </ul>
+      </div>
+    </div>
+  );
+}

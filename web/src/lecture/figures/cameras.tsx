@@ -1,0 +1,252 @@
+import { useState } from "preact/hooks";
+import { add, type Eye, mul, type Vec } from "../../explain/space";
+import type { RayAccount } from "../../protocol";
+import { fixed, Slider } from "../../ui/slider";
+import { useAnswer, usePaper, useScene } from "../context";
+import { Dot, Line } from "../draw";
+import { Choice, Equation, Figure, Sym } from "../parts";
+import { Rendered } from "../rendered";
+import { paint, sceneOf } from "../scenes";
+import { Stage } from "../stage";
+import type { Topic } from "../topic";
+
+interface Kind {
+  id: string;
+  name: string;
+  /** Its statement, with the field that is slid. */
+  statement(value: number): string;
+  field: string;
+  range: [number, number, number];
+  unit: string;
+  /** Columns and rows of its picture. */
+  size: [number, number];
+  /** How its rays go. */
+  rule: string;
+}
+
+const pose = "center 0 0.6 0 direction 0 0 -1 up 0 1 0";
+const kinds = [
+  {
+    id: "fisheye",
+    name: "Fisheye",
+    statement: (angle) => `FisheyeCamera { ${pose} angle ${angle} projection equidistant }`,
+    field: "angle",
+    range: [60, 180, 360],
+    unit: "°",
+    size: [240, 240],
+    rule: "The distance from the picture’s middle is the angle to the axis: half a sphere fits on a disc. Outside of the disc there is no ray.",
+  },
+  {
+    id: "cylindrical",
+    name: "Cylindrical",
+    statement: (angle) => `CylindricalCamera { ${pose} angle ${angle} verticalAngle 70 }`,
+    field: "angle",
+    range: [60, 240, 360],
+    unit: "°",
+    size: [420, 160],
+    rule: "The picture is bent to a cylinder around the eye: x is an angle, y a height. Vertical lines stay straight.",
+  },
+  {
+    id: "equirectangular",
+    name: "Equirectangular",
+    statement: () => `EquirectangularCamera { ${pose} }`,
+    field: "",
+    range: [0, 0, 0],
+    unit: "",
+    size: [400, 200],
+    rule: "x is the longitude and y the latitude: all directions, as on a map of the world. Above and below the eye they are stretched.",
+  },
+  {
+    id: "stereo",
+    name: "Two eyes",
+    statement: (separation) =>
+      `StereoCamera { center 0 0.6 3 direction 0 0 -1 up 0 1 0 angle 60 separation ${separation} convergence 5 method offAxis eyes sideBySide }`,
+    field: "separation",
+    range: [0, 0.5, 1.6],
+    unit: "",
+    size: [400, 200],
+    rule: "Two cameras side by side. What lies at the distance of convergence is at the same place in both pictures.",
+  },
+  {
+    id: "lens",
+    name: "Lens",
+    statement: (aperture) =>
+      `ThinLensCamera { center 0 0.6 4 direction 0 0 -1 up 0 1 0 angle 50 aperture ${aperture} focusDistance 7 }`,
+    field: "aperture",
+    range: [0, 0.6, 1.5],
+    unit: "",
+    size: [320, 240],
+    rule: "Rays start all over the lens and meet again in the plane of focus: what is there is sharp. Drawn are the rays through its middle.",
+  },
+  {
+    id: "push-broom",
+    name: "Push broom",
+    statement: (angle) =>
+      `PushBroomCamera { start -5 0.6 2 end 5 0.6 2 direction 0 0 -1 up 0 1 0 angle ${angle} aspect 2.4 }`,
+    field: "angle",
+    range: [20, 50, 110],
+    unit: "°",
+    size: [420, 175],
+    rule: "The eye moves while the picture is made, one column after the other, as a scanner or a satellite does. Across, nothing becomes smaller with distance.",
+  },
+  {
+    id: "parabolic",
+    name: "Mirror ball",
+    statement: (angle) => `ParabolicCamera { center 0 0.6 0 direction 0 1 0 up 0 0 -1 angle ${angle} }`,
+    field: "angle",
+    range: [90, 210, 300],
+    unit: "°",
+    size: [240, 240],
+    rule: "A mirror in the form of a paraboloid, seen from far above. It keeps angles: small circles stay circles.",
+  },
+] as const satisfies readonly Kind[];
+type Id = (typeof kinds)[number]["id"];
+
+/** Things all around the eye, so that every camera sees some. */
+function around(): string {
+  const all: string[] = ["MaterialIndex 0 Disc { center 0 -0.8 0 normal 0 1 0 radius 7 }"];
+  for (let i = 0; i < 12; i++) {
+    const angle = (Math.PI * i) / 6;
+    const [x, z] = [5 * Math.sin(angle), -5 * Math.cos(angle)].map((c) => c.toFixed(3));
+    const shape =
+      i % 2 === 0
+        ? `Sphere { center ${x} 0 ${z} radius 0.8 }`
+        : `Cylinder { base ${x} -0.8 ${z} top ${x} 1.9 ${z} radius 0.45 }`;
+    all.push(`MaterialIndex ${1 + (i % 4)} ${shape}`);
+  }
+  return all.join("\n");
+}
+const things = around();
+
+function CamerasFigure() {
+  const paper = usePaper();
+  const [id, setId] = useState<Id>("fisheye");
+  const kind: Kind = kinds.find((known) => known.id === id) ?? kinds[0];
+  const [values, setValues] = useState<Partial<Record<Id, number>>>({});
+  const value = values[id] ?? kind.range[1];
+  const scene = sceneOf({
+    paper,
+    materials: [paint.stone, paint.clay, paint.sky, paint.sand, paint.sage],
+    group: things,
+  });
+  const text = scene.replace(/^.*\n/, `${kind.statement(value)}\n`);
+  const outside = useScene(scene);
+  const seen = useScene(text, [{ name: "samples", value: "9" }]);
+  const [eye, setEye] = useState<Eye>({
+    target: [0, 0.2, 0],
+    distance: 21,
+    yaw: 0.55,
+    pitch: 0.62,
+    angle: 38,
+  });
+  const [width, height] = kind.size;
+  const columns = 15;
+  const rows = Math.max(5, Math.round((columns * height) / width) | 1);
+  const rays = useAnswer(seen, { kind: "rays", columns, rows, row: null }, "rays", text)?.rays ?? [];
+  const there = rays.filter((ray): ray is RayAccount => ray !== null);
+  const starts = new Set(there.map(({ origin }) => origin.map((c) => c.toFixed(4)).join(" "))).size;
+  return (
+    <Figure
+      stage={
+        <div class="beside">
+          <Stage session={outside} eye={eye} setEye={setEye} label={`The rays of the camera: ${kind.name}`}>
+            {(view) => (
+              <>
+                {there.map(({ origin, direction, t }, i) => (
+                  <Line
+                    key={i}
+                    view={view}
+                    from={origin}
+                    to={add(origin, mul(t ?? 6.5, direction as Vec))}
+                    color={t === null ? "var(--soft)" : "var(--ray-camera)"}
+                    width={1.2}
+                  />
+                ))}
+                {there.map(({ origin, direction, t }, i) =>
+                  t === null ? null : (
+                    <Dot
+                      key={i}
+                      view={view}
+                      at={add(origin, mul(t, direction as Vec))}
+                      color="var(--ray-lit)"
+                      radius={3}
+                    />
+                  ),
+                )}
+              </>
+            )}
+          </Stage>
+          <div class="inset wide">
+            <Rendered session={seen} width={width} height={height} label={`What it sees: ${kind.name}`} />
+          </div>
+        </div>
+      }
+      controls={
+        <>
+          <Choice
+            label="Camera"
+            value={id}
+            values={kinds.map((known) => [known.id, known.name] as const)}
+            change={(next) => setId(next)}
+          />
+          {kind.field && (
+            <Slider
+              label={kind.field}
+              value={value}
+              min={kind.range[0]}
+              max={kind.range[2]}
+              step={kind.unit ? 1 : 0.01}
+              text={`${fixed(value, kind.unit ? 0 : 2)}${kind.unit}`}
+              change={(next) => setValues({ ...values, [id]: next })}
+            />
+          )}
+        </>
+      }
+    >
+      <Equation
+        numbers={
+          <>
+            of {columns} × {rows} rays, <b>{there.length}</b> exist,{" "}
+            <b>{there.filter((ray) => ray.t !== null).length}</b> hit something
+          </>
+        }
+      >
+        <Sym vector>ray</Sym>(<Sym>x</Sym>, <Sym>y</Sym>): {kind.name.toLowerCase()}
+      </Equation>
+      <Equation
+        numbers={
+          starts === 1 ? (
+            "all rays start in one eye"
+          ) : (
+            <>
+              they start at <b>{starts}</b> places
+            </>
+          )
+        }
+      >
+        {kind.rule}
+      </Equation>
+    </Figure>
+  );
+}
+
+export const cameras: Topic = {
+  id: "cameras",
+  title: "Other cameras",
+  lead: "A camera is a rule that gives each pixel a ray. Any rule makes a picture.",
+  text: [
+    "Nothing in a ray tracer wants the picture to be flat, or the rays to meet in one eye. A fisheye sees all around, a scanner moves while it looks, a pair of eyes makes two pictures. All else, the objects, the lights and the shading, stays as it is.",
+    "Painting programs and graphics cards project triangles onto a plane: there these cameras take tricks. Here each is a few lines.",
+  ],
+  Figure: CamerasFigure,
+  questions: [
+    {
+      ask: "Which of these cameras has no single eye?",
+      answer: "The push broom, the two eyes and the lens: their rays start at many places.",
+    },
+    {
+      ask: "Why can no perspective camera see half of all directions?",
+      answer: "Its picture would have to be infinitely wide: D = 1 / tan(90°) is 0.",
+    },
+  ],
+};

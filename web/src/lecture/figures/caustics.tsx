@@ -1,0 +1,151 @@
+import { useState } from "preact/hooks";
+import box from "../../../../scenes/caustic.txt?raw";
+import type { PictureHead } from "../../protocol";
+import { Slider } from "../../ui/slider";
+import { usePixel, useScene } from "../context";
+import { Choice, Equation, Figure, Sym } from "../parts";
+import { Picked } from "../picked";
+import { Rendered } from "../rendered";
+import type { Topic } from "../topic";
+
+const [width, height] = [360, 288];
+type Way = "path" | "photons";
+
+function CausticsFigure() {
+  const [way, setWay] = useState<Way>("photons");
+  const [power, setPower] = useState(10);
+  const [radius, setRadius] = useState(0.05);
+  const [step, setStep] = useState(3);
+  const [head, setHead] = useState<PictureHead | null>(null);
+  const [place, setPlace] = useState({ x: 0.78, y: 0.935 });
+  const pixel = { x: Math.floor(place.x * width), y: Math.floor(place.y * height) };
+  const photons = Math.round(10 ** (2 + power / 5));
+  const samples = 2 ** step;
+  const options = [
+    { name: "integrator", value: way },
+    { name: "samples", value: String(samples) },
+  ];
+  if (way === "photons")
+    options.push(
+      { name: "photons", value: String(photons) },
+      { name: "photon-radius", value: String(radius) },
+    );
+  const session = useScene(box, options);
+  const account = usePixel(session, pixel.x, pixel.y, JSON.stringify(options));
+  const gathered = account?.tree?.terms.find((term) => term.title.startsWith("Caustic of"));
+  const found = gathered?.rows.find((row) => row.name === "photons")?.value ?? null;
+  return (
+    <Figure
+      stage={
+        <div class="square">
+          <Picked place={place} pick={setPlace}>
+            <Rendered
+              session={session}
+              width={width}
+              height={height}
+              label="A ball of mirror and one of glass under a lamp; click for the photons of a pixel"
+              told={setHead}
+            />
+          </Picked>
+        </div>
+      }
+      controls={
+        <>
+          <Choice
+            label="How the light is found"
+            value={way}
+            values={[
+              ["photons", "Photons from the lamp"],
+              ["path", "Paths from the eye alone"],
+            ]}
+            change={(value) => setWay(value)}
+          />
+          <Slider
+            label="samples"
+            value={step}
+            min={0}
+            max={8}
+            step={1}
+            text={String(samples)}
+            change={setStep}
+          />
+          {way === "photons" && (
+            <>
+              <Slider
+                label="photons"
+                value={power}
+                min={0}
+                max={20}
+                step={1}
+                text={photons.toLocaleString("en")}
+                change={setPower}
+              />
+              <Slider
+                label="radius"
+                value={radius}
+                min={0.01}
+                max={0.3}
+                step={0.005}
+                text={radius.toFixed(3)}
+                change={setRadius}
+              />
+            </>
+          )}
+        </>
+      }
+    >
+      <Equation
+        numbers={
+          found === null ? (
+            "click the bright spot below the glass"
+          ) : (
+            <>
+              <b>{found}</b> of {photons.toLocaleString("en")} photons within{" "}
+              {gathered?.rows.find((row) => row.name === "radius")?.result} of this point
+            </>
+          )
+        }
+      >
+        <Sym>L</Sym> ≈ Σ <Sym>f</Sym> <Sym>Φ</Sym>
+        <sub>i</sub> / (π <Sym>r</Sym>²)
+      </Equation>
+      <Equation
+        numbers={
+          head ? (
+            <>
+              <b>{head.samples}</b> of {samples} samples, {(head.rays / 1e6).toFixed(1)} million rays
+              {head.noise !== null && `, error ${head.noise.toFixed(3)}`}
+            </>
+          ) : (
+            "…"
+          )
+        }
+      >
+        {way === "photons" ? "lamp → glass → floor ← eye" : "eye → floor → glass → lamp, by chance"}
+      </Equation>
+    </Figure>
+  );
+}
+
+export const caustics: Topic = {
+  id: "caustics",
+  title: "Caustics by photons",
+  lead: "Glass gathers light to bright spots. They are hard to find from the eye, and easy from the lamp.",
+  text: [
+    "A path from the eye that hits the floor would have to go on in just the direction in which the glass bends it to the lamp. By chance that hardly happens, and when it does it counts so much that the picture is full of bright dots. Toward the lamp no shadow ray helps: the glass is in its way and bends it.",
+    "So photons are sent from the lamp first. Those that went through mirror or glass are kept where they land. The picture then looks up how many landed near each point: many in a small disc is bright. A large disc is smooth and blurred, a small one sharp and noisy; Dürer makes it smaller from sample to sample.",
+  ],
+  Figure: CausticsFigure,
+  questions: [
+    {
+      ask: "You double the radius. How many photons are found, and what becomes of the brightness?",
+      answer:
+        "About four times as many, over four times the area: the brightness stays, and its noise is halved.",
+    },
+    {
+      ask: "Which light in this picture do photons not bring?",
+      answer:
+        "What comes from the lamp or from the walls without glass or mirror between: paths find that well by themselves.",
+    },
+  ],
+};

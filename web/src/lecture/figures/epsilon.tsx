@@ -1,0 +1,150 @@
+import { useEffect, useRef, useState } from "preact/hooks";
+import type { Session } from "../../engine/engine";
+import { fixed, Slider } from "../../ui/slider";
+import { usePixel, useScene } from "../context";
+import { Equation, Figure, Switch, Sym } from "../parts";
+import { Picked } from "../picked";
+import { Rendered } from "../rendered";
+import type { Topic } from "../topic";
+
+const [width, height] = [320, 240];
+/** A ring and a thin wall on a floor: what starts too far off the floor is already behind the wall. */
+const text = `PerspectiveCamera { center 0.2 1.5 5.4 direction 0 -0.3 -1 up 0 1 0 angle 40 }
+Background { color 0.72 0.78 0.86 ambientLight 0.16 0.16 0.18 }
+Lights { PointLight { position -3.2 3.4 2 color 0.9 0.9 0.86 } }
+Materials {
+  PhongMaterial { diffuseColor 0.62 0.61 0.58 }
+  PhongMaterial { diffuseColor 0.72 0.30 0.18 }
+  PhongMaterial { diffuseColor 0.20 0.38 0.62 }
+}
+Group {
+  MaterialIndex 0 Plane { normal 0 1 0 offset -0.8 }
+  MaterialIndex 1 Torus { center -0.75 -0.22 0 axis 0.35 1 0.5 majorRadius 0.62 minorRadius 0.26 }
+  MaterialIndex 2 Transform { Translate 0.8 -0.1 -0.1 YRotate 8 Box { min -0.03 -0.7 -1 max 0.03 0.7 1 } }
+}
+`;
+const options = [{ name: "samples", value: "1" }];
+
+function EpsilonFigure() {
+  // The slider's steps are powers of ten; the first is 0.
+  const [step, setStep] = useState(0);
+  const [exact, setExact] = useState(false);
+  const [wrong, setWrong] = useState<number | null>(null);
+  const epsilon = step === 0 ? 0 : 10 ** (step / 10 - 7.5);
+  const broken = useScene(text, options);
+  const sound = useScene(text, options);
+  const pictures = useRef<{ broken?: Uint8Array; sound?: Uint8Array }>({});
+  useEffect(() => {
+    broken.tell({ kind: "epsilon", epsilon: exact ? null : epsilon });
+  }, [broken, epsilon, exact]);
+  useEffect(() => {
+    const hear = (name: "broken" | "sound") => (session: Session) =>
+      session.on((event, bytes) => {
+        if (event.kind !== "picture" || event.head.hash === null) return;
+        pictures.current[name] = bytes.slice();
+        const { broken: a, sound: b } = pictures.current;
+        if (a && b) setWrong(differing(a, b));
+      });
+    const ends = [hear("broken")(broken), hear("sound")(sound)];
+    return () => {
+      for (const end of ends) end();
+    };
+  }, [broken, sound]);
+  const [place, setPlace] = useState({ x: 0.36, y: 0.5 });
+  const pixel = { x: Math.floor(place.x * width), y: Math.floor(place.y * height) };
+  const account = usePixel(broken, pixel.x, pixel.y, `${epsilon} ${exact}`);
+  const light = account?.tree?.terms.find(
+    (term) => term.segment?.role === "shadowed" || term.segment?.role === "lit",
+  );
+  const shadow = light?.rows.find((row) => row.name === "shadow ray")?.result ?? "this pixel sees no surface";
+  const sizes = { session: broken, width, height };
+  return (
+    <Figure
+      stage={
+        <div class="halves">
+          <Picked place={place} pick={setPlace}>
+            <Rendered {...sizes} label="With this epsilon; click for the shadow ray of a pixel" />
+          </Picked>
+          <Rendered {...sizes} session={sound} label="The same with exact starts of rays" />
+        </div>
+      }
+      controls={
+        <>
+          <Slider
+            label="epsilon"
+            value={step}
+            min={0}
+            max={75}
+            step={1}
+            text={exact ? "none" : spelled(epsilon)}
+            change={(next) => {
+              setStep(next);
+              setExact(false);
+            }}
+          />
+          <Switch label="Exact starts, no epsilon" on={exact} change={setExact} />
+        </>
+      }
+    >
+      <Equation
+        numbers={
+          wrong === null ? (
+            "…"
+          ) : (
+            <>
+              <b>{wrong.toLocaleString("en")}</b> of {(width * height).toLocaleString("en")} pixels are wrong
+              {judged(exact ? null : epsilon, wrong)}
+            </>
+          )
+        }
+      >
+        a hit counts if <Sym>t</Sym> &gt; <Sym>ε</Sym>
+      </Equation>
+      <Equation numbers={<b>{shadow}</b>}>
+        the shadow ray of pixel {pixel.x}, {pixel.y}
+      </Equation>
+    </Figure>
+  );
+}
+
+/** Counts pixels whose colours differ visibly. */
+export function differing(a: Uint8Array, b: Uint8Array): number {
+  let count = 0;
+  for (let i = 0; i + 3 < Math.min(a.length, b.length); i += 4) {
+    if ([0, 1, 2].some((k) => Math.abs((a[i + k] ?? 0) - (b[i + k] ?? 0)) > 4)) count++;
+  }
+  return count;
+}
+
+function spelled(epsilon: number): string {
+  if (epsilon === 0) return "0";
+  return epsilon < 0.001 ? epsilon.toExponential(1).replace("-", "−") : fixed(epsilon, 3);
+}
+
+function judged(epsilon: number | null, wrong: number): string {
+  if (wrong === 0) return "";
+  return epsilon !== null && epsilon < 0.01 ? ": surfaces shade themselves" : ": light leaks below things";
+}
+
+export const epsilon: Topic = {
+  id: "epsilon",
+  title: "Epsilon",
+  lead: "A shadow ray starts on a surface. Rounding may put it just inside, and the surface shades itself.",
+  text: [
+    "The point of a hit is rounded, so it lies a little above or a little below the surface. From below, the shadow ray meets the very surface that it leaves: dark spots, the acne. The usual cure is an epsilon: hits with a smaller t do not count.",
+    "But how small is small? Too small, and spots remain; too large, and the ray starts behind what stands close by: light leaks at the foot of the wall and below the ring. In a scene of another size, another epsilon is right.",
+    "Dürer takes none. It knows a bound on the rounding error of every point and starts just outside of it, and its test of a ray against the edge of two triangles is exact, so that no ray slips between.",
+  ],
+  Figure: EpsilonFigure,
+  questions: [
+    {
+      ask: "Why does the ring show spots, and the floor none?",
+      answer:
+        "The floor’s height is one number, which needs no rounding: its points lie exactly on it. On the ring all three numbers are rounded.",
+    },
+    {
+      ask: "Where does the light leak first when epsilon grows?",
+      answer: "Where things touch the floor: the way to the blocker is shortest there.",
+    },
+  ],
+};

@@ -1,0 +1,43 @@
+/** The part of a picture that is seen: its middle as shares of the sides, and how many times larger it is. */
+export interface Zoom {
+  x: number;
+  y: number;
+  times: number;
+}
+
+export const whole: Zoom = { x: 0.5, y: 0.5, times: 1 };
+
+/** A zoom whose part lies within the picture. */
+export function kept({ x, y, times }: Zoom, most: number): Zoom {
+  const size = Math.min(most, Math.max(1, times));
+  const half = 0.5 / size;
+  const within = (c: number) => Math.min(1 - half, Math.max(half, c));
+  return { x: within(x), y: within(y), times: size };
+}
+
+/** Sees a picture larger or smaller, with a point of it staying where it is. */
+export function nearer(zoom: Zoom, factor: number, at: { x: number; y: number }, most: number): Zoom {
+  const times = Math.min(most, Math.max(1, zoom.times * factor));
+  const stays = zoom.times / times;
+  return kept({ x: at.x + (zoom.x - at.x) * stays, y: at.y + (zoom.y - at.y) * stays, times }, most);
+}
+
+/** The part in pixels: first column, first row, width and height, with a border of a pixel. */
+export function partOf(
+  { x, y, times }: Zoom,
+  width: number,
+  height: number,
+): [number, number, number, number] {
+  const side = (middle: number, size: number): [number, number] => {
+    const from = Math.max(0, Math.floor((middle - 0.5 / times) * size));
+    const to = Math.min(size, Math.ceil((middle + 0.5 / times) * size));
+    return [from, Math.max(1, to - from)];
+  };
+  const [[left, columns], [top, rows]] = [side(x, width), side(y, height)];
+  return [left, top, columns, rows];
+}
+
+/** What is rendered of a picture: all of it, unless much less is seen. */
+export function cropOf(zoom: Zoom, width: number, height: number): [number, number, number, number] | null {
+  return zoom.times < 2 ? null : partOf(zoom, width, height);
+}

@@ -1,0 +1,175 @@
+/** Figures, their numbers, and slides. */
+import { middle, narrow, open, shot, test, wide } from "./harness.mjs";
+
+const topics = (
+  process.env.TOPICS ??
+  "machine,ray,pinhole,obscura,camera,projection,cameras,homogeneous,plane,sphere,triangle,transform,normals,solids,epsilon,shading,shadow,mirror,glass,samples,structures,paths,caustics,own"
+).split(",");
+for (const topic of topics) {
+  await test(`lecture ${topic}`, wide, async (page) => {
+    await open(page, `#/lecture/${topic}`);
+    await page.waitForSelector(".equation .numbers");
+    await page.waitForTimeout(1800);
+    await shot(page, `lecture-${topic}`);
+    const handles = page.locator(".handle");
+    const numbers = () => page.locator(".equations").textContent();
+    for (let i = 0; i < (await handles.count()); i++) {
+      const before = await numbers();
+      await handles.nth(i).focus();
+      for (let k = 0; k < 4; k++) await page.keyboard.press("ArrowLeft");
+      await page.waitForTimeout(250);
+      if (before === (await numbers())) throw new Error(`handle ${i} changes no number`);
+    }
+  });
+}
+
+/** The words of a figure's equations. */
+const equations = (page) => page.locator(".equations").textContent();
+/** The number that a figure's words hold, once they do. */
+async function told(page, pattern) {
+  await page.waitForFunction(
+    (source) => new RegExp(source).test(document.querySelector(".equations").textContent),
+    pattern.source,
+    { timeout: 60_000 },
+  );
+  return pattern
+    .exec(await equations(page))
+    .slice(1)
+    .map((text) => Number(text.replaceAll(",", "").replace("−", "-")));
+}
+const near = (a, b, error, what) => {
+  if (!(Math.abs(a - b) <= error)) throw new Error(`${what}: ${a} instead of ${b}`);
+};
+
+await test("numbers: homogeneous", wide, async (page) => {
+  await open(page, "#/lecture/homogeneous");
+  near((await told(page, /2\.00 = ([\d.]+)/))[0], 0.8, 1e-9, "1.6 / 2");
+  await page.getByRole("slider", { name: "move by" }).fill("1");
+  near((await told(page, /3\.60 \/ 2\.00 = ([\d.]+)/))[0], 1.8, 1e-9, "moved");
+  await page.getByRole("button", { name: "Direction: w = 0" }).click();
+  await page.waitForFunction(() =>
+    /It is a direction/.test(document.querySelector(".equations").textContent),
+  );
+});
+
+await test("numbers: obscura", wide, async (page) => {
+  await open(page, "#/lecture/obscura");
+  const [wanted, passed, all, spot] = await told(
+    page,
+    /z\) = (\d+\.\d{3})(\d+) of (\d+) rays.*spot ([\d.]+) high/,
+  );
+  if (!(passed > 0 && passed < all)) throw new Error(`${passed} of ${all}`);
+  // Rays that pass are a tenth of the hole's radius apart.
+  if (!(spot <= wanted && spot > 0.7 * wanted)) throw new Error(`spot ${spot}, ${wanted} at most`);
+});
+
+await test("numbers: cameras", wide, async (page) => {
+  await open(page, "#/lecture/cameras");
+  const [columns, rows, there] = await told(page, /of (\d+) × (\d+) rays, (\d+) exist/);
+  // A disc in a square.
+  near(there / (columns * rows), Math.PI / 4, 0.06, "share of the disc");
+  await page.getByRole("button", { name: "Two eyes" }).click();
+  near((await told(page, /they start at (\d+) places/))[0], 2, 0, "eyes");
+});
+
+await test("numbers: epsilon", wide, async (page) => {
+  await open(page, "#/lecture/epsilon");
+  const wrong = () => told(page, /([\d,]+) of 76,800 pixels are wrong/).then(([count]) => count);
+  await page.waitForTimeout(2500);
+  if (!((await wrong()) > 500)) throw new Error(`only ${await wrong()} wrong pixels without an epsilon`);
+  await page.getByRole("slider", { name: "epsilon" }).fill("75");
+  await page.waitForFunction(
+    () => /light leaks/.test(document.querySelector(".equations").textContent),
+    null,
+    { timeout: 30_000 },
+  );
+  await shot(page, "epsilon-leaks");
+  await page.getByRole("switch", { name: "Exact starts, no epsilon" }).click();
+  await page.waitForFunction(
+    () => /(^|\D)0 of 76,800/.test(document.querySelector(".equations").textContent),
+    null,
+    { timeout: 30_000 },
+  );
+});
+
+await test("numbers: structures", wide, async (page) => {
+  await open(page, "#/lecture/structures");
+  const [every, grid, tree] = await told(page, /Every object: (\d+).*Grid: (\d+).*Tree of boxes: (\d+)/);
+  near(every, 96, 0, "tests of all objects");
+  if (!(grid < 48 && tree < 48)) throw new Error(`${grid} ${tree}`);
+});
+
+await test("numbers: caustics", wide, async (page) => {
+  await open(page, "#/lecture/caustics");
+  const [few] = await told(page, /(\d+) of [\d,]+ photons within/);
+  await page.getByRole("slider", { name: "radius" }).fill("0.2");
+  await page.waitForFunction(
+    (old) =>
+      Number(/(\d+) of [\d,]+ photons/.exec(document.querySelector(".equations").textContent)?.[1]) > 2 * old,
+    few,
+    { timeout: 60_000 },
+  );
+});
+
+await test("present", { viewport: { width: 1600, height: 900 } }, async (page) => {
+  await open(page, "#/lecture/sphere");
+  await page.waitForSelector(".equation .numbers");
+  await page.keyboard.press("p");
+  await page.waitForSelector(".presents");
+  await page.waitForTimeout(800);
+  await shot(page, "present-sphere");
+  await page.keyboard.press("ArrowRight");
+  await page.waitForFunction(() => document.querySelector("h1")?.textContent === "Triangle");
+  await page.waitForTimeout(1500);
+  await shot(page, "present-triangle");
+  await page.keyboard.press("Escape");
+  await page.waitForSelector(".presents", { state: "detached" });
+});
+
+await test("lecture narrow dark", { ...narrow, colorScheme: "dark" }, async (page) => {
+  await open(page, "#/lecture/shadow");
+  await page.waitForSelector(".equation .numbers");
+  await page.waitForTimeout(1800);
+  await shot(page, "lecture-narrow-dark");
+});
+
+for (const topic of (process.env.NARROW ?? "").split(",").filter(Boolean)) {
+  for (const [name, size] of [
+    ["narrow", narrow],
+    ["middle", middle],
+    ["large", { viewport: { width: 2560, height: 1440 } }],
+  ]) {
+    await test(`lecture ${topic} ${name}`, size, async (page) => {
+      await open(page, `#/lecture/${topic}`);
+      await page.waitForSelector(".equation .numbers");
+      await page.waitForTimeout(2500);
+      await shot(page, `lecture-${topic}-${name}`);
+    });
+  }
+}
+
+// `durer lesson web/tests/lesson/monday.md` is behind this address.
+if (process.env.LESSON) {
+  await test("a lesson of one's own", wide, async (page) => {
+    await page.goto(process.env.LESSON.split("#")[0] + "#/lesson");
+    await page.getByRole("heading", { name: "What a ball looks like" }).waitFor();
+    await page.waitForSelector(".equation .numbers");
+    await page.getByRole("button", { name: /How many points/ }).click();
+    await page.waitForSelector(".answer");
+    await shot(page, "lesson-1");
+    await page.keyboard.press("Escape");
+    await page.getByRole("link", { name: "On a floor" }).click();
+    await page.waitForFunction(() =>
+      /480 × 480 pixels|\d+ × \d+ pixels/.test(document.querySelector(".equations")?.textContent ?? ""),
+    );
+    await page.waitForFunction(() => document.querySelectorAll(".account li").length > 0);
+    const box = await page.locator(".picks").boundingBox();
+    await page.mouse.click(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
+    await page.waitForFunction(() => /Diffuse/.test(document.querySelector(".account").textContent));
+    await shot(page, "lesson-2");
+    await page.getByRole("link", { name: "Its normals" }).click();
+    await page.getByRole("heading", { name: "Its normals" }).waitFor();
+    await page.waitForTimeout(1500);
+    await shot(page, "lesson-3");
+  });
+}

@@ -1,0 +1,187 @@
+/** Picture, text, explanation and settings. */
+import { finished, middle, narrow, open, scenes, shot, test, wide } from "./harness.mjs";
+
+for (const [width, size] of [
+  ["wide", wide],
+  ["middle", middle],
+  ["narrow", narrow],
+]) {
+  for (const colorScheme of ["light", "dark"]) {
+    await test(`viewer ${width} ${colorScheme}`, { ...size, colorScheme }, async (page) => {
+      await open(page);
+      await finished(page);
+      const box = await page.locator(".picture canvas").boundingBox();
+      await page.mouse.click(box.x + 0.4 * box.width, box.y + 0.42 * box.height);
+      await page.waitForSelector(".tree .term");
+      await page.waitForSelector(".tests .test");
+      await shot(page, `viewer-${width}-${colorScheme}`);
+    });
+  }
+}
+
+await test("orbit makes coarse pictures and settles", wide, async (page) => {
+  await open(page);
+  await finished(page);
+  const before = await page.locator(".status .hash").textContent();
+  const box = await page.locator(".picture canvas").boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let i = 1; i <= 12; i++) await page.mouse.move(x + 12 * i, y + 3 * i);
+  await page.mouse.up();
+  await page.waitForFunction(
+    (old) => {
+      const hash = document.querySelector(".status .hash")?.textContent;
+      return hash && hash !== old;
+    },
+    before,
+    { timeout: 60_000 },
+  );
+});
+
+await test("an error is underlined and mended", wide, async (page) => {
+  await open(page);
+  await finished(page);
+  const editor = page.locator(".cm-content");
+  await editor.click();
+  await page.keyboard.press("Control+End");
+  await page.keyboard.type("\nGroup { Sphre ");
+  await page.waitForSelector(".findings .error");
+  await page.waitForSelector(".cm-lintRange-error");
+  await shot(page, "error");
+  for (let i = 0; i < 16; i++) await page.keyboard.press("Backspace");
+  await page.waitForFunction(() => !document.querySelector(".findings .error"));
+});
+
+await test("step by step", wide, async (page) => {
+  await open(page);
+  await finished(page);
+  const box = await page.locator(".picture canvas").boundingBox();
+  await page.mouse.click(box.x + 0.4 * box.width, box.y + 0.42 * box.height);
+  await page.getByRole("tab", { name: "Step by step" }).click();
+  await page.waitForSelector(".stepper .code");
+  for (let i = 0; i < 6; i++) await page.getByRole("button", { name: "Next", exact: true }).click();
+  await shot(page, "steps");
+});
+
+await test("a row and the whole picture, step by step", wide, async (page) => {
+  await open(page);
+  await finished(page);
+  const box = await page.locator(".picture canvas").boundingBox();
+  await page.mouse.click(box.x + 0.4 * box.width, box.y + 0.5 * box.height);
+  await page.getByRole("tab", { name: "Step by step" }).click();
+  await page.getByRole("button", { name: "Its row" }).click();
+  await page.waitForSelector(".picture .unseen");
+  await page.waitForFunction(() =>
+    /is the closest, at t = /.test(document.querySelector(".sentence").textContent),
+  );
+  await page.waitForTimeout(2500);
+  await shot(page, "steps-row");
+  await page.getByRole("button", { name: "The whole picture" }).click();
+  await page.getByRole("button", { name: "Pause" }).click();
+  await page.getByLabel("Row of the picture").fill("200");
+  const words = /^row 200: (\d+) rays, (\d+) hit something, (\d+) the background$/;
+  await page.waitForFunction(
+    (source) => new RegExp(source).test(document.querySelector(".sentence").textContent),
+    words.source,
+  );
+  const [, rays, hits, misses] = words.exec(await page.locator(".sentence").textContent()).map(Number);
+  const columns = Number(/(\d+) ×/.exec(await page.locator(".status").textContent())[1]);
+  if (rays !== columns || hits + misses !== rays || hits === 0) throw new Error(`${rays} ${hits} ${misses}`);
+  await shot(page, "steps-picture");
+});
+
+await test("the picture is seen down to its pixels and their numbers", wide, async (page) => {
+  await open(page);
+  await finished(page);
+  const hash = await page.locator(".status .hash").textContent();
+  const box = await page.locator(".picture .frame").boundingBox();
+  await page.mouse.click(box.x + 0.42 * box.width, box.y + 0.42 * box.height);
+  await page.waitForSelector(".tree .term");
+  for (let i = 0; i < 9 && (await page.getByRole("button", { name: "Larger" }).isEnabled()); i++)
+    await page.getByRole("button", { name: "Larger" }).click();
+  await page.waitForSelector(".cell");
+  await finished(page);
+  await page.waitForTimeout(400);
+  // The number in the pixel is the one that its explanation has.
+  const [, x, y] = /Pixel (\d+), (\d+)/.exec(await page.locator("header.pixel").textContent());
+  const cell = page.locator(".cell", { hasText: `${x}, ${y}` }).first();
+  const shown = await cell.locator("b").allTextContents();
+  const told = (await page.locator("header.pixel p").textContent()).trim().split(/\s+/);
+  for (let i = 0; i < shown.length; i++)
+    if (Math.abs(Number(shown[i]) - Number(told[i])) > 0.006 * Math.abs(Number(told[i])) + 1e-5)
+      throw new Error(`${shown} ${told}`);
+  await shot(page, "pixels");
+  await page.getByRole("button", { name: "Whole" }).click();
+  await page.waitForFunction(
+    (wanted) => document.querySelector(".status .hash")?.textContent === wanted,
+    hash,
+  );
+});
+
+await test("boxes of the tree in space", wide, async (page) => {
+  await open(page);
+  await finished(page);
+  await page.setInputFiles('input[type="file"]', `${scenes}meshes/knot.ply`);
+  await page.waitForSelector(".things li");
+  await page.getByRole("tab", { name: "Explain" }).first().click();
+  await page.getByRole("switch", { name: "Boxes of the tree" }).click();
+  await page.waitForSelector(".boxes output");
+  const count = () => page.locator(".boxes output").textContent();
+  const first = await count();
+  await page.getByLabel("level").fill("3");
+  await page.waitForFunction((old) => document.querySelector(".boxes output").textContent !== old, first);
+  const boxes = Number(/: (\d+) box/.exec(await count())[1]);
+  if (!(boxes > 8)) throw new Error(`${boxes} boxes`);
+  await shot(page, "boxes");
+});
+
+await test("denoised, and noise and time are told", wide, async (page) => {
+  await open(page);
+  await finished(page);
+  await page.getByLabel("Examples").selectOption("cornell-box.txt");
+  await page.getByRole("tab", { name: "Camera and render" }).click();
+  await page.waitForFunction(() => /left/.test(document.querySelector(".status").textContent), null, {
+    timeout: 60_000,
+  });
+  await page.getByLabel("Samples").fill("4");
+  await page.getByLabel("Samples").blur();
+  await finished(page);
+  await page.waitForFunction(() => /error 0\.\d+/.test(document.querySelector(".status").textContent));
+  const hash = await page.locator(".status .hash").textContent();
+  await page.getByRole("switch", { name: "Denoise the finished picture" }).click();
+  await page.waitForFunction(() => /denoised/.test(document.querySelector(".status").textContent), null, {
+    timeout: 60_000,
+  });
+  if ((await page.locator(".status .hash").textContent()) !== hash) throw new Error("another hash");
+  await shot(page, "denoised");
+});
+
+await test("settings", wide, async (page) => {
+  await open(page);
+  await finished(page);
+  await page.getByRole("tab", { name: "Camera and render" }).click();
+  await page.getByRole("tab", { name: "Normals", exact: true }).click();
+  // The picture turns from red, yellow and blue to that of upward normals.
+  await page.waitForFunction(() => {
+    const canvas = document.querySelector(".picture canvas");
+    const [r, g, b] = canvas
+      .getContext("2d")
+      .getImageData(0.1 * canvas.width, 0.98 * canvas.height, 1, 1).data;
+    return g > 200 && r < 160 && b < 160;
+  });
+  await shot(page, "settings");
+});
+
+await test("the camera is written into the text", wide, async (page) => {
+  await open(page);
+  await finished(page);
+  await page.getByRole("tab", { name: "Camera and render" }).click();
+  await page.locator(".picture canvas").focus();
+  await page.keyboard.press("ArrowLeft");
+  await page.getByRole("button", { name: "Write into the scene" }).click();
+  await page.waitForFunction(
+    () => !document.querySelector(".cm-content")?.textContent?.includes("center 0 1.7 9"),
+  );
+  await page.getByRole("button", { name: "Write into the scene", disabled: true }).waitFor();
+});
