@@ -7,7 +7,7 @@ use durer_live::Server;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-/// Show a scene in the browser: edit it, orbit it, and explain its pixels
+/// Show a scene in the browser: edit it, orbit around it, and explain its pixels
 #[derive(Args)]
 #[command(after_help = "Examples:
   durer live scene.txt
@@ -33,7 +33,7 @@ pub fn run(args: &LiveArgs) -> Result<(), Failure> {
     let server = Server::bind(args.port, Some(args.scene.clone()));
     let server = server.map_err(|error| bad(format!("port {}: {error}", args.port)))?;
     let address = server.address().map_err(anyhow::Error::from)?;
-    say(&format!("{address}\nCtrl-C ends"));
+    say(&format!("{address}\nPress Ctrl-C to stop"));
     if args.open {
         let opener = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
         // Ignore errors: the address is printed and can be copied.

@@ -146,7 +146,7 @@ fn invalid_options_are_refused() {
     for (question, answer) in [
         ("", "choose a pixel or a ray"),
         ("--pixel 40,3", "pixel 40,3 is outside the picture of 40 x 30 pixels"),
-        ("--pixel 4;3", "as 200,150"),
+        ("--pixel 4;3", "for example 200,150"),
         ("--pixel 4,3 --sample 16", "no sample 16: the pixel's samples are numbered from 0 to 15"),
         ("--pixel 4,3 --time 1s", "a different number of samples on each run"),
         ("--pixel 4,3 --brightest", "cannot be used with"),
