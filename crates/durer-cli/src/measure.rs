@@ -204,8 +204,9 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         say(&format!("{p},{n},{mean:.6},{error:.6},{c}"));
     }
     if missed {
-        let message = "only BSDF sampling finds some lights (in mirrors or glass, on solids, or textured ones): the errors \
-                       include the effect of one more such sample; use more `--samples`, or `--integrator photons`";
+        let message = "only BSDF sampling finds some lights (in mirrors or glass, on solids, or textured ones): the \
+                       errors include the effect of one more such sample; use more `--samples` or `--integrator \
+                       photons`";
         report::note(&Diagnostic::warning(message).code("RARE_LIGHT"));
     }
     Ok(())

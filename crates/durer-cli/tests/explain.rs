@@ -48,7 +48,7 @@ fn course_samplers_are_explained_with_neighbouring_pixels() {
     assert!(text.contains("(number 3 of pixel 21,14) at 21."), "{text}");
     // Only a count is printed for surfaces that are too far away.
     let text = ran("--sampler uniform --samples 4 --filter tent --filter-radius 0.9");
-    assert!(text.contains(" more samples have no weight here"), "{text}");
+    assert!(text.contains(" more samples have no weight in this pixel"), "{text}");
     let text = ran("--jitter --blur");
     assert!(text.contains("weighted mean of 49 samples: sub-pixels, blurred"), "{text}");
     assert!(text.contains("hits Sphere of line 8"), "{text}");
@@ -67,7 +67,7 @@ fn text_names_objects_by_their_place_in_the_file() {
         "DirectionalLight of line 2: (sum below) · (0.9, 0.9, 0.8)",
         "in eight bits ",
         " alone ",
-        "the shadow ray is free",
+        "the shadow ray is unoccluded",
     ] {
         assert!(ran.out.contains(wanted), "{wanted}\n{}", ran.out);
     }

@@ -182,7 +182,7 @@ fn no_input_is_overwritten() {
     // Saved work never replaces another file.
     for option in ["--checkpoint scene.txt", "--checkpoint here/m.obj", "--shard 1/1"] {
         let output = if option.starts_with("--sh") { "endless.txt" } else { "o.png" };
-        place.refused(2, &format!("render mesh.txt {size} {option} -o {output}"), &["not a part of a picture"]);
+        place.refused(2, &format!("render mesh.txt {size} {option} -o {output}"), &["not a part file"]);
     }
     // Other outputs never replace saved work.
     let part = place.bytes("part.png");
@@ -197,7 +197,7 @@ fn no_input_is_overwritten() {
         assert_eq!(place.bytes("part.png"), part, "{line}");
     }
     place.put("o.png.part", "somebody's download");
-    place.refused(2, &format!("render scene.txt {size} -o o.png"), &["`o.png.part` is not a part of a picture"]);
+    place.refused(2, &format!("render scene.txt {size} -o o.png"), &["`o.png.part` is not a part file"]);
     assert_eq!(place.bytes("o.png.part"), b"somebody's download");
 }
 

@@ -19,9 +19,8 @@ It keeps a change only if the finding is gone afterwards.
 
 JSON: {version, scenes: [{scene, dialect, readable, findings: [{code, severity, whole, message, label, effect, help, place,
 related, fix}], mended: [{code, place, old, new}]}]}. A place is {file, line, column, end_line, end_column, start, end}:
-lines and columns count from 1, start and end are byte
-offsets. `fix` lists {place, text}; `whole` is true if the finding ruins the entire picture. Later versions may add fields,
-but the meaning of a code never changes.
+lines and columns count from 1, start and end are byte offsets. `fix` lists {place, text}; `whole` is true if the finding
+ruins the entire picture. Later versions may add fields, but the meaning of a code never changes.
 
 Exit code: 0 if there are no findings or only notes, 1 if there are warnings, 2 if the scene cannot be rendered or an option
 is invalid.")]

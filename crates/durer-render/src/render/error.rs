@@ -47,7 +47,7 @@ pub enum RenderError {
         allowed: u64,
     },
     /// The part belongs to another scene.
-    #[error("this part belongs to another scene")]
+    #[error("this part belongs to a different scene")]
     OtherScene,
     /// A bug in this program.
     #[error(transparent)]
