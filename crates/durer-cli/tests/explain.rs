@@ -50,7 +50,7 @@ fn course_samplers_are_explained_with_neighbouring_pixels() {
     let text = ran("--sampler uniform --samples 4 --filter tent --filter-radius 0.9");
     assert!(text.contains(" more samples have no weight in this pixel"), "{text}");
     let text = ran("--jitter --blur");
-    assert!(text.contains("weighted mean of 49 samples: sub-pixels, blurred"), "{text}");
+    assert!(text.contains("weighted mean of 49 samples: subpixels, blurred"), "{text}");
     assert!(text.contains("hits Sphere of line 8"), "{text}");
     assert_eq!(ran("--sampler random --samples 5").matches("  sample ").count(), 5);
 }
