@@ -100,7 +100,7 @@ pub(crate) fn set_field(camera: &mut Camera, word: &str, numbers: &[f32]) -> Res
         (Some(Value::Vec3(_)), &[x, y, z]) => Value::Vec3(Vec3::new(x, y, z)),
         (Some(Value::Int(_)), &[x]) if x >= 0.0 => Value::Int(x as u32),
         (_, &[x]) => Value::Float(x),
-        _ => return Err(format!("`{word}` takes another type or count of values")),
+        _ => return Err(format!("`{word}` takes values of another type or number")),
     };
     fields[at].rule.validate(&value).map_err(|wrong| format!("`{word}` {wrong}"))?;
     let mut changed = camera.clone();

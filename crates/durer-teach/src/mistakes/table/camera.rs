@@ -20,7 +20,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "one-ray",
         "supersampling",
-        "there is one ray per pixel, but the reference has many",
+        "there is one ray per pixel, but the reference uses many",
         "the mean of many samples",
         "one ray through the center of each pixel",
         |v, _| v.aim.rays = Rays::One,
@@ -28,7 +28,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "many-rays",
         "supersampling",
-        "each pixel is the mean of many rays, but the reference has one",
+        "each pixel is the mean of many rays, but the reference uses one",
         "one ray through the center of each pixel",
         "the mean of many samples",
         |v, _| v.aim.rays = Rays::Sixteen,
@@ -52,7 +52,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "aspect-smaller-side",
         "rays",
-        "in a non-square picture the angle spans the smaller side instead of the larger one",
+        "in a non-square picture, the angle spans the smaller side instead of the larger one",
         "larger side from -1 to 1, the other less",
         "smaller side from -1 to 1, the other more",
         |v, _| v.aim.aspect = Aspect::Smaller,

@@ -111,7 +111,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "halved",
         "rays",
-        "the picture has half the resolution, doubled",
+        "the picture is rendered at half the resolution and scaled up",
         "one ray per pixel",
         "one ray per two by two pixels",
         |v, _| {
