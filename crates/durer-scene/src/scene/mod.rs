@@ -134,13 +134,13 @@ impl Background {
         let [hour, minute, second] = time.to_array().map(f64::from);
         let sixty = 0.0..60.0;
         if !(0.0..=24.0).contains(&hour) || !sixty.contains(&minute) || !sixty.contains(&second) {
-            return Err("`time` does not exist: write hours, minutes and seconds, as 14 30 0".into());
+            return Err("this `time` does not exist: write hours, minutes and seconds, for example 14 30 0".into());
         }
         let date = date.to_array().map(|part| part as i32);
         let hours = hour + minute / 60.0 + second / 3600.0;
         let moment = Moment { date, hours, zone: f64::from(self.time_zone.unwrap_or(0.0)) };
         if !moment.exists() {
-            return Err("`date` does not exist: write year, month and day, as 2026 6 21".into());
+            return Err("this `date` does not exist: write year, month and day, for example 2026 6 21".into());
         }
         Ok(Some(almanac::way(almanac::sun([latitude, longitude].map(f64::from), &moment))))
     }
