@@ -22,7 +22,7 @@ const DASK: &str = include_str!("farm/dask.py");
   durer farm walk.glb --template slurm --frames 0-239 --fps 24 --samples 64 > job.sh && sbatch job.sh
 
 Each shard is a `durer render --shard` command that can be repeated on another machine. `durer merge` produces the same
-bytes as a single run. Render options come after the farm options and are checked when the job file is printed.")]
+bytes as a single run. Options of `durer render` come after the farm options and are checked when the job file is printed.")]
 pub struct FarmArgs {
     /// Scene file
     pub scene: PathBuf,
@@ -37,7 +37,7 @@ pub struct FarmArgs {
     /// Picture to write [default: the scene's name with .exr]
     #[arg(short, long, value_name = "PICTURE")]
     pub output: Option<PathBuf>,
-    /// Render options
+    /// Options of `durer render`
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "OPTIONS")]
     pub options: Vec<String>,
 }

@@ -8,7 +8,7 @@ use durer::compile::Kept;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Frames of an animation, and how they differ
+/// Frames of an animation
 #[derive(Args, Clone)]
 #[command(next_help_heading = "Animation")]
 pub struct FramesArgs {

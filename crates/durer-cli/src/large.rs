@@ -37,7 +37,7 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
         (args.stats, "--stats"),
     ] {
         if given {
-            return refuse(&format!("{option} needs the whole picture in memory"));
+            return refuse(&format!("{option} needs the full picture in memory"));
         }
     }
     // The scene's size is not known yet: reserve half of the memory for it.

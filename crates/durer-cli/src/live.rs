@@ -18,7 +18,7 @@ The page is served on this machine only, at a URL with a random token. To reach 
 pub struct LiveArgs {
     /// Scene or model file
     pub scene: PathBuf,
-    /// Port; 0 for any free port
+    /// Port to listen on; 0 for any free port
     #[arg(long, default_value_t = 0)]
     pub port: u16,
     /// Open the page in the browser

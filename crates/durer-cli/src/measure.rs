@@ -19,7 +19,7 @@ use durer::world::World;
 use rayon::prelude::*;
 use std::path::PathBuf;
 
-/// Measure illuminance and irradiance at points of a scene, as CSV with standard errors
+/// Measure illuminance and irradiance at points in a scene, as CSV with standard errors
 #[derive(Args)]
 #[command(mut_arg("at", |moment| moment.long("moment")), after_help = "Examples:
   durer measure room.txt --at 0,0.8,0
@@ -45,12 +45,12 @@ pub struct MeasureArgs {
     /// Grid of points: a corner, two edges, and the number of points along each edge
     #[arg(long, value_name = "CORNER:EDGE:EDGE:NxM", value_parser = grid, allow_hyphen_values = true)]
     pub grid: Vec<Grid>,
-    /// Threads [default: one per processor]
+    /// Number of threads [default: one per processor]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     #[command(flatten)]
     pub reading: SceneArgs,
-    /// Maximum number of scattering events before light arrives
+    /// Maximum number of scattering events before light reaches the point
     #[arg(long, default_value_t = durer::job::PATH_BOUNCES, value_parser = clap::value_parser!(u32).range(0..=256))]
     pub bounces: u32,
     #[command(flatten)]
@@ -58,7 +58,7 @@ pub struct MeasureArgs {
     /// Samples per point
     #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u32).range(2..=1 << 24))]
     pub samples: u32,
-    /// Seed of the random numbers
+    /// Seed of the random number generator
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
 }

@@ -19,7 +19,7 @@ use std::time::Duration;
 pub use job::{JobArgs, accel, aspect};
 pub use method::MethodArgs;
 
-/// Options of reading a scene
+/// Options for reading a scene
 #[derive(Args)]
 pub struct SceneArgs {
     #[arg(long, value_parser = PossibleValuesParser::new(Dialect::ALL.map(Dialect::name)), help = doc("dialect"))]
@@ -38,7 +38,7 @@ pub struct SceneArgs {
     pub staging: StagingArgs,
 }
 
-/// Options of rendering a picture
+/// Options for rendering a picture
 #[derive(Args)]
 pub struct RenderArgs {
     /// Scene or model file
@@ -86,12 +86,12 @@ pub struct ViewArgs {
     /// luminance error (noise plus photon bias) at 90 % confidence
     #[arg(long, value_delimiter = ',', default_value = "color", value_parser = PossibleValuesParser::new(shows()))]
     pub show: Vec<String>,
-    /// Size of a pixel in the pictures `samples` and `filter`, in pixels
+    /// Magnification of the `samples` and `filter` pictures, in output pixels per rendered pixel
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub zoom: u32,
 }
 
-/// Options of threads, time and saved work
+/// Options for threads, time and saved work
 #[derive(Args)]
 pub struct WorkArgs {
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024), help = doc("threads"))]

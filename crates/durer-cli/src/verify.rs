@@ -36,7 +36,7 @@ pub struct VerifyArgs {
     pub view: ViewArgs,
     #[command(flatten)]
     pub job: JobArgs,
-    /// Number of ways to try
+    /// Number of ways to render the scene
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub trials: u32,
     /// Print only the hash

@@ -72,7 +72,7 @@ const OPTIONS: [Row; 32] = [
 
 /// Dürer's own options, which only affect execution.
 const CONTROL: [Row; 4] = [
-    Row("--seed", &["N"], set::ALL, "seed of the random numbers"),
+    Row("--seed", &["N"], set::ALL, "seed of the random number generator"),
     Row("--threads", &["N"], set::ALL, "threads"),
     Row("--quiet", &[], set::ALL, "print only errors"),
     Row("--allow-outside", &[], set::ALL, "allow files outside the scene's folder"),
@@ -163,7 +163,7 @@ impl Given {
             .options
             .iter()
             .filter(|(row, _)| row.2 != set::ALL)
-            .map(|(row, _)| Hint { set: row.2, why: format!("`{}` is an option of that year", row.0), weak: false })
+            .map(|(row, _)| Hint { set: row.2, why: format!("`{}` is an option of that year's program", row.0), weak: false })
             .collect();
         let extension = self.text("-output").and_then(|name| Path::new(name).extension()?.to_str());
         let wanted =

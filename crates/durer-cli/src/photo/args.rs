@@ -4,7 +4,7 @@ use crate::options::{JobArgs, SceneArgs};
 use clap::{ArgGroup, Args, Subcommand};
 use std::path::PathBuf;
 
-/// Reconstruct cameras and points from photographs, and make a tour of them
+/// Reconstruct cameras and points from photographs, and make a virtual tour of them
 #[derive(Args)]
 #[command(after_help = "Examples:
   durer photo match photos/ -o matches.json
@@ -48,7 +48,7 @@ pub struct MatchArgs {
     /// Scale photographs down so that the longer side has at most this many pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 1600, value_parser = clap::value_parser!(u32).range(64..=20_000))]
     pub side: u32,
-    /// Horizontal field of view if EXIF has no focal length
+    /// Horizontal field of view for photographs whose EXIF has no focal length
     #[arg(long, value_name = "DEGREES", default_value_t = 45.0, value_parser = field)]
     pub field: f64,
     /// Ignore the focal length in EXIF
@@ -61,10 +61,10 @@ pub struct MatchArgs {
 /// Seed, threads and messages
 #[derive(Args)]
 pub struct RunArgs {
-    /// Seed of the random numbers
+    /// Seed of the random number generator
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Threads [default: one per processor]
+    /// Number of threads [default: one per processor]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Print only errors
@@ -72,7 +72,7 @@ pub struct RunArgs {
     pub quiet: bool,
 }
 
-/// Output files of cameras and points
+/// Output files for cameras and points
 #[derive(Args)]
 pub struct ResultArgs {
     /// File to write, by extension: .out (Bundler), .txt (BAL), .json (OpenSfM), .ply, .gltf, or a
@@ -174,7 +174,7 @@ pub struct CameraArgs {
     pub quiet: bool,
 }
 
-/// Insert objects of a scene into a photograph, with their shadows
+/// Insert objects from a scene into a photograph, with their shadows
 #[derive(Args)]
 #[command(after_help = "Examples:
   durer photo place table.txt --backplate table.jpg -o placed.png
@@ -201,7 +201,7 @@ pub struct PlaceArgs {
     pub reading: SceneArgs,
     #[command(flatten)]
     pub job: JobArgs,
-    /// Threads [default: one per processor]
+    /// Number of threads [default: one per processor]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Print only errors
@@ -218,10 +218,10 @@ pub struct PlaceArgs {
 pub struct ExplainArgs {
     /// File or folder of cameras and points
     pub file: PathBuf,
-    /// Number of a point, from 0
+    /// Number of the point to explain, counted from 0
     #[arg(long, value_name = "NUMBER", group = "asked")]
     pub point: Option<usize>,
-    /// Name or number of a photograph, from 0
+    /// Name or number of the photograph to explain, counted from 0
     #[arg(long, value_name = "NAME", group = "asked")]
     pub camera: Option<String>,
     /// Folder of photographs, needed if the file does not contain their sizes

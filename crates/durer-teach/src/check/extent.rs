@@ -97,7 +97,7 @@ pub(super) fn too_narrow(scout: &SceneProbe) -> Vec<Finding> {
                 let whole = degrees.round().clamp(20.0, 100.0);
                 diagnostic = diagnostic
                     .fix(place, number(whole))
-                    .help(format!("angles are in degrees, but in radians it would be {} degrees: try `{whole}`", number(degrees)));
+                    .help(format!("angles are in degrees; if this value is in radians, it is {} degrees: try `{whole}`", number(degrees)));
             }
             vec![Finding::from(scout.at_value(diagnostic, span, &["angle", "fov"])).whole(true)]
         }

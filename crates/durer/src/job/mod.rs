@@ -150,7 +150,7 @@ options! {
         /// Take more samples in noisy pixels and fewer in others: a quarter of --samples measures
         /// the noise, and the rest are distributed accordingly
         adaptive: bool = "adaptive", OptionForm::Flag;
-        /// Seed of the random numbers
+        /// Seed of the random number generator
         seed: u64 = "seed", OptionForm::Value("SEED");
     }
 }

@@ -42,7 +42,8 @@ pub(super) const READING: &[Row] = &[
         "compat",
         OptionForm::Value("NAME"),
         |to, text| text.split(',').try_for_each(|name| Ok(to.load.compat.push(compat(name)?))),
-        "Enable a quirk of an old program, or disable it with the prefix `no-`; `durer dialects` lists them all",
+        "Enable a quirk of an official program, or disable it with the prefix `no-`; `durer dialects` lists all \
+         quirks",
     ),
     row(
         "strict",

@@ -37,7 +37,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "border-pixels",
         "rays",
         "the first and last pixels are centered on the picture's border instead of inside it, or the reverse",
-        "as in that year: (i + 0.5) / n, or i / (n - 1)",
+        "as in that year's program: (i + 0.5) / n, or i / (n - 1)",
         "the other",
         |v, _| v.toggle(Compat::BorderPixels),
     ),
@@ -45,7 +45,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "stretch",
         "rays",
         "a non-square picture is stretched instead of cropped, or the reverse",
-        "as in that year: both axes in units of the larger side, or each in its own",
+        "as in that year's program: both axes in units of the larger side, or each in its own",
         "the other",
         |v, _| v.toggle(Compat::Stretch),
     ),
@@ -114,7 +114,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "up-not-orthogonal",
         "rays",
         "the camera's up is made perpendicular to its direction although it should not be, or the reverse",
-        "as in that year: v = cross(u, w), or `up` as written",
+        "as in that year's program: v = cross(u, w), or `up` as written",
         "the other",
         |v, _| {
             let raw = v.world.camera_rules().up != UpRule::Perpendicular;

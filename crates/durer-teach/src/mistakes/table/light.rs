@@ -34,7 +34,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "ambient-textured",
         "diffuse",
         "the ambient light is multiplied by the texture (or noise) instead of the diffuse colour, or vice versa",
-        "as in that year: ambient * texel, or ambient * diffuseColor",
+        "as in that year's program: ambient * texel, or ambient * diffuseColor",
         "the other one",
         |v, _| v.phongs(|phong| phong.ambient = phong.ambient.xor(Some(phong.diffuse))),
     ),

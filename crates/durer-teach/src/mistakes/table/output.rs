@@ -86,7 +86,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "other-rounding",
         "flat",
         "values are rounded instead of truncated, or the reverse: they differ by 1",
-        "as in that year: (int) (c * 255), or round(c * 255)",
+        "as in that year's program: (int) (c * 255), or round(c * 255)",
         "the other",
         |v, _| v.output = Output::OtherRounding,
     ),
