@@ -23,7 +23,9 @@ pub fn is_large(job: &Job, needed: u64, memory: Option<u64>) -> bool {
 pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>) -> Result<Bands, Failure> {
     let refuse = |why: &str| Err(failed(RenderError::Bands(why.into())));
     let (work, window) = (&args.work, job.window());
-    let Some((_, format)) = target.single() else { return refuse("it includes pictures other than the colour picture") };
+    let Some((_, format)) = target.single() else {
+        return refuse("it includes pictures other than the colour picture");
+    };
     if format.rows.is_none() {
         let others: Vec<_> = FORMATS.iter().filter(|format| format.rows.is_some()).map(|format| format.name).collect();
         return refuse(&format!("{} needs all rows at once; use one of {}", format.name, others.join(", ")));

@@ -249,7 +249,11 @@ fn border_pixels_and_missing_shadows_are_recognised() {
     // A fine pattern changes everywhere: pixels alone give no diagnosis.
     assert!(!words("border").contains("noise"), "{}", words("border"));
     // Brightness has many possible causes: pixels alone give no diagnosis.
-    assert!(words("bare").contains("and the rest is equal: the pictures alone do not show the cause"), "{}", words("bare"));
+    assert!(
+        words("bare").contains("and the rest is equal: the pictures alone do not show the cause"),
+        "{}",
+        words("bare")
+    );
     let tried = |name: &str| place.gives(1, &format!("compare right.png {name}.png --scene whitted.txt")).out;
     assert!(tried("bare").contains("there are no shadows: explains 100.0 %"), "{}", tried("bare"));
     assert!(tried("border").contains("on the picture's border"), "{}", tried("border"));

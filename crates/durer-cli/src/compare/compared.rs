@@ -73,7 +73,8 @@ fn explained(found: &Comparison) -> Vec<String> {
     if found.findings.is_empty() {
         return vec![
             "the pictures alone do not reveal the cause; pass `--scene` and the options that the reference was \
-             rendered with".into(),
+             rendered with"
+                .into(),
         ];
     }
     let line = |(i, finding): (usize, &Finding)| {

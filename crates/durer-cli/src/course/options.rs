@@ -163,7 +163,11 @@ impl Given {
             .options
             .iter()
             .filter(|(row, _)| row.2 != set::ALL)
-            .map(|(row, _)| Hint { set: row.2, why: format!("`{}` is an option of that year's program", row.0), weak: false })
+            .map(|(row, _)| Hint {
+                set: row.2,
+                why: format!("`{}` is an option of that year's program", row.0),
+                weak: false,
+            })
             .collect();
         let extension = self.text("-output").and_then(|name| Path::new(name).extension()?.to_str());
         let wanted =

@@ -61,8 +61,10 @@ pub(super) fn black(scout: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic::warning(format!("material {i} is black: it reflects no light"))
             .label(format!("on {} of the visible surfaces", percent(rays(scout, *i), all)))
             .effect("its objects are black under any light")
-            .help("`diffuseColor` is the fraction of light that the material reflects; for example, `0.8 0.8 0.8` \
-                   is a light grey");
+            .help(
+                "`diffuseColor` is the fraction of light that the material reflects; for example, `0.8 0.8 0.8` \
+                   is a light grey",
+            );
         let diagnostic = scout.at_value(diagnostic, written.span, &["diffuseColor", "diffuse"]);
         Finding::from(diagnostic).whole(whole)
     };
@@ -152,8 +154,10 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
         let dark = phong.diffuse.max_element() < 0.3 && phong.texture.is_none();
         if own.refraction_index == Some(0.0) && dark && scout.value(written.span, &["refractionIndex"]).is_some() {
             let diagnostic = Diagnostic::warning(format!("material {i} has an index of refraction of 0"))
-                .effect("this year's program does not treat it as glass: it transmits no light, and reflects by \
-                         its `specularColor`")
+                .effect(
+                    "this year's program does not treat it as glass: it transmits no light, and reflects by \
+                         its `specularColor`",
+                )
                 .help("glass has 1.5, water 1.33; for a mirror remove `refractionIndex`");
             found.push(Finding::from(scout.at_value(diagnostic, written.span, &fields)));
         }
@@ -365,11 +369,15 @@ fn dull_by_color(scout: &SceneProbe) -> Vec<Finding> {
         _ => false,
     };
     let say = |(i, written, _): (u32, &Spanned<Written>, &Phong)| {
-        let diagnostic = Diagnostic::warning(format!("material {i} has the index of refraction of glass, but \
-                                                      transmits no light"))
-            .effect("its `transparentColor` is black: its objects are dark and opaque")
-            .help("`transparentColor` is the fraction of light that the material transmits; for example, `0.9 0.9 \
-                   0.9` is clear");
+        let diagnostic = Diagnostic::warning(format!(
+            "material {i} has the index of refraction of glass, but \
+                                                      transmits no light"
+        ))
+        .effect("its `transparentColor` is black: its objects are dark and opaque")
+        .help(
+            "`transparentColor` is the fraction of light that the material transmits; for example, `0.9 0.9 \
+                   0.9` is clear",
+        );
         Finding::from(scout.at_value(diagnostic, written.span, &["transparentColor", "indexOfRefraction"]))
     };
     phongs(scout).filter(dull).take(MAX_SOUGHT).map(say).collect()

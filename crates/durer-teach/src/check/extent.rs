@@ -41,13 +41,15 @@ pub(super) fn too_small(scout: &SceneProbe) -> Vec<Finding> {
     }
     let (span, larger) = (scout.subject.scene.camera_span, scout.larger());
     let wanted = 0.6 * larger / size.max(1e-6);
-    let diagnostic =
-        Diagnostic::warning(format!("all objects together are {} pixels wide in a picture of {larger} pixels", number(size)))
-            .effect(if empty && size < FEWEST_PIXELS {
-                "every ray misses them, so the picture shows only the background"
-            } else {
-                "they are hardly visible"
-            });
+    let diagnostic = Diagnostic::warning(format!(
+        "all objects together are {} pixels wide in a picture of {larger} pixels",
+        number(size)
+    ))
+    .effect(if empty && size < FEWEST_PIXELS {
+        "every ray misses them, so the picture shows only the background"
+    } else {
+        "they are hardly visible"
+    });
     let (diagnostic, field) = match scout.world().camera() {
         Camera::Perspective(camera) if camera.angle > 90.0 => {
             (diagnostic.help("use a smaller field of view, such as 40 degrees, or move closer"), "angle")
@@ -95,9 +97,10 @@ pub(super) fn too_narrow(scout: &SceneProbe) -> Vec<Finding> {
                     .help("angles are in degrees; 30 to 60 is usual");
             if let Some(place) = scout.value(span, &["angle", "fov"]).filter(|_| radians(camera.angle)) {
                 let whole = degrees.round().clamp(20.0, 100.0);
-                diagnostic = diagnostic
-                    .fix(place, number(whole))
-                    .help(format!("angles are in degrees; if this value is in radians, it is {} degrees: try `{whole}`", number(degrees)));
+                diagnostic = diagnostic.fix(place, number(whole)).help(format!(
+                    "angles are in degrees; if this value is in radians, it is {} degrees: try `{whole}`",
+                    number(degrees)
+                ));
             }
             vec![Finding::from(scout.at_value(diagnostic, span, &["angle", "fov"])).whole(true)]
         }

@@ -105,8 +105,10 @@ pub(super) fn shifted(scout: &SceneProbe, middle: Vec3) -> Option<Diagnostic> {
     (forward > 0.0 && across < (sine / cosine) as f32).then(|| {
         let diagnostic = Diagnostic::warning(format!("the film shift misses everything: `{word} {}`", number(shift)))
             .effect("the objects in front of the lens are outside the picture")
-            .help("the shift is relative to half the picture's larger side, so 1 moves the center to the edge: try \
-                   0 or 0.3");
+            .help(
+                "the shift is relative to half the picture's larger side, so 1 moves the center to the edge: try \
+                   0 or 0.3",
+            );
         let value = scout.value(span, &[word]);
         scout.at_value(diagnostic.fix_at(value, "0"), span, &[word])
     })

@@ -104,8 +104,10 @@ pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
         let (diagnostic, _) = useless(scout, light, message)?;
         let has_position = scout.world().lights()[light].position().is_some();
         let help = match (scout.world().objects()[object as usize].bounds(), has_position) {
-            (None, false) => "the light comes from behind the plane: negate its `direction`, the direction in which \
-                              the light travels",
+            (None, false) => {
+                "the light comes from behind the plane: negate its `direction`, the direction in which \
+                              the light travels"
+            }
             (None, true) => "the light is behind the plane: move it to the other side",
             (Some(_), false) => "turn the light, or move the occluder",
             (Some(_), true) => "move the light or the occluder",
@@ -167,8 +169,10 @@ fn mostly_dark(scout: &SceneProbe) -> Vec<Finding> {
             true => "most of the picture shows only ambient light, flat and dark",
             false => "most of the picture is black",
         })
-        .help("the light is behind the visible surfaces: `direction` is the direction in which the light travels, \
-               `position` its place");
+        .help(
+            "the light is behind the visible surfaces: `direction` is the direction in which the light travels, \
+               `position` its place",
+        );
     diagnostic = scout.at_value(diagnostic, span, &["direction", "position"]);
     // If the lights face away together, each `direction` probably points towards its source.
     for &light in &working {
@@ -219,8 +223,10 @@ fn grazing(scout: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
             let direction = lamp.direction()?;
             let tilted = vector(direction - 0.7 * direction.length() * n);
             let value = scout.value(span, &["direction"]);
-            let help = format!("`direction` is the direction in which the light travels: `direction {tilted}` \
-                                reaches the surface");
+            let help = format!(
+                "`direction` is the direction in which the light travels: `direction {tilted}` \
+                                reaches the surface"
+            );
             Some(scout.at_value(diagnostic.fix_at(value, tilted), span, &["direction"]).help(help))
         }
         Some(from) => {

@@ -215,8 +215,10 @@ fn pair(scout: &SceneProbe, first: usize, second: usize) -> Finding {
     .related(a, "the same surface")
     .effect(match alike {
         true => "it contributes nothing; if it is glass, refraction through it is wrong",
-        false => "rounding decides which of the two surfaces is visible: there are specks, or only one material \
-                  appears",
+        false => {
+            "rounding decides which of the two surfaces is visible: there are specks, or only one material \
+                  appears"
+        }
     })
     .help("remove or move one of them");
     Finding::from(diagnostic)

@@ -78,10 +78,8 @@ fn missing_mesh_is_reported_once_with_a_similar_name() {
     let found = findings(&(mesh("tir.obj") + "\n").repeat(100));
     assert_eq!(
         found,
-        [
-            "scene/scene.txt:5:25 error: the mesh cannot be read: the file `tir.obj` does not exist (did you \
-          mean `tri.obj`? Looked for scene/tir.obj)"
-        ]
+        ["scene/scene.txt:5:25 error: the mesh cannot be read: the file `tir.obj` does not exist (did you \
+          mean `tri.obj`? Looked for scene/tir.obj)"]
     );
     // Thousands of them take little time.
     let many: String = (0..20_000).map(|i| mesh(&format!("{i}.obj"))).collect();

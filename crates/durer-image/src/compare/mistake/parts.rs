@@ -64,8 +64,7 @@ fn cut_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     // A black pixel may have any cause; single missing components do not.
     let some = |s: &&&Sample| cut(s) != s.reference && s.test != Vec3::ZERO;
     let explained = 1.0 - rest / difference(samples);
-    let words =
-        "components of its normals that should be positive are 0: negative values are clamped (take absolute values \
+    let words = "components of its normals that should be positive are 0: negative values are clamped (take absolute values \
          instead)";
     (unit.iter().filter(some).count() * 20 > unit.len()).then(|| Finding {
         kind: "normals-cut-off",
@@ -146,7 +145,8 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     });
     let is_even = sum.abs() < 0.6 * all;
     let cause = if others < SMOOTHER * own {
-        is_even.then(|| "the reference is antialiased there, but it is not (samples without effect, or no filter)".into())
+        is_even
+            .then(|| "the reference is antialiased there, but it is not (samples without effect, or no filter)".into())
     } else if own < SMOOTHER * others {
         is_even.then(|| "it is antialiased there, but the reference is not (more samples, or a filter)".into())
     } else {
@@ -213,7 +213,11 @@ fn speckles(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding
     let share = seen.len() as f64 / samples.len() as f64;
     let (up, down): (Vec<Sample>, Vec<Sample>) = seen.iter().copied().copied().partition(brighter);
     let (kind, words, part) = if down.len() > up.len() {
-        ("dark-speckles", "dark speckles: shadow acne, from rays that hit the surface they start on (the epsilon)", down)
+        (
+            "dark-speckles",
+            "dark speckles: shadow acne, from rays that hit the surface they start on (the epsilon)",
+            down,
+        )
     } else {
         ("bright-speckles", "bright speckles: noise, or rays that miss objects they should hit", up)
     };

@@ -47,8 +47,10 @@ pub fn of(rule: &Rule) -> String {
         }
         Rule::CurveOnceMore => "the sRGB curve (gamma) is applied once too often: its values are too bright".into(),
         Rule::CurveOnceLess => "the sRGB curve (gamma) is missing once: its values are too dark".into(),
-        Rule::Power(exponent) => format!("its values are the reference's to the power of {exponent:.2}: a different \
-                                          gamma"),
+        Rule::Power(exponent) => format!(
+            "its values are the reference's to the power of {exponent:.2}: a different \
+                                          gamma"
+        ),
         Rule::Factor(factor) => format!("it is {} by a factor of {factor:.3}", brightness(factor > 1.0)),
         Rule::LightFactor(factor) => {
             format!("its light is {} by a factor of {factor:.3} (before the sRGB curve)", brightness(factor > 1.0))

@@ -36,7 +36,8 @@ impl Explanation {
         let mut said = vec![format!("sample {number} alone is {:.0} % of the pixel", 100.0 * share)];
         said.extend(self.samples[number].light.iter().flat_map(cause));
         said.push(
-            "more samples make such pixels rarer, not darker; `--clamp 10` limits them but also removes some light".into(),
+            "more samples make such pixels rarer, not darker; `--clamp 10` limits them but also removes some light"
+                .into(),
         );
         said
     }
@@ -89,8 +90,11 @@ fn cause(light: &Tree) -> Vec<String> {
                 number(*mis)
             ));
             if *choice < 0.1 {
-                said.push("the light tree estimated this light as dim, and the sample is divided by that low \
-                           probability".into());
+                said.push(
+                    "the light tree estimated this light as dim, and the sample is divided by that low \
+                           probability"
+                        .into(),
+                );
             }
         }
         _ => {}

@@ -332,7 +332,10 @@ fn node_lines(
             format!("caustics: {value}")
         }
         TermKind::OneWavelength { nm } => {
-            format!("dispersion: only {} nm continues and stands for all four wavelengths: {factor} · {value}", number(*nm))
+            format!(
+                "dispersion: only {} nm continues and stands for all four wavelengths: {factor} · {value}",
+                number(*nm)
+            )
         }
         TermKind::Sky if node.throughput.is_some() => format!("background: {value}"),
         TermKind::Sky => "background".into(),
