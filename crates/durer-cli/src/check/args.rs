@@ -13,8 +13,7 @@ use std::path::PathBuf;
   durer check scene.txt --fix -o mended.txt
   durer check class/*.txt --json
 
-Pass the same options as to `durer render`, because the findings depend on them. Causes are listed before their
-consequences. --fix applies mechanical fixes, in place or to FILE, and prints what it changed and which findings are left.
+Pass the same options as to `durer render`, because the findings depend on them. Causes are listed before their consequences. --fix applies mechanical fixes, in place or to FILE, and prints what it changed and which findings are left.
 It keeps a change only if the finding is gone afterwards.
 
 JSON: {version, scenes: [{scene, dialect, readable, findings: [{code, severity, whole, message, label, effect, help, place,

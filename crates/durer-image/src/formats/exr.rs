@@ -164,8 +164,8 @@ fn chosen(meta: &MetaData) -> Result<(&Header, [Text; 3]), ImageError> {
     single.ok_or_else(|| ImageError::unsupported(NAME, "it has neither channels R, G and B nor a channel Y"))
 }
 
-/// The width and height of the window that is shown, and where the pixels that are there begin in it:
-/// those of a crop fill a part of it, and some programs make more than is shown.
+/// Returns the size of the display window, and the offset of the stored pixels in it. A crop fills
+/// only a part of the window, and some programs store more than is displayed.
 fn window(header: &Header) -> (Vec2<usize>, Vec2<i64>) {
     let shown = header.shared_attributes.display_window;
     let from = header.own_attributes.layer_position;

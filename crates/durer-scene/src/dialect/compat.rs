@@ -83,8 +83,8 @@ compats! {
     MirroredBack = "mirrored-back",
     /// The background is black in depth pictures even if distant surfaces are white.
     BlackSky = "black-sky",
-    /// Where nothing is hit, a normal picture shows the normal of the previous hit, in rows from
-    /// the bottom.
+    /// A normal picture shows the normal of the previous hit where nothing is hit, in rows from the
+    /// bottom.
     StaleNormals = "stale-normals",
     /// The range of a depth picture is truncated to integers.
     WholeDepths = "whole-depths",

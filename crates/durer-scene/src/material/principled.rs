@@ -228,8 +228,8 @@ described! {
         /// `thin`: a sheet without an inside, which light crosses in a straight line. `solid`: the
         /// surface of a solid object.
         walls: Walls = Walls::Solid, optional, Rule::Any, ["walls" in set::DURER];
-        /// `shown`: both sides are visible. `hidden`: faces that are turned away from the camera or
-        /// from a point or directional light are transparent to it. `black`: faces turned away
+        /// `shown`: both sides are visible. `hidden`: faces that are turned away from the camera,
+        /// or from a light without extent, are transparent to it. `black`: faces turned away
         /// scatter no light.
         backs: Backs = Backs::Shown, optional, Rule::Any, ["backs" in set::DURER];
     }
