@@ -38,7 +38,7 @@ mod tests {
     use crate::{Bvh, TraversalStats};
 
     fn scattered(count: usize) -> Vec<Aabb> {
-        let mut random = Random::new(3);
+        let mut random = Random(3);
         let mut place = || Vec3::from([(); 3].map(|()| 10.0 * random.unit() - 5.0));
         (0..count).map(|_| place()).map(|min| Aabb { min, max: min + 0.3 }).collect()
     }

@@ -49,7 +49,7 @@ pub enum Command {
     Convert(ConvertArgs),
     Compare(Box<CompareArgs>),
     Photo(PhotoArgs),
-    /// List the dialects of the scene language and the quirks of the old programs
+    /// List the dialects of the scene language and the quirks of the official programs
     #[command(after_help = "Example:\n  durer dialects")]
     Dialects,
     /// Look up a word of the scene language: its fields, its dialects, and an example
@@ -60,7 +60,7 @@ pub enum Command {
     /// Print shell completions to standard output
     #[command(after_help = "Example:\n  durer completions bash > ~/.local/share/bash-completion/completions/durer")]
     Completions {
-        /// Shell
+        /// Shell to print completions for
         shell: clap_complete::Shell,
     },
     /// Print the manual page to standard output

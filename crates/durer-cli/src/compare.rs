@@ -40,7 +40,7 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
     let found = pairs::find(&args.reference, &args.picture)?;
     let heat_format = args.heat.as_deref().map(format).transpose()?;
     if args.heat.is_some() && found.folders {
-        return Err(bad("`--heat` takes two pictures; for folders, use `--report`, which has the heat maps"));
+        return Err(bad("`--heat` compares two pictures; for folders, use `--report`, which includes heat maps"));
     }
     let mut guard = Guard::default();
     for pair in &found.pairs {
@@ -157,7 +157,7 @@ fn read_both(paths: [&Path; 2], memory: u64) -> Result<[Picture; 2], String> {
     if needed > memory {
         let (needed, memory) = (at_least(needed), at_most(memory));
         return Err(format!(
-            "{both}: comparing them needs about {needed} of memory, and the limit is {memory}; see --memory"
+            "{both}: comparing them needs about {needed} of memory, but the limit is {memory}; see --memory"
         ));
     }
     let decode = |picture: &Encoded, path: &Path| {

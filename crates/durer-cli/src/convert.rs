@@ -78,7 +78,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         let (mesh, left_out) = world.ok_or(Failure::Input(None))?.merged_mesh();
         if left_out > 0 {
             let objects = counted(left_out, "object");
-            let message = format!("left out {objects} without triangles: {} holds only meshes", format.name);
+            let message = format!("left out {objects} without triangles: {} can store only meshes", format.name);
             report::note(&Diagnostic::warning(message));
         }
         return output::save(&[(&place, (format.write)(&mesh))], false);
@@ -96,7 +96,8 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let folder = plain(&stem);
     if folder == name {
         return Err(bad(
-            "the output needs an extension, as in `scene.txt`: the name without it becomes the folder of the model's files",
+            "the output needs an extension, for example `scene.txt`: the name without the extension is the folder \
+             for the model's files",
         ));
     }
     let (scene, files) = loaded.put_beside(&folder);
@@ -106,7 +107,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let mut all = files.into_iter().map(writes).collect::<Result<Vec<_>, Failure>>()?;
     all.push((place, text(&scene)));
     if let Some(options) = asked_for(&loaded.scene.wishes) {
-        let message = "the file also sets size and quality of its picture, which the scene's text cannot hold";
+        let message = "the file also sets the size and quality of its picture, which a scene file cannot store";
         report::note(&Diagnostic::note(message).help(format!("render it with `{options}`")));
     }
     let (places, contents): (Vec<_>, Vec<_>) = all.into_iter().unzip();

@@ -30,7 +30,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Accept the arguments of the course's own programs, of any year
+/// Accept the arguments of the course's own programs from any year
 #[derive(Args)]
 #[command(
     disable_help_flag = true,
@@ -40,7 +40,7 @@ use std::sync::atomic::Ordering::Relaxed;
 `durer course --help` lists the options."
 )]
 pub struct CourseArgs {
-    /// Arguments as for the course's programs
+    /// Arguments of the course's programs
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
     pub arguments: Vec<String>,
 }
@@ -57,7 +57,7 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     let quiet = given.has("--quiet");
     let options = load_options(&given, program_name)?;
     given.check_unknown(options.dialect, quiet)?;
-    let scene = given.text("-input").ok_or_else(|| bad("-input is missing: name the scene"))?;
+    let scene = given.text("-input").ok_or_else(|| bad("-input is missing: give the scene file"))?;
     // Report invalid file names before the work.
     let mut guard = Guard::default();
     let outputs = Outputs::of(&given, options.dialect, &mut guard)?;

@@ -52,5 +52,5 @@ impl Denoiser {
 }
 
 /// Advice on installing the library.
-const HOW: &str = "`pip install pyoidn` installs Open Image Denoise: set OIDN_DIR to its folder `pyoidn/oidn`, or to any \
-                   other folder with the library; `--denoise=own` needs no library";
+const HOW: &str = "to install Open Image Denoise, run `pip install pyoidn` and set OIDN_DIR to its folder \
+                   `pyoidn/oidn`, or to any other folder with the library; `--denoise=own` needs no library";

@@ -8,12 +8,12 @@ use durer::image::{Display, Tone, Transfer};
 /// Conversion to 8-bit pictures; floating point formats store the colours unchanged
 #[derive(Args)]
 pub struct DisplayArgs {
-    /// Transfer curve of 8-bit pictures; `course` is linear and truncates
+    /// Transfer curve of 8-bit pictures; `course` is linear and truncates instead of rounding
     #[arg(long, default_value = "srgb", value_parser = PossibleValuesParser::new(Transfer::ALL.map(Transfer::name)))]
     pub transfer: String,
     #[command(flatten)]
     pub exposure: ExposureArgs,
-    /// Tone curve of 8-bit pictures, for values above 1
+    /// Tone mapping curve of 8-bit pictures, for values above 1
     #[arg(long, value_name = "CURVE", default_value = "none", value_parser = PossibleValuesParser::new(Tone::ALL.map(|row| row.0)))]
     pub tone: String,
 }
@@ -21,16 +21,17 @@ pub struct DisplayArgs {
 /// Exposure of 8-bit pictures
 #[derive(Args)]
 pub struct ExposureArgs {
-    /// Exposure of 8-bit pictures in stops; each stop doubles the light
+    /// Exposure of 8-bit pictures in stops; each stop doubles the brightness
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
     pub exposure: f32,
-    /// Shutter time in seconds, as 1/125, for scenes in cd/m^2; --exposure adds to it
+    /// Shutter time of a physical camera in seconds, for example 1/125, for scenes in cd/m^2;
+    /// --exposure is added
     #[arg(long, value_name = "SECONDS", value_parser = seconds, requires = "f_number")]
     pub shutter: Option<f32>,
-    /// Aperture of that camera as an f-number
+    /// Aperture of the physical camera, as an f-number
     #[arg(long, value_name = "N", value_parser = positive, requires = "shutter")]
     pub f_number: Option<f32>,
-    /// Sensitivity of that camera [default: 100]
+    /// ISO sensitivity of the physical camera [default: 100]
     #[arg(long, value_name = "ISO", value_parser = positive, requires = "shutter")]
     pub iso: Option<f32>,
 }
@@ -71,7 +72,7 @@ fn seconds(text: &str) -> Result<f32, String> {
     let (over, under) = text.split_once('/').unwrap_or((text, "1"));
     let seconds =
         positive(over).and_then(|over| Ok(over / positive(under)?)).ok().filter(|seconds| seconds.is_normal());
-    seconds.ok_or_else(|| "expected seconds, as 0.008 or 1/125".into())
+    seconds.ok_or_else(|| "expected a time in seconds, for example 0.008 or 1/125".into())
 }
 
 impl DisplayArgs {

@@ -32,8 +32,8 @@ use std::sync::Arc;
   durer explain scene.txt --brightest --html why.html
   durer explain scene.txt --ray '0 1 5 0 0 -1' --json
 
-Pass the same options as to `durer render`: the colour depends on them. Output options have no effect here. With one sample,
-the pixel's centre is explained.")]
+Pass the same options as to `durer render`, because the colour depends on them. Output options have no effect here. With one
+sample per pixel, the ray through the pixel centre is explained.")]
 pub struct ExplainArgs {
     #[command(flatten)]
     pub render: RenderArgs,
@@ -41,7 +41,7 @@ pub struct ExplainArgs {
     /// Pixel, counted from 0 at the upper left corner
     #[arg(long, value_name = "X,Y", value_parser = pixel, conflicts_with_all = ["ray", "brightest", "worst"])]
     pub pixel: Option<(u32, u32)>,
-    /// Index of the sample whose tree is shown [default: the first with the largest weight]
+    /// Number of the sample to explain in full [default: the first with the largest weight]
     #[arg(long, value_name = "N")]
     pub sample: Option<u32>,
     /// Explain this ray instead of a pixel: origin and direction
@@ -50,20 +50,20 @@ pub struct ExplainArgs {
     /// Explain the brightest pixel
     #[arg(long, conflicts_with = "worst")]
     pub brightest: bool,
-    /// Explain the pixel that differs most from its neighbours; for paths, the one to which a
-    /// single sample adds most
+    /// Explain the pixel that differs most from its neighbours; with path tracing, the pixel to
+    /// which a single sample contributes most
     #[arg(long)]
     pub worst: bool,
-    /// Omit terms below this percentage of the pixel
+    /// Omit terms that contribute less than this percentage of the pixel
     #[arg(long, value_name = "PERCENT", default_value_t = 0.0, value_parser = percent)]
     pub min: f64,
-    /// Omit terms deeper in the tree than this
+    /// Omit terms deeper than this level of the tree
     #[arg(long, value_name = "N")]
     pub depth: Option<u32>,
     /// Print JSON
     #[arg(long, conflicts_with = "html")]
     pub json: bool,
-    /// Write a page with the picture, the tree and the rays in space
+    /// Write an HTML page with the picture, the tree and the rays in 3D
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
 }
@@ -86,7 +86,7 @@ pub fn apart(words: Vec<OsString>) -> Vec<OsString> {
 pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     if args.render.work.time.is_some() {
         return Err(bad(
-            "--time-limit gives a different number of samples on each run: pass the number with --samples instead",
+            "--time-limit leads to a different number of samples on each run: set the number with --samples instead",
         ));
     }
     let mut options = load_options(&args.render.reading);
@@ -213,7 +213,7 @@ fn worst(opened: &Opened, job: &Job, picture: &Image, counts: Option<&Image>) ->
             best = Some((adds, explanation));
         }
     }
-    best.map(|(_, explanation)| explanation).ok_or_else(|| bad("the picture has no pixel"))
+    best.map(|(_, explanation)| explanation).ok_or_else(|| bad("the picture has no pixels"))
 }
 
 fn at(picture: &Image, x: u32, y: u32) -> Color {

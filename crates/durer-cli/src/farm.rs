@@ -24,15 +24,15 @@ const DASK: &str = include_str!("farm/dask.py");
   durer farm scene.txt --template dask > render.py && python render.py
   durer farm walk.glb --template slurm --frames 0-239 --fps 24 --samples 64 > job.sh && sbatch job.sh
 
-Each shard is a `durer render --shard` and can be repeated on another machine; `durer merge` gives the same bytes as one run.
-Render options follow the farm's options; they are checked here.")]
+Each shard is a `durer render --shard` command that can be repeated on another machine. `durer merge` produces the same
+bytes as a single run. Options of `durer render` come after the farm options and are checked when the job file is printed.")]
 pub struct FarmArgs {
     /// Scene file
     pub scene: PathBuf,
-    /// Farm engine
+    /// Job system of the farm
     #[arg(long, value_parser = ["slurm", "k8s", "openjd", "dask"])]
     pub template: String,
-    /// Number of parts of each picture [default: 16; 1 with --frames]
+    /// Number of shards per picture [default: 16; 1 with --frames]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65535))]
     pub shards: Option<u32>,
     #[command(flatten)]
@@ -40,7 +40,7 @@ pub struct FarmArgs {
     /// Picture to write [default: the scene's name with .exr]
     #[arg(short, long, value_name = "PICTURE")]
     pub output: Option<PathBuf>,
-    /// Render options
+    /// Options of `durer render`
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "OPTIONS")]
     pub options: Vec<String>,
 }

@@ -8,13 +8,13 @@ use durer::compile::Kept;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Frames of an animation, and how they differ
+/// Frames of an animation
 #[derive(Args, Clone)]
 #[command(next_help_heading = "Animation")]
 pub struct FramesArgs {
-    /// Frames to render into picture.0007.png and so on: 7, 1-100, or 0-90:10 for each tenth; the
-    /// number replaces %d or %04d in SCENE, PICTURE, --camera and --view-file; if only PICTURE has
-    /// it, frames are times of the model's animation
+    /// Frames to render, as picture.0007.png and so on: 7, 1-100, or 0-90:10 for every tenth frame.
+    /// The number replaces %d or %04d in SCENE, PICTURE, --camera and --view-file; if only PICTURE
+    /// contains it, frames are times in the model's animation
     #[arg(long, value_name = "FRAMES")]
     pub frames: Option<Frames>,
     /// Frames per second of the model's animation
@@ -46,7 +46,7 @@ impl std::str::FromStr for Frames {
 }
 
 const MOST: u32 = 9_999_999;
-const WANTED: &str = "expected frames as 7, 1-100 or 0-90:10, in ascending order, from 0 to 9999999";
+const WANTED: &str = "expected frames from 0 to 9999999 in ascending order, for example 7, 1-100 or 0-90:10";
 
 impl Frames {
     pub fn numbers(self) -> impl Iterator<Item = u32> {
@@ -96,7 +96,7 @@ impl FramesArgs {
             None if ["gltf", "glb"].contains(&extension.as_str()) => Moves::Time(self.fps),
             None => {
                 return Err(bad(
-                    "--frames: all frames would be equal; put %d into the name of the scene, --camera or --view-file, \
+                    "--frames: all frames would be equal; put %d in the name of the scene, --camera or --view-file, \
                      pass --turntable, or render a glTF file with an animation",
                 ));
             }

@@ -95,7 +95,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         say(&format!("trees      a random ray is expected to visit {visits}"));
     }
     if let Some(bytes) = count.tree_bytes_each() {
-        say(&format!("           {bytes:.0} bytes a triangle"));
+        say(&format!("           {bytes:.0} bytes per triangle"));
     }
     if let (Some(nodes), Some(tests)) = (per_ray(rays.nodes), per_ray(rays.tests)) {
         say(&format!("rays       {nodes:.1} nodes and {tests:.1} tests per ray, for {} camera rays", rays.rays));

@@ -26,12 +26,13 @@ pub fn warn(job: &Job, world: &World) {
         let (count, what) = if columns > 0 { (columns, "columns") } else { (rows, "rows") };
         let (w, h) = Raster::natural_size(camera.proportions(), (job.width, job.height));
         report::note(&Diagnostic::warning(format!(
-            "{count} {what} of {}x{} stay empty: the camera has another aspect ratio; `--size {w}x{h}` matches it",
+            "{count} {what} of {}x{} stay empty: the camera has a different aspect ratio; use `--size {w}x{h}` to \
+             match it",
             job.width, job.height
         )));
     }
     if job.sampling == Sampling::Center && camera.has_aperture() {
-        let message = "one sample per pixel uses only the middle of the lens, so everything is in focus; use more \
+        let message = "one sample per pixel uses only the centre of the lens, so everything is in focus; use more \
                        `--samples`, for example 64";
         report::note(&Diagnostic::warning(message));
     }

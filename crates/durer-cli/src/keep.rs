@@ -234,10 +234,9 @@ fn check_is_part(path: &Path) -> Result<(), String> {
     };
     match PartialRender::MAGIC.starts_with(&start) {
         true => Ok(()),
-        false => Err(format!(
-            "`{}` is not a part of a picture and must not be overwritten: choose another name",
-            path.display()
-        )),
+        false => {
+            Err(format!("`{}` is not a part file and must not be overwritten: choose another name", path.display()))
+        }
     }
 }
 

@@ -23,7 +23,9 @@ pub fn is_large(job: &Job, needed: u64, memory: Option<u64>) -> bool {
 pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>) -> Result<Bands, Failure> {
     let refuse = |why: &str| Err(failed(RenderError::Bands(why.into())));
     let (work, window) = (&args.work, job.window());
-    let Some((_, format)) = target.single() else { return refuse("it has pictures other than the colour") };
+    let Some((_, format)) = target.single() else {
+        return refuse("it includes pictures other than the colour picture");
+    };
     if format.rows.is_none() {
         let others: Vec<_> = FORMATS.iter().filter(|format| format.rows.is_some()).map(|format| format.name).collect();
         return refuse(&format!("{} needs all rows at once; use one of {}", format.name, others.join(", ")));
@@ -37,7 +39,7 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
         (args.stats, "--stats"),
     ] {
         if given {
-            return refuse(&format!("{option} needs the whole picture in memory"));
+            return refuse(&format!("{option} needs the full picture in memory"));
         }
     }
     // The scene's size is not known yet: reserve half of the memory for it.
@@ -100,7 +102,7 @@ pub fn render(
     match hash {
         Some(hash) if args.hash => say(&hash.to_string()),
         None if args.hash => {
-            return Err(bad("--hash: this format stores the lowest row first; use PNG, PPM or HDR"));
+            return Err(bad("--hash: this format stores the bottom row first; use PNG, PPM or HDR"));
         }
         _ => {}
     }

@@ -33,13 +33,13 @@ use written::{Lesson, PAGE, TEXT};
   durer lesson scenes/plates.txt -o lesson/ --samples 32
   durer lesson monday.md
 
-A Markdown file is a lesson of your own: its figures are named in it, as docs/live.md explains, and it is shown in the browser.
-Of a scene, FOLDER gets a self-contained page, index.html, and the same text as lesson.md with its pictures as files. An existing folder
-keeps its other files; files of an earlier lesson are replaced.
-Pass the same options as to `durer render`: with the whitted integrator, the last step is that picture. Without --size, the
-longer side has 256 pixels. A step that the scene cannot show uses a small built-in scene, and says so.
-With --integrator path or photons, the default of some scenes, the lesson continues with soft shadows, bounces, the two ways
-to sample lights, caustics and spectra, as far as the scene has them.")]
+If LESSON is a Markdown file, the lesson that it describes is shown in the browser; docs/live.md explains how to write one.
+The lesson of a scene is written to FOLDER as a self-contained page, index.html, and as lesson.md with separate picture files. In an
+existing folder, files of an earlier lesson are replaced and other files are kept.
+Pass the same options as to `durer render`: with the whitted integrator, the last step shows the same picture. Without
+--size, the longer side has 256 pixels. If the scene cannot show a step, the lesson uses a small built-in scene and says so.
+With --integrator path (the default for some scenes) or photons, the lesson continues with soft shadows, bounces, the two
+ways to sample lights, caustics and spectra, if they occur in the scene.")]
 pub struct LessonArgs {
     /// Scene file, or a lesson in Markdown
     pub scene: PathBuf,
@@ -50,7 +50,7 @@ pub struct LessonArgs {
     pub reading: SceneArgs,
     #[command(flatten)]
     pub job: JobArgs,
-    /// Threads that build and render [default: one per processor]
+    /// Number of threads for building and rendering [default: one per processor]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Transfer curve of the pictures

@@ -7,7 +7,7 @@ use durer_live::{Server, Start};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Show a scene in the browser: edit it, orbit it, and explain its pixels
+/// Show a scene in the browser: edit it, orbit around it, and explain its pixels
 #[derive(Args)]
 #[command(after_help = "Examples:
   durer live scene.txt
@@ -18,7 +18,7 @@ The page is served on this machine only, at a URL with a random token. To reach 
 pub struct LiveArgs {
     /// Scene or model file
     pub scene: PathBuf,
-    /// Port; 0 for any free port
+    /// Port to listen on; 0 for any free port
     #[arg(long, default_value_t = 0)]
     pub port: u16,
     /// Open the page in the browser
@@ -53,7 +53,7 @@ fn serve(start: Start, port: u16, open: bool) -> Result<(), Failure> {
     let server = Server::bind(port, start);
     let server = server.map_err(|error| bad(format!("port {port}: {error}")))?;
     let address = format!("{}{page}", server.address().map_err(anyhow::Error::from)?);
-    say(&format!("{address}\nCtrl-C ends"));
+    say(&format!("{address}\nPress Ctrl-C to stop"));
     if open {
         let opener = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
         // Ignore errors: the address is printed and can be copied.

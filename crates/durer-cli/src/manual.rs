@@ -18,7 +18,7 @@ pub fn dialects() -> Result<(), Failure> {
             say(&format!("         quirks: {}", quirks.join(", ")));
         }
     }
-    say("\nQuirks of old programs, and a common bug (--compat NAME, --compat no-NAME):");
+    say("\nQuirks of the official programs, and a common bug (--compat NAME, --compat no-NAME):");
     for (_, name, doc) in Compat::ALL {
         say(&format!("  {name:<18}{}", doc.split_whitespace().collect::<Vec<_>>().join(" ")));
     }

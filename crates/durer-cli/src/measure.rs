@@ -19,7 +19,7 @@ use durer::world::World;
 use rayon::prelude::*;
 use std::path::PathBuf;
 
-/// Measure illuminance and irradiance at points of a scene, as CSV with standard errors
+/// Measure illuminance and irradiance at points in a scene, as CSV with standard errors
 #[derive(Args)]
 #[command(mut_arg("at", |moment| moment.long("moment")), after_help = "Examples:
   durer measure room.txt --at 0,0.8,0
@@ -27,29 +27,30 @@ use std::path::PathBuf;
   durer measure room.txt --grid 0,0.8,0:4,0,0:0,0,6:8x12 > desk.csv
   durer measure lens.txt --at 0,0,0 --integrator photons --samples 64
 
-A grid is a corner, two edges from it and numbers of points: the points are the centers of its cells. Without --normal, it
-measures light from above; an upright grid has the cross product of its second and first edge as its normal.
-The illuminance is in lux if the scene's light is in cd/m^2 (`emissionLuminance`, `sun`), and for Radiance scenes; the
-irradiance has a value per colour channel. Light from behind the normal does not count. Standard errors assume independent samples;
-the actual errors are smaller. Lights that only BSDF sampling finds, such as in mirrors, increase them.")]
+A grid is given by a corner, two edges that start at the corner, and the number of points along each edge. The points are
+the centers of its cells. Without --normal, a grid measures light from above; the normal of an upright grid is the cross
+product of its second and first edges.
+Illuminance is in lux if the scene's light is in cd/m^2 (`emissionLuminance`, `sun`), and in Radiance scenes. Irradiance has
+one value per colour channel. Light that arrives from behind the normal is ignored. The standard errors assume independent
+samples, so the actual errors are smaller. Lights that only BSDF sampling can find, for example in mirrors, increase them.")]
 pub struct MeasureArgs {
     /// Scene or model file
     pub scene: PathBuf,
-    /// Point to measure; may be given several times
+    /// Point to measure; can be given several times
     #[arg(id = "point", long = "at", value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub points: Vec<Vec3>,
     /// Normal of the receiving surface [default: upwards]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub normal: Option<Vec3>,
-    /// Grid of points: corner, two edges and the numbers of points
+    /// Grid of points: a corner, two edges, and the number of points along each edge
     #[arg(long, value_name = "CORNER:EDGE:EDGE:NxM", value_parser = grid, allow_hyphen_values = true)]
     pub grid: Vec<Grid>,
-    /// Threads [default: one per processor]
+    /// Number of threads [default: one per processor]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     #[command(flatten)]
     pub reading: SceneArgs,
-    /// Maximum number of scattering events before light arrives
+    /// Maximum number of scattering events before light reaches the point
     #[arg(long, default_value_t = durer::job::PATH_BOUNCES, value_parser = clap::value_parser!(u32).range(0..=256))]
     pub bounces: u32,
     #[command(flatten)]
@@ -57,7 +58,7 @@ pub struct MeasureArgs {
     /// Samples per point
     #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u32).range(2..=1 << 24))]
     pub samples: u32,
-    /// Seed of the random numbers
+    /// Seed of the random number generator
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
 }
@@ -77,12 +78,12 @@ fn vector(text: &str) -> Result<Vec3, String> {
     let numbers: Vec<f32> = text.split(',').map_while(|word| word.trim().parse().ok()).collect();
     match numbers[..] {
         [x, y, z] if text.split(',').count() == 3 && numbers.iter().all(|x| x.is_finite()) => Ok(Vec3::new(x, y, z)),
-        _ => Err("expected three numbers, as in 0,0.8,0".into()),
+        _ => Err("expected three numbers, for example 0,0.8,0".into()),
     }
 }
 
 fn grid(text: &str) -> Result<Grid, String> {
-    let wanted = || "expected CORNER:EDGE:EDGE:NxM, as in 0,0.8,0:4,0,0:0,0,6:8x12".to_string();
+    let wanted = || "expected CORNER:EDGE:EDGE:NxM, for example 0,0.8,0:4,0,0:0,0,6:8x12".to_string();
     let [corner, a, b, counts] = text.split(':').collect::<Vec<_>>()[..] else { return Err(wanted()) };
     let (n, m) = counts.split_once('x').ok_or_else(wanted)?;
     let count = |word: &str| word.parse().ok().filter(|n| (1..=4096).contains(n)).ok_or_else(wanted);
@@ -158,7 +159,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let own = args.points.iter().map(|&point| (point, up)).chain(grids);
     let mut places: Vec<(Vec3, Vec3)> = own.take(MAX_POINTS + 1).collect();
     if places.is_empty() || places.len() > MAX_POINTS {
-        return Err(bad(format!("no points to measure, or more than {MAX_POINTS}: pass --at X,Y,Z or --grid")));
+        return Err(bad(format!("the number of points must be from 1 to {MAX_POINTS}: pass --at X,Y,Z or --grid")));
     }
     if let Some(normal) = args.normal {
         let Some(normal) = normal.try_normalize() else { return Err(bad("--normal must not be 0,0,0")) };
@@ -203,8 +204,9 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         say(&format!("{p},{n},{mean:.6},{error:.6},{c}"));
     }
     if missed {
-        let message = "only BSDF sampling finds some lights (in mirrors or glass, on solids, or textured ones): the errors \
-                       include the effect of one more such sample; use more `--samples`, or `--integrator photons`";
+        let message = "only BSDF sampling finds some lights (in mirrors or glass, on solids, or textured ones): the \
+                       errors include the effect of one more such sample; use more `--samples` or `--integrator \
+                       photons`";
         report::note(&Diagnostic::warning(message).code("RARE_LIGHT"));
     }
     Ok(())

@@ -18,9 +18,10 @@ use std::path::PathBuf;
   durer merge one.part two.part three.part -o picture.exr
   durer merge shards/*.part -o picture.png --hash
 
-The result equals that of one run, bit for bit. Parts of other pictures, overlapping parts and missing parts are errors.")]
+The result is identical, bit for bit, to that of a single run. Parts of other pictures, overlapping parts and missing parts
+are errors.")]
 pub struct MergeArgs {
-    /// Parts, in any order
+    /// Part files, in any order
     #[arg(required = true)]
     pub parts: Vec<PathBuf>,
     /// Picture to write

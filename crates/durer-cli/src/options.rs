@@ -19,7 +19,7 @@ use std::time::Duration;
 pub use job::{JobArgs, accel, aspect};
 pub use method::MethodArgs;
 
-/// Options of reading a scene
+/// Options for reading a scene
 #[derive(Args)]
 pub struct SceneArgs {
     #[arg(long, value_parser = PossibleValuesParser::new(Dialect::ALL.map(Dialect::name)), help = doc("dialect"))]
@@ -38,12 +38,12 @@ pub struct SceneArgs {
     pub staging: StagingArgs,
 }
 
-/// Options of rendering a picture
+/// Options for rendering a picture
 #[derive(Args)]
 pub struct RenderArgs {
     /// Scene or model file
     pub scene: PathBuf,
-    /// Picture to write; with --shard, the part [default: the scene's name with .png, in the
+    /// Picture to write, or the part file with --shard [default: the scene's name with .png, in the
     /// current folder]
     #[arg(short, long, value_name = "PICTURE")]
     pub output: Option<PathBuf>,
@@ -57,18 +57,19 @@ pub struct RenderArgs {
     pub work: WorkArgs,
     #[command(flatten)]
     pub display: DisplayArgs,
-    /// Denoise the colour picture; EXR keeps it and adds a layer `denoised`; --hash ignores it
-    /// [auto: oidn (Open Image Denoise) if found, else own (built in)]
+    /// Denoise the colour picture with oidn (Open Image Denoise), own (built in), or auto (oidn if
+    /// found, else own). EXR files keep the noisy picture and add a `denoised` layer; --hash
+    /// ignores denoising
     #[arg(long, value_name = "BY", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_parser = Denoiser::parser())]
     pub denoise: Option<Denoiser>,
-    /// Render again whenever the scene or one of its files is saved; the picture grows while it
-    /// renders; Ctrl-C ends
+    /// Render again whenever the scene or one of its files is saved; the picture is updated while
+    /// it renders. Press Ctrl-C to stop
     #[arg(long, conflicts_with_all = ["pixel", "shard", "checkpoint", "resume", "restart", "preview"])]
     pub watch: bool,
     /// Print the film's hash as the last line of standard output
     #[arg(long)]
     pub hash: bool,
-    /// Print times, ray counts and the share of ray traversal to standard error
+    /// Print timings, ray counts and the share of time spent in ray traversal to standard error
     #[arg(long)]
     pub stats: bool,
     /// Print only errors
@@ -81,16 +82,16 @@ pub struct RenderArgs {
 pub struct ViewArgs {
     #[arg(long, value_name = "LEFT,TOP,WIDTHxHEIGHT", value_parser = crop, help = doc("crop"))]
     pub crop: Option<(u32, u32, u32, u32)>,
-    /// Pictures to write, joined by commas; with path and photons, `error` is the bound of the
-    /// luminance error, noise and photon bias together, at 90 % confidence
+    /// Comma-separated list of pictures to write; `error`, for path and photons only, bounds the
+    /// luminance error (noise plus photon bias) at 90 % confidence
     #[arg(long, value_delimiter = ',', default_value = "color", value_parser = PossibleValuesParser::new(shows()))]
     pub show: Vec<String>,
-    /// Magnification of the pictures `samples` and `filter`, in pixels per pixel
+    /// Magnification of the `samples` and `filter` pictures, in output pixels per rendered pixel
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub zoom: u32,
 }
 
-/// Options of threads, time and saved work
+/// Options for threads, time and saved work
 #[derive(Args)]
 pub struct WorkArgs {
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024), help = doc("threads"))]
@@ -105,16 +106,16 @@ pub struct WorkArgs {
     /// Discard unfinished saved work and start again
     #[arg(long, conflicts_with_all = ["resume", "no_checkpoint"])]
     pub restart: bool,
-    /// File for unfinished work [default: PICTURE.part, after the first second]
+    /// File for unfinished work [default: PICTURE.part, written after the first second]
     #[arg(long, value_name = "FILE", conflicts_with = "shard")]
     pub checkpoint: Option<PathBuf>,
-    /// Time between saves, besides the ends of passes
+    /// Time between saves of unfinished work
     #[arg(long, default_value = "30s", value_name = "TIME", value_parser = humantime::parse_duration)]
     pub checkpoint_every: Duration,
     /// Do not save unfinished work
     #[arg(long, conflicts_with_all = ["checkpoint", "resume", "shard"])]
     pub no_checkpoint: bool,
-    /// Also write the picture so far to this file after each pass over all pixels
+    /// After each pass over all pixels, also write the unfinished picture to this file
     #[arg(long, value_name = "PICTURE", conflicts_with = "shard")]
     pub preview: Option<PathBuf>,
     #[arg(long, value_name = "INDEX/COUNT", requires = "output", help = doc("shard"))]

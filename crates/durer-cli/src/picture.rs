@@ -143,7 +143,8 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
     let shows_error = args.view.show.iter().any(|show| show == ERROR);
     if shows_error && (target.is_none() || job.method.transport().is_none()) {
         return Err(bad(
-            "--show error needs a whole picture and the integrator path or photons: remove --shard, or set --integrator",
+            "--show error needs the full picture and the integrator path or photons: remove --shard, or set \
+             --integrator",
         ));
     }
     if args.view.show.iter().any(|show| DIAGRAMS.contains(&show.as_str())) {

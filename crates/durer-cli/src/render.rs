@@ -27,19 +27,20 @@ use std::path::Path;
   durer render scene.txt -o dots.png --show samples --size 9x9 --sampler jittered --samples 9
 
 SCENE is a file in the course's language or a model: glTF, GLB, pbrt, Mitsuba, Radiance, 3MF, PLY, OBJ, STL. A model without
-camera and lights is framed whole and lit by a studio. `durer words` explains the words of the language.
+a camera and lights is framed automatically and lit by studio lights. `durer words` explains the words of the language.
 
-The extension of PICTURE selects the format: png, tga, bmp, ppm, pfm, exr, hdr. Several pictures become layers of one EXR file,
-or separate files: picture.depth.png and so on.
+The extension of PICTURE selects the format: png, tga, bmp, ppm, pfm, exr, hdr. Several pictures are written as layers of
+one EXR file, or as separate files: picture.depth.png and so on.
 
-Long renders save their work to PICTURE.part at intervals. --resume continues it, --restart discards it; without either, durer
-stops rather than overwrite it. The file is removed when the picture is done. Ctrl-C, SIGTERM and SIGHUP save the work so far.")]
+Long renders save their work to PICTURE.part at intervals. --resume continues from this file, and --restart discards it;
+without either option, durer stops instead of overwriting it. The file is removed when the picture is complete. On Ctrl-C,
+SIGTERM and SIGHUP, the work done so far is saved.")]
 pub struct RenderCommand {
     #[command(flatten)]
     pub render: RenderArgs,
     #[command(flatten)]
     pub frames: FramesArgs,
-    /// Print the colour of one pixel and write nothing
+    /// Print the colour of one pixel instead of writing a picture
     #[arg(long, value_name = "X,Y", value_parser = pixel)]
     pub pixel: Option<(u32, u32)>,
     /// Print only this sample of the pixel

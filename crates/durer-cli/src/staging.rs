@@ -5,7 +5,7 @@ use durer::options::doc;
 use durer::scene::{Axis, Staging, Studio, View};
 use std::path::PathBuf;
 
-/// Options that make a scene of a model (glTF, pbrt, Radiance, OBJ, PLY, STL); scene files ignore
+/// Options that turn a model into a scene (glTF, pbrt, Radiance, OBJ, PLY, STL); scene files ignore
 /// them
 #[derive(Args)]
 #[command(next_help_heading = "Models")]
@@ -49,15 +49,15 @@ pub enum From {
     Side,
     /// From above, without perspective
     Top,
-    /// Isometric: without perspective, all three axes alike
+    /// Isometric: without perspective, with the same scale along all three axes
     Iso,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
 pub enum Light {
-    /// No light and no ground
+    /// No lights and no ground
     None,
-    /// A soft key light, a fill, a light ground
+    /// A soft key light, a fill light and a bright ground
     Soft,
     /// A low sun under a blue sky
     Sun,

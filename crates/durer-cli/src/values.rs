@@ -7,7 +7,7 @@ pub fn weight(text: &str) -> Result<f32, String> {
 
 pub fn pixel(text: &str) -> Result<(u32, u32), String> {
     let numbers = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
-    numbers.ok_or_else(|| "expected column and row from the upper left corner, as 200,150".into())
+    numbers.ok_or_else(|| "expected a column and a row, counted from the upper left corner, for example 200,150".into())
 }
 
 pub fn tolerance(text: &str) -> Result<f32, String> {
@@ -17,7 +17,7 @@ pub fn tolerance(text: &str) -> Result<f32, String> {
     };
     value
         .filter(|t| t.is_finite() && *t >= 0.0)
-        .ok_or_else(|| "expected a fraction as 2/255 or a number, 0 or more".into())
+        .ok_or_else(|| "expected a number, 0 or more, or a fraction, for example 2/255".into())
 }
 
 pub fn percent(text: &str) -> Result<f64, String> {

@@ -24,8 +24,8 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
   durer verify scene.txt
   durer verify scene.txt --trials 500 --size 64x48 --samples 24 --noise-threshold 0.02
 
-Ways differ in threads, tile size, shards by tiles or samples, interruptions, acceleration structure and SIMD instructions. A
-small picture is enough: the default is 64x48 with 8 samples, 16 with --adaptive.")]
+The ways differ in the number of threads, tile size, shards by tiles or samples, interruptions, acceleration structure and
+SIMD instructions. A small picture is enough: the default is 64x48 with 8 samples per pixel, or 16 with --adaptive.")]
 pub struct VerifyArgs {
     /// Scene or model file
     pub scene: PathBuf,
@@ -35,7 +35,7 @@ pub struct VerifyArgs {
     pub view: ViewArgs,
     #[command(flatten)]
     pub job: JobArgs,
-    /// Number of ways to try
+    /// Number of ways to render the scene
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub trials: u32,
     /// Print only the hash

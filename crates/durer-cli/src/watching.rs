@@ -65,7 +65,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
                 0 => String::new(),
                 n => format!(" ({n} meshes and pictures reused)"),
             };
-            complain(&format!("watching {count}{reused}; Ctrl-C ends"));
+            complain(&format!("watching {count}{reused}; press Ctrl-C to stop"));
         }
         progress::idle();
         while stamp(&files) == before {

@@ -9,7 +9,7 @@ use durer::format::course::reference::{Chapter, Entry, FieldEntry, all_words, di
 /// Arguments of `durer words`.
 #[derive(clap::Args)]
 pub struct WordsArgs {
-    /// Word to look up; without one, list every word that begins a block
+    /// Word to look up [default: list every word that begins a block]
     pub word: Option<String>,
     /// Show only words of this dialect
     #[arg(long)]

@@ -126,7 +126,7 @@ fn invalid_cameras_are_refused() {
     refused("CaveCamera {center 0 0 0 walls {}}", &["must have 1 to 64 rows, but has 0"]);
     refused("CaveCamera {center 0 0 0 walls {0 0 0 1 0 0 0 1 x}}", &["number 9 of 9", "`x`"]);
     refused("CaveCamera {center 0 0 0 walls 0 0 0}", &["`walls` needs `{`"]);
-    refused("CaveCamera {center 0 0 0 walls {-1 -1 0 1 -1 0 -1 1 0}}", &["an eye lies in the plane of wall 1"]);
+    refused("CaveCamera {center 0 0 0 walls {-1 -1 0 1 -1 0 -1 1 0}}", &["an eye is in the plane of wall 1"]);
     refused("PushBroomCamera {start 0 0 0 end 0 0 -1 direction 0 0 -1 up 0 1 0 angle 60}", &["must move sideways"]);
     refused("MultipleCenterCamera {path {0 0 0 0 0 0  1 0 0 1 0 -1} up 0 1 0 angle 50}", &["at row 1 of `path`"]);
     refused("ProjectiveCamera {matrix {1 0 0 0 0 1 0 0 0 0 0 1} width 9 height 9}", &["singular"]);

@@ -48,9 +48,9 @@ fn course_samplers_are_explained_with_neighbouring_pixels() {
     assert!(text.contains("(number 3 of pixel 21,14) at 21."), "{text}");
     // Only a count is printed for surfaces that are too far away.
     let text = ran("--sampler uniform --samples 4 --filter tent --filter-radius 0.9");
-    assert!(text.contains(" more samples have no weight here"), "{text}");
+    assert!(text.contains(" more samples have no weight in this pixel"), "{text}");
     let text = ran("--jitter --blur");
-    assert!(text.contains("weighted mean of 49 samples: sub-pixels, blurred"), "{text}");
+    assert!(text.contains("weighted mean of 49 samples: subpixels, blurred"), "{text}");
     assert!(text.contains("hits Sphere of line 8"), "{text}");
     assert_eq!(ran("--sampler random --samples 5").matches("  sample ").count(), 5);
 }
@@ -67,7 +67,7 @@ fn text_names_objects_by_their_place_in_the_file() {
         "DirectionalLight of line 2: (sum below) · (0.9, 0.9, 0.8)",
         "in eight bits ",
         " alone ",
-        "the shadow ray is free",
+        "the shadow ray is unoccluded",
     ] {
         assert!(ran.out.contains(wanted), "{wanted}\n{}", ran.out);
     }
@@ -146,7 +146,7 @@ fn invalid_options_are_refused() {
     for (question, answer) in [
         ("", "choose a pixel or a ray"),
         ("--pixel 40,3", "pixel 40,3 is outside the picture of 40 x 30 pixels"),
-        ("--pixel 4;3", "as 200,150"),
+        ("--pixel 4;3", "for example 200,150"),
         ("--pixel 4,3 --sample 16", "no sample 16: the pixel's samples are numbered from 0 to 15"),
         ("--pixel 4,3 --time 1s", "a different number of samples on each run"),
         ("--pixel 4,3 --brightest", "cannot be used with"),

@@ -185,7 +185,7 @@ fn frames_are_times_cameras_and_files() {
     }
     assert_eq!(place.gives(0, "merge 9.1.part 9.2.part -o b.png --hash -q").out, hash("walk.09.txt -o a.png"));
     place.refused(2, "render walk.08.txt --frames 1-3", &["all frames would be equal"]);
-    place.refused(2, "render walk.%02d.txt --frames 3-1", &["expected frames as 7, 1-100 or 0-90:10"]);
+    place.refused(2, "render walk.%02d.txt --frames 3-1", &["expected frames from 0 to 9999999"]);
     place.refused(2, "render walk.%02d.txt --frames 8-9 --watch", &["apply to one picture"]);
     place.refused(2, "render a.stl --turntable 4 --turned 3", &["remove --camera, --view-file and --turned"]);
     // A scene with a camera cannot be turned, and the error says so.

@@ -148,19 +148,19 @@ fn bad_options_of_render() {
 fn write_errors_have_exit_code_1_and_keep_old_files() {
     let place = Place::new();
     std::fs::create_dir(place.path("folder.png")).unwrap();
-    place.refused(1, "render scene.txt -o missing/p.png", &["there is no folder `missing`"]);
+    place.refused(1, "render scene.txt -o missing/p.png", &["the folder `missing` does not exist"]);
     place.refused(1, "render scene.txt -o folder.png", &["it is a folder"]);
-    place.refused(1, "render scene.txt -o scene.txt/p.png", &["there is no folder"]);
-    place.refused(1, "render scene.txt --show color,depth -o missing/p.png", &["there is no folder"]);
-    place.refused(1, "convert scene.txt -o missing/c.txt", &["there is no folder"]);
-    place.refused(1, "course -input scene.txt -output missing/p.tga", &["there is no folder"]);
+    place.refused(1, "render scene.txt -o scene.txt/p.png", &["does not exist"]);
+    place.refused(1, "render scene.txt --show color,depth -o missing/p.png", &["does not exist"]);
+    place.refused(1, "convert scene.txt -o missing/c.txt", &["does not exist"]);
+    place.refused(1, "course -input scene.txt -output missing/p.tga", &["does not exist"]);
     place.put("old.png", "an old picture");
     for arguments in ["missing.txt -o old.png", "scene.txt --size 4294967295x70000 -o old.png"] {
         place.gives(2, &format!("render {arguments}"));
         assert_eq!(place.bytes("old.png"), b"an old picture");
     }
     // If one of two files cannot be written, neither is.
-    place.refused(1, "course -input scene.txt -size 4 4 -output p.tga -normals missing/n.tga", &["there is no folder"]);
+    place.refused(1, "course -input scene.txt -size 4 4 -output p.tga -normals missing/n.tga", &["does not exist"]);
 }
 
 #[cfg(target_os = "linux")]

@@ -182,7 +182,7 @@ fn no_input_is_overwritten() {
     // Saved work never replaces another file.
     for option in ["--checkpoint scene.txt", "--checkpoint here/m.obj", "--shard 1/1"] {
         let output = if option.starts_with("--sh") { "endless.txt" } else { "o.png" };
-        place.refused(2, &format!("render mesh.txt {size} {option} -o {output}"), &["not a part of a picture"]);
+        place.refused(2, &format!("render mesh.txt {size} {option} -o {output}"), &["not a part file"]);
     }
     // Other outputs never replace saved work.
     let part = place.bytes("part.png");
@@ -197,7 +197,7 @@ fn no_input_is_overwritten() {
         assert_eq!(place.bytes("part.png"), part, "{line}");
     }
     place.put("o.png.part", "somebody's download");
-    place.refused(2, &format!("render scene.txt {size} -o o.png"), &["`o.png.part` is not a part of a picture"]);
+    place.refused(2, &format!("render scene.txt {size} -o o.png"), &["`o.png.part` is not a part file"]);
     assert_eq!(place.bytes("o.png.part"), b"somebody's download");
 }
 
@@ -223,10 +223,10 @@ fn special_files_are_written_through_or_refused_at_once() {
     assert!(std::process::Command::new("mkfifo").arg(place.path("pipe.png")).status().unwrap().success());
     symlink("/dev/null", place.path("null.png")).unwrap();
     let work = "render scene.txt --size 8x8 --samples 1 --quiet";
-    place.refused(1, &format!("{work} -o dangling.png"), &["leads nowhere"]);
-    place.refused(1, &format!("{work} -o loop.png"), &["leads nowhere"]);
-    place.refused(1, &format!("{work} -o pipe.png"), &["nobody reads"]);
-    place.refused(1, &format!("{work} -o o.png --preview pipe.png"), &["nobody reads"]);
+    place.refused(1, &format!("{work} -o dangling.png"), &["broken symbolic link"]);
+    place.refused(1, &format!("{work} -o loop.png"), &["broken symbolic link"]);
+    place.refused(1, &format!("{work} -o pipe.png"), &["a pipe without a reader"]);
+    place.refused(1, &format!("{work} -o o.png --preview pipe.png"), &["a pipe without a reader"]);
     place.refused(2, &format!("{work} -o o.png --checkpoint null.png"), &["is not a regular file"]);
     place.gives(0, &format!("{work} -o null.png --no-checkpoint"));
     let reader = place.path("pipe.png");

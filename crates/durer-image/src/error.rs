@@ -7,7 +7,7 @@ use durer_diag::{at_least, at_most};
 #[non_exhaustive]
 pub enum ImageError {
     /// The extension of a file name is unknown.
-    #[error("`{path}` does not end like a picture file; known are {known}{}", suggestion(.meant))]
+    #[error("`{path}` does not have the extension of a picture file; known extensions are {known}{}", suggestion(.meant))]
     UnknownExtension {
         /// The file name.
         path: String,
@@ -50,7 +50,7 @@ pub enum ImageError {
     },
     /// Decoding would take more memory than allowed.
     #[error(
-        "its {width} x {height} pixels need about {} of memory, and what is left for it is {}",
+        "its {width} x {height} pixels need about {} of memory, but only {} is left",
         at_least(*.needed), at_most(*.allowed)
     )]
     Memory {
@@ -64,13 +64,13 @@ pub enum ImageError {
         allowed: u64,
     },
     /// The system cannot provide this much memory, in bytes.
-    #[error("it needs {} of memory at once, which cannot be had", at_least(*.0))]
+    #[error("it needs {} of memory in one allocation, which failed", at_least(*.0))]
     NoRoom(u64),
     /// 8-bit values were requested, but the picture has a different depth.
-    #[error("the picture has not eight bits a channel")]
+    #[error("the picture does not have eight bits per channel")]
     NotEightBit,
     /// A side is 0, there are too many pixels, or their number does not match the sides.
-    #[error("{width} x {height} pixels are no possible picture: it has from 1 to {} of them", super::MAX_PIXELS)]
+    #[error("{width} x {height} is not a possible size: a picture has from 1 to {} pixels", super::MAX_PIXELS)]
     Size {
         /// Width in pixels.
         width: u32,
@@ -89,7 +89,7 @@ pub enum ImageError {
         count: usize,
     },
     /// The layers of a file have different sizes.
-    #[error("the layer `{name}` has another size than the first")]
+    #[error("the layer `{name}` has a different size from the first")]
     LayerSizes {
         /// Name of the first layer that differs.
         name: String,

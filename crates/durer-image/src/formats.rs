@@ -147,7 +147,10 @@ impl Format {
     pub fn check_sides(&self, width: u32, height: u32) -> Result<(), ImageError> {
         match width.max(height) <= self.most_side {
             true => Ok(()),
-            false => Err(ImageError::unsupported(self.name, format!("a side above {}", self.most_side))),
+            false => Err(ImageError::unsupported(
+                self.name,
+                format!("sides of more than {} pixels are not supported", self.most_side),
+            )),
         }
     }
 

@@ -28,19 +28,19 @@ pub enum SaveError {
         path: PathBuf,
     },
     /// The path is a dangling symbolic link: its target is missing, or is the link itself.
-    #[error("cannot write `{}`: it is a symbolic link that leads nowhere", path.display())]
+    #[error("cannot write `{}`: it is a broken symbolic link", path.display())]
     LostLink {
         /// Target path.
         path: PathBuf,
     },
     /// The path is a pipe without a reader, for which the system would wait.
-    #[error("cannot write `{}`: it is a pipe that nobody reads; start the reader first", path.display())]
+    #[error("cannot write `{}`: it is a pipe without a reader; start the reader first", path.display())]
     NobodyReads {
         /// Target path.
         path: PathBuf,
     },
     /// The folder of the file does not exist, or is a file.
-    #[error("cannot write `{}`: there is no folder `{}`", path.display(), folder.display())]
+    #[error("cannot write `{}`: the folder `{}` does not exist", path.display(), folder.display())]
     NoFolder {
         /// Target path.
         path: PathBuf,

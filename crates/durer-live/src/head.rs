@@ -32,7 +32,7 @@ pub(crate) fn read(stream: &mut TcpStream) -> io::Result<Head> {
             return Ok(head);
         }
         if bytes.len() > MAX_HEAD {
-            return Err(io::Error::new(io::ErrorKind::InvalidData, "the head is too long"));
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "the request header is too long"));
         }
     }
 }

@@ -440,7 +440,7 @@ const F23: Rules = Rules {
 
 const DURER: Rules = Rules {
     name: "durer",
-    title: "Dürer's own: every word of every year, sane rules",
+    title: "Dürer's own: every word of every year, without the quirks",
     size: (512, 512),
     bounces: 8,
     shadows: true,

@@ -80,7 +80,7 @@ impl std::fmt::Debug for Digest {
 #[non_exhaustive]
 pub enum SourceError {
     /// The file is in none of the searched places.
-    #[error("there is no file `{name}`")] // prose: keep
+    #[error("the file `{name}` does not exist")] // prose: keep
     Missing {
         /// Requested name.
         name: String,
@@ -90,7 +90,7 @@ pub enum SourceError {
         near: Option<String>,
     },
     /// The file is outside the allowed folders.
-    #[error("`{name}` lies outside the scene's folder")]
+    #[error("`{name}` is outside the scene's folder")]
     Outside {
         /// Requested name.
         name: String,
@@ -127,7 +127,7 @@ impl SourceError {
         match self {
             SourceError::Missing { near: Some(near), .. } => Some(format!("did you mean `{near}`?")),
             SourceError::Outside { .. } => {
-                let only = "a scene may only name files in and below its own folder, unless `--allow-outside` is given";
+                let only = "a scene can only use files in or below its own folder, unless `--allow-outside` is given";
                 Some(only.into())
             }
             _ => None,

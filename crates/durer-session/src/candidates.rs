@@ -58,12 +58,12 @@ fn test(compiled: &Compiled, number: u32, object: &Object, ray: &Ray64, first: O
         }
         (Some(hit), ..) => (Verdict::Closest, format!("it is hit at t = {}", text(hit.t))),
         (None, Some(hit), _) if hit.t <= ray.rounded.t_min => {
-            (Verdict::Behind, format!("the line meets it at t = {}, before the ray's start", text(hit.t)))
+            (Verdict::Behind, format!("the line meets it at t = {}, before the start of the ray", text(hit.t)))
         }
         (None, Some(hit), _) => {
-            (Verdict::Beyond, format!("the line meets it at t = {}, beyond the ray's end", text(hit.t)))
+            (Verdict::Beyond, format!("the line meets it at t = {}, beyond the end of the ray", text(hit.t)))
         }
-        (None, None, _) => (Verdict::Missed, "the line does not meet it".into()),
+        (None, None, _) => (Verdict::Missed, "the line misses it".into()),
     };
     let mut told = ObjectTest {
         object: number,
@@ -194,7 +194,7 @@ fn triangle(corners: [Vec3; 3], line: &Line) -> Vec<Row> {
         .map(|(name, _)| name)
         .collect();
     if !negative.is_empty() {
-        rows.push(so(&format!("{} < 0: the line meets the plane beside the triangle", negative.join(", "))));
+        rows.push(so(&format!("{} < 0: the line meets the plane outside the triangle", negative.join(", "))));
     }
     rows
 }
@@ -206,7 +206,7 @@ fn crossings(shape: &Primitive, back: Vec3, line: &Line) -> Vec<Row> {
     shape.crossings(&moved, &mut |t, _: Vec2| found.push(t));
     found.sort_by(f64::total_cmp);
     if found.is_empty() {
-        return vec![so("the line does not meet it")];
+        return vec![so("the line misses it")];
     }
     let one = |(i, t): (usize, &f64)| row(&format!("t{}", subscript(i + 1)), "where the line meets it", "", *t);
     found.iter().enumerate().map(one).collect()

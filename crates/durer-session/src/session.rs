@@ -301,7 +301,7 @@ impl Session {
         if base64.len() > MAX_BYTES {
             return Err(format!("`{name}` is too large"));
         }
-        let bytes: Arc<[u8]> = decode(base64).ok_or_else(|| format!("`{name}` arrived incomplete"))?.into();
+        let bytes: Arc<[u8]> = decode(base64).ok_or_else(|| format!("the upload of `{name}` is incomplete"))?.into();
         if opens {
             self.on_disk = false;
             let path = self.beside(&name);
@@ -418,7 +418,7 @@ impl Session {
         let statement = self.camera()?.statement;
         let document = self.document.as_ref().ok_or("no scene is open")?;
         let (start, end) = document.camera_statement().ok_or("cannot replace the camera in the text of this file")?;
-        let text = document.text().ok_or("this file is not a text")?;
+        let text = document.text().ok_or("this file is not a text file")?;
         Ok(format!("{}{statement}{}", &text[..start], &text[end..]))
     }
 

@@ -49,7 +49,7 @@ fn camera_rows(compiled: &Compiled, job: &Job, place: Vec2) -> Vec<Row> {
     let (point, frame) = (raster.point(place), world.camera_frame());
     let mut rows = vec![Row {
         name: "(x, y)".into(),
-        formula: "position in the picture, −1 to 1 across its larger side".into(),
+        formula: "position in the picture, from −1 to 1 along its larger side".into(),
         numbers: format!("pixel position ({}, {})", number(place.x.into()), number(place.y.into())),
         result: format!("({}, {})", number(point.x.into()), number(point.y.into())),
         value: None,
@@ -150,7 +150,7 @@ impl Teller<'_> {
             TermKind::Highlight { .. } => "Highlight".into(),
             TermKind::Secondary { total: true, .. } => "Total reflection".into(),
             TermKind::Secondary { .. } => "Mirrored and transmitted".into(),
-            TermKind::Cut { .. } => "Contribution too small, not traced".into(),
+            TermKind::Cut { .. } => "Contribution too small to be traced".into(),
             TermKind::Spent => "Maximum depth reached".into(),
             TermKind::Emission { .. } => "Emission".into(),
             TermKind::Direct { light, shadow, .. } => {
@@ -253,7 +253,7 @@ impl Teller<'_> {
             }
             TermKind::Diffuse { cosine } => {
                 let numbers = format!("{} · {}", vector(around.n), vector(around.to_light));
-                rows.push(row("n · l", "the cosine; below 0 it counts as 0", numbers, (*cosine).into()));
+                rows.push(row("n · l", "cosine; negative values count as 0", numbers, (*cosine).into()));
                 rows.push(words(
                     "L",
                     &format!("max(0, n · l) k_d = {} · {}", number(cosine.max(0.0).into()), color(node.value)),

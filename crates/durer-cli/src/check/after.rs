@@ -65,7 +65,7 @@ impl After<'_> {
         let Some(layer) = pictures.iter().find(|layer| layer.name == "depth").filter(|_| is_asked) else { return };
         let grey = |pixel: &Color| pixel.x > 0.0 && pixel.x < 1.0;
         if !layer.image.pixels.iter().any(grey) {
-            self.tell("the depth picture has no grey between black and white");
+            self.tell("the depth picture contains only black and white, with no grey between");
         }
     }
 
@@ -84,7 +84,7 @@ impl After<'_> {
         let told: Vec<_> = serious.iter().filter(|diagnostic| !is_known(diagnostic)).take(MOST).copied().collect();
         complain(&match (serious.is_empty(), told.is_empty()) {
             (true, _) => format!("warning: {what}"),
-            (false, true) => format!("warning: {what}; the findings above say why"),
+            (false, true) => format!("warning: {what}; the findings above explain why"),
             (false, false) => format!("warning: {what}; `durer check` reports:"),
         });
         report::print_to(StandardStream::stderr(report::colors(&std::io::stderr())), files, &told);

@@ -7,7 +7,7 @@ use clap::builder::PossibleValuesParser;
 use durer::image::Transfer;
 use std::path::PathBuf;
 
-/// Compare a picture with a reference: measures, causes, a heat map, a report
+/// Compare a picture with a reference: error metrics, causes, a heat map, a report
 #[derive(Args)]
 #[command(after_help = "Examples:
   durer compare reference.png mine.png
@@ -18,30 +18,30 @@ use std::path::PathBuf;
   durer compare reference/ class/
   durer compare reference/ class/ --scene scenes/ --csv > class.csv
 
-Folders are compared picture by picture, by name; extensions may differ. If no name in REFERENCE exists in PICTURE itself, each
-folder in PICTURE counts as one student's.
-With --scene, the output names for each region that differs the object, its place in the file, the normal, and why the ray has
-its colour. Pass the options with which the reference was rendered.
-Exit code: 0 same within the tolerance, 1 different or missing, 2 a picture cannot be read, sizes differ, an option is invalid,
-or a file cannot be written.")]
+Pictures in folders are matched by name; their extensions may differ. If no name in REFERENCE exists in PICTURE itself, each
+folder in PICTURE counts as one student's submission.
+With --scene, the output lists for each differing region the object, its position in the file, its normal, and an
+explanation of the ray's colour. Pass the options that the reference was rendered with.
+Exit code: 0 if the pictures are equal within the tolerance, 1 if one is different or missing, 2 if a picture cannot be
+read, sizes differ, an option is invalid, or a file cannot be written.")]
 pub struct CompareArgs {
-    /// Reference picture, or a folder of references
+    /// Reference picture, or a folder of reference pictures
     pub reference: PathBuf,
-    /// Picture to judge, or a folder of pictures
+    /// Picture to compare with it, or a folder of pictures
     pub picture: PathBuf,
-    /// Write an HTML report in one file: slider, blinking, heat map, table
+    /// Write a self-contained HTML report with a slider, a blink comparison, a heat map and a table
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
-    /// Write a heat map of the FLIP errors
+    /// Write a heat map of the FLIP error
     #[arg(long, value_name = "PICTURE")]
     pub heat: Option<PathBuf>,
-    /// Largest channel difference that counts as equal, as 2/255 or a number
+    /// Largest difference per channel that counts as equal: a number, or a fraction such as 2/255
     #[arg(long, default_value = "1/255", value_parser = tolerance, allow_negative_numbers = true)]
     pub tolerance: f32,
-    /// Percentage of pixels that may differ by more
+    /// Percentage of pixels that may exceed the tolerance
     #[arg(long, value_name = "PERCENT", default_value_t = 0.0, value_parser = percent, allow_negative_numbers = true)]
     pub allow: f64,
-    /// Transfer curve for comparing a floating point picture with an 8-bit one: the one that made
+    /// Transfer curve for comparing a floating-point picture with an 8-bit one; use the curve of
     /// the reference
     #[arg(long, default_value = "srgb", value_parser = PossibleValuesParser::new(Transfer::ALL.map(Transfer::name)))]
     pub transfer: String,
@@ -51,8 +51,9 @@ pub struct CompareArgs {
     /// Print a table of comma-separated values, one line a picture
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
-    /// Scene of the pictures, or a folder of scenes with their names: tries common mistakes on it
-    /// and names the one that reproduces the picture; pass the options that made the reference too
+    /// Scene of the pictures, or a folder of scenes with matching names. Tries common mistakes on
+    /// the scene and reports the one that reproduces the picture; also pass the options of the
+    /// reference
     #[arg(long, value_name = "SCENE")]
     pub scene: Option<PathBuf>,
     #[command(flatten)]

@@ -86,7 +86,9 @@ fn explained(found: &Comparison) -> Vec<String> {
     }
     if found.findings.is_empty() {
         return vec![
-            "cause unknown from the pictures alone; pass `--scene` and the options that made the reference".into(),
+            "the pictures alone do not reveal the cause; pass `--scene` and the options that the reference was \
+             rendered with"
+                .into(),
         ];
     }
     let line = |(i, finding): (usize, &Finding)| {

@@ -18,8 +18,8 @@ pub fn named(stage: &Stage, reference: &Picture, test: &Picture) -> Diagnosis {
 pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
     if !diagnosis.is_of_scene() {
         return vec![format!(
-            "cause unknown: {:.0} % of the reference's pixels differ from this scene with these options; pass the options \
-             that made it (--dialect, --shadows, --bounces, --samples, --transfer)",
+            "cause unknown: with these options, {:.0} % of this scene's pixels differ from the reference; pass the \
+             options that it was rendered with (--dialect, --shadows, --bounces, --samples, --transfer)",
             100.0 * diagnosis.off
         )];
     }

@@ -42,15 +42,15 @@ const OPTIONS: [Row; 32] = [
     Row("-depth", &["MIN", "MAX", "FILE"], set::ALL, "the depth picture"),
     Row("-normals", &["FILE"], set::ALL, "the picture of normals"),
     Row("-shadows", &[], NOT_A4, "cast shadows"),
-    Row("-bounces", &["N"], NOT_A4, "maximum depth of mirrored and transmitted rays"),
-    Row("-shade_back", &[], set::OLD, "shade the back of surfaces too"),
+    Row("-bounces", &["N"], NOT_A4, "maximum depth of reflected and transmitted rays"),
+    Row("-shade_back", &[], set::OLD, "also shade surfaces seen from behind"),
     Row("-weight", &["X"], set::OLD, "minimum weight of a ray"),
     Row("-grid", &["NX", "NY", "NZ"], set::OLD, "use a uniform grid"),
     Row("-visualize_grid", &[], set::OLD, "show the grid's occupied cells"),
-    Row("-stats", &[], set::OLD, "print the numbers of objects and rays"),
+    Row("-stats", &[], set::OLD, "print the number of objects and rays"),
     Row("-random_samples", &["N"], set::OLD, "samples per pixel, at random"),
     Row("-uniform_samples", &["N"], set::OLD, "samples per pixel, in a regular pattern"),
-    Row("-jittered_samples", &["N"], set::OLD, "samples per pixel, one at random in each cell of a pattern"),
+    Row("-jittered_samples", &["N"], set::OLD, "samples per pixel, one at a random place in each cell of a grid"),
     Row("-box_filter", &["R"], set::OLD, "box filter"),
     Row("-tent_filter", &["R"], set::OLD, "tent filter"),
     Row("-gaussian_filter", &["SIGMA"], set::OLD, "Gaussian filter"),
@@ -60,19 +60,19 @@ const OPTIONS: [Row; 32] = [
     Row("-gui", &[], set::OLD, "ignored: Dürer has no window"),
     Row("-tessellation", &["THETA", "PHI"], set::OLD, "ignored: for the window only"),
     Row("-gouraud", &[], set::OLD, "ignored: for the window only"),
-    Row("-jitter", &[], set::F12A5 | set::F16 | set::F23, "three by three jittered sub-pixels"),
-    Row("-filter", &[], set::F12A5 | set::F16 | set::F23, "blur by five taps"),
-    Row("-reflection_off", &[], set::F12A5, "omit mirrored rays"),
-    Row("-refraction_off", &[], set::F12A5, "omit transmitted rays"),
-    Row("--program", &["NAME"], set::ALL, "act as this official program"),
-    Row("--dialect", &["NAME"], set::ALL, "dialect of the scene [default: guessed from the scene and the options]"),
+    Row("-jitter", &[], set::F12A5 | set::F16 | set::F23, "3x3 jittered subpixels"),
+    Row("-filter", &[], set::F12A5 | set::F16 | set::F23, "five-tap blur"),
+    Row("-reflection_off", &[], set::F12A5, "do not trace reflected rays"),
+    Row("-refraction_off", &[], set::F12A5, "do not trace transmitted rays"),
+    Row("--program", &["NAME"], set::ALL, "emulate this official program"),
+    Row("--dialect", &["NAME"], set::ALL, "dialect of the scene [default: detected from the scene and the options]"),
     Row("--compat", &["NAMES"], set::ALL, "quirks by name; see `durer dialects`"),
-    Row("--assets", &["FOLDER"], set::ALL, "folder to search for missing meshes and pictures"),
+    Row("--assets", &["FOLDER"], set::ALL, "folder to search for missing meshes and textures"),
 ];
 
 /// Dürer's own options, which only affect execution.
 const CONTROL: [Row; 4] = [
-    Row("--seed", &["N"], set::ALL, "seed of the random numbers"),
+    Row("--seed", &["N"], set::ALL, "seed of the random number generator"),
     Row("--threads", &["N"], set::ALL, "threads"),
     Row("--quiet", &[], set::ALL, "print only errors"),
     Row("--allow-outside", &[], set::ALL, "allow files outside the scene's folder"),
@@ -163,7 +163,11 @@ impl Given {
             .options
             .iter()
             .filter(|(row, _)| row.2 != set::ALL)
-            .map(|(row, _)| Hint { set: row.2, why: format!("`{}` is an option of that year", row.0), weak: false })
+            .map(|(row, _)| Hint {
+                set: row.2,
+                why: format!("`{}` is an option of that year's program", row.0),
+                weak: false,
+            })
             .collect();
         let extension = self.text("-output").and_then(|name| Path::new(name).extension()?.to_str());
         let wanted =
@@ -179,7 +183,7 @@ impl Given {
 }
 
 pub fn usage() {
-    say("durer course: accepts the arguments of the course's own programs, of any year\n");
+    say("durer course: accepts the arguments of the course's own programs from any year\n");
     say(
         "  durer course -input scene.txt -size 200 200 -output o.tga -depth 9 10 d.tga -normals n.tga -shadows -bounces 4\n",
     );
@@ -192,5 +196,5 @@ pub fn usage() {
         say(&format!("  {left:<28}{doc}{years}"));
     }
     say(&format!("\nPrograms: {}.", PROGRAMS.map(|p| p.name).join(", ")));
-    say("A link to durer with one of these names acts as that program.");
+    say("A link to durer with one of these names emulates that program.");
 }

@@ -38,7 +38,7 @@ pub fn denoise(noisy: &Noisy, threads: Option<usize>) -> Result<Image, String> {
     let (width, height) = (noisy.picture.width as usize, noisy.picture.height as usize);
     let count = noisy.picture.pixels.len();
     if [&noisy.albedo, &noisy.normal].iter().any(|guide| guide.len() != count) || count != width * height {
-        return Err("the picture has no albedo and normals".into());
+        return Err("the picture has no albedo or normals".into());
     }
     // The library expects albedo in 0..=1 and finite values.
     let albedo: Vec<Vec3> = noisy.albedo.iter().map(|albedo| albedo.clamp(Vec3::ZERO, Vec3::ONE)).collect();
@@ -110,7 +110,7 @@ pub fn denoise(noisy: &Noisy, threads: Option<usize>) -> Result<Image, String> {
 unsafe fn symbol<'l, T>(library: &'l Library, name: &CStr) -> Result<Symbol<'l, T>, String> {
     // SAFETY: the caller guarantees the function's type.
     unsafe { library.get(name.to_bytes_with_nul()) }
-        .map_err(|_| format!("this Open Image Denoise is not version 2: it has no {}", name.to_string_lossy()))
+        .map_err(|_| format!("this is not version 2 of Open Image Denoise: it has no {}", name.to_string_lossy()))
 }
 
 fn load() -> Result<Library, String> {
@@ -118,5 +118,5 @@ fn load() -> Result<Library, String> {
     let folders = folder.iter().flat_map(|folder| [folder.join(NAME), folder.join("lib").join(NAME)]);
     let file = folders.into_iter().find(|file| file.is_file()).unwrap_or_else(|| Path::new(NAME).to_path_buf());
     // SAFETY: the library's initialisers run; the user or the system installed it.
-    unsafe { Library::new(&file) }.map_err(|_| "Open Image Denoise is not found".into())
+    unsafe { Library::new(&file) }.map_err(|_| "Open Image Denoise was not found".into())
 }

@@ -9,7 +9,8 @@ use std::fmt::Write;
 pub fn text(lesson: &Lesson) -> String {
     let scene = &lesson.scene;
     let mut text = format!(
-        "{MARK}\n# {}, in the order of the lecture\n\nAs a page for a browser, with sliders: [{PAGE}]({PAGE}).\n",
+        "{MARK}\n# {}, in the order of the lecture\n\nFor a version with sliders, open [{PAGE}]({PAGE}) in a \
+         browser.\n",
         plain(scene)
     );
     for (number, written) in (1..).zip(&lesson.steps) {
@@ -31,8 +32,8 @@ fn step(text: &mut String, number: usize, step: &Written, scene: &str) {
     // Pictures side by side in a table, captions above.
     let mut columns: Vec<(&str, &str)> =
         step.before.iter().chain([&step.after]).map(|figure| (figure.caption, figure.file.as_str())).collect();
-    columns.extend(step.change.as_ref().map(|file| ("what changed: lighter or darker than grey", file.as_str())));
-    columns.extend(step.plan.as_ref().map(|plan| ("the middle row's rays from above", plan.1.as_str())));
+    columns.extend(step.change.as_ref().map(|file| ("the change, lighter or darker than grey", file.as_str())));
+    columns.extend(step.plan.as_ref().map(|plan| ("rays of the middle row, seen from above", plan.1.as_str())));
     let row = |cells: Vec<String>| format!("| {} |", cells.join(" | "));
     let _ = writeln!(text, "{}", row(columns.iter().map(|column| column.0.to_string()).collect()));
     let _ = writeln!(text, "{}", row(columns.iter().map(|_| ":-:".to_string()).collect()));

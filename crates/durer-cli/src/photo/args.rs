@@ -4,7 +4,7 @@ use crate::options::{JobArgs, SceneArgs};
 use clap::{ArgGroup, Args, Subcommand};
 use std::path::PathBuf;
 
-/// Reconstruct cameras and points from photographs, and make a tour of them
+/// Reconstruct cameras and points from photographs, and make a virtual tour of them
 #[derive(Args)]
 #[command(after_help = "Examples:
   durer photo match photos/ -o matches.json
@@ -34,7 +34,7 @@ pub enum PhotoCommand {
   durer photo match photos/ -o matches.json --side 3000 --features 12000
   durer photo match photos/ -o matches.json --ignore-exif --field 60
 
-The initial focal length comes from EXIF, or else from --field. Equal photographs give an equal file, on any number of
+The initial focal length comes from EXIF, or from --field if EXIF has none. The output does not depend on the number of
 threads.")]
 pub struct MatchArgs {
     /// Folder of photographs: JPEG or PNG
@@ -45,10 +45,10 @@ pub struct MatchArgs {
     /// Maximum number of features per photograph
     #[arg(long, default_value_t = 6000, value_parser = clap::value_parser!(u32).range(16..=100_000))]
     pub features: u32,
-    /// Scale photographs down until the longer side has at most this many pixels
+    /// Scale photographs down so that the longer side has at most this many pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 1600, value_parser = clap::value_parser!(u32).range(64..=20_000))]
     pub side: u32,
-    /// Horizontal field of view if EXIF has no focal length
+    /// Horizontal field of view for photographs whose EXIF has no focal length
     #[arg(long, value_name = "DEGREES", default_value_t = 45.0, value_parser = field)]
     pub field: f64,
     /// Ignore the focal length in EXIF
@@ -58,13 +58,13 @@ pub struct MatchArgs {
     pub run: RunArgs,
 }
 
-/// Options of seed, threads and messages
+/// Seed, threads and messages
 #[derive(Args)]
 pub struct RunArgs {
-    /// Seed of the random numbers
+    /// Seed of the random number generator
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Threads [default: one per processor]
+    /// Number of threads [default: one per processor]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Print only errors
@@ -72,11 +72,11 @@ pub struct RunArgs {
     pub quiet: bool,
 }
 
-/// Output files of cameras and points
+/// Output files for cameras and points
 #[derive(Args)]
 pub struct ResultArgs {
     /// File to write, by extension: .out (Bundler), .txt (BAL), .json (OpenSfM), .ply, .gltf, or a
-    /// folder for COLMAP; may be given several times
+    /// folder for COLMAP; can be given several times
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
     /// Write COLMAP's binary files
@@ -92,16 +92,16 @@ pub struct ResultArgs {
   durer photo solve matches.json -o solved/ --control control.txt --covariance
   durer photo solve problem-16-22106-pre.txt -o adjusted.txt
 
-A file that has cameras (Bundler, BAL, COLMAP, OpenSfM) is only adjusted. Photographs of one camera, size and focal length
-share a lens, unless --own-lenses is given.
-A file of control points has rows `X Y Z photograph u v photograph u v ...`: a point's position, and its pixel in each
-photograph.")]
+If the file already has cameras (Bundler, BAL, COLMAP, OpenSfM), only bundle adjustment is run. Photographs from the same
+camera, with the same size and focal length, share a lens unless --own-lenses is given.
+Each row of a control point file is `X Y Z photograph u v photograph u v ...`: the position of a point, and its pixel in
+each photograph.")]
 pub struct SolveArgs {
     /// File written by `durer photo match`, or cameras and points
     pub file: PathBuf,
     #[command(flatten)]
     pub results: ResultArgs,
-    /// Folder of photographs, if the file lacks their sizes
+    /// Folder of photographs, needed if the file does not contain their sizes
     #[arg(long, value_name = "FOLDER")]
     pub pictures: Option<PathBuf>,
     /// Use a separate lens for each photograph
@@ -110,14 +110,15 @@ pub struct SolveArgs {
     /// Keep the focal lengths fixed
     #[arg(long)]
     pub fixed_focal: bool,
-    /// Keep the distortion k1 and k2 fixed
+    /// Keep the distortion coefficients k1 and k2 fixed
     #[arg(long)]
     pub no_distortion: bool,
-    /// Loss of a residual when a file is adjusted; huber and cauchy reduce the weight of outliers
+    /// Loss function when a file with cameras is adjusted; huber and cauchy reduce the weight of
+    /// outliers
     #[arg(long, default_value = "squared", value_parser = ["squared", "huber", "cauchy"])]
     pub loss: String,
-    /// Residual above which an observation is an outlier, in pixels, for photographs of up to 1600
-    /// pixels
+    /// Residual in pixels above which an observation is an outlier; scaled up for photographs
+    /// larger than 1600 pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 2.5, value_parser = positive)]
     pub threshold: f64,
     /// Align the result with these control points
@@ -138,17 +139,19 @@ pub struct SolveArgs {
   durer photo camera house.jpg --lines house.lines
   durer photo camera house.fspy -o camera.txt
 
-Rows of --points are `X Y Z u v`: a point of the world and its pixel, from the upper left corner. Rows of --lines are
-`x u1 v1 u2 v2`: the axis of the world that points towards the vanishing point (x, -x, y, ...), and two pixels of a line along
-it; and `origin u v`. At least two axes are needed, with at least two lines each. An fSpy project contains all of that.
-The output is a camera in Dürer's scene language. A scene rendered with it matches the photograph: see `durer photo place`.")]
+Each row of the --points file is `X Y Z u v`: a world-space point and its pixel, measured from the upper left corner. Each
+row of the --lines file is `x u1 v1 u2 v2`: the world axis that points towards the vanishing point (x, -x, y, ...), and two
+pixels on a line along this axis. A row `origin u v` sets the pixel of the world origin. At least two axes are needed, with
+at least two lines each. An fSpy project contains all of this.
+The output is a camera in Dürer's scene language. A scene rendered with this camera matches the photograph: see `durer photo
+place`.")]
 pub struct CameraArgs {
     /// Photograph, or an fSpy project
     pub picture: PathBuf,
-    /// File of world points and their pixels
+    /// File of world-space points and their pixels
     #[arg(long, value_name = "FILE", conflicts_with = "lines")]
     pub points: Option<PathBuf>,
-    /// File of lines that are parallel in the world
+    /// File of lines in the photograph that are parallel to the world axes
     #[arg(long, value_name = "FILE")]
     pub lines: Option<PathBuf>,
     /// Focal length in pixels, if it is known
@@ -160,7 +163,7 @@ pub struct CameraArgs {
     /// Residual in pixels above which a point is an outlier [default: 0.5 % of the longer side]
     #[arg(long, value_name = "PIXELS", requires = "points", value_parser = positive)]
     pub threshold: Option<f64>,
-    /// Distance of the origin with --lines, which photographs do not determine
+    /// Distance from the camera to the origin with --lines, which a photograph does not determine
     #[arg(long, value_name = "LENGTH", default_value_t = 10.0, value_parser = positive)]
     pub distance: f64,
     /// File to write
@@ -171,23 +174,24 @@ pub struct CameraArgs {
     pub quiet: bool,
 }
 
-/// Insert objects of a scene into a photograph, with their shadows
+/// Insert objects from a scene into a photograph, with their shadows
 #[derive(Args)]
 #[command(after_help = "Examples:
   durer photo place table.txt --backplate table.jpg -o placed.png
   durer photo place table.txt --backplate table.jpg --stand-in 0,3 -o placed.exr --samples 64
 
-The scene has the photograph's camera, as `durer photo camera` computes it, the objects to insert, and stand-ins for objects in
-the photograph, for example a plane for its table. Stand-ins catch shadows and hide what is behind them, but are invisible.
-The lights should match the photograph. The scene is rendered with and without the inserted objects, and the photograph is
-darkened or brightened like the stand-ins. The stand-ins' colours only matter in mirrors.")]
+The scene contains the photograph's camera, as computed by `durer photo camera`, the objects to insert, and stand-ins for
+objects in the photograph, for example a plane for a table. Stand-ins are invisible, but they catch shadows and hide what is
+behind them. The lights should match those in the photograph. The scene is rendered with and without the inserted objects,
+and the photograph is darkened or brightened as much as the stand-ins are. The colours of the stand-ins only matter in
+mirrors.")]
 pub struct PlaceArgs {
     /// Scene file
     pub scene: PathBuf,
     /// Photograph: JPEG or PNG
     #[arg(long, value_name = "PICTURE")]
     pub backplate: PathBuf,
-    /// Numbers of the stand-ins' materials, joined by commas
+    /// Comma-separated list of the material numbers of the stand-ins
     #[arg(long, value_name = "NUMBERS", value_delimiter = ',', default_value = "0")]
     pub stand_in: Vec<u32>,
     /// Picture to write
@@ -197,7 +201,7 @@ pub struct PlaceArgs {
     pub reading: SceneArgs,
     #[command(flatten)]
     pub job: JobArgs,
-    /// Threads [default: one per processor]
+    /// Number of threads [default: one per processor]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Print only errors
@@ -214,13 +218,13 @@ pub struct PlaceArgs {
 pub struct ExplainArgs {
     /// File or folder of cameras and points
     pub file: PathBuf,
-    /// Number of a point, from 0
+    /// Number of the point to explain, counted from 0
     #[arg(long, value_name = "NUMBER", group = "asked")]
     pub point: Option<usize>,
-    /// Name or number of a photograph, from 0
+    /// Name or number of the photograph to explain, counted from 0
     #[arg(long, value_name = "NAME", group = "asked")]
     pub camera: Option<String>,
-    /// Folder of photographs, if the file lacks their sizes
+    /// Folder of photographs, needed if the file does not contain their sizes
     #[arg(long, value_name = "FOLDER")]
     pub pictures: Option<PathBuf>,
 }
@@ -233,14 +237,14 @@ pub struct ExplainArgs {
   durer photo convert problem.txt
   durer photo convert cloud.ply -o cloud.gltf
 
-Without -o, prints a summary of the file and its residuals. PLY has only points; glTF (.gltf, .glb) has cameras and points.
-Neither says which photographs see a point.")]
+Without -o, prints a summary of the file and its residuals. PLY files contain only points, and glTF files (.gltf, .glb)
+contain cameras and points. Neither records which photographs see a point.")]
 pub struct ConvertArgs {
     /// File or folder of cameras and points
     pub file: PathBuf,
     #[command(flatten)]
     pub results: ResultArgs,
-    /// Folder of photographs, if the file lacks their sizes
+    /// Folder of photographs, needed if the file does not contain their sizes
     #[arg(long, value_name = "FOLDER")]
     pub pictures: Option<PathBuf>,
     /// Print only errors
@@ -248,7 +252,7 @@ pub struct ConvertArgs {
     pub quiet: bool,
 }
 
-/// Make an HTML page for walking among the photographs
+/// Make an HTML page for moving through the photographs in 3D
 #[derive(Args)]
 #[command(after_help = "Example:
   durer photo tour solved/ --pictures photos/ -o tour.html
@@ -264,7 +268,7 @@ pub struct TourArgs {
     /// Page to write
     #[arg(short, long, value_name = "FILE.html", default_value = "tour.html")]
     pub output: PathBuf,
-    /// Longer side of the photographs in the page
+    /// Length of the longer side of the photographs in the page
     #[arg(long, value_name = "PIXELS", default_value_t = 640, value_parser = clap::value_parser!(u32).range(32..=4096))]
     pub side: u32,
     /// Print only errors

@@ -38,9 +38,9 @@ pub fn run(args: &CameraArgs) -> Result<(), Failure> {
         let found = camera(&pairs, &known).map_err(wrong)?;
         tell(format!("{} of {} points agree; rms {:.3} pixels", found.inliers.len(), pairs.len(), found.rms));
         for i in (0..pairs.len()).filter(|i| !found.inliers.contains(i)) {
-            tell(format!("point {} does not: its position or its pixel is wrong", i + 1));
+            tell(format!("point {} does not agree: its position or its pixel is wrong", i + 1));
         }
-        tell(format!("conditioning {:.2e}: ratio of the least to the best determined direction", found.conditioning));
+        tell(format!("conditioning {:.2e}: ratio of the worst to the best determined direction", found.conditioning));
         (found.lens, found.pose)
     } else {
         return Err(bad("pass known points or lines of the photograph: --points FILE or --lines FILE"));

@@ -103,7 +103,7 @@ pub fn read(file: &Path, pictures: Option<&Path>, guard: &mut Guard) -> Result<R
     let paths = photographs(folder)?;
     if paths.len() != all.views.len() {
         return Err(bad(format!(
-            "there are {} photographs in `{}`, and {} cameras in `{}`",
+            "there are {} photographs in `{}` but {} cameras in `{}`",
             paths.len(),
             folder.display(),
             all.views.len(),

@@ -74,8 +74,8 @@ fn table(matches: &Matches) {
     }
     for link in matches.links.iter().filter(|link| link.moved < 0.5) {
         let [a, b] = link.pictures.map(|i| &matches.pictures[i].name);
-        complain(&format!("warning: {a} and {b} are the same picture: together they determine no depth"));
+        complain(&format!("warning: {a} and {b} are the same picture, so they provide no depth information"));
     }
     let longest = matches.tracks.iter().map(|track| track.seen.len()).max().unwrap_or(0);
-    say(&format!("{} tracks, the longest in {longest} photographs", matches.tracks.len()));
+    say(&format!("{} tracks, the longest across {longest} photographs", matches.tracks.len()));
 }

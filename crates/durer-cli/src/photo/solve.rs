@@ -140,7 +140,7 @@ fn options(args: &SolveArgs) -> adjust::Options {
 fn exactness(args: &SolveArgs, all: &Reconstruction) -> Result<(), Failure> {
     let found = covariance(all, &options(args)).map_err(wrong)?;
     say(&format!(
-        "standard deviations, for {:.3} pixels in each coordinate; the first photograph is fixed:",
+        "standard deviations, for an error of {:.3} pixels in each coordinate; the first photograph is fixed:",
         found.sigma
     ));
     for (view, _) in &found.views {

@@ -193,7 +193,7 @@ fn errors_have_positions() {
             "1:6 error a polygon needs three numbers for each of at least 3 corners, but this one has 6 numbers",
         ),
         ("!xform -t 1 2 missing.rad", "1:15 error expected a number, found `missing.rad`"),
-        ("!xform missing.rad", "1:8 error there is no file `missing.rad`"),
+        ("!xform missing.rad", "1:8 error the file `missing.rad` does not exist"),
         ("!xform -q far.rad", "1:8 error `xform` has no option `-q`"),
         ("!genbox m b 1 1", "1:2 error `genbox` needs a material, a name and three sizes"),
         (
@@ -211,7 +211,7 @@ fn errors_have_positions() {
     let (_, found) = read_in(cycle.path(), "scene.rad", "!cat a.rad");
     assert_eq!(found, ["a.rad:2:8 error files are nested more than 32 deep: does one include itself?"]);
     let (_, found) = read_in(cycle.path(), "scene.rad", "!cat far.rad");
-    let help = "a scene may only name files in and below its own folder, unless `--allow-outside` is given";
+    let help = "a scene can only use files in or below its own folder, unless `--allow-outside` is given";
     assert!(found[0].starts_with("far.rad:1:6 error ") && !found[0].contains("missing"), "{found:?} {help}");
     let many = "void plastic".to_string() + &"\nvoid plastik m 0 0 0".repeat(100);
     assert!(read(&many).1.len() <= 21);
@@ -253,7 +253,7 @@ fn rif_reads_files_and_views() {
     let Some(durer_scene::camera::Camera::Orthographic(camera)) = &scene.camera else { panic!() };
     assert_eq!((camera.size, camera.direction, camera.up), (4.0, Vec3::Y, Vec3::Z));
     for (line, told) in [
-        ("scene = s.rad", "x.rif:1:9 error there is no file `s.rad`"),
+        ("scene = s.rad", "x.rif:1:9 error the file `s.rad` does not exist"),
         ("view = a -vp 1 2", "x.rif:1:10 error `-vp` needs 3 numbers"),
         ("banana = 1", "x.rif:1:1 error `rad` has no variable `banana`"),
         ("scene s.rad", "x.rif:1:1 error a line must have the form `VARIABLE = values`"),

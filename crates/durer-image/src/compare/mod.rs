@@ -110,7 +110,7 @@ pub enum CompareError {
 }
 
 fn exchanged(a: (u32, u32), b: (u32, u32)) -> &'static str {
-    if a == (b.1, b.0) { " (width and height are exchanged)" } else { "" }
+    if a == (b.1, b.0) { " (width and height are swapped)" } else { "" }
 }
 
 /// Memory in bytes that decoding and comparing two pictures takes.

@@ -147,7 +147,7 @@ fn light_is_compared_with_bytes_as_bytes() {
 #[test]
 fn sizes_that_differ_are_an_error() {
     let error = compare(&grey(3, 4, 0.0), &grey(4, 3, 0.0), &Options::default()).unwrap_err().to_string();
-    assert!(error.contains("3 x 4 and 4 x 3") && error.contains("exchanged"), "{error}");
+    assert!(error.contains("3 x 4 and 4 x 3") && error.contains("swapped"), "{error}");
 }
 
 /// Two differing patches are two regions, with correct properties.

@@ -76,7 +76,7 @@ pub fn raster(name: &'static str, decoder: impl ImageDecoder) -> Result<Raster, 
             let pixel = |p: &[u8]| Vec3::new(float(p), float(&p[4..]), float(&p[8..]));
             Raster::Float(Image { width, height, pixels: filled(count, pixels.map(pixel))? }, Vec::new())
         }
-        _ => return Err(ImageError::unsupported(name, format!("pixels of the kind {color:?}"))),
+        _ => return Err(ImageError::unsupported(name, format!("pixels of the type {color:?} are not supported"))),
     })
 }
 

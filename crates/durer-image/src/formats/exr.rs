@@ -56,7 +56,7 @@ fn head_of_rows(strip: &Strip) -> Result<Vec<u8>, ImageError> {
     // A row begins with its number and its size.
     let row = 8 + row_bytes(strip);
     if row > i32::MAX as u64 {
-        return Err(ImageError::unsupported(NAME, "rows of more than 2 GiB"));
+        return Err(ImageError::unsupported(NAME, "rows of more than 2 GiB are not supported"));
     }
     let channels = letters(strip.alpha).iter().map(|letter| ChannelDescription::named(*letter, SampleType::F32));
     let size = (strip.width as usize, strip.height as usize);
@@ -161,11 +161,11 @@ fn chosen(meta: &MetaData) -> Result<(&Header, [Text; 3]), ImageError> {
         [channel] => Some((header, grey(channel.name.clone()))),
         _ => None,
     });
-    single.ok_or_else(|| ImageError::unsupported(NAME, "there are no channels R, G and B, nor Y"))
+    single.ok_or_else(|| ImageError::unsupported(NAME, "it has neither channels R, G and B nor a channel Y"))
 }
 
-/// The width and height of the window that is shown, and where the pixels that are there begin in it:
-/// those of a crop fill a part of it, and some programs make more than is shown.
+/// Returns the size of the display window, and the offset of the stored pixels in it. A crop fills
+/// only a part of the window, and some programs store more than is displayed.
 fn window(header: &Header) -> (Vec2<usize>, Vec2<i64>) {
     let shown = header.shared_attributes.display_window;
     let from = header.own_attributes.layer_position;
@@ -177,7 +177,7 @@ fn head(bytes: &[u8]) -> Result<Head, ImageError> {
     let meta = MetaData::read_from_buffered(bytes, false).map_err(malformed)?;
     let (header, _) = chosen(&meta)?;
     if header.channels.list.iter().any(|channel| channel.sampling != Vec2(1, 1)) {
-        return Err(ImageError::unsupported(NAME, "channels of lower resolution"));
+        return Err(ImageError::unsupported(NAME, "channels with reduced resolution are not supported"));
     }
     let Vec2(width, height) = header.layer_size;
     // A block is decoded with all its channels, even unused ones: compressed, uncompressed, and

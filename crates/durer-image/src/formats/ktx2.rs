@@ -19,7 +19,7 @@ pub const FORMAT: Format = Format {
     begins: |bytes| bytes.starts_with(MARK),
     head,
     decode,
-    encode: |_, _, _| Err(ImageError::unsupported(NAME, "writing: choose PNG or OpenEXR")),
+    encode: |_, _, _| Err(ImageError::unsupported(NAME, "writing is not supported: choose PNG or OpenEXR")),
     rows: None,
 };
 
@@ -99,7 +99,7 @@ fn malformed(reason: &str) -> ImageError {
 }
 
 fn word(bytes: &[u8], at: usize) -> Result<u64, ImageError> {
-    let four = bytes.get(at..at + 4).ok_or_else(|| malformed("its head is cut off"))?;
+    let four = bytes.get(at..at + 4).ok_or_else(|| malformed("its header is truncated"))?;
     Ok(four.iter().rev().fold(0, |word, &byte| word << 8 | u64::from(byte)))
 }
 
@@ -110,34 +110,34 @@ fn long(bytes: &[u8], at: usize) -> Result<u64, ImageError> {
 /// Slice of the file.
 fn part(bytes: &[u8], start: u64, length: u64) -> Result<&[u8], ImageError> {
     let end = start.checked_add(length).filter(|&end| end <= bytes.len() as u64);
-    let end = end.ok_or_else(|| malformed("it is cut off"))?;
+    let end = end.ok_or_else(|| malformed("it is truncated"))?;
     Ok(&bytes[start as usize..end as usize])
 }
 
 fn open(bytes: &[u8]) -> Result<Texture<'_>, ImageError> {
     if !bytes.starts_with(MARK) {
-        return Err(malformed("its mark is missing"));
+        return Err(malformed("its signature is missing"));
     }
     let [kind, width, height, depth] = [word(bytes, 12)?, word(bytes, 20)?, word(bytes, 24)?, word(bytes, 28)?];
     let [layers, faces, scheme] = [word(bytes, 32)?, word(bytes, 36)?, word(bytes, 44)?];
     let unsupported = |what: &str| Err(ImageError::unsupported(NAME, what));
     match scheme {
-        1 => return unsupported("Basis Universal (BasisLZ): convert it with `ktx extract`"),
-        2 => return unsupported("pixels packed by Zstandard: convert it with `ktx extract`"),
+        1 => return unsupported("Basis Universal (BasisLZ) is not supported: convert it with `ktx extract`"),
+        2 => return unsupported("Zstandard compression is not supported: convert it with `ktx extract`"),
         0 | 3 => {}
-        _ => return Err(malformed("nobody knows how it is packed")),
+        _ => return Err(malformed("its compression scheme is unknown")),
     }
     if kind == 0 {
-        return unsupported("Basis Universal (UASTC): convert it with `ktx extract`");
+        return unsupported("Basis Universal (UASTC) is not supported: convert it with `ktx extract`");
     }
     let Some(&(_, channels, number, blue_first)) = KINDS.iter().find(|row| u64::from(row.0) == kind) else {
         return Err(ImageError::unsupported(
             NAME,
-            format!("pixels of Vulkan's format {kind}: convert it with `ktx extract`"),
+            format!("the Vulkan format {kind} is not supported: convert it with `ktx extract`"),
         ));
     };
     if height == 0 || depth > 1 || layers > 1 || faces != 1 {
-        return unsupported("anything but one flat picture");
+        return unsupported("only a single 2D image is supported");
     }
     let level = part(bytes, long(bytes, 80)?, long(bytes, 88)?)?;
     let values = part(bytes, word(bytes, 56)?, word(bytes, 60)?)?;
@@ -199,7 +199,7 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
         }
     };
     if pixels.len() < count * size {
-        return Err(malformed("it has fewer pixels than it says"));
+        return Err(malformed("it has fewer pixels than its header states"));
     }
     let at = |row: usize, column: usize| {
         let row = if texture.bottom_up { height - 1 - row } else { row };

@@ -45,7 +45,7 @@ pub(super) fn packed<T, E: From<io::Error>>(
 /// Size and pixel type, from the first chunk. Errors in the rest are found by the decoder.
 fn head(bytes: &[u8]) -> Result<Head, ImageError> {
     let first = chunks(bytes).next().filter(|chunk| chunk[4..8] == *b"IHDR").and_then(|chunk| chunk.get(8..18));
-    let Some([w @ .., depth, color]) = first else { return Err(ImageError::malformed(NAME, "its head is missing")) };
+    let Some([w @ .., depth, color]) = first else { return Err(ImageError::malformed(NAME, "its header is missing")) };
     let side = |four: &[u8]| four.iter().fold(0, |side, &byte| side << 8 | u64::from(byte));
     let (width, height) = (side(&w[..4]), side(&w[4..]));
     // Channels of grey, true colour, palette, grey with alpha, and colour with alpha.

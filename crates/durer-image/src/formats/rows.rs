@@ -80,7 +80,8 @@ impl Format {
         out: &mut dyn Write,
         rows: impl FnOnce(&mut RowWriter) -> Result<T, E>,
     ) -> Result<T, E> {
-        let format = self.rows.ok_or_else(|| ImageError::unsupported(self.name, "writing row by row"))?;
+        let format =
+            self.rows.ok_or_else(|| ImageError::unsupported(self.name, "writing row by row is not supported"))?;
         out.write_all(&(format.head)(&strip)?)?;
         packed(format, strip, out, rows)
     }

@@ -30,7 +30,16 @@ const TRUE_COLOR: u8 = 2;
 static ROWS: RowFormat = RowFormat {
     bottom_up: true,
     head: |strip| {
-        let side = |side: u32| u16::try_from(side).map_err(|_| ImageError::unsupported(NAME, "a side above 65535"));
+        let side = |side: u32| {
+            u16::try_from(side).map_err(|_| {
+                ImageError::unsupported(
+                    NAME,
+                    "sides of more than \
+                                                                                              65535 pixels are not \
+                                                                                              supported",
+                )
+            })
+        };
         let ([w0, w1], [h0, h1]) = (side(strip.width)?.to_le_bytes(), side(strip.height)?.to_le_bytes());
         let (bits, alpha_bits) = if strip.alpha { (32, 8) } else { (24, 0) };
         // No identification, no palette, origin at the lower left.

@@ -45,5 +45,5 @@ def spoken(work: Callable[[], T]) -> T:
 
 
 def _python(text: str) -> str:
-    text = re.sub(r"expected WIDTHxHEIGHT, as in (\d+)x(\d+)", r'expected (\1, \2) or "\1x\2"', text)
+    text = re.sub(r"expected WIDTHxHEIGHT, for example (\d+)x(\d+)", r'expected (\1, \2) or "\1x\2"', text)
     return re.sub(r"--([a-z][a-z-]*)", lambda option: option[1].replace("-", "_"), text)

@@ -183,7 +183,7 @@ class Intersection(Group):
 
 
 class Difference(Group):
-    """The first part without the others."""
+    """The first part minus all others."""
 
     word = "Difference"
 

@@ -65,8 +65,8 @@ pub(super) fn mend(texels: &mut [Vec3], width: u32, path: &str) -> Option<String
     let texels = if count == 1 { "one invalid texel".into() } else { format!("{count} invalid texels") };
     let [r, g, b] = texel.to_array();
     Some(format!(
-        "the picture `{path}` has {texels}: {r} {g} {b} in column {column} of row {row}, from the upper left; NaN is \
-         read as 0, infinity as {BRIGHTEST}"
+        "the image `{path}` has {texels}: {r} {g} {b} in column {column} of row {row}, from the upper left; NaN is \
+         read as 0 and infinity as {BRIGHTEST}"
     ))
 }
 
@@ -78,7 +78,7 @@ pub(super) fn used<T>(
     diagnostics: &mut Diagnostics,
 ) -> Option<T> {
     let refuse = |error: ImageError| {
-        let message = format!("cannot use the picture `{path}`: {error}");
+        let message = format!("cannot use the image `{path}`: {error}");
         let diagnostic = Diagnostic::error(message).code("bad-file").at(name.span);
         diagnostics.push(match error {
             ImageError::Memory { .. } => diagnostic.help("see `--memory`"),

@@ -171,7 +171,7 @@ impl<'r> Loader<'r> {
     /// Returns the mesh of a height field.
     pub(super) fn height_field(&mut self, field: &HeightField, diagnostics: &mut Diagnostics) -> Option<Arc<MeshTree>> {
         let name = &field.picture;
-        let bytes = self.read(name, "picture of heights", diagnostics)?;
+        let bytes = self.read(name, "height image", diagnostics)?;
         let encoded = used(name, &name.path, Encoded::open(&bytes, &name.path), diagnostics)?;
         let (width, height) = encoded.size();
         let mut refuse = |message: String| diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
@@ -188,11 +188,11 @@ impl<'r> Loader<'r> {
         let heights: Vec<f32> = picture.pixels.iter().map(|pixel| (pixel.x + pixel.y + pixel.z) / 3.0).collect();
         drop(picture);
         if heights.iter().any(|height| !height.is_finite()) {
-            refuse(format!("the picture `{}` has heights that are not finite", name.path));
+            refuse(format!("the image `{}` has heights that are not finite", name.path));
             return None;
         }
         if let Some(least) = heights.iter().copied().reduce(f32::min).filter(|least| *least < 0.0) {
-            refuse(format!("the picture `{}` has heights of {least}: heights must not be less than 0", name.path));
+            refuse(format!("the image `{}` has a height of {least}: heights must not be less than 0", name.path));
             return None;
         }
         let needed = HEIGHT_BYTES * heights.len() as u64;
@@ -234,7 +234,7 @@ impl<'r> Loader<'r> {
         for mut finding in own.iter().cloned() {
             if self.resources.sky_optional {
                 finding.severity = Severity::Warning;
-                finding.label = "the picture shows the background's colour instead".into();
+                finding.label = "the background's colour is used instead".into();
             }
             diagnostics.push(finding);
         }
@@ -396,7 +396,7 @@ impl<'r> Loader<'r> {
         self.resources.memory = left.saturating_sub(needed);
         if needed > left {
             let (needed, left) = (at_least(needed), at_most(left));
-            let message = format!("`{}` needs about {needed} of memory, but only {left} are left", name.path);
+            let message = format!("`{}` needs about {needed} of memory, but only {left} is left", name.path);
             diagnostics.push(Diagnostic::error(message).at(name.span).help("see `--memory`"));
         }
         needed <= left
@@ -419,13 +419,13 @@ impl<'r> Loader<'r> {
                 let (help, folder) =
                     (missing_help(&tried, near.as_deref()), name.path.rfind('/').map_or(0, |at| at + 1));
                 // The scene names only the folder of a cube map's faces.
-                match near.filter(|_| matches!(what, "mesh" | "texture" | "picture of heights")) {
+                match near.filter(|_| matches!(what, "mesh" | "texture" | "height image")) {
                     Some(near) => diagnostic.help(help).fix(name.span, format!("{}{near}", &name.path[..folder])),
                     None => diagnostic.help(help),
                 }
             }
             SourceError::Outside { .. } => diagnostic
-                .help("a scene may only name files in and below its own folder, unless `--allow-outside` is given"),
+                .help("a scene can only use files in or below its own folder, unless `--allow-outside` is given"),
             _ => diagnostic,
         });
         None

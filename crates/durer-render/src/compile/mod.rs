@@ -327,7 +327,7 @@ fn check_sun(scene: &Scene, diagnostics: &mut Diagnostics) {
     {
         let message = format!("the sun is {:.1} degrees below the horizon", low(way));
         let warning = Diagnostic::warning(message).code("sun-below").at(scene.background_span);
-        let help = "for dusk move the sun to the horizon; for night add lights";
+        let help = "for dusk, move the sun to the horizon; for night, add lights";
         diagnostics.push(warning.effect("the sun and its sky emit no light").help(help));
     }
 }
@@ -411,7 +411,7 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
                 Light::Point(lamp) if lamp.falloff.is_some() => format!("the `{word}` of this light is 0"),
                 _ => format!("this light has no `{word}`"),
             };
-            let message = format!("{message}: like the official program, this divides by zero");
+            let message = format!("{message}: this divides by zero, as the official program does");
             let warning = Diagnostic::warning(message).code("no-falloff").at(written.span);
             diagnostics.push(warning.help(format!("the picture will be black; write `{word} 1`, for example")));
         }
@@ -448,7 +448,7 @@ impl SceneFlattener<'_, '_> {
     /// Warns once of objects without a material.
     fn warn_of_bare(&mut self) {
         let Some((span, count)) = self.bare else { return };
-        let mut message = "this object has no material and is drawn in plain grey".to_string();
+        let mut message = "this object has no material and is rendered in plain grey".to_string();
         match count {
             1 => {}
             2 => message += "; another object has none either",
@@ -533,7 +533,7 @@ impl SceneFlattener<'_, '_> {
                 None if self.rules.has(Compat::AnyValues) && !matrices.is_empty() => {
                     let message = "the transforms around this object are singular";
                     let warning = Diagnostic::warning(message).code("flat-transform").at(object.span);
-                    self.diagnostics.push(warning.effect("rays are divided by zero, as in the official program"));
+                    self.diagnostics.push(warning.effect("rays are divided by zero, as the official program does"));
                     None
                 }
                 None => {

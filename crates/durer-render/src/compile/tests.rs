@@ -159,7 +159,7 @@ fn height_fields_are_closed_meshes() {
         assert!(world.is_none() && findings.iter().any(|d| d.message.contains(what)), "{findings:?}");
     };
     refused("HeightField { picture dot.ppm min 0 0 0 max 1 1 1 }", "a height field cannot have 1 x 1 pixels");
-    refused("HeightField { picture none.ppm min 0 0 0 max 1 1 1 }", "the picture of heights cannot be read");
+    refused("HeightField { picture none.ppm min 0 0 0 max 1 1 1 }", "the height image cannot be read");
     refused("HeightField { picture hills.ppm min 0 0 0 max 1 0 1 }", "`min` of a `HeightField` must be less");
 }
 

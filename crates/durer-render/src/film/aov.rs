@@ -140,7 +140,7 @@ pub fn fill_from_last_hit(pixels: &mut [Color], hits: &[bool], width: usize) {
 pub static AOVS: &[Aov] = &[
     Aov {
         name: "depth",
-        doc: "ray parameter t of the first hit, a distance for camera rays; 0 for a miss",
+        doc: "ray parameter t of the first hit, which is a distance for camera rays; 0 for a miss",
         value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(f32::INFINITY, |at| at.hit.t))),
         picture: depth_picture,
         relative: true,

@@ -50,7 +50,7 @@ impl Settings {
 }
 
 described! {
-    /// local illumination, mirrors, glass
+    /// direct lighting, mirrors, glass
     WhittedParameters ["whitted" in set::DURER] {}
 }
 

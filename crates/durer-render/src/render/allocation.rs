@@ -81,13 +81,13 @@ pub(super) fn refusal(job: &Job, is_whole: bool) -> Option<String> {
          when all are taken"
             .into()
     } else if samples < LEAST_ADAPTIVE {
-        format!("adaptive sampling needs at least {LEAST_ADAPTIVE} samples a pixel, but there are {samples}")
+        format!("adaptive sampling needs at least {LEAST_ADAPTIVE} samples per pixel, not {samples}")
     } else if job.method.prepares() {
-        "photon mapping cannot be adaptive: photons are traced for one sample of all pixels at a time".into()
+        "photon mapping cannot be adaptive: each set of photons serves one sample of every pixel".into()
     } else if job.noise.is_some() {
         "use either adaptive sampling or a noise threshold, not both".into()
     } else if !is_whole {
-        "adaptive sampling needs the whole picture: it cannot be split".into()
+        "adaptive sampling needs the full picture: it cannot be split".into()
     } else {
         return None;
     };

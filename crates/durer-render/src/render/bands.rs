@@ -47,7 +47,7 @@ impl Bands {
             return refuse("its samples affect several pixels");
         }
         if job.adaptive {
-            return refuse("adaptive sampling needs the whole picture");
+            return refuse("adaptive sampling needs the full picture");
         }
         let window = job.window();
         let bytes = |rows: u32| {

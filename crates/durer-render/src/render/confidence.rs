@@ -110,7 +110,8 @@ impl PartialRender {
         let all = u64::from(job.sampling.samples()) * job.window().pixels();
         let other = match corrected(job.method) {
             Some(_) if job.noise.is_some() || job.sampling.is_local() && own.statistics().samples != all => {
-                let message = "the error of photons needs all samples: give --samples, without --noise-threshold and --time-limit";
+                let message = "the photon error needs a fixed number of samples: set --samples, without \
+                               --noise-threshold and --time-limit";
                 return Err(RenderError::Diagram(message.into()));
             }
             Some(method) => Some(made(&Job { method, ..job })?),

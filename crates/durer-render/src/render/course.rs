@@ -90,7 +90,7 @@ impl Samples<'_> {
                 self.course_2004(show, part, (sampler, sampler.round_up(samples)), filter, at, rays)
             }
             Sampling::Course2012 { jitter, blur } => self.course_2012(show, part, (jitter, blur), at, rays),
-            _ => unreachable!("other samplings add their samples to a film"),
+            _ => unreachable!("other sampling methods add their samples to a film"),
         }
     }
 

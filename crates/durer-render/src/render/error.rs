@@ -50,7 +50,7 @@ pub enum RenderError {
     #[error("rendering needs about {} of memory, and the system has less to give", at_least(*.0))]
     NoMemory(u64),
     /// The part belongs to another scene.
-    #[error("this part belongs to another scene")]
+    #[error("this part belongs to a different scene")]
     OtherScene,
     /// A bug in this program.
     #[error(transparent)]

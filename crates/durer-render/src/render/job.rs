@@ -215,7 +215,7 @@ impl Job {
         if let Some((min, max)) =
             self.depth_range.filter(|(min, max)| !(min.is_finite() && max.is_finite() && min != max))
         {
-            return refuse(format!("the depths {min} and {max} must be two different numbers"));
+            return refuse(format!("the depths {min} and {max} must be two different finite numbers"));
         }
         if let Some(LightScale { low, high, logarithmic }) = self.light_scale {
             let least = if logarithmic { f32::MIN_POSITIVE } else { 0.0 };

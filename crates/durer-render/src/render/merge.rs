@@ -35,7 +35,7 @@ pub enum MergeError {
         what: String,
     },
     /// Some work is in no part.
-    #[error("some work is missing:\n{0}")]
+    #[error("parts of the picture are missing:\n{0}")]
     Missing(String),
     /// The merged picture would be too large.
     #[error(transparent)]

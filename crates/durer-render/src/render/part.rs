@@ -357,13 +357,13 @@ fn check_shard(job: &Job, shard: Shard, blocks: usize) -> Result<(), RenderError
         }
         ShardBy::Tiles => Ok(()),
         ShardBy::Samples if !job.sampling.is_local() => {
-            refuse("samples of this kind affect several pixels: split the picture by tiles".into())
+            refuse("these samples affect several pixels: split the picture by tiles".into())
         }
         ShardBy::Samples if job.noise.is_some() => {
             refuse("a noise threshold needs all samples of a pixel: split the picture by tiles".into())
         }
         ShardBy::Samples if shard.count > samples => {
-            refuse(format!("{samples} samples a pixel are too few for {} shards", shard.count))
+            refuse(format!("{samples} samples per pixel are too few for {} shards", shard.count))
         }
         ShardBy::Samples => Ok(()),
     }

@@ -33,7 +33,7 @@ pub fn replay(
     let samples = job.sampling.samples();
     let samples = if job.adaptive { most(samples) } else { samples };
     if sample.is_some_and(|sample| sample >= samples && job.sampling.is_local()) {
-        return Err(RenderError::Shard(format!("a pixel has samples from 0 to {}", samples - 1)));
+        return Err(RenderError::Shard(format!("the samples of a pixel are numbered from 0 to {}", samples - 1)));
     }
     let work = || {
         let (stop, at): (_, SampleCursor) = (AtomicBool::new(false), Cell::new((x, y, sample)));

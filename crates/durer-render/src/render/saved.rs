@@ -36,13 +36,13 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 #[non_exhaustive]
 pub enum PartError {
     /// The bytes are something else.
-    #[error("it is not a part of a picture")]
+    #[error("it is not a part file")]
     NotAPart,
     /// The bytes are truncated or damaged.
     #[error("it is truncated or damaged: its checksum is wrong")]
     Damaged,
     /// Another version wrote them.
-    #[error("it was written by Dürer {0}, but this is {VERSION}: pictures may differ")]
+    #[error("it was written by Dürer {0}, but this is {VERSION}, so the pictures could differ")]
     OtherVersion(String),
     /// The checksum is valid, but the content is not.
     #[error("it is malformed: {0}")]
@@ -51,10 +51,10 @@ pub enum PartError {
     #[error(transparent)]
     Render(#[from] RenderError),
     /// The part belongs to another scene.
-    #[error("it belongs to another scene, or a file of the scene has changed")]
+    #[error("it belongs to a different scene, or a file of the scene has changed")]
     OtherScene,
     /// The part belongs to another job.
-    #[error("it belongs to another job: {0}")]
+    #[error("it belongs to a different job: {0}")]
     OtherJob(String),
 }
 
@@ -176,10 +176,10 @@ impl PartialRender {
         match (format, version) {
             (Some(FORMAT), Some(VERSION)) => {}
             (Some(_), Some(version)) => return Err(PartError::OtherVersion(version.into())),
-            _ => return Err(malformed("its head")),
+            _ => return Err(malformed("its header")),
         }
-        let scene = rest.take(32).and_then(|scene| scene.try_into().ok()).ok_or(malformed("its head"))?;
-        let mut json = || text(&mut rest).ok_or(malformed("its head"));
+        let scene = rest.take(32).and_then(|scene| scene.try_into().ok()).ok_or(malformed("its header"))?;
+        let mut json = || text(&mut rest).ok_or(malformed("its header"));
         let (job, shard, look) = (json()?, json()?, json()?);
         let wrong = |error: serde_json::Error| PartError::Malformed(error.to_string());
         let job: Job = serde_json::from_str(job).map_err(wrong)?;

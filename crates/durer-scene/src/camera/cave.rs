@@ -20,16 +20,16 @@ use crate::math::{Ray, Vec2, Vec3};
 use glam::{DMat3, DVec2, DVec3};
 
 described! {
-    /// Several walls around a viewer, as one picture, for one eye or a pair.
+    /// A camera that renders several walls around a viewer into one picture, for one eye or a pair.
     CaveCamera ["CaveCamera" in set::DURER] {
         /// Position of the viewer's eye, or the midpoint of both eyes.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// Direction that the viewer's head faces, which fixes left and right; of any length.
+        /// Direction that the viewer faces, which determines left and right; of any length.
         direction: Vec3 = Vec3::NEG_Z, optional, Rule::NonZero, ["direction" in set::DURER];
-        /// Up direction of the viewer's head; need not be perpendicular.
+        /// Up direction of the viewer's head; need not be perpendicular to `direction`.
         up: Vec3 = Vec3::Y, optional, Rule::NonZero, ["up" in set::DURER];
         /// Three corners per wall, as seen from inside: lower left, lower right, upper left. Walls
-        /// go from left to right.
+        /// are ordered from left to right.
         walls: Vec<[f32; 9]> = front_wall(), required, Rule::Rows(1, 64), ["walls" in set::DURER];
         /// Eye to render, or layout of both eyes.
         eyes: Eyes = Eyes::Middle, optional, Rule::Any, ["eyes" in set::DURER];
@@ -127,7 +127,7 @@ impl Projection for CaveCamera {
             }
             for view in self.eyes.views(self.one()) {
                 if (self.eye(&frame, view.side) - wall.corner).dot(wall.normal()).abs() < 1e-6 * size.max_element() {
-                    return Err(format!("an eye lies in the plane of wall {}; move `center` or the wall", i + 1));
+                    return Err(format!("an eye is in the plane of wall {}; move `center` or the wall", i + 1));
                 }
             }
         }

@@ -25,11 +25,11 @@ described_words! {
 described! {
     /// A camera that sees all directions, on the six faces of a cube.
     CubeMapCamera ["CubeMapCamera" in set::DURER] {
-        /// The eye.
+        /// Position of the eye.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// Direction of the centre of the front face; of any length.
+        /// Direction to the centre of the front face; of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// Up direction of the front face; need not be perpendicular.
+        /// Up direction of the front face; need not be perpendicular to `direction`.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
         /// Layout of the faces in the picture.
         layout: Layout = Layout::Cross, optional, Rule::Any, ["layout" in set::DURER];

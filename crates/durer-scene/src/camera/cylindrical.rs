@@ -17,13 +17,13 @@ use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
 described! {
-    /// A camera that sees a panorama on a cylinder, for one eye or a pair.
+    /// A camera that renders a cylindrical panorama, for one eye or a pair.
     CylindricalCamera ["CylindricalCamera" in set::DURER] {
-        /// Position of the eye, or the centre of the circle on which both eyes turn.
+        /// Position of the eye, or centre of the circle around which both eyes rotate.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// Direction of the centre of the picture; of any length.
+        /// Direction to the centre of the picture; of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// Axis of the cylinder; need not be perpendicular.
+        /// Axis of the cylinder; need not be perpendicular to `direction`.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
         /// Field of view from left to right, in degrees.
         angle: f32 = 360.0, optional, Rule::UpTo(360.0), ["angle" in set::DURER];

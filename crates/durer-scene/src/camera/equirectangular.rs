@@ -16,14 +16,14 @@ use crate::math::{Ray, Vec2, Vec3, fp};
 use glam::{DVec2, DVec3};
 
 described! {
-    /// A camera that sees all directions: longitude and latitude as a rectangle, for one eye or a
-    /// pair.
+    /// A camera that sees all directions and maps longitude and latitude to a rectangle, for one
+    /// eye or a pair.
     EquirectangularCamera ["EquirectangularCamera" in set::DURER] {
-        /// Position of the eye, or the centre of the circle on which both eyes turn.
+        /// Position of the eye, or centre of the circle around which both eyes rotate.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// Direction of the centre of the picture; of any length.
+        /// Direction to the centre of the picture; of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// Direction of the north pole; need not be perpendicular.
+        /// Direction to the north pole; need not be perpendicular to `direction`.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
         /// Field of view from left to right, in degrees.
         angle: f32 = 360.0, optional, Rule::UpTo(360.0), ["angle" in set::DURER];
@@ -33,8 +33,7 @@ described! {
         eyes: Eyes = Eyes::Middle, optional, Rule::Any, ["eyes" in set::DURER];
         /// Distance between the eyes, in world units.
         separation: f32 = 0.065, optional, Rule::NonNegative, ["separation" in set::DURER];
-        /// Side of the picture that is right: `left` makes a mirror image, as in left-handed
-        /// coordinates.
+        /// Handedness of the coordinate system; `left` mirrors the picture horizontally.
         handedness: Handedness = Handedness::Right, optional, Rule::Any, ["handedness" in set::DURER];
     }
 }

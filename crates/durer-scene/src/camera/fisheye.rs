@@ -23,25 +23,25 @@ use crate::math::{Vec2, Vec3, fp};
 use glam::{DVec2, DVec3};
 
 described_words! {
-    /// Map from the angle off the axis to the radius.
+    /// Mapping from the angle off the axis to the radius in the picture.
     FisheyeProjection {
         Equidistant = "equidistant", Equisolid = "equisolid", Stereographic = "stereographic", Orthographic = "orthographic"
     }
 }
 
 described! {
-    /// A camera that sees a cone of directions as a disc; the corners see nothing.
+    /// A camera that maps a cone of directions to a disc; the corners of the picture are empty.
     FisheyeCamera ["FisheyeCamera" in set::DURER] {
-        /// The eye.
+        /// Position of the eye.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
         /// View direction, of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// Up direction of the picture; need not be perpendicular.
+        /// Up direction of the picture; need not be perpendicular to `direction`.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
         /// Field of view across the disc, in degrees: at most 180 for `orthographic`, less than 360
         /// for `stereographic`.
         angle: f32 = 180.0, optional, Rule::UpTo(360.0), ["angle" in set::DURER];
-        /// Map from the angle off the axis to the radius.
+        /// Mapping from the angle off the axis to the radius in the picture.
         projection: FisheyeProjection = FisheyeProjection::Equidistant, optional, Rule::Any, ["projection" in set::DURER];
     }
 }

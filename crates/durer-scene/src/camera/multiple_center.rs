@@ -28,12 +28,12 @@ use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
 described! {
-    /// A camera whose columns are seen from successive points of a path.
+    /// A camera that moves along a path and renders each column of the picture from the next point.
     MultipleCenterCamera ["MultipleCenterCamera" in set::DURER] {
-        /// Rows along the path, from the picture's left to its right: the eye and its target. If
-        /// the last row equals the first, the path is a smooth loop.
+        /// One row per point of the path, from the left of the picture to the right: the eye and
+        /// its target. If the last row equals the first, the path is a smooth loop.
         path: Vec<[f32; 6]> = straight(), required, Rule::Rows(2, 1024), ["path" in set::DURER];
-        /// Up direction of every column; need not be perpendicular.
+        /// Up direction of every column; need not be perpendicular to the view direction.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
         /// Field of view from bottom to top, in degrees.
         angle: f32 = 60.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];

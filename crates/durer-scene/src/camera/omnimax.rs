@@ -23,15 +23,17 @@ use crate::math::{Vec2, Vec3, fp};
 use glam::{DMat3, DVec2, DVec3};
 
 described! {
-    /// A picture for a tilted dome with an off-centre projector and viewer; the corners are black.
+    /// A camera for pictures projected onto a tilted dome, with an off-centre projector and viewer;
+    /// the corners are black.
     OmnimaxCamera ["OmnimaxCamera" in set::DURER] {
         /// Position of the viewer in the scene.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// Direction that the audience faces, horizontal to the front; of any length.
+        /// Horizontal direction that the audience faces; of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// Up direction of the audience; need not be perpendicular.
+        /// Up direction of the audience; need not be perpendicular to `direction`.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
-        /// Tilt of the dome to the front, in degrees: 0 puts its pole overhead, 90 straight ahead.
+        /// Forward tilt of the dome, in degrees: 0 puts its pole overhead, 90 puts it straight
+        /// ahead.
         tilt: f32 = 30.0, optional, Rule::Any, ["tilt" in set::DURER];
         /// Angle of the sphere that the dome covers, in degrees: 180 is a hemisphere.
         dome: f32 = 180.0, optional, Rule::UpTo(360.0), ["dome" in set::DURER];

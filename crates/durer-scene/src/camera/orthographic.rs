@@ -9,21 +9,20 @@ use crate::math::{Ray, Vec2, Vec3};
 use glam::DVec2;
 
 described! {
-    /// A camera without perspective.
+    /// An orthographic camera.
     OrthographicCamera ["OrthographicCamera" in set::OLD | set::DURER] {
         /// Centre of the picture.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::ALL];
         /// View direction, of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::ALL];
-        /// Up direction of the picture; need not be perpendicular.
+        /// Up direction of the picture; need not be perpendicular to `direction`.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::ALL];
-        /// Length of the picture's larger side.
+        /// Length of the picture's larger side, in world units.
         size: f32 = 2.0, required, Rule::Positive, ["size" in set::ALL];
-        /// Distance from `center` to the near plane, for plans and sections; without it the view
-        /// includes objects behind `center`.
+        /// Distance from `center` to the near plane, for plans and sections. Without it, objects
+        /// behind `center` are visible.
         near: Option<f32> = None, optional, Rule::Any, ["near" in set::DURER];
-        /// Side of the picture that is right: `left` makes a mirror image, as in left-handed
-        /// coordinates.
+        /// Handedness of the coordinate system; `left` mirrors the picture horizontally.
         handedness: Handedness = Handedness::Right, optional, Rule::Any, ["handedness" in set::DURER];
     }
 }

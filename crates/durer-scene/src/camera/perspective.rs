@@ -16,11 +16,11 @@ use glam::DVec2;
 described! {
     /// A perspective camera.
     PerspectiveCamera ["PerspectiveCamera" in set::CLASSIC, "Camera" in set::F23] {
-        /// The eye.
+        /// Position of the eye.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::ALL];
         /// View direction, of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::ALL];
-        /// Up direction of the picture; need not be perpendicular.
+        /// Up direction of the picture; need not be perpendicular to the view direction.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::ALL];
         /// Field of view across the picture's larger side, in degrees.
         angle: f32 = 30.0, required, Rule::Between(0.0, 180.0), ["angle" in set::CLASSIC, "fov" in set::F23];

@@ -16,13 +16,13 @@ use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
 described! {
-    /// A camera without a lens, whose hole has a size.
+    /// A pinhole camera with a hole of finite size instead of a lens.
     PinholeCamera ["PinholeCamera" in set::DURER] {
         /// Centre of the hole.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
         /// View direction, of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// Up direction of the picture; need not be perpendicular.
+        /// Up direction of the picture; need not be perpendicular to `direction`.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
         /// Field of view across the picture's larger side, in degrees.
         angle: f32 = 30.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];

@@ -30,8 +30,8 @@ use glam::{DMat2, DMat3, DVec2, DVec3};
 described! {
     /// A camera recovered from a photograph: a projection matrix and lens distortion.
     ProjectiveCamera ["ProjectiveCamera" in set::DURER] {
-        /// The 3x4 matrix, row by row, from homogeneous world-space points to pixels, y downwards;
-        /// at any scale.
+        /// 3x4 projection matrix, row by row, from homogeneous world-space points to pixels, with y
+        /// downwards; its scale is arbitrary.
         matrix: Vec<[f32; 4]> = plain_matrix(), required, Rule::Rows(3, 3), ["matrix" in set::DURER];
         /// Width of the photograph in pixels.
         width: f32 = 512.0, required, Rule::Positive, ["width" in set::DURER];

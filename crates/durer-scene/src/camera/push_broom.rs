@@ -17,15 +17,15 @@ use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
 described! {
-    /// A camera whose columns are seen from successive points of a line.
+    /// A camera that moves along a line and renders each column of the picture from the next point.
     PushBroomCamera ["PushBroomCamera" in set::DURER] {
-        /// Eye of the first column, at the picture's left.
+        /// Eye position for the first column, at the left of the picture.
         start: Vec3 = Vec3::NEG_X, required, Rule::Any, ["start" in set::DURER];
-        /// Eye of the last column, at the picture's right.
+        /// Eye position for the last column, at the right of the picture.
         end: Vec3 = Vec3::X, required, Rule::Any, ["end" in set::DURER];
         /// View direction of all columns; of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// Up direction of the picture; need not be perpendicular.
+        /// Up direction of the picture; need not be perpendicular to `direction`.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
         /// Field of view from bottom to top, in degrees.
         angle: f32 = 60.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];

@@ -23,22 +23,22 @@ described_words! {
 }
 
 described! {
-    /// Two perspective views for two eyes, or one of them.
+    /// A stereo camera: perspective views for both eyes, or for one of them.
     StereoCamera ["StereoCamera" in set::DURER] {
         /// Midpoint between the eyes.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
         /// View direction, of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// Up direction of the picture; need not be perpendicular.
+        /// Up direction of the picture; need not be perpendicular to `direction`.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
         /// Field of view across the larger side of one eye's picture, in degrees.
         angle: f32 = 30.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
         /// Distance between the eyes, in world units.
         separation: f32 = 0.065, required, Rule::NonNegative, ["separation" in set::DURER];
-        /// Distance at which both eyes see an object at the same position in the picture; ignored
-        /// by `parallel`.
+        /// Distance at which an object appears at the same position for both eyes; ignored by the
+        /// method `parallel`.
         convergence: f32 = 1.0, optional, Rule::Positive, ["convergence" in set::DURER];
-        /// Convergence method of the views.
+        /// Method by which the two views converge.
         method: StereoMethod = StereoMethod::OffAxis, optional, Rule::Any, ["method" in set::DURER];
         /// Eye to render, or layout of both eyes.
         eyes: Eyes = Eyes::SideBySide, optional, Rule::Any, ["eyes" in set::DURER];

@@ -21,17 +21,18 @@ use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
 described! {
-    /// A camera with a lens: depth of field, and a film that can be shifted.
+    /// A camera with a lens, which has depth of field and a film that can be shifted.
     ThinLensCamera ["ThinLensCamera" in set::DURER] {
         /// Centre of the lens.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// View direction, along the lens's axis; of any length.
+        /// View direction along the lens axis; of any length.
         direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
-        /// Up direction of the picture; need not be perpendicular.
+        /// Up direction of the picture; need not be perpendicular to `direction`.
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
         /// Field of view across the picture's larger side, in degrees, for an unshifted film.
         angle: f32 = 30.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
-        /// Diameter of the aperture: focal length divided by f-number. 0 makes everything sharp.
+        /// Diameter of the aperture: the focal length divided by the f-number. 0 makes everything
+        /// sharp.
         aperture: f32 = 0.0, optional, Rule::NonNegative, ["aperture" in set::DURER];
         /// Distance of the focus plane along the axis, in world units.
         focus_distance: f32 = 1.0, optional, Rule::Positive, ["focusDistance" in set::DURER];
@@ -43,12 +44,11 @@ described! {
         shift_right: f32 = 0.0, optional, Rule::Any, ["shiftRight" in set::DURER];
         /// Shift of the view upwards, relative to half the larger side.
         shift_up: f32 = 0.0, optional, Rule::Any, ["shiftUp" in set::DURER];
-        /// Distance along the axis of the near clipping plane.
+        /// Distance to the near clipping plane along the axis.
         near: f32 = 0.0, optional, Rule::NonNegative, ["near" in set::DURER];
-        /// Distance along the axis of the far clipping plane; without it the view is unlimited.
+        /// Distance to the far clipping plane along the axis; unlimited by default.
         far: Option<f32> = None, optional, Rule::Positive, ["far" in set::DURER];
-        /// Side of the picture that is right: `left` makes a mirror image, as in left-handed
-        /// coordinates.
+        /// Handedness of the coordinate system; `left` mirrors the picture horizontally.
         handedness: Handedness = Handedness::Right, optional, Rule::Any, ["handedness" in set::DURER];
     }
 }

@@ -20,11 +20,11 @@ macro_rules! compats {
 }
 
 compats! {
-    /// The pixel centres of the first and last column and row lie on the picture's border.
+    /// The pixel centres of the first and last columns and rows are on the picture's border.
     BorderPixels = "border-pixels",
-    /// The camera's square is stretched over a picture that is not square.
+    /// A picture that is not square shows the camera's square view stretched to its shape.
     Stretch = "stretch",
-    /// The camera's `up` is used as written: neither perpendicular nor normalised.
+    /// The camera's `up` is used as written: it is neither made perpendicular nor normalised.
     RawUp = "raw-up",
     /// The camera's `up` is normalised, but not made perpendicular.
     SkewUp = "skew-up",
@@ -32,96 +32,97 @@ compats! {
     HighlightBehind = "highlight-behind",
     /// Shininess 0 makes the highlight 1 everywhere: 0 to the power of 0 is 1.
     PowZero = "pow-zero",
-    /// A point light without falloff divides by zero, and its light is black.
+    /// A point light without falloff causes a division by zero, and its light is black.
     MissingFalloff = "missing-falloff",
     /// A surface seen from behind is black, without ambient light, unless it is shaded on both
     /// sides.
     BlackBacks = "black-backs",
-    /// R0 assumes that every ray arrives in air: a ray that leaves glass reflects as if R0 were 0.
+    /// R0 is computed as if every ray arrived from air: for a ray that leaves glass, it is 0.
     ExitR0 = "exit-r0",
-    /// A perspective ray is aimed at a world-space point, computed from the lower left corner of a
-    /// screen at distance 1 and rounded there: far from the origin, rays are off by that rounding.
+    /// A perspective ray is aimed at a world-space point on a screen at distance 1, which is
+    /// computed from the screen's lower left corner and rounded. Far from the origin, this rounding
+    /// changes the direction of the rays.
     ScreenPoint = "screen-point",
-    /// A triangle extends a little beyond its edges: to barycentric coordinates of -0.00001.
+    /// A triangle extends slightly beyond its edges, to barycentric coordinates of -0.00001.
     LooseTriangles = "loose-triangles",
-    /// The interpolated normal decides which side of a surface is seen.
+    /// The interpolated normal determines which side of a surface is seen.
     ShadedSides = "shaded-sides",
-    /// A mesh triangle is missed if (b - a) x (c - a) · d is less than 0.000001: a small one, seen
-    /// at a grazing angle.
+    /// A mesh triangle is missed if (b - a) x (c - a) · d is less than 0.000001, which happens with
+    /// small triangles seen at a grazing angle.
     ThinTriangles = "thin-triangles",
-    /// On a texture, ambient light is that of the previously shaded pixel, in rows from the bottom.
+    /// The ambient term on a textured surface uses the texel of the previous pixel with the same
+    /// material, in rows from the bottom.
     StaleTexels = "stale-texels",
-    /// A light is occluded only if the nearest object towards it is seen from its front. Off with
-    /// `exit-r0`, the quirk of an earlier version of the same program.
+    /// A light is occluded only if the nearest object towards it is hit from its front. Disabled by
+    /// `exit-r0`, a quirk of an earlier version of the same program.
     ShadowFronts = "shadow-fronts",
-    /// A `Matrix` is multiplied on the left of everything before it.
+    /// A `Matrix` is multiplied from the left with everything before it.
     MatrixOnLeft = "matrix-on-left",
     /// The product of the matrices of one transform loses its shear: it is decomposed into
-    /// translation, rotation and scale. Shear between nested transforms stays.
+    /// translation, rotation and scale. Shear between nested transforms is kept.
     DroppedShear = "dropped-shear",
-    /// A plane's normal keeps its written length, for lighting, mirrors and pictures of normals;
-    /// not inside a transform.
+    /// The normal of a plane is not normalised for lighting, mirrors and normal pictures, except
+    /// inside a transform.
     RawNormals = "raw-normals",
     /// Lighting uses unit normals, even with `raw-normals`.
     UnitLight = "unit-light",
-    /// Only meshes show textures.
+    /// Textures are shown on meshes only.
     MeshTextures = "mesh-textures",
     /// Ambient light is multiplied by the diffuse colour only if the material sets one.
     WrittenAmbient = "written-ambient",
     /// A camera ray is assumed to start in air, even if the camera is inside glass.
     AirAtEye = "air-at-eye",
-    /// The last line of an `.obj` is lost if it has no line break.
+    /// The last line of an `.obj` file is ignored if it does not end with a newline.
     LostLastLine = "lost-last-line",
-    /// A face of an `.obj` has three corners: the others are ignored.
+    /// Only the first three vertices of a face in an `.obj` file are used.
     ThreeCorners = "three-corners",
-    /// Normals of an `.obj` belong to the vertices by index, regardless of the indices in its
-    /// faces.
+    /// Normal i of an `.obj` file belongs to vertex i, regardless of the indices in its faces.
     NormalsByVertex = "normals-by-vertex",
-    /// The sky's face `back` is mirrored horizontally, and `down` is upside down, so neither
+    /// The face `back` of the sky is mirrored horizontally and `down` is upside down, so neither
     /// matches its neighbours.
     MirroredBack = "mirrored-back",
-    /// The background is black in depth pictures even if far is white.
+    /// The background is black in depth pictures even if distant surfaces are white.
     BlackSky = "black-sky",
-    /// If nothing is hit, a picture of normals shows the normal of the previous hit, in rows from
-    /// the bottom.
+    /// A normal picture shows the normal of the previous hit where nothing is hit, in rows from the
+    /// bottom.
     StaleNormals = "stale-normals",
     /// The range of a depth picture is truncated to integers.
     WholeDepths = "whole-depths",
-    /// Rings of wood are cones, with grain stretched along the axis: the first material's weight is
-    /// the square of sin(frequency (r + y / 20) + amplitude N(x, y / 5, z)) + 1/2, clamped to 0 to
-    /// 1.
+    /// The rings of wood are cones, with grain stretched along the axis. The weight of the first
+    /// material is the square of sin(frequency (r + y / 20) + amplitude N(x, y / 5, z)) + 1/2,
+    /// clamped to 0 to 1.
     ConicRings = "conic-rings",
     /// Secondary rays have no minimum `t`: they start at the dialect's epsilon times their
     /// direction, and the distance to a light is measured from there.
     MovedStarts = "moved-starts",
-    /// A plane is also hit at the very start of a ray.
+    /// A plane is also hit exactly at the start of a ray.
     ClosedPlanes = "closed-planes",
-    /// A triangle wins over earlier objects that are hit at the same distance.
+    /// A triangle takes precedence over earlier objects that are hit at the same distance.
     TiedTriangles = "tied-triangles",
-    /// At a plane, refraction uses the normal with its written length.
+    /// At a plane, refraction uses the normal without normalising it.
     RawRefraction = "raw-refraction",
-    /// A mirrored ray keeps the length that a non-unit normal gives it.
+    /// A mirrored ray is not normalised, so a non-unit normal changes its length.
     LongMirrors = "long-mirrors",
-    /// Meshes are traversed by the starter code's octree, in which a ray with a component of
-    /// exactly 0 misses the far half of a cell.
+    /// Meshes are traversed with the octree of the starter code, in which a ray with a direction
+    /// component of exactly 0 misses the far half of a cell.
     OctreeHoles = "octree-holes",
     /// A transform whose determinant is within 1.2e-7 of 0 is ignored.
     TinyTransforms = "tiny-transforms",
     /// A second section of lights is added to the first.
     AddedLights = "added-lights",
-    /// A degenerate face makes the normals of its corners NaN: triangles there are black.
+    /// A degenerate face makes the normals of its vertices NaN, so triangles there are black.
     SpoiledNormals = "spoiled-normals",
-    /// A depth before the start of the given range is clamped to the start, and otherwise one
-    /// beyond its end to the end. In a range that runs backwards, near is white and everything
-    /// beyond is black; an empty range is black.
+    /// Depths before the start of the given range are clamped to the start; otherwise, depths
+    /// beyond its end are clamped to the end. In a reversed range, near is white and everything
+    /// beyond is black. An empty range is black.
     ClampedDepths = "clamped-depths",
-    /// `-jitter` alone writes all sub-pixels, and `-filter` alone averages three by three pixels.
+    /// `-jitter` alone writes all subpixels, and `-filter` alone averages 3x3 pixels.
     OddSizes = "odd-sizes",
-    /// Meaningless values are drawn: negative radii and exponents, angles of 180 degrees, flat
-    /// scales, a light without a direction, hexadecimal numbers.
+    /// Invalid values are accepted: negative radii and exponents, angles of 180 degrees, scales of
+    /// zero, a light without a direction, hexadecimal numbers.
     AnyValues = "any-values",
-    /// Shading normals are transformed by the matrix itself, not by its inverse transpose. On in no
-    /// dialect: a common mistake, which the lecture shows.
+    /// Shading normals are transformed by the matrix itself instead of its inverse transpose. Not
+    /// part of any dialect: this is a common mistake that the lecture shows.
     MovedNormals = "moved-normals",
 }
 

@@ -8,20 +8,20 @@ use glam::DVec3;
 use std::f32::consts::PI;
 
 described! {
-    /// Light that comes from the same direction everywhere.
+    /// Light that arrives from the same direction everywhere, like sunlight.
     DirectionalLight ["DirectionalLight" in set::CLASSIC, "directional" in set::F23] {
         /// Direction in which the light travels, of any length.
         direction: Vec3 = Vec3::NEG_Y, required, Rule::NonZero, ["direction" in set::ALL];
         /// Colour and strength.
         color: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::ALL];
-        /// Angular radius in degrees, which gives soft shadows and a visible disc in path tracing;
-        /// 0.27 for the sun.
+        /// Angular radius in degrees, for soft shadows and a visible disc in path tracing; 0.27 for
+        /// the sun.
         spread: Option<f32> = None, optional, Rule::NonNegative, ["spread" in set::DURER];
-        /// Illuminance in lux on a surface that faces the light; `color` then gives only the hue.
+        /// Illuminance in lux on a surface that faces the light; `color` then sets only the hue.
         lux: Option<f32> = None, optional, Rule::NonNegative, ["lux" in set::DURER];
         /// Measured spectrum, multiplied by `color`: a file (`lamp.csv`, `lamps.csv:column`) or an
-        /// illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum, other modes its
-        /// colour.
+        /// illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum; otherwise its RGB
+        /// colour is used.
         spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
     }
 }

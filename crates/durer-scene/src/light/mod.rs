@@ -94,7 +94,7 @@ fn as_bright(color: Color, white: f32) -> Color {
     if luminance > 0.0 { color * (white / luminance) } else { Color::ZERO }
 }
 
-const TWO_UNITS: &str = "`candela` and `lumens` both set the strength of this light: write only one of them";
+const TWO_UNITS: &str = "`candela` and `lumens` both set the strength of this light: use only one of them";
 
 /// Light that arrives at a point from one light source.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,26 +9,27 @@ use glam::DVec3;
 use std::f32::consts::PI;
 
 described! {
-    /// Point light whose intensity in candela was measured, as an IES or EULUMDAT file gives it.
+    /// Point light with a measured intensity distribution in candela, from an IES or EULUMDAT file.
     PhotometricLight ["PhotometricLight" in set::DURER] {
         /// Position.
         position: Vec3 = Vec3::ZERO, required, Rule::Any, ["position" in set::DURER];
         /// Measurement: an IES file (LM-63-1986 to 2019) or an EULUMDAT file (`.ldt`).
         file: FileName = FileName::default(), required, Rule::Any, ["file" in set::DURER];
-        /// Direction of the lower side, of any length.
+        /// Direction that the lower side of the light faces, of any length.
         direction: Vec3 = Vec3::NEG_Y, optional, Rule::NonZero, ["direction" in set::DURER];
         /// Direction of horizontal angle 0; made perpendicular to `direction`.
         front: Vec3 = Vec3::X, optional, Rule::NonZero, ["front" in set::DURER];
-        /// Distance from the position back to the apparent origin of the light, as for a reflector:
-        /// at distance d it fades as at d + `focalLength`.
+        /// Distance behind the position at which the light appears to originate, for example with a
+        /// reflector: light at distance d fades as if at d + `focalLength`.
         focal_length: f32 = 0.0, optional, Rule::NonNegative, ["focalLength" in set::DURER];
-        /// Factor of the measured light, by colour.
+        /// Factor on the measured light, per colour channel.
         color: Vec3 = Vec3::ONE, optional, Rule::Any, ["color" in set::DURER];
-        /// Luminous flux in lumen, in place of the file's; `color` then gives only the hue.
+        /// Luminous flux in lumens, instead of the value in the file; `color` then sets only the
+        /// hue.
         lumens: Option<f32> = None, optional, Rule::NonNegative, ["lumens" in set::DURER];
         /// Measured spectrum, multiplied by `color`: a file (`lamp.csv`, `lamps.csv:column`) or an
-        /// illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum, other modes its
-        /// colour.
+        /// illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum; otherwise its RGB
+        /// colour is used.
         spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
     }
 }

@@ -8,26 +8,28 @@ use glam::DVec3;
 use std::f32::consts::PI;
 
 described! {
-    /// Light that comes from one point.
+    /// Light that is emitted from one point in all directions.
     PointLight ["PointLight" in set::CLASSIC, "point" in set::F23] {
         /// Position.
         position: Vec3 = Vec3::ZERO, required, Rule::Any, ["position" in set::CLASSIC];
         /// Colour and strength.
         color: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::ALL];
-        /// Coefficients of the divisor: constant, linear and quadratic in the distance.
+        /// Coefficients of the distance polynomial that the light is divided by: constant, linear
+        /// and quadratic.
         attenuation: Option<Vec3> = None, optional, Rule::Any, ["attenuation" in set::OLD | set::DURER];
-        /// Quadratic coefficient of the divisor; the dialect decides what is added to it.
+        /// Quadratic coefficient of the distance polynomial; the other coefficients depend on the
+        /// dialect.
         falloff: Option<f32> = None, optional, Rule::NonNegative,
             ["falloff" in set::F12A5 | set::F16 | set::DURER, "attenuation" in set::F23];
-        /// Luminous intensity in candela, which fades with the square of the distance; `color` then
-        /// gives only the hue.
-        candela: Option<f32> = None, optional, Rule::NonNegative, ["candela" in set::DURER];
-        /// Luminous flux in lumen, which fades with the square of the distance; `color` then gives
+        /// Luminous intensity in candela, with falloff by the squared distance; `color` then sets
         /// only the hue.
+        candela: Option<f32> = None, optional, Rule::NonNegative, ["candela" in set::DURER];
+        /// Luminous flux in lumens, with falloff by the squared distance; `color` then sets only
+        /// the hue.
         lumens: Option<f32> = None, optional, Rule::NonNegative, ["lumens" in set::DURER];
         /// Measured spectrum, multiplied by `color`: a file (`lamp.csv`, `lamps.csv:column`) or an
-        /// illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum, other modes its
-        /// colour.
+        /// illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum; otherwise its RGB
+        /// colour is used.
         spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
     }
 }
@@ -69,7 +71,7 @@ impl Emitter for PointLight {
         match () {
             () if self.candela.is_some() && self.lumens.is_some() => Err(TWO_UNITS.into()),
             () if unit && (self.attenuation.is_some() || self.falloff.is_some()) => {
-                Err("a light in `candela` or `lumens` fades with the square of the distance: remove `attenuation` and \
+                Err("a light in `candela` or `lumens` falls off with the squared distance: remove `attenuation` and \
                      `falloff`"
                     .into())
             }

@@ -14,28 +14,28 @@ described_words! {
 }
 
 described! {
-    /// Light from one point into a cone, fading with the square of the distance.
+    /// Light emitted from one point into a cone, with falloff by the squared distance.
     SpotLight ["SpotLight" in set::DURER] {
         /// Position.
         position: Vec3 = Vec3::ZERO, required, Rule::Any, ["position" in set::DURER];
         /// Direction of the cone's axis, of any length.
         direction: Vec3 = Vec3::NEG_Y, required, Rule::NonZero, ["direction" in set::DURER];
-        /// Colour and strength: the light that arrives on the axis at distance 1.
+        /// Colour and strength, as received on the axis at distance 1.
         color: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::DURER];
         /// Angle in degrees from the axis to the edge of the cone.
         angle: f32 = 45.0, optional, Rule::UpTo(180.0), ["angle" in set::DURER];
-        /// Angle in degrees from the axis to where the fade begins; at most `angle`.
+        /// Angle in degrees from the axis at which the fade begins; at most `angle`.
         inner_angle: f32 = 0.0, optional, Rule::NonNegative, ["innerAngle" in set::DURER];
-        /// Fade between the two angles, by the fraction s between their cosines: `squared` is s^2,
-        /// `smooth` is s^2 (3 - 2 s), `fourth` is s^4.
+        /// Fade between the two angles, as a function of the fraction s between their cosines:
+        /// `squared` is s^2, `smooth` is s^2 (3 - 2 s), `fourth` is s^4.
         fade: Fade = Fade::Squared, optional, Rule::Any, ["fade" in set::DURER];
-        /// Luminous intensity in candela on the axis; `color` then gives only the hue.
+        /// Luminous intensity in candela on the axis; `color` then sets only the hue.
         candela: Option<f32> = None, optional, Rule::NonNegative, ["candela" in set::DURER];
-        /// Luminous flux in lumen; `color` then gives only the hue.
+        /// Luminous flux in lumens; `color` then sets only the hue.
         lumens: Option<f32> = None, optional, Rule::NonNegative, ["lumens" in set::DURER];
         /// Measured spectrum, multiplied by `color`: a file (`lamp.csv`, `lamps.csv:column`) or an
-        /// illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum, other modes its
-        /// colour.
+        /// illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum; otherwise its RGB
+        /// colour is used.
         spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
     }
 }

@@ -6,9 +6,9 @@ use crate::dialect::set;
 use crate::math::Vec3;
 
 described! {
-    /// Unit cubes of two alternating materials.
+    /// A 3D checkerboard: unit cubes that alternate between two materials.
     Checkerboard ["Checkerboard" in set::OLD | set::DURER] {
-        /// Material of the cubes whose floored coordinates have an even sum.
+        /// Material of the cubes whose integer coordinates have an even sum.
         material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
         /// Material of the other cubes.
         material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];

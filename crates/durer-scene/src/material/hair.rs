@@ -6,16 +6,16 @@ use crate::math::Vec3;
 
 described! {
     /// Hair or fur for path tracing, on thin tubes along which the texture coordinate u increases,
-    /// such as converted curves; the inside is not visible. `absorption` takes precedence over
+    /// such as converted curves; their inside is not visible. `absorption` takes precedence over
     /// `color`, and `color` over the melanins.
     HairMaterial ["HairMaterial" in set::DURER] {
         /// Amount of brown and black pigment: 0.3 in blond hair, 1.3 in brown, 8 in black.
         eumelanin: f32 = 1.3, optional, Rule::NonNegative, ["eumelanin" in set::DURER];
         /// Amount of yellow and red pigment: 1.2 or more in red hair.
         pheomelanin: f32 = 0.0, optional, Rule::NonNegative, ["pheomelanin" in set::DURER];
-        /// Colour of many fibres together, from 0 to 1.
+        /// Colour of a bundle of many fibres, from 0 to 1.
         color: Option<Vec3> = None, optional, Rule::Any, ["color" in set::DURER];
-        /// Absorption coefficient inside, per fibre radius, for red, green and blue.
+        /// Absorption coefficient inside a fibre, per fibre radius, for red, green and blue.
         absorption: Option<Vec3> = None, optional, Rule::Any, ["absorption" in set::DURER];
         /// Roughness along a fibre, from 0 to 1.
         longitudinal_roughness: f32 = 0.3, optional, Rule::Share, ["longitudinalRoughness" in set::DURER];

@@ -7,13 +7,13 @@ use crate::dialect::set;
 use crate::math::{Vec3, noise};
 
 described! {
-    /// Two materials in veins across the x axis.
+    /// A marble pattern: two materials in veins across the x axis.
     Marble ["Marble" in set::OLD | set::DURER] {
         /// Material where the sine is 1.
         material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
         /// Material where the sine is -1.
         material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
-        /// Number of noise octaves, each with twice the frequency of the one before.
+        /// Number of noise octaves, each with twice the frequency of the previous one.
         octaves: u32 = 0, required, Rule::AtMost(MAX_OCTAVES), ["octaves" in set::ALL];
         /// Number of veins per 2 pi along x.
         frequency: f32 = 1.0, required, Rule::Any, ["frequency" in set::ALL];

@@ -6,8 +6,7 @@ use crate::dialect::set;
 use crate::math::Vec3;
 
 described! {
-    /// Mix of two materials in a proportion that is constant or set by a texture; each scatters its
-    /// share of the light.
+    /// Mix of two materials in a proportion that is constant or set by a texture.
     Mix ["Mix" in set::DURER] {
         /// First material.
         material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];

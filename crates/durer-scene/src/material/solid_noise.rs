@@ -6,13 +6,13 @@ use crate::dialect::set;
 use crate::math::{Vec3, noise};
 
 described! {
-    /// Two materials mixed by noise.
+    /// A mix of two materials by a noise function.
     SolidNoise ["Noise" in set::OLD | set::DURER] {
         /// Material where the noise is high.
         material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
         /// Material where the noise is low.
         material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
-        /// Number of noise octaves, each with twice the frequency of the one before.
+        /// Number of noise octaves, each with twice the frequency of the previous one.
         octaves: u32 = 0, required, Rule::AtMost(MAX_OCTAVES), ["octaves" in set::ALL];
     }
 }

@@ -6,7 +6,7 @@ use crate::dialect::set;
 use crate::math::Vec3;
 
 described! {
-    /// Surface with one material on its front, to which the normal points, and another on its back.
+    /// Surface with one material on its front, where the normal points, and another on its back.
     TwoSided ["TwoSided" in set::DURER] {
         /// Material of the front.
         material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];

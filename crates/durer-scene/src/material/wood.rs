@@ -9,13 +9,13 @@ use crate::dialect::set;
 use crate::math::{Vec3, fp, noise};
 
 described! {
-    /// Two materials in rings around the y axis.
+    /// A wood pattern: two materials in rings around the y axis.
     Wood ["Wood" in set::OLD | set::DURER] {
         /// Material where the sine is 1.
         material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
         /// Material where the sine is -1.
         material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
-        /// Number of noise octaves, each with twice the frequency of the one before.
+        /// Number of noise octaves, each with twice the frequency of the previous one.
         octaves: u32 = 0, required, Rule::AtMost(MAX_OCTAVES), ["octaves" in set::ALL];
         /// Number of rings per 2 pi along the radius.
         frequency: f32 = 1.0, required, Rule::Any, ["frequency" in set::ALL];

@@ -50,37 +50,36 @@ described_words! {
 }
 
 described! {
-    /// A named picture and its mapping onto surfaces. The picture fields of a `PrincipledMaterial`
-    /// take that name.
+    /// A named texture: an image and its mapping onto surfaces. The texture fields of a
+    /// `PrincipledMaterial` refer to it by name.
     NamedTexture ["Texture" in set::DURER] {
         /// Name of the texture.
         name: FileName = FileName::default(), required, Rule::Any, ["name" in set::DURER];
-        /// File of the picture.
+        /// Image file.
         picture: FileName = FileName::default(), required, Rule::Any, ["picture" in set::DURER];
-        /// Continuation beyond the left and right border: `repeat`, `mirror` or `clamp`.
+        /// Wrap mode beyond the left and right borders: `repeat`, `mirror` or `clamp`.
         wrap_u: Wrap = Wrap::Repeat, optional, Rule::Any, ["wrapU" in set::DURER];
-        /// Continuation beyond the upper and lower border: `repeat`, `mirror` or `clamp`.
+        /// Wrap mode beyond the upper and lower borders: `repeat`, `mirror` or `clamp`.
         wrap_v: Wrap = Wrap::Repeat, optional, Rule::Any, ["wrapV" in set::DURER];
-        /// Filter between texels: `linear` mixes the four texels around a point, `nearest` takes
-        /// one.
+        /// Magnification filter: `linear` interpolates the four nearest texels, `nearest` uses one.
         texels: Texels = Texels::Linear, optional, Rule::Any, ["texels" in set::DURER];
-        /// Filter if a sample covers many texels, in the path tracer: `texels` samples the full
-        /// picture, `mipmaps` a smaller version of it.
+        /// Minification filter of the path tracer: `texels` samples the full-size image, `mipmaps`
+        /// a smaller version of it.
         minified: Minified = Minified::Texels, optional, Rule::Any, ["minified" in set::DURER];
-        /// Set of a mesh's texture coordinates: 0, or 1 for the second.
+        /// Texture coordinate set of the mesh: 0 for the first, 1 for the second.
         uv_set: u32 = 0, optional, Rule::AtMost(1), ["uvSet" in set::DURER];
-        /// Map from surface to picture coordinates, both with v downwards from the upper border:
-        /// two rows of a matrix.
+        /// Transform from surface to image coordinates, both with v downwards from the upper
+        /// border, as two rows of a matrix.
         uv_transform: Vec<[f32; 3]> = Mapping::default().transform.to_vec(), optional, Rule::Rows(2, 2), ["uvTransform" in set::DURER];
-        /// Threshold of alpha: opacity is 1 at or above it and 0 below; without it opacity is
+        /// Alpha threshold: opacity is 1 at or above it and 0 below. Without it, opacity equals
         /// alpha.
         alpha_cutoff: Option<f32> = None, optional, Rule::Any, ["alphaCutoff" in set::DURER];
-        /// Factor on the slope of the normals of a normal map.
+        /// Factor on the slope of the normals in a normal map.
         normal_scale: f32 = 1.0, optional, Rule::Any, ["normalScale" in set::DURER];
-        /// Channel for a scalar field: `r`, `g`, `b`, `a`, or the `angle` of the direction in red
-        /// and green; by default red, and for opacity alpha if there is one.
+        /// Channel used for a scalar field: `r`, `g`, `b`, `a`, or the `angle` of the direction in
+        /// red and green. The default is red, or for opacity the alpha channel if there is one.
         channel: Option<Channel> = None, optional, Rule::Any, ["channel" in set::DURER];
-        /// Values of texels 0 and 1 if the picture modulates a scalar field.
+        /// Values that texels of 0 and 1 are mapped to in a scalar field.
         texel_range: Vec<[f32; 2]> = vec![[0.0, 1.0]], optional, Rule::Rows(1, 1), ["texelRange" in set::DURER];
     }
 }

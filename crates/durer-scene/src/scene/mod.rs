@@ -33,29 +33,30 @@ pub use validate::MAX_NESTING;
 pub use staging::{Axis, Staging, Studio, View};
 
 described! {
-    /// Background colour of rays that hit nothing, and ambient light.
+    /// Background seen by rays that hit nothing, and ambient light.
     Background ["Background" in set::ALL] {
-        /// Colour of rays that hit nothing; by default 0.5, or black under `path` in a scene of
+        /// Colour of rays that hit nothing; 0.5 by default, or black with `path` in a scene of
         /// Dürer's own dialect without a `Background`.
         color: Vec3 = Vec3::splat(0.5), optional, Rule::Any, ["color" in set::ALL];
         /// Ambient light on every surface.
         ambient_light: Vec3 = Vec3::ZERO, optional, Rule::Any,
             ["ambientLight" in set::CLASSIC, "ambient_light" in set::F23];
-        /// Folder with six pictures (left, right, up, down, front, back) that replace the colour.
+        /// Folder with six images (left, right, up, down, front, back) that replace the colour.
         cube_map: Option<FileName> = None, optional, Rule::Any,
             ["cubeMap" in set::F12A5 | set::F16 | set::DURER, "cube_map" in set::F23];
-        /// Picture of all directions that replaces the colour and lights the scene, preferably with
-        /// high dynamic range (`.exr`, `.hdr`); its centre is at -z. Whitted's method ignores its
+        /// Environment map that replaces the colour and lights the scene, preferably with high
+        /// dynamic range (`.exr`, `.hdr`); its centre is at -z. Whitted ray tracing ignores its
         /// light.
         environment: Option<FileName> = None, optional, Rule::Any, ["environment" in set::DURER];
-        /// Direction to the sun, of any length, with y up: a clear sky and the sun light the scene,
-        /// in cd/m^2. Such pictures need `--exposure`, for example -13.
+        /// Direction to the sun, of any length, with y up. The sun and a clear sky light the scene,
+        /// in cd/m^2; set `--exposure`, for example to -13.
         sun: Option<Vec3> = None, optional, Rule::NonZero, ["sun" in set::DURER];
         /// Altitude of the sun, in degrees above the horizon; an alternative to `sun`.
         sun_altitude: Option<f32> = None, optional, Rule::From(-90.0, 90.0), ["sunAltitude" in set::DURER];
-        /// Azimuth of the sun, in degrees from north (-z) over east (x): 180 is south.
+        /// Azimuth of the sun, in degrees from north (-z) towards east (x): 180 is south.
         sun_azimuth: Option<f32> = None, optional, Rule::Any, ["sunAzimuth" in set::DURER];
-        /// Latitude, in degrees north of the equator; with date and time an alternative to `sun`.
+        /// Latitude, in degrees north of the equator; together with date and time, an alternative
+        /// to `sun`.
         latitude: Option<f32> = None, optional, Rule::From(-90.0, 90.0), ["latitude" in set::DURER];
         /// Longitude, in degrees east of Greenwich.
         longitude: Option<f32> = None, optional, Rule::From(-360.0, 360.0), ["longitude" in set::DURER];
@@ -63,19 +64,19 @@ described! {
         date: Option<Vec3> = None, optional, Rule::Counts(9999), ["date" in set::DURER];
         /// Hours, minutes and seconds of the local clock.
         time: Option<Vec3> = None, optional, Rule::Any, ["time" in set::DURER];
-        /// Hours that the local clock is ahead of UTC, summer time included; default 0.
+        /// Offset of the local clock from UTC in hours, including daylight saving time; default 0.
         time_zone: Option<f32> = None, optional, Rule::From(-14.0, 14.0), ["timeZone" in set::DURER];
-        /// Turbidity of the air, from 2 (clear) over 3 (average) to 10 (hazy); default 3.
+        /// Turbidity of the air: 2 is clear, 3 average, 10 hazy; default 3.
         turbidity: Option<f32> = None, optional, Rule::Positive, ["turbidity" in set::DURER];
-        /// Number of a CIE standard sky, 1 to 16 (1 overcast, 5 uniform, 12 clear, 16 traditional
-        /// overcast): it lights the scene, in cd/m^2, without the sun itself, whose position `sun`
-        /// sets for all but 1, 3, 5 and 16.
+        /// Number of a CIE standard sky, from 1 to 16 (1 overcast, 5 uniform, 12 clear, 16
+        /// traditional overcast), which lights the scene in cd/m^2, without direct sunlight. All
+        /// except 1, 3, 5 and 16 need the position of the sun, set by `sun`.
         cie_sky: Option<u32> = None, optional, Rule::Numbered(OVERCAST), ["cieSky" in set::DURER];
-        /// Luminance of that sky at the zenith, in cd/m^2; default 10000.
+        /// Luminance of the CIE sky at the zenith, in cd/m^2; default 10000.
         zenith_luminance: Option<f32> = None, optional, Rule::Positive, ["zenithLuminance" in set::DURER];
-        /// Fraction of the light of sun and sky that the ground below the horizon reflects; default
-        /// 0.2 below a standard sky; below a clear sky with `sun` the default is a fifth of the
-        /// zenith's light.
+        /// Fraction of the light from sun and sky that the ground below the horizon reflects. The
+        /// default is 0.2 with a CIE sky; with a clear sky, the ground has a fifth of the zenith's
+        /// light by default.
         ground_reflectance: Option<f32> = None, optional, Rule::Share, ["groundReflectance" in set::DURER];
         /// Rotation of the environment about y, in degrees.
         environment_rotation: Option<f32> = None, optional, Rule::Any, ["environmentRotation" in set::DURER];
@@ -133,13 +134,13 @@ impl Background {
         let [hour, minute, second] = time.to_array().map(f64::from);
         let sixty = 0.0..60.0;
         if !(0.0..=24.0).contains(&hour) || !sixty.contains(&minute) || !sixty.contains(&second) {
-            return Err("`time` does not exist: write hours, minutes and seconds, as 14 30 0".into());
+            return Err("this `time` does not exist: write hours, minutes and seconds, for example 14 30 0".into());
         }
         let date = date.to_array().map(|part| part as i32);
         let hours = hour + minute / 60.0 + second / 3600.0;
         let moment = Moment { date, hours, zone: f64::from(self.time_zone.unwrap_or(0.0)) };
         if !moment.exists() {
-            return Err("`date` does not exist: write year, month and day, as 2026 6 21".into());
+            return Err("this `date` does not exist: write year, month and day, for example 2026 6 21".into());
         }
         Ok(Some(almanac::way(almanac::sun([latitude, longitude].map(f64::from), &moment))))
     }
@@ -329,14 +330,14 @@ pub enum Node {
 /// Operation that combines closed objects. A group counts as the union of its objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Operation {
-    /// Union of the parts. Unless it is nested in another operation, the parts keep their surfaces
-    /// inside each other.
+    /// Union of the parts. Unless it is nested in another operation, the surfaces inside other
+    /// parts are kept.
     Union,
     /// Union of the parts as one solid, without the surfaces inside other parts.
     Merge,
     /// Intersection of all parts.
     Intersection,
-    /// The first part without the others.
+    /// The first part minus all others.
     Difference,
     /// Points inside an odd number of parts.
     Xor,
@@ -356,12 +357,12 @@ impl Operation {
     pub fn doc(self) -> &'static str {
         match self {
             Operation::Union => {
-                "Union of the parts. Unless it is nested in another operation, the parts keep their surfaces inside \
-                 each other."
+                "Union of the parts. Unless it is nested in another operation, the surfaces inside other parts are \
+                 kept."
             }
             Operation::Merge => "Union of the parts as one solid, without the surfaces inside other parts.",
             Operation::Intersection => "Intersection of all parts.",
-            Operation::Difference => "The first part without the others.",
+            Operation::Difference => "The first part minus all others.",
             Operation::Xor => "Points inside an odd number of parts.",
         }
     }

@@ -71,7 +71,7 @@ impl Background {
         let sun = self.way_to_sun()?;
         let lacks_sun = self.environment.is_none() && self.cie_sky.is_some_and(CieSky::wants_sun) && sun.is_none();
         match lacks_sun {
-            true => Err("this `cieSky` depends on the sun, but the background has no `sun`".into()),
+            true => Err("this `cieSky` needs the position of the sun, but the background has no `sun`".into()),
             false => Ok(()),
         }
     }
@@ -166,7 +166,7 @@ impl Validator {
             };
             let parts = solid.materials().map(|i| sizes.get(i as usize).copied());
             let [Some(first), Some(second)] = parts else {
-                return self.error("a solid material must be made of earlier materials", material.span);
+                return self.error("a solid material can only use materials that precede it", material.span);
             };
             let (nesting, parts) = (1 + first.0.max(second.0), first.1 + second.1);
             if nesting > MAX_MATERIAL_NESTING || parts > MAX_MATERIAL_PARTS {

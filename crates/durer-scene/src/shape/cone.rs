@@ -10,15 +10,15 @@ use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
 use glam::DVec3;
 
 described! {
-    /// A cone with its cap; with a radius at its top too, a frustum with both caps.
+    /// A cone with a cap, or a frustum with both caps if the top has a radius too.
     Cone ["Cone" in set::DURER] {
         /// Centre of the cap at the base.
         base: Vec3 = Vec3::ZERO, required, Rule::Any, ["base" in set::DURER];
         /// The tip, or the centre of the cap at the top.
         top: Vec3 = Vec3::Y, required, Rule::Any, ["top" in set::DURER];
-        /// Radius at the base; may be 0 if the radius at the top is not.
+        /// Radius at the base; can be 0 if the radius at the top is not.
         base_radius: f32 = 1.0, required, Rule::NonNegative, ["baseRadius" in set::DURER];
-        /// Radius at the top; default 0, a tip.
+        /// Radius at the top; default 0 for a tip.
         top_radius: f32 = 0.0, optional, Rule::NonNegative, ["topRadius" in set::DURER];
     }
 }

@@ -13,7 +13,7 @@ described! {
     Disc ["Disc" in set::DURER] {
         /// Centre of the disc.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
-        /// Direction of the front; of any length.
+        /// Normal on the front side; of any length.
         normal: Vec3 = Vec3::Y, required, Rule::NonZero, ["normal" in set::DURER];
         /// Radius, in world units.
         radius: f32 = 1.0, required, Rule::Positive, ["radius" in set::DURER];

@@ -10,10 +10,10 @@ use durer_bvh::{BuildQuality, HeightGrid, TriangleBvh};
 use std::sync::Arc;
 
 described! {
-    /// A block whose top is a terrain: the grey values of a picture are heights, and its lower edge
-    /// is towards +z.
+    /// A block whose top is a terrain. The grey values of an image are the heights, and its lower
+    /// edge is towards +z.
     HeightField ["HeightField" in set::DURER] {
-        /// Path of the picture. Black is lowest; white, or 1 in floating-point pictures, is
+        /// Path of the height image. Black is lowest; white, or 1 in floating-point images, is
         /// highest.
         picture: FileName = FileName::default(), required, Rule::Any, ["picture" in set::DURER];
         /// Corner of the terrain's box with the smallest coordinates; heights there are 0.

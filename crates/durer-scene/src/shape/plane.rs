@@ -8,10 +8,10 @@ use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;
 
 described! {
-    /// An infinite plane: all points p with normal · p = offset. As a part of a solid, the half
-    /// space behind it.
+    /// An infinite plane: all points p with normal · p = offset. As part of a solid, it is the half
+    /// space behind the plane.
     Plane ["Plane" in set::CLASSIC, "plane" in set::F23] {
-        /// Direction of the front; of any length.
+        /// Normal on the front side; of any length.
         normal: Vec3 = Vec3::Y, required, Rule::NonZero, ["normal" in set::ALL];
         /// Distance from the origin along the normal, for a unit normal.
         offset: f32 = 0.0, required, Rule::Any, ["offset" in set::ALL];

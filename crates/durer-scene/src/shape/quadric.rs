@@ -8,8 +8,8 @@ use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
 use glam::{DMat3, DVec3};
 
 described! {
-    /// The zeros of A x² + B y² + C z² + D xy + E xz + F yz + G x + H y + I z + J; inside, the
-    /// polynomial is negative.
+    /// A quadric surface: the zeros of A x² + B y² + C z² + D xy + E xz + F yz + G x + H y + I z +
+    /// J. The polynomial is negative inside.
     Quadric ["Quadric" in set::DURER] {
         /// Coefficients A, B and C.
         squares: Vec3 = Vec3::ONE, required, Rule::Any, ["squares" in set::DURER];

@@ -8,8 +8,8 @@ use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;
 
 described! {
-    /// A rectangle; a parallelogram if its edges are not perpendicular. From the front, `edge0`
-    /// turns counter-clockwise to `edge1`.
+    /// A rectangle, or a parallelogram if its edges are not perpendicular. Seen from the front,
+    /// `edge1` is counter-clockwise from `edge0`.
     Rectangle ["Rectangle" in set::DURER] {
         /// Position of a corner.
         corner: Vec3 = Vec3::ZERO, required, Rule::Any, ["corner" in set::DURER];

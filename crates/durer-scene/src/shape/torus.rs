@@ -9,7 +9,7 @@ use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
 use glam::DVec3;
 
 described! {
-    /// A ring: all points within a distance of a circle.
+    /// A torus: all points within `minorRadius` of a circle.
     Torus ["Torus" in set::DURER] {
         /// Centre of the circle.
         center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];

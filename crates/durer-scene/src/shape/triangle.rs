@@ -9,7 +9,7 @@ use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;
 
 described! {
-    /// A triangle; from the front its corners run counter-clockwise.
+    /// A triangle; its corners are counter-clockwise when seen from the front.
     Triangle ["Triangle" in set::CLASSIC, "triangle" in set::F23] {
         /// Position of the first corner.
         vertex0: Vec3 = Vec3::ZERO, required, Rule::Any, ["vertex0" in set::ALL];

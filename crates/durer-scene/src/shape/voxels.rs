@@ -7,8 +7,8 @@ use crate::dialect::set;
 use crate::math::Vec3;
 
 described! {
-    /// A box divided into cells. Each `rasterizeSphere { center radius }` in it fills the cells
-    /// whose centres lie in that sphere.
+    /// A box divided into cells. Each `rasterizeSphere { center radius }` inside it fills the cells
+    /// whose centres are inside that sphere.
     VoxelGrid ["Grid" in set::F03 | set::DURER] {
         /// Corner with the smallest coordinates.
         min: Vec3 = Vec3::splat(-1.0), required, Rule::Any, ["min" in set::F03 | set::DURER];

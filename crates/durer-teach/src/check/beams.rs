@@ -27,9 +27,10 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
         let aimed = if turned.dot(to) > 0.7 { -direction } else { middle - place };
         let text = vector(aimed);
         let help = format!(
-            "`direction` is where its light goes: `direction {text}` points at the center of the visible objects"
+            "`direction` is the direction in which the light travels: `direction {text}` points at the center of \
+             the visible objects"
         );
-        let diagnostic = Diagnostic { message: format!("{word} misses everything that is visible"), ..diagnostic };
+        let diagnostic = Diagnostic { message: format!("{word} misses every visible surface"), ..diagnostic };
         match scout.value(light.span, &["direction"]) {
             Some(value) => diagnostic.at(value).help(help).fix(value, text),
             // The default direction is straight down.
@@ -83,9 +84,9 @@ pub(super) fn inner_angle(scout: &SceneProbe) -> Vec<Finding> {
         }
         let (angle, inner) = (number(spot.angle), number(spot.inner_angle));
         let diagnostic =
-            Diagnostic::warning(format!("the `innerAngle` of {inner} is more than the `angle` of {angle}"))
+            Diagnostic::warning(format!("the `innerAngle` of {inner} is greater than the `angle` of {angle}"))
                 .effect(format!("the cone ends abruptly at {angle} degrees"))
-                .help(format!("light fades between the two: `angle {inner} innerAngle {angle}`"));
+                .help(format!("light fades between the two angles: write `angle {inner} innerAngle {angle}`"));
         Some(Finding::from(match (scout.value(light.span, &["angle"]), scout.value(light.span, &["innerAngle"])) {
             (Some(a), Some(b)) => diagnostic.at(b).fix(a, inner).fix(b, angle),
             _ => diagnostic.at(light.span),
@@ -141,7 +142,7 @@ pub(super) fn near(scout: &SceneProbe) -> Vec<Finding> {
         let diagnostic =
             Diagnostic::warning(format!("this light is {} from the {}", number(near), scout.object(object)))
                 .related(scout.object_span(object), "this object")
-                .effect("it lights a bright spot below it and hardly anything else")
+                .effect("it makes a bright spot below it and lights hardly anything else")
                 .help(format!(
                     "the mean distance of the visible points is {}: move the light away from the object",
                     number(middle)

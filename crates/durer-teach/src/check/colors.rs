@@ -61,7 +61,10 @@ pub(super) fn black(scout: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic::warning(format!("material {i} is black: it reflects no light"))
             .label(format!("on {} of the visible surfaces", percent(rays(scout, *i), all)))
             .effect("its objects are black under any light")
-            .help("`diffuseColor` is the share of light that it reflects: `0.8 0.8 0.8` is a light grey");
+            .help(
+                "`diffuseColor` is the fraction of light that the material reflects; for example, `0.8 0.8 0.8` \
+                   is a light grey",
+            );
         let diagnostic = scout.at_value(diagnostic, written.span, &["diffuseColor", "diffuse"]);
         Finding::from(diagnostic).whole(whole)
     };
@@ -90,7 +93,7 @@ pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
         return switched_off(scout, &all);
     };
     let diffuse = phong.diffuse.max_element();
-    let what = if phong.transparent == Color::ZERO { "mirrors" } else { "transmits light" };
+    let what = if phong.transparent == Color::ZERO { "reflects light" } else { "transmits light" };
     let (message, help) = match none {
         true => (
             format!("material {i} {what}, but the maximum depth of secondary rays is 0"),
@@ -98,11 +101,11 @@ pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
         ),
         false => (
             format!(
-                "material {i} {what}, but its rays have a throughput of {} and those below {} are not traced",
+                "material {i} {what}, but its rays have a throughput of {}, and rays below {} are not traced",
                 super::finding::number(counts(phong.reflective).max(counts(phong.transparent))),
                 super::finding::number(settings.least_weight)
             ),
-            "set a smaller one: `--min-throughput 0.01` (in the course's programs `-weight 0.01`)".to_string(),
+            "lower this limit: `--min-throughput 0.01` (in the course's programs `-weight 0.01`)".to_string(),
         ),
     };
     let diagnostic = Diagnostic::warning(message)
@@ -127,7 +130,7 @@ fn switched_off(scout: &SceneProbe, all: &[(u32, &Spanned<Written>, &Phong)]) ->
     let say = |(i, written, phong): &(u32, &Spanned<Written>, &Phong)| {
         let (message, help) = match is_glass(phong) {
             false if !settings.reflection => {
-                (format!("material {i} mirrors, but mirrored rays are disabled"), "remove `--no-reflection`")
+                (format!("material {i} reflects light, but reflected rays are disabled"), "remove `--no-reflection`")
             }
             true if !settings.refraction => {
                 (format!("material {i} transmits light, but refracted rays are disabled"), "remove `--no-refraction`")
@@ -154,7 +157,10 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
         let dark = phong.diffuse.max_element() < 0.3 && phong.texture.is_none();
         if own.refraction_index == Some(0.0) && dark && scout.value(written.span, &["refractionIndex"]).is_some() {
             let diagnostic = Diagnostic::warning(format!("material {i} has an index of refraction of 0"))
-                .effect("this year's program does not treat it as glass: it transmits nothing, and mirrors by its `specularColor`")
+                .effect(
+                    "this year's program does not treat it as glass: it transmits no light, and reflects by \
+                         its `specularColor`",
+                )
                 .help("glass has 1.5, water 1.33; for a mirror remove `refractionIndex`");
             found.push(Finding::from(scout.at_value(diagnostic, written.span, &fields)));
         }
@@ -187,7 +193,7 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
             }
             // This is correct for coloured foil.
             None if phong.ior == 1.0 && !phong.fresnel => Diagnostic::note(format!(
-                "material {i} transmits light and has no `{}`",
+                "material {i} transmits light but has no `{}`",
                 if scout.world().rules().secondary == Secondary::Colors { fields[0] } else { fields[1] }
             ))
             .effect("light passes straight through without refraction, as through foil")
@@ -284,12 +290,12 @@ pub(super) fn too_large(scout: &SceneProbe) -> Vec<Finding> {
             })
             .help(match bytes {
                 true if percent => format!(
-                    "colours go from 0 to 1: `{}` if this is in percent, `{}` if it is in bytes",
+                    "colours range from 0 to 1: write `{}` if this is in percent, or `{}` if it is in bytes",
                     vector(color / 100.0),
                     vector(mended)
                 ),
-                true => format!("colours go from 0 to 1, not to 255: `{}`", vector(mended)),
-                false => format!("colours go from 0 to 1: try `{}`", vector(mended)),
+                true => format!("colours range from 0 to 1, not to 255: write `{}`", vector(mended)),
+                false => format!("colours range from 0 to 1: try `{}`", vector(mended)),
             });
         let diagnostic = match place {
             // Only bytes have an obvious correction.
@@ -327,8 +333,8 @@ pub(super) fn gives_too_much(scout: &SceneProbe) -> Option<Diagnostic> {
     let too_much = phongs(scout).filter(|(_, _, phong)| bounces && adds(phong) && sum(phong) > 1.05);
     let (i, written, phong) = too_much.max_by_key(|(i, ..)| rays(scout, *i)).filter(|(i, ..)| rays(scout, *i) > 0)?;
     let message = format!(
-        "material {i} reflects and transmits {} times the light that it receives: its diffuse, mirrored and transmitted \
-         shares add up to more than 1",
+        "material {i} reflects and transmits {} times the light that it receives: its diffuse, reflected and \
+         transmitted shares add up to more than 1",
         super::finding::number(sum(phong))
     );
     let diagnostic = Diagnostic::warning(message).help("reduce them until their sum is at most 1");
@@ -361,7 +367,7 @@ pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
             .effect(
                 "this year's program scales reflection and transmission of glass by `specularColor`, which is black",
             )
-            .help("write `specularColor 1 1 1` for clear glass");
+            .help("for clear glass, write `specularColor 1 1 1`");
         Finding::from(scout.at_value(diagnostic, written.span, &["specularColor", "refractionIndex"]))
     };
     phongs(scout).filter(dull).take(MAX_SOUGHT).map(say).collect()
@@ -383,9 +389,15 @@ fn dull_by_color(scout: &SceneProbe) -> Vec<Finding> {
         _ => false,
     };
     let say = |(i, written, _): (u32, &Spanned<Written>, &Phong)| {
-        let diagnostic = Diagnostic::warning(format!("material {i} has the index of glass, but transmits no light"))
-            .effect("its `transparentColor` is black: its objects are dark and opaque")
-            .help("`transparentColor` is the share of light that it transmits: `0.9 0.9 0.9` is clear");
+        let diagnostic = Diagnostic::warning(format!(
+            "material {i} has the index of refraction of glass, but \
+                                                      transmits no light"
+        ))
+        .effect("its `transparentColor` is black: its objects are dark and opaque")
+        .help(
+            "`transparentColor` is the fraction of light that the material transmits; for example, `0.9 0.9 \
+                   0.9` is clear",
+        );
         Finding::from(scout.at_value(diagnostic, written.span, &["transparentColor", "indexOfRefraction"]))
     };
     phongs(scout).filter(dull).take(MAX_SOUGHT).map(say).collect()
@@ -404,7 +416,7 @@ pub(super) fn negative(scout: &SceneProbe) -> Vec<Finding> {
         let mended = color.abs();
         let diagnostic = Diagnostic::warning(format!("the colour {} is below zero", vector(color)))
             .effect("it subtracts light: surfaces become darker, or black")
-            .help(format!("colours go from 0 to 1: `{}`", vector(mended)));
+            .help(format!("colours range from 0 to 1: write `{}`", vector(mended)));
         let diagnostic = match scout.value(block, &fields) {
             Some(place) => diagnostic.at(place).fix(place, vector(mended)),
             None => diagnostic.at(block),
@@ -438,7 +450,7 @@ pub(super) fn camouflaged(scout: &SceneProbe) -> Vec<Finding> {
         Some(block) => scout.at_value(diagnostic, block, &["color"]),
         None => diagnostic,
     };
-    let diagnostic = diagnostic.effect("nothing stands out from it").help(match black {
+    let diagnostic = diagnostic.effect("no object stands out from the background").help(match black {
         true => "nothing is lit; another background colour would at least show the outlines",
         false => "choose another `color` for the background, or for the materials",
     });
@@ -468,7 +480,7 @@ fn lost_in_background(scout: &SceneProbe, alike: &dyn Fn(Color) -> bool) -> Vec<
             Diagnostic::warning(format!("the {} has the colour of the background", scout.object(number as u32)))
                 .at(scout.object_span(number as u32))
                 .related(written.span, "its material")
-                .effect("it does not stand out from it")
+                .effect("it does not stand out from the background")
                 .help("choose another `color` for the background, or for the material");
         Some(Finding::from(diagnostic))
     };
@@ -489,7 +501,7 @@ pub(super) fn no_coordinates(scout: &SceneProbe) -> Vec<Finding> {
                     .related(scout.object_span(seen.object), "uses the material")
                     .effect("the texture is invisible; `diffuseColor` is used instead")
                     .help(match (&scout.world().objects()[seen.object as usize].geometry, meshes_only) {
-                        (Geometry::Mesh(_), _) => "the mesh file needs `vt` lines, and faces as `f 1/1 2/2 3/3`",
+                        (Geometry::Mesh(_), _) => "the mesh file needs `vt` lines, and faces such as `f 1/1 2/2 3/3`",
                         (_, true) => {
                             "this year's program shows textures on meshes only: use a `TriangleMesh` with `vt` lines"
                         }

@@ -60,7 +60,7 @@ fn white(scout: &SceneProbe) -> Vec<Finding> {
     let lamp = super::lamps::brightest(scout).filter(|_| !sky);
     let exposure = number(stops + stops_of(scout.subject.exposure));
     let help = match sky {
-        true => format!("this sky is in cd/m^2, as outdoors: its pictures need `--exposure {exposure}`"),
+        true => format!("this sky has outdoor brightness, in cd/m^2: set `--exposure {exposure}`"),
         false => format!("light is in cd/m^2: set `--exposure {exposure}`, or multiply the emission by {factor}"),
     };
     let diagnostic = diagnostic.help(help);
@@ -90,7 +90,7 @@ pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
     let (most, ambient) = (brightest.max_element(), world.ambient().max_element().min(0.5));
     let factor = (1.0 - ambient) / (most - ambient).max(1e-6);
     let effect = format!(
-        "{} of the visible surfaces is clipped at 1 and loses its shading; {} is white",
+        "{} of the visible surface area is clipped at 1 and loses its shading; {} is white",
         percent(cut, lit.len()),
         percent(white, lit.len())
     );
@@ -98,7 +98,8 @@ pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
         Diagnostic::warning(format!("there is too much light: the brightest colour is {}", vector(brightest)))
             .effect(effect)
             .help(format!(
-                "multiply the colours of the lights by {}, or write a format that stores them (.exr, .hdr)",
+                "multiply the colours of the lights by {}, or write a format that can store bright colours (.exr, \
+                 .hdr)",
                 number(factor)
             ));
     // If the lights alone are too strong, blame no material.
@@ -218,7 +219,7 @@ pub(super) fn depth_range(scout: &SceneProbe) -> Vec<Finding> {
         let turned = format!("{} {}", number(max), number(min));
         let message = format!("the depth range is reversed, from {} to {}", number(min), number(max));
         let help = format!(
-            "write the nearer value first: `--depth-range {turned}` (in the course's programs `-depth {turned}`)"
+            "put the nearer value first: `--depth-range {turned}` (in the course's programs `-depth {turned}`)"
         );
         let diagnostic = Diagnostic::warning(message).effect("near and far are swapped in the depth picture");
         return vec![Finding::from(diagnostic.help(help))];
@@ -238,6 +239,6 @@ pub(super) fn depth_range(scout: &SceneProbe) -> Vec<Finding> {
             } else {
                 "the depth picture is all black or all white"
             })
-            .help(format!("`--depth-range {fitting}` (in the course's programs `-depth {fitting}`) shows them"));
+            .help(format!("to show them, set `--depth-range {fitting}` (in the course's programs `-depth {fitting}`)"));
     vec![Finding::from(diagnostic).whole(true)]
 }

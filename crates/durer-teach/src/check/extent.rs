@@ -41,13 +41,15 @@ pub(super) fn too_small(scout: &SceneProbe) -> Vec<Finding> {
     }
     let (span, larger) = (scout.subject.scene.camera_span, scout.larger());
     let wanted = 0.6 * larger / size.max(1e-6);
-    let diagnostic =
-        Diagnostic::warning(format!("all objects together are {} pixels wide in a picture of {larger}", number(size)))
-            .effect(if empty && size < FEWEST_PIXELS {
-                "every ray misses them; the whole picture is background"
-            } else {
-                "they are hardly visible"
-            });
+    let diagnostic = Diagnostic::warning(format!(
+        "all objects together are {} pixels wide in a picture of {larger} pixels",
+        number(size)
+    ))
+    .effect(if empty && size < FEWEST_PIXELS {
+        "every ray misses them, so the picture shows only the background"
+    } else {
+        "they are hardly visible"
+    });
     let (diagnostic, field) = match scout.world().camera() {
         Camera::Perspective(camera) if camera.angle > 90.0 => {
             (diagnostic.help("use a smaller field of view, such as 40 degrees, or move closer"), "angle")
@@ -92,12 +94,13 @@ pub(super) fn too_narrow(scout: &SceneProbe) -> Vec<Finding> {
                         "less than a {}th of the scene's width is visible",
                         number((size / larger).floor())
                     ))
-                    .help("angles are in degrees: 30 to 60 are usual");
+                    .help("angles are in degrees; 30 to 60 is usual");
             if let Some(place) = scout.value(span, &["angle", "fov"]).filter(|_| radians(camera.angle)) {
                 let whole = degrees.round().clamp(20.0, 100.0);
-                diagnostic = diagnostic
-                    .fix(place, number(whole))
-                    .help(format!("angles are in degrees; in radians it would be {}: try `{whole}`", number(degrees)));
+                diagnostic = diagnostic.fix(place, number(whole)).help(format!(
+                    "angles are in degrees; if this value is in radians, it is {} degrees: try `{whole}`",
+                    number(degrees)
+                ));
             }
             vec![Finding::from(scout.at_value(diagnostic, span, &["angle", "fov"])).whole(true)]
         }
@@ -111,7 +114,7 @@ pub(super) fn too_narrow(scout: &SceneProbe) -> Vec<Finding> {
             let wanted = number(1.2 * camera.size * size / larger);
             let diagnostic = Diagnostic::warning(format!("the picture is only {} wide", number(camera.size)))
                 .effect(format!("less than a {}th of the scene's width is visible", number((size / larger).floor())))
-                .help(format!("`size {wanted}` shows all of it"));
+                .help(format!("`size {wanted}` shows the full scene"));
             let diagnostic = diagnostic.fix_at(scout.value(span, &["size"]), wanted);
             vec![Finding::from(scout.at_value(diagnostic, span, &["size"])).whole(true)]
         }
@@ -134,7 +137,7 @@ fn one_fills(scout: &SceneProbe, sizes: &[f32]) -> Option<Finding> {
             1 => format!("one object fills the picture, and {out} are outside it"),
             n => format!("{n} objects fill the picture, and {out} are outside it"),
         })
-        .help("30 to 60 degrees are usual: is a digit missing?");
+        .help("30 to 60 degrees is usual: is a digit missing?");
     let span = scout.subject.scene.camera_span;
     Some(Finding::from(scout.at_value(diagnostic, span, &["angle", "fov"])).whole(true))
 }
@@ -233,20 +236,20 @@ pub(super) fn out_of_scale(scout: &SceneProbe) -> Vec<Finding> {
         }
         let word = if size > middle { "larger" } else { "smaller" };
         let diagnostic = Diagnostic::warning(format!(
-            "the {} is {} times {word} than most objects here",
+            "the {} is {} times {word} than most objects in this scene",
             scout.object(object),
             number(ratio)
         ))
         .at(scout.object_span(object))
         .effect(match scout.visibilities()[object as usize] {
             Visibility::Seen if size > middle => "it hides or contains the others",
-            Visibility::Seen => "hardly a pixel shows it",
-            _ if size > middle => "it spans the whole scene, but its surface is outside the picture",
+            Visibility::Seen => "it covers hardly a pixel",
+            _ if size > middle => "it spans the entire scene, but its surface is outside the picture",
             _ => "it is invisible",
         })
         .help(format!(
-            "its largest side is {}, that of most objects {}: is it in another unit, such as millimetres? Check its size and the \
-             `{}` around it",
+            "its largest side is {}, but that of most objects is {}: is it in another unit, such as millimetres? \
+             Check its size and the `{}` around it",
             number(size),
             number(middle),
             scout.word("Scale", "scale")

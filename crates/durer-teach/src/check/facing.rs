@@ -137,15 +137,15 @@ fn turned_of(scout: &SceneProbe, soup: &[u32]) -> Vec<Finding> {
         ))
         .at(scout.object_span(soup[0]))
         .label("the first of them")
-        .effect("a ray tracer that does not flip normals shades them as inner sides, black");
+        .effect("a ray tracer that does not flip normals shades them as back faces, in black");
         let diagnostic = soup.iter().fold(diagnostic, |diagnostic, &i| turned(scout, diagnostic, i));
-        return vec![Finding::from(diagnostic.help("order their corners counter-clockwise, as seen from outside"))];
+        return vec![Finding::from(diagnostic.help("order their vertices counter-clockwise, as seen from outside"))];
     }
     let Some(&first) = topology.turned.first() else { return Vec::new() };
     let count = topology.turned.len();
     let mut diagnostic = Diagnostic::warning(match count {
-        1 => "this triangle faces the opposite way of its neighbours".to_string(),
-        n => format!("{n} triangles face the opposite way of their neighbours"),
+        1 => "this triangle faces the opposite way from its neighbours".to_string(),
+        n => format!("{n} triangles face the opposite way from their neighbours"),
     })
     .at(scout.object_span(soup[first as usize]))
     .effect("its normal points inwards: black or wrongly lit in a ray tracer that does not flip normals");

@@ -14,7 +14,7 @@ pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
     each(scout, |light, verdict| {
         let Verdict::Faint(most) = verdict else { return None };
         let message = match written(scout, light)?.value.position() {
-            None => format!("this light contributes {} at most", number(most)),
+            None => format!("this light contributes at most {}", number(most)),
             Some(_) => format!("this light fades to {} before it arrives", number(most)),
         };
         let (diagnostic, span) = useless(scout, light, message)?;
@@ -30,7 +30,7 @@ pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
         if let (Some(value), Some(a)) = (value, point.attenuation.filter(|_| point.falloff.is_none())) {
             let reversed = Vec3::new(a.z, a.y, a.x);
             if let Some(text) = fits(scout, light, reversed).then(|| vector(reversed)) {
-                let help = format!("the three factors are for 1, d and d²: `attenuation {text}`?");
+                let help = format!("the three coefficients belong to 1, d and d²: did you mean `attenuation {text}`?");
                 return Some(diagnostic.at(value).fix(value, text).help(help));
             }
         }

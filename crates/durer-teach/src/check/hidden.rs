@@ -59,7 +59,7 @@ pub(super) fn hidden(scout: &SceneProbe) -> Vec<Finding> {
             "the camera is behind the plane, which is at p · normal = offset: move the camera, or check `offset` \
              and the direction of `normal`"
         }
-        (true, false) => "the plane is at p · normal = offset: is the sign of `offset` right?",
+        (true, false) => "the plane is at p · normal = offset: is the sign of `offset` correct?",
         _ => "move it, make it smaller, or move the camera",
     };
     let diagnostic = Diagnostic::warning(format!("the {name} hides everything else"))

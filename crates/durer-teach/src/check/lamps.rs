@@ -148,13 +148,13 @@ pub(super) fn turned(scout: &SceneProbe) -> Vec<Finding> {
             Some(flip) => flip_text(flip),
             None => "negate its `normal`".into(),
         };
-        let message = format!("the {} emits away from everything that is visible", scout.object(number));
+        let message = format!("the {} emits light away from everything visible", scout.object(number));
         let diagnostic = Diagnostic::warning(message)
             .at(scout.object_span(number))
-            .effect("it lights nothing visible, and is black from behind")
+            .effect("it lights nothing visible, and its back is black")
             .help(format!(
-                "a surface emits on the side of its normal: {turn}, or set `walls thin` in its material, so that both sides \
-                 emit"
+                "a surface emits light on the side of its normal: {turn}, or set `walls thin` in its material so \
+                 that both sides emit light"
             ));
         let whole = scout.is_dark() || scout.world().lights().is_empty();
         Some(Finding::from(turned_round(scout, diagnostic, number)).whole(whole))
@@ -187,7 +187,7 @@ pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
         let whole = scout.is_dark() || lamps.len() == 1 && scout.world().lights().is_empty();
         let name = scout.object(number);
         let diagnostic = Diagnostic::warning(format!(
-            "the {name} emits light, but the {} occludes it from everything that is visible",
+            "the {name} emits light, but the {} occludes it from everything visible",
             scout.object(blocker)
         ))
         .at(scout.object_span(number))
@@ -197,7 +197,7 @@ pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
         } else {
             "none of its light reaches the visible surfaces directly"
         })
-        .help("is it on the wrong side, or inside? Move the light to the visible side");
+        .help("is the light on the wrong side, or inside? Move it to the visible side");
         // If the picture is not dark, the light arrives indirectly.
         let dark = scout.is_dark();
         let severity = if dark { Severity::Warning } else { Severity::Note };
@@ -237,7 +237,7 @@ pub(super) fn in_glass(scout: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic::warning(message)
             .at(scout.object_span(number))
             .related(scout.object_span(glass), "the glass around it")
-            .effect("paths hit it only by chance: little light, and bright specks")
+            .effect("paths hit it only by chance, so the picture has little light and bright specks")
             .help("use `--integrator photons`, or remove the glass");
         found.push(Finding::from(diagnostic));
     }

@@ -51,13 +51,13 @@ pub(super) fn black(scout: &SceneProbe) -> Vec<Finding> {
             (base <= BLACK && !textured && !skin).then_some("baseColor")?
         };
         let what = match word {
-            "subsurfaceColor" => "the visible colour of the body",
+            "subsurfaceColor" => "the visible colour of the object",
             _ if m.base_metalness > 0.9 => "the reflectance of the metal",
-            _ => "the share of light that it reflects",
+            _ => "the fraction of light that the material reflects",
         };
         let diagnostic = Diagnostic::warning(format!("material {number} is black: it reflects no light"))
             .effect("its objects are black under any light")
-            .help(format!("`{word}` is {what}: `{word} 0.8 0.8 0.8` is light"));
+            .help(format!("`{word}` sets {what}; for example, `{word} 0.8 0.8 0.8` gives a light grey"));
         let words = [word, "baseWeight"];
         Some(Finding::from(scout.at_value(diagnostic, written.span, &words)))
     };
@@ -75,7 +75,7 @@ pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic::warning(message);
         let (diagnostic, word) = if m.transmission_depth == 0.0 || m.walls == Walls::Thin {
             (color <= BLACK).then(|| {
-                let help = "`transmissionColor` is the share of light that it transmits: `1 1 1` is clear";
+                let help = "`transmissionColor` is the fraction of light that the glass transmits: `1 1 1` is clear";
                 (diagnostic.effect("its colour absorbs all light: it is black").help(help), "transmissionColor")
             })?
         } else {
@@ -85,7 +85,8 @@ pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
             (left < BLACK).then(|| {
                 let depth = number_word(thick);
                 let effect = format!(
-                    "light has its colour, {}, after a distance of {} already; its objects are {} thick and look black",
+                    "light reaches its colour, {}, after a distance of only {}, but its objects are {} thick and \
+                     look black",
                     vector(m.transmission_color),
                     number_word(m.transmission_depth),
                     number_word(thick)
@@ -140,7 +141,7 @@ pub(super) fn not_there(scout: &SceneProbe) -> Vec<Finding> {
         }
         let diagnostic = Diagnostic::warning(format!("material {number} has the `opacity` {}", number_word(m.opacity)))
             .effect("its objects are invisible: light passes through unchanged")
-            .help("`opacity` is the share of the surface that is present, from 0 to 1");
+            .help("`opacity` is the fraction of the surface that is present, from 0 to 1");
         let value = scout.value(written.span, &["opacity"]);
         Some(Finding::from(scout.at_value(diagnostic.fix_at(value, "1"), written.span, &["opacity"])))
     };

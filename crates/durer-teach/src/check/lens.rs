@@ -105,7 +105,10 @@ pub(super) fn shifted(scout: &SceneProbe, middle: Vec3) -> Option<Diagnostic> {
     (forward > 0.0 && across < (sine / cosine) as f32).then(|| {
         let diagnostic = Diagnostic::warning(format!("the film shift misses everything: `{word} {}`", number(shift)))
             .effect("the objects in front of the lens are outside the picture")
-            .help("its unit is half the picture's larger side, so 1 moves the center to the edge: try 0 or 0.3");
+            .help(
+                "the shift is relative to half the picture's larger side, so 1 moves the center to the edge: try \
+                   0 or 0.3",
+            );
         let value = scout.value(span, &[word]);
         scout.at_value(diagnostic.fix_at(value, "0"), span, &[word])
     })
@@ -141,9 +144,9 @@ pub(super) fn eyes_apart(scout: &SceneProbe) -> Vec<Finding> {
         number(separation),
         number(middle)
     ))
-    .effect("each eye sees something else, so the two pictures do not fuse")
+    .effect("the two pictures differ too much to be fused")
     .help(format!(
-        "`separation` is in units of the scene{}; a 30th of the distance is usual: try `separation {usual}`",
+        "`separation` is in scene units{}; one thirtieth of the distance is usual: try `separation {usual}`",
         if millimetres { ", and this value may be in millimetres" } else { "" }
     ));
     let diagnostic = diagnostic.fix_at(scout.value(span, &["separation"]), usual);
@@ -174,13 +177,13 @@ pub(super) fn edge_on(scout: &SceneProbe) -> Vec<Finding> {
         let name = scout.object(number as u32);
         let diagnostic = match orthographic {
             true => Diagnostic::note(format!("the camera looks along the {name}"))
-                .help("from there it is a line at most: tilt the camera's `direction` towards it"),
+                .help("from there it is at most a line: tilt the camera's `direction` towards it"),
             false => {
                 // Towards the side with the objects.
                 let side = if (things.center() - on).dot(n) < 0.0 { -n } else { n };
                 let raised = super::finding::vector(eye + 0.2 * size * side);
                 let value = scout.value(scout.subject.scene.camera_span, &["center"]);
-                Diagnostic::warning(format!("the camera lies in the {name}"))
+                Diagnostic::warning(format!("the camera is in the plane of the {name}"))
                     .help(format!("move it to one side: try `center {raised}`"))
                     .fix_at(value, raised)
             }
@@ -219,10 +222,10 @@ pub(super) fn far_origin(scout: &SceneProbe) -> Vec<Finding> {
         number(size)
     ))
     .effect(format!(
-        "numbers of that size have steps of {}: rounding destroys shapes and roughens surfaces",
+        "numbers of that size have a resolution of {}: rounding destroys shapes and roughens surfaces",
         number(far * f32::EPSILON)
     ))
-    .help("subtract one vector from all coordinates, the camera's too, to move the scene to the origin");
+    .help("move the scene to the origin: subtract one vector from all coordinates, including the camera's");
     vec![Finding::from(scout.at_value(diagnostic, scout.subject.scene.camera_span, &["center"])).whole(true)]
 }
 
@@ -245,9 +248,10 @@ pub(super) fn below_epsilon(scout: &SceneProbe) -> Vec<Finding> {
     let factor = number([1e2, 1e3, 1e4, 1e5, 1e6].into_iter().find(|factor| factor * middle > 0.5).unwrap_or(1e7));
     let diagnostic = Diagnostic::warning(format!("the objects in this scene are {} wide", number(middle)))
         .effect(format!(
-            "this year's program starts shadow rays and mirrored rays {} from the surface: shadows and reflections are lost",
+            "this year's program starts shadow rays and reflected rays {} from the surface, so shadows and \
+             reflections are lost",
             number(epsilon)
         ))
-        .help(format!("scale the whole scene by about {factor}, with camera and lights"));
+        .help(format!("scale the entire scene, including the camera and lights, by about {factor}"));
     vec![Finding::from(diagnostic.at(scout.subject.scene.camera_span)).whole(true)]
 }

@@ -62,7 +62,7 @@ fn enclosed(scout: &SceneProbe) -> Vec<Finding> {
         let note = Diagnostic::note(format!("this light is inside the {}", scout.object(object)))
             .effect("it does not light that object, and with shadows it lights nothing else")
             .related(scout.object_span(object), "around the light")
-            .help("move one of them, unless the object represents a light");
+            .help("move one of them, unless the object represents the light");
         Some(Finding::from(scout.at_value(note, span, &["position"])))
     };
     lights.filter_map(say).collect()
@@ -104,7 +104,10 @@ pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
         let (diagnostic, _) = useless(scout, light, message)?;
         let has_position = scout.world().lights()[light].position().is_some();
         let help = match (scout.world().objects()[object as usize].bounds(), has_position) {
-            (None, false) => "the light comes from behind the plane: negate its `direction`, which is where light goes",
+            (None, false) => {
+                "the light comes from behind the plane: negate its `direction`, the direction in which \
+                              the light travels"
+            }
             (None, true) => "the light is behind the plane: move it to the other side",
             (Some(_), false) => "turn the light, or move the occluder",
             (Some(_), true) => "move the light or the occluder",
@@ -166,7 +169,10 @@ fn mostly_dark(scout: &SceneProbe) -> Vec<Finding> {
             true => "most of the picture shows only ambient light, flat and dark",
             false => "most of the picture is black",
         })
-        .help("the light is behind the visible surfaces: `direction` is where light goes, `position` where it is");
+        .help(
+            "the light is behind the visible surfaces: `direction` is the direction in which the light travels, \
+               `position` its place",
+        );
     diagnostic = scout.at_value(diagnostic, span, &["direction", "position"]);
     // If the lights face away together, each `direction` probably points towards its source.
     for &light in &working {
@@ -220,7 +226,10 @@ fn grazing(scout: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
             let direction = lamp.direction()?;
             let tilted = vector(direction - 0.7 * direction.length() * n);
             let value = scout.value(span, &["direction"]);
-            let help = format!("`direction` is where light goes: `direction {tilted}` reaches the surface");
+            let help = format!(
+                "`direction` is the direction in which the light travels: `direction {tilted}` \
+                                reaches the surface"
+            );
             Some(scout.at_value(diagnostic.fix_at(value, tilted), span, &["direction"]).help(help))
         }
         Some(from) => {
@@ -240,7 +249,7 @@ fn grazing(scout: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
             }
             let value = scout.value(span, &["position"]);
             let help =
-                format!("the light lies in the plane of that surface: raise it, for example to `position {raised}`");
+                format!("the light is in the plane of that surface: raise it, for example to `position {raised}`");
             Some(scout.at_value(diagnostic.fix_at(value, raised), span, &["position"]).help(help))
         }
     }
@@ -285,7 +294,8 @@ pub(super) fn behind(scout: &SceneProbe) -> Vec<Finding> {
             None => {
                 let turned = vector(-lamp.direction()?);
                 let help = format!(
-                    "`direction` is where the light goes, not where it is: `direction {turned}` lights the visible side"
+                    "`direction` is the direction in which the light travels, not the direction to it: `direction \
+                     {turned}` lights the visible side"
                 );
                 let fixed = diagnostic.fix_at(scout.value(span, &["direction"]), turned);
                 scout.at_value(fixed, span, &["direction"]).help(help)
@@ -307,10 +317,10 @@ pub(super) fn cancelled(scout: &SceneProbe) -> Vec<Finding> {
         if verdict != Verdict::Cancelled || super::colors::all_black(scout) {
             return None;
         }
-        let message = "the surfaces that this light reaches reflect none of its colour".to_string();
+        let message = "the surfaces lit by this light reflect none of its colour".to_string();
         let (diagnostic, span) = useless(scout, light, message)?;
         let color = vector(scout.world().lights()[light].color());
-        let help = format!("light and surface colours are multiplied per channel: this light is {color}");
+        let help = format!("the colours of light and surface are multiplied per channel: this light is {color}");
         let material = scout.seen().next().map(|(_, seen)| seen.material)?;
         let diagnostic = match scout.subject.scene.materials.get(material as usize) {
             Some(material) => diagnostic.related(material.span, "a material that it reaches"),
@@ -325,7 +335,7 @@ pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
     let lights = scout.subject.scene.lights.as_deref().unwrap_or_default();
     let pairs = lights.iter().enumerate().filter_map(|(i, light)| {
         let first = lights[..i].iter().find(|first| first.value == light.value)?;
-        Some(Diagnostic::warning("this light is written twice").at(light.span).related(first.span, "the first one"))
+        Some(Diagnostic::warning("this light is defined twice").at(light.span).related(first.span, "the first one"))
     });
     let say = |diagnostic: Diagnostic| {
         let diagnostic = diagnostic.effect("its light is added twice");

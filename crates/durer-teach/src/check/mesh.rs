@@ -25,7 +25,7 @@ pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
             diagnostic.severity = durer_diag::Severity::Note;
         }
         let diagnostic = diagnostic
-            .effect("they are invisible and leave holes where they should cover something")
+            .effect("they are invisible and leave holes in the surface")
             .help("do two corners have the same index or position? Remove these triangles, or fix their corners");
         found.push(Finding::from(diagnostic).whole(flat.len() == all));
     }
@@ -103,7 +103,8 @@ pub(super) fn flat_glass(scout: &SceneProbe) -> Vec<Finding> {
         let mut diagnostic = Diagnostic::warning(format!("this {what} is glass, but has no inside"))
             .at(object.span)
             .effect(
-                "a ray that enters never leaves: it is refracted once, and everything behind appears as if inside the glass",
+                "a ray that enters it never leaves: it is refracted once, and everything behind appears to be \
+                 inside the glass",
             )
             .help("glass needs a closed body, such as a sphere or a closed mesh; or set its index to 1");
         // The surface of a lake is flat on purpose.
@@ -202,14 +203,14 @@ pub(super) fn winding(scout: &SceneProbe) -> Vec<Finding> {
         let (turned, all) = (&mesh.topology.turned, mesh.data.triangles.len());
         let Some(&first) = turned.first().filter(|_| !mesh.is_beyond_notice(turned.len())) else { continue };
         let message = format!(
-            "{} of {all} of `{}` wind the opposite way of their neighbours",
+            "{} of {all} of `{}` have the opposite winding to their neighbours",
             counted(turned.len(), "triangle", "triangles"),
             mesh.name.path
         );
         let diagnostic = mesh
             .at_triangle(scout, Diagnostic::warning(message), first)
-            .effect("their normals point to the other side: patches are dark or wrongly shaded")
-            .help("swap two corners of each of them");
+            .effect("their normals point to the opposite side, so patches are dark or wrongly shaded")
+            .help("swap two vertices of each of them");
         found.push(Finding::from(diagnostic));
     }
     found
@@ -229,7 +230,8 @@ pub(super) fn inside_out(scout: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic::warning(format!("the normals of `{}` point inwards", mesh.name.path))
             .at(mesh.name.span)
             .effect("a ray tracer that does not flip them shades the inner side, black; as glass it refracts light the wrong way")
-            .help(if by_file { "negate its `vn` vectors" } else { "order the corners of its faces counter-clockwise, as seen from outside" });
+            .help(if by_file { "negate its `vn` vectors" } else { "order the vertices of its faces \
+                                                                   counter-clockwise, as seen from outside" });
         found.push(Finding::from(diagnostic).whole(most));
     }
     found.extend(models_inside_out(scout));
@@ -287,9 +289,9 @@ pub(super) fn given_normals(scout: &SceneProbe) -> Vec<Finding> {
             say(
                 &given.against,
                 first,
-                "have normals that contradict the order of their corners",
+                "have normals that contradict the order of their vertices",
                 "they are shaded as back faces: dark, or lit from the wrong side",
-                "negate those `vn`, or swap two corners of the faces",
+                "negate those `vn` lines, or swap two vertices of the faces",
             );
         }
         if let Some(first) = some(&given.missing) {
@@ -298,7 +300,7 @@ pub(super) fn given_normals(scout: &SceneProbe) -> Vec<Finding> {
                 first,
                 "have no normals in the file, although others have some",
                 "they look faceted, or differ from their neighbours",
-                "write all faces as `f 1//1 2//2 3//3`, or none",
+                "write either all faces as `f 1//1 2//2 3//3`, or none",
             );
         }
         if let Some(first) = some(&given.zero) {

@@ -34,7 +34,7 @@ pub(super) fn not_finite(scout: &SceneProbe) -> Vec<Finding> {
         path(scout, &tree.root, &mut steps, &mut place);
     }
     let share = match bad {
-        0 => "such samples are left out: specks or black pixels".to_string(),
+        0 => "such samples are left out, which leaves specks or black pixels".to_string(),
         n => format!("{} of the picture is left out and stays black", super::finding::percent(n, scout.probes.len())),
     };
     let mut diagnostic = Diagnostic::warning(format!("the light of {name} is NaN or infinite")).effect(share);

@@ -25,10 +25,10 @@ pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
         })
     };
     let say = |object: &Object| {
-        let diagnostic = Diagnostic::warning("this triangle has no area: its corners lie on one line")
+        let diagnostic = Diagnostic::warning("this triangle has no area: its vertices are on one line")
             .at(object.span)
             .effect("it is invisible")
-            .help("are two of its corners equal?");
+            .help("are two of its vertices equal?");
         Finding::from(diagnostic).whole(scout.world().objects().len() == 1)
     };
     scout.world().objects().iter().filter(flat).map(say).collect()
@@ -125,7 +125,7 @@ fn squashed_parts(object: &Written, within: bool) -> Vec<Finding> {
         Node::Transform(ops, inner) => {
             let mut found = squashed_parts(inner, within);
             if within && ops.iter().map(least).product::<f32>() < SQUASHED {
-                let diagnostic = Diagnostic::warning("a scale makes this part of a solid almost vanish")
+                let diagnostic = Diagnostic::warning("a scale makes this part of a solid almost disappear")
                     .at(object.span)
                     .effect("the solid is invisible, or the part has no effect")
                     .help("check the `Scale` and `UniformScale` in it");
@@ -231,7 +231,10 @@ fn pair(scout: &SceneProbe, first: usize, second: usize) -> Finding {
     .related(a, "the same surface")
     .effect(match alike {
         true => "it contributes nothing; if it is glass, refraction through it is wrong",
-        false => "which of the two surfaces is visible is random: specks, or only one of the materials",
+        false => {
+            "rounding decides which of the two surfaces is visible: there are specks, or only one material \
+                  appears"
+        }
     })
     .help("remove or move one of them");
     Finding::from(diagnostic)

@@ -93,7 +93,7 @@ pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
             (
                 "this pattern is finer than a pixel".to_string(),
                 "it looks like noise or averages to one colour",
-                "check the `Scale` of its `Transform`, or its `frequency`: sizes are in units of the scene",
+                "check the `Scale` of its `Transform`, or its `frequency`: sizes are in scene units",
             )
         } else {
             continue;
@@ -145,7 +145,7 @@ pub(super) fn flat_texture(scout: &SceneProbe) -> Vec<Finding> {
         let (message, help) = if scout.material_rays()[number] == 0 {
             continue;
         } else if texture.is_flat() {
-            (format!("the texture of material {number} has only one colour"), "is it the right picture?")
+            (format!("the texture of material {number} has only one colour"), "is it the right image?")
         } else if let Some(object) = one_place {
             let name = scout.text(object.span);
             let message = format!("all corners of the `{name}` have the same texture coordinates");

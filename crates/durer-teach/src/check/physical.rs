@@ -67,7 +67,7 @@ pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
             false => format!("nothing emits light: no object uses the emissive material {number}"),
         };
         let diagnostic = Diagnostic::warning(message).effect("the picture is black").help(match black {
-            true => "it multiplies `emissionLuminance`: `emissionColor 1 1 1` is white light",
+            true => "it multiplies `emissionLuminance`; for example, `emissionColor 1 1 1` is white light",
             false => "is a `MaterialIndex` wrong? Indices start at 0",
         });
         let diagnostic = scout.at_value(diagnostic, material.span, &["emissionColor", "emissionLuminance"]);
@@ -103,7 +103,7 @@ pub(super) fn lamp_in_glass(scout: &SceneProbe) -> Vec<Finding> {
     let enclosed = lights.filter_map(|(number, place)| {
         let glass = world.glass_around(place).find(|&(_, ior)| ior != 1.0)?.0;
         let message =
-            format!("light {number} is inside the {}: its light leaves only by refraction", scout.object(glass));
+            format!("light {number} is inside the {}: its light can only leave by refraction", scout.object(glass));
         let diagnostic = Diagnostic::warning(message)
             .at(scout.object_span(glass))
             .effect("paths cannot find it: it lights nothing outside")
@@ -125,7 +125,7 @@ pub(super) fn without_effect(scout: &SceneProbe) -> Vec<Finding> {
             Some((
                 "transmissionScatter",
                 "nothing is scattered inside: `transmissionDepth` is 0",
-                "try `transmissionDepth 1`: the distance after which light has `transmissionColor`",
+                "try `transmissionDepth 1`, the distance after which light has `transmissionColor`",
             ))
         } else if m.transmission_scatter != Vec3::ZERO && m.transmission_weight == 0.0 {
             Some((

@@ -40,8 +40,8 @@ checks! {
     "wrong-count": "a `numObjects`, `numLights` or `numMaterials` that differs from the actual number", reported;
     "flat-transform": "a transform that flattens space", reported;
     "no-camera": "no camera", reported;
-    "missing-file": "a mesh or picture that does not exist", reported;
-    "bad-file": "a mesh or picture that cannot be used", reported;
+    "missing-file": "a mesh or image that does not exist", reported;
+    "bad-file": "a mesh or image that cannot be used", reported;
     "open-solid": "a part of a solid that is not closed", reported;
     "no-objects": "a scene without objects", view::no_objects;
     // The camera.
@@ -54,17 +54,17 @@ checks! {
     "too-narrow": "a picture that shows a tiny part of the scene", extent::too_narrow;
     "empty-solid": "an empty solid", objects::empty_solid;
     "idle-part": "a part of a solid without effect", solid::idle_part;
-    "wide-aperture": "an aperture that no lens has", lens::wide_aperture;
-    "out-of-focus": "a lens that focuses where nothing is", lens::out_of_focus;
+    "wide-aperture": "an aperture that is too large for a lens", lens::wide_aperture;
+    "out-of-focus": "a lens that focuses where there is nothing", lens::out_of_focus;
     "eyes-apart": "eyes that are too far apart", lens::eyes_apart;
     "hidden-behind": "an object that hides all others, or most of the picture", hidden::hidden_behind;
     "below-plane": "a plane between the camera and all other objects", hidden::below_plane;
     "plane-through": "a plane that passes through the middle of most objects", view::plane_through;
     "upside-down": "a camera whose `up` points into the ground", view::upside_down;
     "edge-on": "a plane seen edge-on", lens::edge_on;
-    "long-up": "a camera's `up` that is used as written, with a length other than 1", year::long_up;
-    "stretched": "a picture that is not square, under a program that stretches it", year::stretched;
-    "plane-normal": "a plane whose normal does not have length 1", year::plane_normal;
+    "long-up": "a camera's `up` that is used as written, without unit length", year::long_up;
+    "stretched": "a picture that is not square, with a program that stretches it", year::stretched;
+    "plane-normal": "a plane whose normal does not have unit length", year::plane_normal;
     "out-of-scale": "an object far larger or smaller than most", extent::out_of_scale;
     // Lights.
     "wrong-integrator": "light of a kind that the method leaves out", method::wrong_integrator;
@@ -78,11 +78,11 @@ checks! {
     "lamp-in-glass": "an area light inside glass, which paths hardly find", lamps::in_glass;
     "no-depth": "parameters of a medium without effect", physical::without_effect;
     "black-light": "a light without colour", reported;
-    "light-divides": "a light that is divided by zero", fading::divides;
+    "light-divides": "a light whose falloff is zero, which causes a division by zero", fading::divides;
     "no-falloff": "a light without `falloff`, where the old program divides by it", reported;
     "light-away": "a spotlight or photometric light that misses everything visible", beams::away;
     "light-narrow": "a spotlight whose cone contains almost nothing", beams::narrow;
-    "light-near": "a light just above a surface that lights only a spot", beams::near;
+    "light-near": "a light just above a surface, which lights only a small spot", beams::near;
     "light-inside": "a light inside an object", lights::inside;
     "light-blocked": "a light that an object blocks from everything visible", lights::blocked;
     "light-behind": "a light that all visible surfaces face away from", lights::behind;
@@ -90,7 +90,7 @@ checks! {
     "inner-angle": "a spotlight whose inner cone is wider than the outer", beams::inner_angle;
     // Colours.
     "color-range": "a colour above 1", colors::too_large;
-    "full-ambient": "ambient light that leaves no range for the lights", year::full_ambient;
+    "full-ambient": "ambient light so strong that it leaves no range for the lights", year::full_ambient;
     "pow-zero": "a highlight with an exponent near 0, which covers everything", year::pow_zero;
     "no-exponent": "a highlight colour without an exponent", year::no_exponent;
     "tiny-highlight": "a highlight smaller than a pixel", year::tiny_highlight;
@@ -114,34 +114,34 @@ checks! {
     "flat-texture": "a texture that shows only one colour", patterns::flat_texture;
     // Shapes and meshes.
     "seen-from-behind": "a surface seen from behind, which is not shaded", facing::from_behind;
-    "turned-triangle": "triangles that face the opposite way of their neighbours", facing::turned_triangles;
-    "winding": "triangles of a mesh that wind the opposite way of their neighbours", mesh::winding;
+    "turned-triangle": "triangles that face the opposite way from their neighbours", facing::turned_triangles;
+    "winding": "triangles of a mesh with the opposite winding to their neighbours", mesh::winding;
     "inside-out": "a closed mesh whose normals point inwards", mesh::inside_out;
-    "odd-normals": "normals of a mesh file that contradict its faces, are missing or have no length", mesh::given_normals;
-    "misread-mesh": "a mesh file that the year's program reads with a lost line or other normals", mesh::misread;
-    "flat-field": "a landscape without heights", unseen::flat_field;
-    "open-mesh": "a mesh with holes that show its inside", mesh::holes;
+    "odd-normals": "normals of a mesh file that contradict its faces, are missing or have zero length", mesh::given_normals;
+    "misread-mesh": "a mesh file that this year's program reads with a missing line or different normals", mesh::misread;
+    "flat-field": "a height field that is flat", unseen::flat_field;
+    "open-mesh": "a mesh with holes through which its inside is visible", mesh::holes;
     "degenerate-mesh": "triangles of a mesh without area", mesh::degenerate;
     "degenerate-triangle": "a triangle without area", objects::degenerate;
     "mesh-quads": "faces that this year's program cannot read", year::quads;
     "open-glass": "a glass object that is not closed", mesh::open_glass;
     "squashed": "an object that its transforms make flat or tiny", objects::squashed;
-    "same-place": "two objects with the same surface", objects::twice;
-    "light-twice": "a light that is written twice", lights::twice;
+    "same-place": "two objects with coinciding surfaces", objects::twice;
+    "light-twice": "a light that is defined twice", lights::twice;
     // The picture.
     "not-finite": "samples that are NaN or infinite", numbers::not_finite;
     "depth-range": "a depth range that contains no depth of the picture", exposure::depth_range;
-    "too-bright": "more light than a picture of eight bits can show", exposure::too_bright;
+    "too-bright": "more light than an 8-bit picture can show", exposure::too_bright;
     "mostly-black": "lights that reach next to nothing of what is seen", method::mostly_black;
     "too-dark": "hardly any light", exposure::too_dark;
     "all-missed": "no ray hits anything, although the camera looks at the scene", view::missed;
-    "one-color": "a picture of one colour without a known cause", exposure::one_color;
+    "one-color": "a picture of one colour, from an unknown cause", exposure::one_color;
     // Odd, but mostly harmless.
-    "dialect": "the dialect that was guessed for the scene", reported;
+    "dialect": "the dialect that was detected for the scene", reported;
     "radians": "a rotation that may be in radians", extent::radians;
-    "repeated": "a section or field that is written twice", reported;
-    "foreign-word": "a word of another year", reported;
-    "portability": "a scene that the year's own program would refuse", reported;
+    "repeated": "a section or field that appears twice", reported;
+    "foreign-word": "a word from the dialect of another year", reported;
+    "portability": "a scene that the official program of that year would reject", reported;
     "comment": "a comment that does not begin with `#`", reported;
     "tiny": "an object smaller than a pixel", unseen::tiny;
     "unseen": "objects outside the picture, or hidden", unseen::unseen;

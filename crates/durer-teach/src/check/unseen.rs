@@ -76,9 +76,9 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
         };
         let plane = plane(&scout.world().objects()[by as usize]).is_some();
         let help = match (plane, inside) {
-            (true, _) => "it is behind the plane, which is at p · normal = offset: is the sign of `offset` right?",
-            (false, true) => "move it out, or move or shrink the other object",
-            (false, false) => "is it on the wrong side of the other object, or is that in the way?",
+            (true, _) => "it is behind the plane, which is at p · normal = offset: is the sign of `offset` correct?",
+            (false, true) => "move it outside, or move or shrink the other object",
+            (false, false) => "is it on the wrong side of the other object, or is that object in the way?",
         };
         // An object may stand behind another on purpose.
         let one = hidden.iter().all(|(_, other)| *other == by);
@@ -200,7 +200,7 @@ pub(super) fn flat_field(scout: &SceneProbe) -> Vec<Finding> {
                     number(size.y)
                 ))
                 .effect("it looks flat")
-                .help(format!("heights go from `min` to `max` along y: try `max {max}`"));
+                .help(format!("heights range from `min` to `max` along y: try `max {max}`"));
                 let diagnostic = diagnostic.fix_at(scout.value(object.span, &["max"]), max);
                 found.push(Finding::from(scout.at_value(diagnostic, object.span, &["max"])));
             }

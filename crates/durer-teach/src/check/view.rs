@@ -28,7 +28,7 @@ pub(super) fn no_objects(scout: &SceneProbe) -> Vec<Finding> {
         true => Diagnostic::warning("the scene has no objects: its group is empty").help("add objects to the `Group`"),
         false => Diagnostic::warning("the scene has no surfaces"),
     };
-    vec![Finding::from(diagnostic.effect("every ray misses; the whole picture is background")).whole(true)]
+    vec![Finding::from(diagnostic.effect("every ray misses, so the picture shows only the background")).whole(true)]
 }
 
 /// Reports objects around the camera, except rooms.
@@ -58,7 +58,8 @@ pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
             .related(scout.object_span(object), "around the camera")
             .effect(match dark {
                 _ if swallowed && own * 100 < rays * 99 => "it is all around: what is seen of it is its inside",
-                _ if walls && own * 100 < rays * 99 => "its walls are visible from behind: that side gets no light",
+                _ if walls && own * 100 < rays * 99 => "its walls are visible from behind, and that side gets no \
+                                                        light",
                 true => "it blocks the light; everything visible is in its shadow",
                 false => "only its inside is visible",
             })
@@ -183,7 +184,7 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     }
     let hits = scout.seen().count();
     let effect = match hits {
-        0 => "every ray misses; the whole picture is background".to_string(),
+        0 => "every ray misses, so the picture shows only the background".to_string(),
         _ => format!("only {} is visible", only_seen(scout)),
     };
     let mut diagnostic = Diagnostic::warning("the camera looks past everything").effect(effect);
@@ -293,7 +294,7 @@ pub(super) fn missed(scout: &SceneProbe) -> Vec<Finding> {
     let hit = scout.visibilities().contains(&Visibility::Seen);
     let Some(bounds) = target(scout).filter(|bounds| !hit && aims(scout, bounds.center())) else { return Vec::new() };
     let mut diagnostic = Diagnostic::warning("every ray misses, although the camera looks at the center of the scene")
-        .effect("the whole picture is background")
+        .effect("the picture shows only the background")
         .at(scout.subject.scene.camera_span);
     let size = pixels(scout, bounds);
     diagnostic.help = Some(match size {

@@ -28,7 +28,7 @@ pub(super) fn complete(scout: &SceneProbe, finding: &mut Finding) {
         "no-falloff" => finding.whole = true,
         "no-objects" => {
             finding.whole = true;
-            finding.diagnostic.effect = Some("every ray misses; the whole picture is background".into());
+            finding.diagnostic.effect = Some("every ray misses, so the picture shows only the background".into());
         }
         "empty-solid" => {
             finding.diagnostic.effect.get_or_insert("it is invisible".into());
@@ -106,7 +106,7 @@ fn material_index(scout: &SceneProbe, finding: &mut Finding) {
     let text = scout.text(span);
     let Some((word, index)) = text.rsplit_once(char::is_whitespace) else { return };
     if count == 0 {
-        finding.diagnostic.help = Some("write the `Materials`".into());
+        finding.diagnostic.help = Some("add a `Materials` section".into());
         return;
     }
     if from_one(scout, finding, count) {

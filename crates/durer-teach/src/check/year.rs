@@ -47,8 +47,8 @@ pub(super) fn pow_zero(scout: &SceneProbe) -> Vec<Finding> {
         let message = message.replace("specularColor", scout.word("specularColor", "specular"));
         let diagnostic = Diagnostic::warning(message)
             .label(format!("on {} of the visible surfaces", percent(count, all)))
-            .effect("its highlight covers everything, as on chalk: 0 to the power of 0 is 1")
-            .help("add a `shininess`, such as 20; higher is sharper");
+            .effect("its highlight covers everything, which looks like chalk: 0 to the power of 0 is 1")
+            .help("add a `shininess`, such as 20; higher values are sharper");
         let value = scout.value(written.span, &["shininess"]);
         let diagnostic = match value {
             Some(value) => diagnostic.at(value).fix(value, "20"),
@@ -80,8 +80,8 @@ fn blunt(scout: &SceneProbe) -> Vec<Finding> {
             return None;
         }
         let diagnostic = Diagnostic::warning(format!("the `{word}` of material {i} is {}", number(exponent)))
-            .effect("its highlight covers nearly everything, as on chalk")
-            .help(format!("higher is sharper, and plastic has about 20: try `{word} 20`"));
+            .effect("its highlight covers nearly everything, which looks like chalk")
+            .help(format!("higher values are sharper, and plastic has about 20: try `{word} 20`"));
         let value = scout.value(written.span, &[word]);
         Some(Finding::from(scout.at_value(diagnostic.fix_at(value, "20"), written.span, &[word])))
     };
@@ -128,8 +128,8 @@ pub(super) fn no_exponent(scout: &SceneProbe) -> Vec<Finding> {
     let say = |(i, written, _): (usize, &Spanned<Written>, &PhongMaterial)| {
         let diagnostic =
             Diagnostic::warning(format!("material {i} has a `specularColor` but no `exponent`, so that is 1"))
-                .effect("its highlight covers everything, pale as chalk")
-                .help("add an `exponent`, such as 20; higher is sharper");
+                .effect("its highlight covers everything, which looks like chalk")
+                .help("add an `exponent`, such as 20; higher values are sharper");
         Finding::from(scout.at_value(diagnostic, written.span, &["specularColor"]))
     };
     seen(scout).filter(|(.., phong)| bare(phong)).map(say).take(MAX_SOUGHT).collect()
@@ -166,9 +166,9 @@ pub(super) fn long_up(scout: &SceneProbe) -> Vec<Finding> {
     let (how, word) = if length > 1.0 { (length, "flattened") } else { (1.0 / length, "stretched upwards") };
     let unit = vector(up / length);
     let diagnostic =
-        Diagnostic::warning(format!("the camera's `up` has the length {}, and is used as written", number(length)))
+        Diagnostic::warning(format!("the camera's `up` has a length of {} and is used as written", number(length)))
             .effect(format!("the picture is {word} by a factor of {}", number(how)))
-            .help(format!("give it the length 1: `up {unit}`"));
+            .help(format!("normalise it: `up {unit}`"));
     let span = scout.subject.scene.camera_span;
     let diagnostic = match scout.value(span, &["up"]) {
         Some(value) => diagnostic.at(value).fix(value, unit),
@@ -188,9 +188,9 @@ fn skew_up(scout: &SceneProbe) -> Option<Finding> {
     let right = (up - off * forward).normalize_or_zero();
     let text = vector(right);
     let diagnostic =
-        Diagnostic::warning("the camera's `up` is not perpendicular to its `direction`, and is used as written")
+        Diagnostic::warning("the camera's `up` is not perpendicular to its `direction` and is used as written")
             .effect(format!("the picture is skewed, and {} times too flat", number(1.0 / (1.0 - off * off).sqrt())))
-            .help(format!("perpendicular is `up {text}`"));
+            .help(format!("write a perpendicular vector: `up {text}`"));
     let span = scout.subject.scene.camera_span;
     let value = scout.value(span, &["up"]);
     Some(Finding::from(scout.at_value(diagnostic.fix_at(value, text), span, &["up"])).whole(true))
@@ -222,10 +222,10 @@ pub(super) fn quads(scout: &SceneProbe) -> Vec<Finding> {
     }
     let say = |(name, count, all, face): (&str, usize, usize, durer_diag::Span)| {
         let diagnostic =
-            Diagnostic::warning(format!("{count} of the {all} faces of `{name}` have more than three corners"))
+            Diagnostic::warning(format!("{count} of the {all} faces of `{name}` have more than three vertices"))
                 .at(face)
                 .label("the first of them")
-                .effect("this year's program reads only three corners of each, and shows holes or stops")
+                .effect("this year's program reads only three vertices of each, and shows holes or stops")
                 .help("split them into triangles: `f 1 2 3 4` becomes `f 1 2 3` and `f 1 3 4`");
         Finding::from(diagnostic)
     };
@@ -277,7 +277,7 @@ pub(super) fn full_ambient(scout: &SceneProbe) -> Vec<Finding> {
     let diagnostic =
         Diagnostic::warning(format!("the ambient light is {}, which leaves no range for other light", vector(ambient)))
             .effect("shadows and shading are washed out: surfaces have their full colour without any light")
-            .help(format!("0.1 to 0.3 is usual: `{word} 0.2 0.2 0.2`"));
+            .help(format!("0.1 to 0.3 is usual: try `{word} 0.2 0.2 0.2`"));
     let diagnostic = match super::colors::background_span(scout).and_then(|block| scout.value(block, &[word])) {
         Some(value) => diagnostic.at(value).fix(value, "0.2 0.2 0.2"),
         None => diagnostic,
@@ -297,7 +297,7 @@ pub(super) fn plane_normal(scout: &SceneProbe) -> Vec<Finding> {
             return None;
         }
         let unit = vector(plane.normal / length);
-        let diagnostic = Diagnostic::warning(format!("the normal of this plane has the length {}", number(length)))
+        let diagnostic = Diagnostic::warning(format!("the normal of this plane has a length of {}", number(length)))
             .effect(match plane.offset == 0.0 {
                 true => format!("this year's program uses it as written: light is multiplied by {}", number(length)),
                 false => format!(
@@ -308,9 +308,9 @@ pub(super) fn plane_normal(scout: &SceneProbe) -> Vec<Finding> {
             })
             .help(match counts {
                 true => {
-                    format!("give it the length 1: `normal {unit}`; light is multiplied by {} here", number(length))
+                    format!("normalise it: `normal {unit}`; light is multiplied by {} here", number(length))
                 }
-                false => format!("give it the length 1: `normal {unit}`"),
+                false => format!("normalise it: `normal {unit}`"),
             });
         // The plane stays where it is.
         let offset = number(plane.offset / length);

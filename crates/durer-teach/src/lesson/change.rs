@@ -67,6 +67,6 @@ impl Change {
             _ => format!(": {lighter} lighter, {darker} darker"),
         };
         let what = stage.object_at((x, y));
-        format!("{share} of the pixels change{ways}. Pixel {x},{y} changes most, by {by} of 255: {what}.")
+        format!("{share} of the pixels change{ways}. Pixel {x},{y} changes the most, by {by} of 255: {what}.")
     }
 }

@@ -169,8 +169,9 @@ pub static TOPICS: [Topic; 18] = [
     Topic {
         name: "distance",
         title: "Distance",
-        words: "Each ray is inserted into the equation of each surface, which is solved for t. The least t in \
-                front of the eye is the visible hit. Near is bright here; black is far away, or no hit.",
+        words: "The ray is inserted into the equation of each surface, which is solved for t. The smallest t in \
+                front of the eye is the visible hit. In the picture, bright is near, and black is far away or no \
+                hit.",
         equations: &[
             "sphere:   t² d·d + 2 t d·(o - c) + (o - c)·(o - c) - r² = 0",
             "plane:   t = (offset - n·o) / (n·d)",
@@ -189,8 +190,8 @@ pub static TOPICS: [Topic; 18] = [
     Topic {
         name: "normals",
         title: "Normals",
-        words: "The shading of a surface depends on its orientation: on its normal at the hit point. The picture \
-                shows the three coordinates of the normal as red, green and blue.",
+        words: "The shading of a surface depends on its orientation, given by the normal at the hit point. The \
+                picture shows the three coordinates of the normal as red, green and blue.",
         equations: &[
             "sphere:   N = (p - c) / r",
             "triangle:   N = (b - a) × (c - a) / |(b - a) × (c - a)|",
@@ -208,8 +209,8 @@ pub static TOPICS: [Topic; 18] = [
     Topic {
         name: "flat",
         title: "Flat colour",
-        words: "The picture shows the colour of each hit surface, and the background where nothing is hit. \
-                Without light there is no sense of shape. Textures and patterns are part of a surface's colour.",
+        words: "The picture shows the colour of each hit surface, and the background where nothing is hit. Without \
+                light, shapes are hard to recognise. Textures and patterns are part of a surface's colour.",
         equations: &["L = k_d"],
         places: &[
             at("crates/durer-render/src/world/shading.rs", "fn diffuse_color"),
@@ -268,11 +269,11 @@ pub static TOPICS: [Topic; 18] = [
     },
     Topic {
         name: "epsilon",
-        title: "Shadow acne, and the epsilon against it",
-        words: "A hit point is rounded, and lies slightly above or below its surface. A shadow ray that starts \
+        title: "Shadow acne and epsilon",
+        words: "A hit point is rounded, so it is slightly above or below its surface. A shadow ray that starts \
                 below hits the surface itself, and the point becomes dark: these specks are called acne. The \
-                course counts hits from a small ε on. Here a ray starts off the surface instead, as far away as \
-                the error of the point may be; in a year's dialect, the ε of that year applies.",
+                course's programs ignore hits closer than a small ε. Here, a ray starts off the surface instead, at \
+                a distance that bounds the error of the point; in the dialect of a year, the ε of that year applies.",
         equations: &[
             "the course:   t > ε",
             "here:   o' = p + 2 |N|·δ N,   |p - true point| ≤ δ in each coordinate, t > 0",
@@ -289,8 +290,8 @@ pub static TOPICS: [Topic; 18] = [
     Topic {
         name: "reflection",
         title: "Reflection",
-        words: "At a mirror, light arrives along the mirrored ray. Its radiance is computed like that of a \
-                camera ray, so the function calls itself. Each level shows mirrors in mirrors once more, up to \
+        words: "At a mirror, light arrives along the mirrored ray. Its radiance is computed like that of a camera \
+                ray, so the function calls itself. Each level adds another reflection of mirrors in mirrors, up to \
                 the maximum depth.",
         equations: &["L += k_r L(p, R),   R = d - 2 (d·N) N"],
         places: &[
@@ -311,9 +312,9 @@ pub static TOPICS: [Topic; 18] = [
     Topic {
         name: "refraction",
         title: "Refraction",
-        words: "Light that enters glass is refracted towards the normal, by Snell's law, and away from it where \
-                it leaves. Beyond the critical angle the root has no solution: all light is reflected (total \
-                reflection), and until the next step such places stay dark.",
+        words: "Light that enters glass is refracted towards the normal, by Snell's law, and away from it where it \
+                leaves. Beyond the critical angle the root has no solution: all light is reflected (total internal \
+                reflection). These places stay dark until the next step.",
         equations: &["t = η (d - (d·N) N) - √(1 - η² (1 - (d·N)²)) N,   η = n_1 / n_2", "L += k_t L(p, t)"],
         places: &[
             at("crates/durer-render/src/integrator/whitted/secondary.rs", "fn refract"),
@@ -325,8 +326,8 @@ pub static TOPICS: [Topic; 18] = [
     Topic {
         name: "fresnel",
         title: "Fresnel's law",
-        words: "Glass reflects too: little at normal incidence, everything towards its silhouette. Schlick's \
-                formula approximates Fresnel's; the rest of the light is transmitted.",
+        words: "Glass also reflects light: little at normal incidence, and all of it towards the silhouette. \
+                Schlick's formula approximates Fresnel's; the rest of the light is transmitted.",
         equations: &[
             "F = F_0 + (1 - F_0) (1 - cos θ)⁵,   F_0 = ((n_1 - n_2) / (n_1 + n_2))²",
             "L += F k_r L(p, R) + (1 - F) k_t L(p, t)",
@@ -355,9 +356,9 @@ pub static TOPICS: [Topic; 18] = [
     Topic {
         name: "supersampling",
         title: "Supersampling",
-        words: "One ray per pixel samples only the center of the pixel: edges become stairs, and distant \
-                patterns break up. Many rays, weighted by a filter, turn a pixel into the mean of its \
-                surroundings. Depth of field appears only now, because the rays of a lens start all over it.",
+        words: "One ray per pixel samples only the center of the pixel: edges are jagged, and distant patterns \
+                break up. Many rays, weighted by a filter, turn a pixel into the mean of its surroundings. Depth of \
+                field appears only in this step, because the rays of a lens start from points all over it.",
         equations: &["pixel = Σ w(x_i, y_i) L(x_i, y_i) / Σ w(x_i, y_i)"],
         places: &[
             at("crates/durer-scene/src/sampler.rs", "fn pixel_position"),
@@ -366,15 +367,15 @@ pub static TOPICS: [Topic; 18] = [
             at("crates/durer-render/src/film/film.rs", "fn resolve"),
         ],
         shots: &[color("one ray per pixel", FRESNEL), color("many rays per pixel", SAMPLED)],
-        lacking: "its picture does not change with more rays",
+        lacking: "the picture does not change with more rays",
     },
     Topic {
         name: "soft-shadows",
         title: "Soft shadows",
-        words: "A light has an extent, and a point that sees only a part of it is in the penumbra. So each \
-                shadow ray goes to another random point of the light; the mean over many rays is the light of \
-                the visible part (Cook, Porter and Carpenter, 1984). Before this step all rays go to its center, \
-                and shadows have hard edges.",
+        words: "A light has an extent, and a point from which only a part of it is visible is in the penumbra. So \
+                each shadow ray is traced to another random point on the light; the mean over many rays is the \
+                light from the visible part (Cook, Porter and Carpenter, 1984). Before this step, all rays are \
+                traced to the center of the light, and shadows have hard edges.",
         equations: &["L = ∫ f V(p, q) L_e cos θ cos θ_q / |p - q|² dq", "one sample:   f V L_e cos θ / p_l(ω)"],
         places: &[
             at("crates/durer-render/src/integrator/path/direct.rs", "fn add_direct"),
@@ -392,8 +393,8 @@ pub static TOPICS: [Topic; 18] = [
         title: "One more bounce",
         words: "A lit surface acts as a light in turn. The light that a surface scatters arrives from all \
                 directions, and the radiance from each of them is the same problem again (Kajiya, 1986). One \
-                direction is sampled at random, as the surface scatters, and followed. Colours bleed from wall \
-                to wall, and no shadow is completely black.",
+                direction is sampled at random according to the scattering of the surface, and a ray is traced in \
+                this direction. Colours bleed from wall to wall, and no shadow is completely black.",
         equations: &["L_o = L_e + ∫ f L_i cos θ dω", "one sample:   L_e + f L_i cos θ / p_b(ω)"],
         places: &[
             at("crates/durer-render/src/integrator/path/mod.rs", "fn bounce"),
@@ -413,9 +414,9 @@ pub static TOPICS: [Topic; 18] = [
         title: "Two ways to find a light",
         words: "A path can find a light by sampling a point on it, or by sampling a direction from the BSDF. The \
                 first works well for small lights and rough surfaces, the second for large lights and smooth \
-                surfaces. Each alone has the right mean, but much noise where it works badly. Weighted by how \
-                often each finds that light, their sum works well for both: multiple importance sampling (Veach, \
-                1997).",
+                surfaces. Each on its own has the correct mean, but is noisy where it works badly. If the two are \
+                weighted by how often each finds that light, their sum works well for both: multiple importance \
+                sampling (Veach, 1997).",
         equations: &[
             "light sampling:   f V L_e cos θ / p_l(ω)",
             "BSDF sampling:   f L_e cos θ / p_b(ω)",
@@ -437,9 +438,9 @@ pub static TOPICS: [Topic; 18] = [
         name: "caustic",
         title: "Caustics",
         words: "Mirrors and glass focus light on other objects. A path from the eye finds the light through the \
-                glass only by chance: bright specks, or no light at all. Photons travel in the opposite \
-                direction, from the light through the glass, and are stored where they land; their density there \
-                is the light (Jensen, 1996; Hachisuka and Jensen, 2009).",
+                glass only by chance, which leads to bright specks, or no light at all. Photons travel in the \
+                opposite direction, from the light through the glass, and are stored where they land; their density \
+                there gives the amount of light (Jensen, 1996; Hachisuka and Jensen, 2009).",
         equations: &[
             "L = Σ f Φ_i k(|p - p_i| / r) / r²,   k(x) = 2 (1 - x²) / π",
             "each sample searches a smaller radius:   r_(i+1)² = r_i² (i + 2/3) / (i + 1)",
@@ -455,9 +456,9 @@ pub static TOPICS: [Topic; 18] = [
     Topic {
         name: "spectrum",
         title: "A spectrum",
-        words: "Glass refracts blue light more than red. A path with several wavelengths follows the refraction \
-                of one of them and keeps only that one; the observer converts each wavelength to a colour. \
-                Before this step the glass has one index for all wavelengths.",
+        words: "Glass refracts blue light more than red. A path with several wavelengths follows the refraction of \
+                one of them and keeps only that one; each wavelength is then converted to a colour. Before this \
+                step, the glass has one index for all wavelengths.",
         equations: &["n(λ) = A + B / λ²", "Abbe's number:   V = (n_d - 1) / (n_F - n_C)"],
         places: &[
             at("crates/durer-scene/src/material/principled.rs", "fn ior_at"),

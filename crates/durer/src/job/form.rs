@@ -99,7 +99,7 @@ numbers!(u32: "a whole number", u64: "a whole number", f32: "a number", String: 
 impl OptionValue for (u32, u32) {
     fn parse(text: &str) -> Result<Self, String> {
         let parsed = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-        match parsed.ok_or("expected WIDTHxHEIGHT, as in 640x480")? {
+        match parsed.ok_or("expected WIDTHxHEIGHT, for example 640x480")? {
             (0, _) | (_, 0) => Err("width and height must be at least 1".into()),
             size => Ok(size),
         }

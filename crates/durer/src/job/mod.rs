@@ -88,7 +88,8 @@ macro_rules! options {
 }
 
 options! {
-    /// Options of a picture. What is not given follows from the scene: see [`RenderJob::resolve`].
+    /// Options of a picture. Options that are not set follow from the scene: see
+    /// [`RenderJob::resolve`].
     ///
     /// ```
     /// use durer::job::RenderJob;
@@ -99,52 +100,57 @@ options! {
     /// assert!(job.set("samples", "0").is_err());
     /// ```
     RenderJob {
-        /// Size in pixels [default: 512x512; with --dialect, that year's]
+        /// Size in pixels [default: 512x512; with --dialect, that dialect's own default]
         size: (u32, u32) = "size", OptionForm::Value("WIDTHxHEIGHT");
-        /// Depths at the two ends of the grey scale [default: the range in the picture]
+        /// Depths mapped to the two ends of the grey scale [default: the range of depths in the
+        /// picture]
         depth_range: [f32; 2] = "depth-range", OptionForm::Two("MIN", "MAX");
-        /// Luminance or illuminance of the first and the last false colour [default: 0 and the 98th
-        /// percentile of the picture]
+        /// Luminance or illuminance mapped to the first and last false colours [default: 0 and the
+        /// 98th percentile of the picture]
         light_range: [f32; 2] = "light-range", OptionForm::Two("LOW", "HIGH");
-        /// Logarithmic false colours; --light-range must begin above 0
+        /// Use a logarithmic scale for false colours; --light-range must start above 0
         light_log: bool = "light-log", OptionForm::Flag;
-        /// Maximum depth of reflected and transmitted rays; for paths, maximum scattering events
-        /// after the first hit [default: 8; 16 for paths; with --dialect, that year's]
+        /// Maximum depth of reflected and transmitted rays; with path and photons, maximum number
+        /// of scattering events after the first hit [default: 8; 16 with path and photons; with
+        /// --dialect, that dialect's own default]
         bounces: u32 = "bounces", OptionForm::Whole(0, Settings::MAX_BOUNCES);
         /// Cast shadows [default: on; with --dialect, off]
         shadows: bool = "shadows", OptionForm::Switch;
-        /// Shade the back of surfaces too [default: on; with --dialect, off]
+        /// Also shade surfaces that are seen from behind [default: on; with --dialect, off]
         shade_back: bool = "shade-back", OptionForm::Switch;
         /// Let transparent objects cast coloured shadows
         transparent_shadows: bool = "transparent-shadows", OptionForm::Flag;
-        /// Omit reflected rays
+        /// Do not trace reflected rays
         no_reflection: bool = "no-reflection", OptionForm::Flag;
-        /// Omit transmitted rays
+        /// Do not trace transmitted rays
         no_refraction: bool = "no-refraction", OptionForm::Flag;
-        /// Minimum throughput of a ray [default: 1/256; with --dialect, 0]
+        /// Minimum throughput of a ray; rays below it are not traced [default: 1/256; with
+        /// --dialect, 0]
         min_throughput: f32 = "min-throughput",
             OptionForm::Number("SHARE", |x| x.is_finite() && x >= 0.0, "expected a number, 0 or more");
-        /// Samples per pixel; 1 samples the centre [default: 16; 64 with a lens, a pinhole or
-        /// random integrators; 1 with --dialect; unlimited with --time-limit; 4096 with
-        /// --noise-threshold]
+        /// Samples per pixel; a value of 1 samples the pixel centre [default: 16; 64 with a lens, a
+        /// pinhole or a stochastic integrator; 1 with --dialect; unlimited with --time-limit; 4096
+        /// with --noise-threshold]
         samples: u32 = "samples", OptionForm::Whole(1, Job::MAX_SAMPLES);
-        /// Sampler; all but sobol are the course's, with its filters
+        /// Sampler; random, uniform and jittered come from the course and only support its filters:
+        /// box, tent and gaussian
         sampler: String = "sampler", OptionForm::Words(|| Sampler::NAMES.map(|row| row.0).to_vec());
         /// Reconstruction filter [default: blackman-harris; none for the course's samplers]
         filter: String = "filter", OptionForm::Words(|| Filter::NAMES.map(|row| row.0).to_vec());
         /// Radius of the filter in pixels; for the course's Gaussian, the standard deviation
         filter_radius: f32 = "filter-radius", OptionForm::Value("PIXELS");
-        /// Jittered 3x3 subpixels, as in 2012
+        /// Render 3x3 jittered subpixels, as the 2012 program does
         jitter: bool = "jitter", OptionForm::Flag;
-        /// Blur with five taps, as in 2012
+        /// Apply a five-tap blur, as the 2012 program does
         blur: bool = "blur", OptionForm::Flag;
-        /// Stop sampling a pixel when its estimated display error is below this; 0.01 is 1 % of the
-        /// range from black to white
+        /// Stop sampling a pixel when its estimated error in display values falls below this; 0.01
+        /// is 1 % of the range from black to white
         noise_threshold: f32 = "noise-threshold",
             OptionForm::Number("ERROR", |x| x.is_finite() && x > 0.0, "expected a number above 0");
-        /// Distribute --samples per pixel by noise, measured with the first quarter of them
+        /// Take more samples in noisy pixels and fewer in others: a quarter of --samples measures
+        /// the noise, and the rest are distributed accordingly
         adaptive: bool = "adaptive", OptionForm::Flag;
-        /// Seed of the random numbers
+        /// Seed of the random number generator
         seed: u64 = "seed", OptionForm::Value("SEED");
     }
 }

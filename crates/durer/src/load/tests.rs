@@ -62,8 +62,8 @@ fn file_outside_is_refused_at_the_line_that_names_it() {
     assert_eq!(
         found,
         [
-            "scene/scene.txt:5:25 error: the mesh cannot be read: `../outside.obj` lies outside the scene's folder (a scene \
-          may only name files in and below its own folder, unless `--allow-outside` is given)"
+            "scene/scene.txt:5:25 error: the mesh cannot be read: `../outside.obj` is outside the scene's folder (a scene \
+          can only use files in or below its own folder, unless `--allow-outside` is given)"
         ]
     );
     let (world, found) = made(&root, &LoadOptions { allow_outside: true, ..Default::default() });
@@ -78,10 +78,8 @@ fn missing_mesh_is_reported_once_with_a_similar_name() {
     let found = findings(&(mesh("tir.obj") + "\n").repeat(100));
     assert_eq!(
         found,
-        [
-            "scene/scene.txt:5:25 error: the mesh cannot be read: there is no file `tir.obj` (did you mean `tri.obj`? Looked \
-          for scene/tir.obj)"
-        ]
+        ["scene/scene.txt:5:25 error: the mesh cannot be read: the file `tir.obj` does not exist (did you \
+          mean `tri.obj`? Looked for scene/tir.obj)"]
     );
     // Thousands of them take little time.
     let many: String = (0..20_000).map(|i| mesh(&format!("{i}.obj"))).collect();
@@ -125,7 +123,7 @@ fn missing_lights_materials_and_objects_are_reported() {
         (
             text(LIGHT, &format!("Group {{\n{} }}", ball.repeat(100))),
             vec![
-                "scene/scene.txt:5:1 warning: this object has no material and is drawn in plain grey; 99 other objects have none either (write `MaterialIndex 0` before it)",
+                "scene/scene.txt:5:1 warning: this object has no material and is rendered in plain grey; 99 other objects have none either (write `MaterialIndex 0` before it)",
             ],
         ),
         (

@@ -26,7 +26,7 @@ impl Memory {
     ///
     /// A sentence, for any other text.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let wrong = || "expected a size, as in 8G, 512M or 80%".to_string();
+        let wrong = || "expected a size or percentage, for example 8G, 512M or 80%".to_string();
         if let Some(percent) = text.strip_suffix('%') {
             let percent = percent.trim().parse().ok().filter(|p: &f64| *p > 0.0 && *p <= 100.0).ok_or_else(wrong)?;
             return Ok(Memory::Percent(percent));

@@ -11,7 +11,7 @@
 //! options.set("samples", "64").unwrap();
 //! options.set("accel", "grid").unwrap();
 //! let error = options.set("size", "64").unwrap_err();
-//! assert_eq!(error, "--size cannot be 64: expected WIDTHxHEIGHT, as in 640x480");
+//! assert_eq!(error, "--size cannot be 64: expected WIDTHxHEIGHT, for example 640x480");
 //! ```
 
 pub mod memory;

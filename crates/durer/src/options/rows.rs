@@ -35,13 +35,15 @@ pub(super) const READING: &[Row] = &[
         "dialect",
         OptionForm::Words(|| Dialect::ALL.map(Dialect::name).to_vec()),
         |to, text| Ok(to.load.dialect = Dialect::from_name(text)),
-        "Dialect of the scene, with all quirks of that year's program [default: detected, without quirks]",
+        "Dialect of the scene, with all quirks of the official program for that year [default: detected, without \
+         quirks]",
     ),
     row(
         "compat",
         OptionForm::Value("NAME"),
         |to, text| text.split(',').try_for_each(|name| Ok(to.load.compat.push(compat(name)?))),
-        "Enable a quirk of an old program, or disable it with `no-` before its name (see `durer dialects`)",
+        "Enable a quirk of an official program, or disable it with the prefix `no-`; `durer dialects` lists all \
+         quirks",
     ),
     row(
         "strict",
@@ -53,20 +55,20 @@ pub(super) const READING: &[Row] = &[
         "allow-outside",
         OptionForm::Flag,
         |to, text| Ok(to.load.allow_outside = flag(text)?),
-        "Let the scene read files outside its own folder",
+        "Allow the scene to read files outside its own folder",
     ),
     row(
         "assets",
         OptionForm::Value("FOLDER"),
         |to, text| Ok(to.load.assets.push(text.into())),
-        "Folder to search for missing meshes and pictures; may be given several times",
+        "Folder to search for missing meshes and textures; can be given several times",
     ),
     row(
         "memory",
         OptionForm::Value("SIZE"),
         |to, text| Ok(to.memory = Memory::parse(text)?),
-        "Memory limit of scene and picture: bytes as in 512M or 8G, or a percentage of what the machine, its control \
-         groups and `ulimit -v` leave [default: 80%]",
+        "Memory limit for the scene and the picture: a size such as 512M or 8G, or a percentage of the memory of \
+         the machine or control group [default: 80%]",
     ),
     row(
         "accel",
@@ -79,13 +81,13 @@ pub(super) const READING: &[Row] = &[
             };
             Ok(())
         },
-        "Acceleration structure of the objects [default: bvh]",
+        "Acceleration structure for the objects [default: bvh]",
     ),
     row(
         "grid",
         OptionForm::Value("XxYxZ"),
         |to, text| Ok(to.load.accel = AccelKind::Grid(Some(grid_cells(text)?))),
-        "Cells of the grid along each axis; implies the grid [default: chosen by the number of objects]",
+        "Number of grid cells along each axis; implies --accel grid [default: based on the number of objects]",
     ),
     row(
         "up",
@@ -104,31 +106,32 @@ pub(super) const READING: &[Row] = &[
         "view",
         OptionForm::Words(|| VIEWS.map(|row| row.0).to_vec()),
         |to, text| Ok(to.load.staging.view = VIEWS.iter().find(|row| row.0 == text).map(|row| row.1)),
-        "View of a model without a camera; overrides the model's own camera [default: three-quarter]",
+        "View to render a model from; overrides the model's own camera [default: three-quarter if the model has no \
+         camera]",
     ),
     row(
         "studio",
         OptionForm::Words(|| STUDIOS.map(|row| row.0).to_vec()),
         |to, text| Ok(to.load.staging.studio = STUDIOS.iter().find(|row| row.0 == text).map(|row| row.1)),
-        "Lights of a model without lights; overrides the model's own lights [default: soft]",
+        "Lights to render a model with; overrides the model's own lights [default: soft if the model has no lights]",
     ),
     row(
         "environment",
         OptionForm::Value("FILE"),
         |to, text| Ok(to.load.staging.environment = Some(text.into())),
-        "Environment map (.hdr, .exr) that lights the model; overrides its own sky and the studio",
+        "Environment map (.hdr, .exr) that lights the model; overrides the model's own sky and the studio lights",
     ),
     row(
         "view-file",
         OptionForm::Value("FILE"),
         |to, text| Ok(to.load.staging.view_file = Some(text.into())),
-        "Radiance view file (.vf); its last view is the camera",
+        "Radiance view file (.vf); the last view in it is used as the camera",
     ),
     row(
         "camera",
         OptionForm::Value("NAME"),
         |to, text| Ok(to.load.staging.camera = Some(text.into())),
-        "Name or number of the model's camera [default: the first]",
+        "Name or number of the model's camera to render from [default: the first]",
     ),
     row(
         "variant",
@@ -140,7 +143,7 @@ pub(super) const READING: &[Row] = &[
         "fit",
         OptionForm::Flag,
         |to, text| Ok(to.load.staging.fit = flag(text)?),
-        "Move the model's own camera along its direction until the whole model is visible",
+        "Move the model's own camera along its view direction until the entire model is visible",
     ),
     row(
         "turned",
@@ -152,7 +155,7 @@ pub(super) const READING: &[Row] = &[
         "at",
         OptionForm::Number("SECONDS", |x| x.is_finite() && x >= 0.0, "expected seconds, 0 or more"),
         |to, text| Ok(to.load.staging.at = text.parse().ok()),
-        "Time of the model's animation in seconds [default: the pose without animation]",
+        "Time in the model's animation, in seconds [default: the pose without animation]",
     ),
 ];
 
@@ -162,7 +165,7 @@ pub(super) const VIEW: &[Row] = &[
         "crop",
         OptionForm::Value("LEFT,TOP,WIDTHxHEIGHT"),
         |to, text| Ok(to.view.crop = Some(crop(text)?)),
-        "Render only this part of the picture, in pixels",
+        "Render only this rectangle of the picture, in pixels",
     ),
     row(
         "show",
@@ -176,7 +179,7 @@ pub(super) const VIEW: &[Row] = &[
             to.view.show = text.split(',').map(String::from).collect();
             Ok(())
         },
-        "Pictures to write, joined by commas [default: color]",
+        "Comma-separated list of pictures to write [default: color]",
     ),
 ];
 
@@ -186,22 +189,23 @@ pub(super) const WORK: &[Row] = &[
         "threads",
         OptionForm::Whole(1, 1024),
         |to, text| Ok(to.threads = text.parse().ok()),
-        "Threads that build and render [default: one per processor]",
+        "Number of threads for building and rendering [default: one per processor]",
     ),
     row(
         "tile",
         OptionForm::Whole(8, 4096),
         |to, text| Ok(to.tile = text.parse().ok()),
-        "Width and height of a tile in pixels, in steps of 8 [default: chosen by the picture's size]",
+        "Tile width and height in pixels, a multiple of 8 [default: based on the picture's size]",
     ),
     row(
         "time-limit",
         OptionForm::Value("TIME"),
         |to, text| {
-            let time = humantime::parse_duration(text).map_err(|_| "expected a time, as in 30s, 10m or 1h30m")?;
+            let time = humantime::parse_duration(text).map_err(|_| "expected a time, for example 30s, 10m or 1h30m")?;
             Ok(to.time_limit = Some(time))
         },
-        "Stop after this time, as in 30s, 10m or 1h30m, once every pixel has a sample",
+        "Stop after this much time (for example 30s, 10m or 1h30m), but not before every pixel has at least one \
+         sample",
     ),
     row(
         "shard",
@@ -212,7 +216,7 @@ pub(super) const WORK: &[Row] = &[
             to.shard.by = by;
             Ok(())
         },
-        "Render only one of several parts, for `durer merge`",
+        "Render only one of several parts, to be merged by `durer merge`",
     ),
     row(
         "shard-by",
@@ -283,7 +287,7 @@ pub fn crop(text: &str) -> Result<(u32, u32, u32, u32), String> {
     };
     numbers()
         .filter(|crop| crop.2 > 0 && crop.3 > 0)
-        .ok_or_else(|| "expected LEFT,TOP,WIDTHxHEIGHT, as in 10,20,64x48".into())
+        .ok_or_else(|| "expected LEFT,TOP,WIDTHxHEIGHT, for example 10,20,64x48".into())
 }
 
 /// Reads the number of cells of a grid along each axis, as in `10x10x10`.
@@ -294,5 +298,5 @@ pub fn crop(text: &str) -> Result<(u32, u32, u32, u32), String> {
 pub fn grid_cells(text: &str) -> Result<[u32; 3], String> {
     let numbers: Option<Vec<u32>> = text.split(['x', 'X']).map(|n| n.parse().ok()).collect();
     let cells: Option<[u32; 3]> = numbers.and_then(|n| n.try_into().ok());
-    cells.filter(|c| !c.contains(&0)).ok_or_else(|| "expected XxYxZ, as in 10x10x10".into())
+    cells.filter(|c| !c.contains(&0)).ok_or_else(|| "expected XxYxZ, for example 10x10x10".into())
 }

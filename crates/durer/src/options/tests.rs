@@ -28,10 +28,10 @@ fn invalid_values_are_refused_with_the_expected_form() {
     for (name, text, error) in [
         ("threads", "0", "--threads cannot be 0: expected a number from 1 to 1024"),
         ("accel", "tree", "--accel cannot be tree: expected one of bvh, grid, none"),
-        ("crop", "1,2", "--crop cannot be 1,2: expected LEFT,TOP,WIDTHxHEIGHT, as in 10,20,64x48"),
-        ("crop", "1,2,0x4", "--crop cannot be 1,2,0x4: expected LEFT,TOP,WIDTHxHEIGHT, as in 10,20,64x48"),
+        ("crop", "1,2", "--crop cannot be 1,2: expected LEFT,TOP,WIDTHxHEIGHT, for example 10,20,64x48"),
+        ("crop", "1,2,0x4", "--crop cannot be 1,2,0x4: expected LEFT,TOP,WIDTHxHEIGHT, for example 10,20,64x48"),
         ("at", "-1", "--at cannot be -1: expected seconds, 0 or more"),
-        ("memory", "8X", "--memory cannot be 8X: expected a size, as in 8G, 512M or 80%"),
+        ("memory", "8X", "--memory cannot be 8X: expected a size or percentage, for example 8G, 512M or 80%"),
         ("sample", "3", "unknown option `sample`; did you mean `samples`?"),
     ] {
         assert_eq!(set(name, text).unwrap_err(), error);

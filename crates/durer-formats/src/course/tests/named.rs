@@ -123,7 +123,7 @@ fn included_file_replaces_its_include() {
         ("Group { include open.txt }", "open.txt:1:7 error this block is not closed in its file"),
         ("Group { include close.txt }", "close.txt:1:34 error this `}` has no matching `{` in its file"),
         ("Group { include wrong.txt }", "wrong.txt:2:23 error "),
-        ("Group { include missing.txt }", "s.txt:2:17 error there is no file `missing.txt`"),
+        ("Group { include missing.txt }", "s.txt:2:17 error the file `missing.txt` does not exist"),
         ("Group { include ../s.txt }", "s.txt:2:17 error "),
         ("Group { include utf16.txt }", "utf16.txt:1:1 error this file is UTF-16"),
     ] {

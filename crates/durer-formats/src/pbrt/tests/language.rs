@@ -93,7 +93,7 @@ fn errors_have_place_and_suggestion() {
         ),
         (
             "WorldBegin Shape \"plymesh\" \"string filename\" \"none.ply\"",
-            "error the mesh cannot be read: there is no file `none.ply`",
+            "error the mesh cannot be read: the file `none.ply` does not exist",
         ),
         (
             "WorldBegin Shape \"plymesh\" \"string filename\" \"../../../../../../etc/passwd\"",
@@ -105,7 +105,7 @@ fn errors_have_place_and_suggestion() {
         ),
         (
             "WorldBegin Material \"conductor\" \"spectrum eta\" \"metal-Ag-eto\"",
-            "error pbrt has no spectrum of that name, and there is no file `metal-Ag-eto` (did you mean `metal-Ag-eta`?)",
+            "error pbrt has no spectrum of that name, and the file `metal-Ag-eto` does not exist (did you mean `metal-Ag-eta`?)",
         ),
     ] {
         let camera = if text.starts_with("WorldBegin") { "" } else { "Camera \"perspective\" " };
@@ -169,8 +169,8 @@ fn included_files_are_read_and_errors_name_their_file() {
         ("circle.pbrt", "round.pbrt:2:10 error `circle.pbrt` includes itself"),
         ("scene.pbrt", "error `scene.pbrt` includes itself"),
         ("open.pbrt", "open.pbrt:1:1 error this is not closed"),
-        ("bda.pbrt", "scene.pbrt:1:43 error there is no file `bda.pbrt` (did you mean `bad.pbrt`?)"),
-        ("../a.pbrt", "error there is no file"),
+        ("bda.pbrt", "scene.pbrt:1:43 error the file `bda.pbrt` does not exist (did you mean `bad.pbrt`?)"),
+        ("../a.pbrt", "error the file"),
     ] {
         let (scene, told) = read_in(folder.path(), &format!("{head} Include \"{name}\""));
         assert!(scene.is_none() && told.iter().any(|told| told.contains(wanted)), "{name}: {told:#?}"); // prose: keep

@@ -204,10 +204,13 @@ fn errors_and_warnings_of_pbrt_v3() {
         ("Material \"conductor\"", "error unknown material `conductor` in pbrt-v3 (this material is of pbrt-v4"),
         ("Material \"mix\" \"string namedmaterial1\" \"a\"", "error no material `a` is defined before this"),
         ("Material \"mix\"", "error a mix needs `\"string namedmaterial1\"`"),
-        ("LightSource \"infinite\" \"string mapname\" \"no.exr\"", "error there is no file `no.exr`"),
+        ("LightSource \"infinite\" \"string mapname\" \"no.exr\"", "error the file `no.exr` does not exist"),
         ("LightSource \"projection\" \"float fov\" 180", "error a field of view must be more than 0 and less than 180"),
         ("Texture \"t\" \"colour\" \"constant\"", "error textures are `float` or `spectrum`, not `colour`"),
-        ("Material \"matte\" \"spectrum Kd\" \"no.spd\"", "error cannot read the spectrum: there is no file `no.spd`"),
+        (
+            "Material \"matte\" \"spectrum Kd\" \"no.spd\"",
+            "error cannot read the spectrum: the file `no.spd` does not exist",
+        ),
         ("Shape \"curve\"", "error a curve needs points"),
         ("Shape \"curve\" \"point P\" [ 0 0 0 1 0 0 ]", "error 2 points do not make a curve of degree 3"),
         (

@@ -143,7 +143,7 @@ fn commands_run_in_the_folder_of_the_file_of_xform() {
                 let scene = scene.unwrap_or_else(|| panic!("{command}: {told:?}")); // prose: keep
                 assert_eq!((scene.root.unwrap().objects.len(), told.len()), (count, 0), "{command}: {told:?}"); // prose: keep
             }
-            Err(name) => assert!(told[0].contains(&format!("there is no file `{name}`")), "{command}: {told:?}"), // prose: keep
+            Err(name) => assert!(told[0].contains(&format!("the file `{name}` does not exist")), "{command}: {told:?}"), // prose: keep
         }
     }
 }

@@ -21,7 +21,8 @@ pub fn cause(reference: &View, at_edges: &[Sample]) -> Option<String> {
     if !moved(right) && !moved(down) && is_half(stretch_x) && is_half(stretch_y) && stretch_x * stretch_y > 0.0 {
         let whose = if stretch_x < 0.0 { "its" } else { "the reference's" };
         return Some(format!(
-            "{whose} rays go to i / (n - 1) of the picture's width and height, not through the middle of pixel i, (i + 0.5) / n"
+            "{whose} rays pass through i / (n - 1) of the picture's width and height instead of the centre of pixel \
+             i, (i + 0.5) / n"
         ));
     }
     // Other stretches come from a different camera; the pictures cannot show why.
@@ -33,7 +34,7 @@ pub fn cause(reference: &View, at_edges: &[Sample]) -> Option<String> {
     };
     let ways: Vec<String> =
         [way(right, "to the left", "to the right"), way(down, "up", "down")].into_iter().flatten().collect();
-    let half = "rays that do not go through the middle of pixels";
+    let half = "rays do not pass through the pixel centres";
     (!ways.is_empty()).then(|| format!("it is shifted by about {}: {half}", ways.join(" and ")))
 }
 

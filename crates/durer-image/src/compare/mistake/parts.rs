@@ -28,8 +28,8 @@ pub fn blank(reference: &View, test: &View) -> Option<Finding> {
         if color == Vec3::ZERO { "black everywhere".into() } else { format!("of one colour, ({r}, {g}, {b})") }
     };
     let words = match (one_color(reference), one_color(test)) {
-        (false, true) => format!("it is {}, the reference is not", what(test.pixels[0])),
-        (true, false) => format!("the reference is {}, it is not", what(reference.pixels[0])),
+        (false, true) => format!("it is {}, but the reference is not", what(test.pixels[0])),
+        (true, false) => format!("the reference is {}, but it is not", what(reference.pixels[0])),
         _ => return None,
     };
     Some(Finding { kind: "blank", words, explained: 1.0 })
@@ -64,8 +64,8 @@ fn cut_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     // A black pixel may have any cause; single missing components do not.
     let some = |s: &&&Sample| cut(s) != s.reference && s.test != Vec3::ZERO;
     let explained = 1.0 - rest / difference(samples);
-    let words =
-        "components of its normals that should be positive are 0: negative ones are cut off (take absolute values)";
+    let words = "components of its normals that should be positive are 0: negative values are clamped (take absolute values \
+         instead)";
     (unit.iter().filter(some).count() * 20 > unit.len()).then(|| Finding {
         kind: "normals-cut-off",
         words: words.into(),
@@ -85,7 +85,7 @@ fn long_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     let unit_difference: f64 = unit.iter().map(|s| f64::from((s.test - s.reference).length_squared())).sum();
     let rest: f64 = unit.iter().map(rest).sum();
     let explained = (unit_difference - rest) / difference(samples);
-    let words = "its normals have the right directions but not the length 1: they are not normalised";
+    let words = "its normals have the right directions but not unit length: they are not normalised";
     (20 * wrong > unit.len()).then(|| Finding { kind: "normals-not-normalised", words: words.into(), explained })
 }
 
@@ -102,8 +102,8 @@ fn saturated(reference: &View, _: &View, samples: &[Sample]) -> Option<Finding> 
             }
         }
     }
-    let words = "it differs only where channels of the reference are full (255): values beyond 1 wrap around there \
-                 instead of being cut off";
+    let words = "it differs only where channels of the reference are saturated (255): values above 1 wrap around \
+                 instead of being clamped";
     // A value that wraps around may become anything, including black.
     let wrapped = |s: &&Sample| (0..3).any(|c| s.reference[c] >= 0.998 && s.test[c] < 0.5);
     let some = samples.iter().filter(wrapped).count();
@@ -145,12 +145,13 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     });
     let is_even = sum.abs() < 0.6 * all;
     let cause = if others < SMOOTHER * own {
-        is_even.then(|| "the reference is smoothed there, it is not (samples without effect, no filter)".into())
+        is_even
+            .then(|| "the reference is antialiased there, but it is not (samples without effect, or no filter)".into())
     } else if own < SMOOTHER * others {
-        is_even.then(|| "it is smoothed there, the reference is not (more samples, a filter)".into())
+        is_even.then(|| "it is antialiased there, but the reference is not (more samples, or a filter)".into())
     } else {
         let elsewhere =
-            || is_even.then(|| "samples lie at other places in the pixels, or are averaged otherwise".into());
+            || is_even.then(|| "samples have other positions in the pixels, or are averaged differently".into());
         flow::cause(reference, &at_edges).or_else(elsewhere)
     }?;
     let words = format!("it differs only at edges ({:.1} % of the picture): {cause}", 100.0 * share);
@@ -212,12 +213,16 @@ fn speckles(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding
     let share = seen.len() as f64 / samples.len() as f64;
     let (up, down): (Vec<Sample>, Vec<Sample>) = seen.iter().copied().copied().partition(brighter);
     let (kind, words, part) = if down.len() > up.len() {
-        ("dark-speckles", "dark speckles: shadow acne, rays that hit the surface which they leave (the epsilon)", down)
+        (
+            "dark-speckles",
+            "dark speckles: shadow acne, from rays that hit the surface they start on (the epsilon)",
+            down,
+        )
     } else {
-        ("bright-speckles", "bright speckles: noise, or rays that miss what they should hit", up)
+        ("bright-speckles", "bright speckles: noise, or rays that miss objects they should hit", up)
     };
     let explained = difference(&part) / difference(samples);
-    let words = format!("{:.1} % of it are {words}", 100.0 * share);
+    let words = format!("{:.1} % of it is {words}", 100.0 * share);
     (2 * alone > seen.len() && share < 0.5).then_some(Finding { kind, words, explained })
 }
 
@@ -226,7 +231,8 @@ fn noise(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     let seen: Vec<&Sample> = samples.iter().filter(seen).collect();
     let alone: usize = seen.iter().map(|s| lonely(reference, test, s)).sum();
     let explained = difference(&seen.iter().copied().copied().collect::<Vec<_>>()) / difference(samples);
-    let words = "it differs from pixel to pixel without a pattern: noise, from few samples or other random numbers";
+    let words = "it differs from pixel to pixel without a pattern: noise, from too few samples or other random \
+                 numbers";
     // Moved edges of a fine pattern look like noise, but noise also occurs away from edges.
     let smooth = seen.iter().filter(|s| !at_edge(reference, s)).count();
     (alone > 5 * seen.len() && 10 * seen.len() > samples.len() && 2 * smooth > seen.len()).then(|| Finding {
@@ -259,13 +265,13 @@ fn shaded(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
         false => ("darker-parts", "darker"),
     };
     // Shadows, lights, highlights, and missing rays all look like this.
-    let cause = "why cannot be told from the pictures; with `--scene` the usual mistakes are tried";
-    let by = if fits && kind != "black-parts" { format!(" by the factor {factor:.3}") } else { String::new() };
+    let cause = "the pictures alone do not show the cause; pass `--scene` to try common mistakes";
+    let by = if fits && kind != "black-parts" { format!(" by a factor of {factor:.3}") } else { String::new() };
     let share = part.len() as f64 / samples.len() as f64;
     // A difference nearly everywhere that follows no rule is not a part.
     if share > 0.75 && !fits {
         return None;
     }
-    let words = format!("{:.1} % of it are {how}{by}, the rest is equal: {cause}", 100.0 * share);
+    let words = format!("{:.1} % of it is {how}{by}, and the rest is equal: {cause}", 100.0 * share);
     Some(Finding { kind, words, explained })
 }

@@ -58,7 +58,7 @@ fn places_of_pixels() {
     finds("turned", "degrees clockwise", &scene, &move |x, y| scene(y, last - x));
     finds("turned", "counter-clockwise", &scene, &move |x, y| scene(last - y, x));
     finds("transposed", "columns and rows", &scene, &|x, y| scene(y, x));
-    finds("transposed", "backwards", &scene, &move |x, y| scene(last - y, last - x));
+    finds("transposed", "reversed", &scene, &move |x, y| scene(last - y, last - x));
     finds("shifted", "by 1 pixel down", &scene, &|x, y| scene(x, y.saturating_sub(1)));
     finds("shifted", "by 3 pixels to the left and 2 pixels down", &scene, &move |x, y| {
         scene((x + 3).min(last), y.saturating_sub(2))
@@ -69,14 +69,14 @@ fn places_of_pixels() {
 #[test]
 fn brightness_and_colour() {
     finds("factor", "factor 0.5", &scene, &|x, y| scene(x, y) * 0.5);
-    finds("factor", "brighter by the factor 1.39", &scene, &|x, y| scene(x, y) * 1.4);
+    finds("factor", "brighter by a factor of 1.39", &scene, &|x, y| scene(x, y) * 1.4);
     let half = |v: f32| linear_to_srgb(0.5 * srgb_to_linear(v));
-    finds("factor", "light is darker by the factor 0.5", &scene, &move |x, y| scene(x, y).map(half));
+    finds("factor", "light is darker by a factor of 0.5", &scene, &move |x, y| scene(x, y).map(half));
     finds("factor", "0.5", &scene, &|x, y| scene(x, y) * Vec3::new(0.5, 1.0, 1.0));
     finds("added", "/255) everywhere", &scene, &|x, y| scene(x, y) + 0.1);
     finds("range", "times", &scene, &|x, y| scene(x, y) * 0.5 + 0.3);
-    finds("range", "exchanged", &scene, &|x, y| 0.8 - scene(x, y) * 0.7);
-    finds("inverted", "black for white", &scene, &|x, y| 1.0 - scene(x, y));
+    finds("range", "swapped", &scene, &|x, y| 0.8 - scene(x, y) * 0.7);
+    finds("inverted", "black and white", &scene, &|x, y| 1.0 - scene(x, y));
     finds("inverted", "green (y) is inverted", &scene, &|x, y| {
         let color = scene(x, y);
         Vec3::new(color.x, 1.0 - color.y, color.z)
@@ -89,9 +89,9 @@ fn brightness_and_colour() {
         let [r, g, b] = scene(x, y).to_array();
         Vec3::new(g, b, r)
     });
-    finds("grey", "no colours", &scene, &|x, y| Vec3::splat(scene(x, y).dot(Vec3::new(0.299, 0.587, 0.114))));
-    finds("gamma-once-more", "once more", &scene, &move |x, y| scene(x, y).map(linear_to_srgb));
-    finds("gamma-once-less", "once less", &scene, &move |x, y| scene(x, y).map(srgb_to_linear));
+    finds("grey", "greyscale", &scene, &|x, y| Vec3::splat(scene(x, y).dot(Vec3::new(0.299, 0.587, 0.114))));
+    finds("gamma-once-more", "once too often", &scene, &move |x, y| scene(x, y).map(linear_to_srgb));
+    finds("gamma-once-less", "missing once", &scene, &move |x, y| scene(x, y).map(srgb_to_linear));
     finds("gamma", "power of 0.6", &scene, &|x, y| scene(x, y).map(|v| fp::pow(v, 0.65)));
     let background = scene(0, 0);
     finds("recoloured", "(26, 13, 51)", &scene, &move |x, y| {
@@ -111,7 +111,7 @@ fn depth_mapped_the_other_way() {
 
 #[test]
 fn normals_gone_wrong() {
-    finds("normals-not-normalised", "length 1", &normals, &|x, y| normals(x, y) * (0.6 + 0.004 * x as f32));
+    finds("normals-not-normalised", "unit length", &normals, &|x, y| normals(x, y) * (0.6 + 0.004 * x as f32));
     finds("normals-cut-off", "absolute", &normals, &|x, y| {
         let normal = normals(x, y);
         Vec3::new(if x < 50 { 0.0 } else { normal.x }, if y < 45 { 0.0 } else { normal.y }, normal.z)
@@ -152,16 +152,16 @@ fn samples_at_other_places() {
     };
     let middle = move |x: usize, y: usize| disc(x as f32 + 0.5, y as f32 + 0.5);
     let border = |i: usize| i as f32 * SIDE as f32 / (SIDE as f32 - 1.0);
-    finds("edges", "its rays go to i / (n - 1)", &middle, &move |x, y| disc(border(x), border(y)));
-    finds("edges", "the reference's rays go to i / (n - 1)", &move |x, y| disc(border(x), border(y)), &middle);
+    finds("edges", "its rays pass through i / (n - 1)", &middle, &move |x, y| disc(border(x), border(y)));
+    finds("edges", "the reference's rays pass through i / (n - 1)", &move |x, y| disc(border(x), border(y)), &middle);
     finds("edges", "pixels to the right", &middle, &move |x, y| disc(x as f32, y as f32 + 0.5));
     let smooth = move |x: usize, y: usize| {
         let samples =
             (0..16).map(|i| disc(x as f32 + 0.125 + (i % 4) as f32 / 4.0, y as f32 + 0.125 + (i / 4) as f32 / 4.0));
         samples.sum::<Vec3>() / 16.0
     };
-    finds("edges", "the reference is smoothed", &smooth, &middle);
-    finds("edges", "it is smoothed", &middle, &smooth);
+    finds("edges", "the reference is antialiased", &smooth, &middle);
+    finds("edges", "it is antialiased", &middle, &smooth);
 }
 
 #[test]

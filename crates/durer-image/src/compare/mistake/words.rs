@@ -9,11 +9,11 @@ pub fn of(rule: &Rule) -> String {
         Rule::Turned(turn) => match (turn.exchange, turn.columns_back, turn.rows_back) {
             (false, true, false) => "it is mirrored left to right",
             (false, false, true) => "it is upside down, mirrored top to bottom",
-            (false, ..) => "it is turned by 180 degrees",
-            (true, true, false) => "it is turned by 90 degrees clockwise",
-            (true, false, true) => "it is turned by 90 degrees counter-clockwise",
-            (true, false, false) => "its columns and rows are exchanged",
-            (true, true, true) => "its columns and rows are exchanged, and both run backwards",
+            (false, ..) => "it is rotated by 180 degrees",
+            (true, true, false) => "it is rotated by 90 degrees clockwise",
+            (true, false, true) => "it is rotated by 90 degrees counter-clockwise",
+            (true, false, false) => "its columns and rows are swapped",
+            (true, true, true) => "its columns and rows are swapped, and both are reversed",
         }
         .into(),
         Rule::Shifted(dx, dy) => {
@@ -26,35 +26,38 @@ pub fn of(rule: &Rule) -> String {
                 [way(dx, "to the left", "to the right"), way(dy, "up", "down")].into_iter().flatten().collect();
             format!("it is shifted by {}", ways.join(" and "))
         }
-        Rule::Channels([2, 1, 0]) => "red and blue are exchanged (BGR for RGB)".into(),
-        Rule::Channels([0, 2, 1]) => "green and blue are exchanged".into(),
-        Rule::Channels([1, 0, 2]) => "red and green are exchanged".into(),
+        Rule::Channels([2, 1, 0]) => "red and blue are swapped (BGR instead of RGB)".into(),
+        Rule::Channels([0, 2, 1]) => "green and blue are swapped".into(),
+        Rule::Channels([1, 0, 2]) => "red and green are swapped".into(),
         Rule::Channels(order) => {
             let [r, g, b] = order.map(|channel| ["red", "green", "blue"][channel]);
-            format!("its red, green and blue are the reference's {r}, {g} and {b}")
+            format!("its red, green and blue channels are the reference's {r}, {g} and {b}")
         }
-        Rule::Grey => "it has the brightness of the reference but no colours".into(),
+        Rule::Grey => "it is a greyscale version of the reference".into(),
         Rule::Inverted([true, true, true]) => {
-            "it is inverted: black for white (a depth mapped the other way, normals of the opposite direction)".into()
+            "it is inverted: black and white are swapped (a reversed depth range, or negated normals)".into()
         }
         Rule::Inverted(which) => {
             let names = ["red (x)", "green (y)", "blue (z)"];
             let names: Vec<&str> = (0..3).filter(|&c| which[c]).map(|c| names[c]).collect();
-            format!("{} inverted: an axis that points the other way", joined(&names))
+            format!("{} inverted: an axis points in the opposite direction", joined(&names))
         }
         Rule::ThingsInverted => {
-            "it is inverted where the reference is not black (a depth mapped the other way: near for far)".into()
+            "it is inverted where the reference is not black (a reversed depth range: near and far are swapped)".into()
         }
-        Rule::CurveOnceMore => "the curve of sRGB (gamma) is applied once more: its values are too light".into(),
-        Rule::CurveOnceLess => "the curve of sRGB (gamma) is applied once less: its values are too dark".into(),
-        Rule::Power(exponent) => format!("its values are the reference's to the power of {exponent:.2}: another gamma"),
-        Rule::Factor(factor) => format!("it is {} by the factor {factor:.3}", brightness(factor > 1.0)),
+        Rule::CurveOnceMore => "the sRGB curve (gamma) is applied once too often: its values are too bright".into(),
+        Rule::CurveOnceLess => "the sRGB curve (gamma) is missing once: its values are too dark".into(),
+        Rule::Power(exponent) => format!(
+            "its values are the reference's to the power of {exponent:.2}: a different \
+                                          gamma"
+        ),
+        Rule::Factor(factor) => format!("it is {} by a factor of {factor:.3}", brightness(factor > 1.0)),
         Rule::LightFactor(factor) => {
-            format!("its light is {} by the factor {factor:.3} (before the curve of sRGB)", brightness(factor > 1.0))
+            format!("its light is {} by a factor of {factor:.3} (before the sRGB curve)", brightness(factor > 1.0))
         }
         Rule::Factors(factors) => {
             let [r, g, b] = factors.to_array();
-            format!("its red, green and blue are the reference's times {r:.3}, {g:.3} and {b:.3}")
+            format!("its red, green and blue channels are the reference's times {r:.3}, {g:.3} and {b:.3}")
         }
         Rule::Added(amount) => {
             let size = amount.abs();
@@ -62,21 +65,23 @@ pub fn of(rule: &Rule) -> String {
         }
         Rule::AddedEach(amounts) => {
             let [r, g, b] = amounts.to_array();
-            format!("{r:+.4}, {g:+.4} and {b:+.4} are added to its red, green and blue")
+            format!("{r:+.4}, {g:+.4} and {b:+.4} are added to its red, green and blue channels")
         }
         Rule::Affine(factor, amount) if factor < 0.0 => format!(
-            "its values are {factor:.3} times the reference's {amount:+.3}: black and white are exchanged, and the range is another"
+            "its values are {factor:.3} times the reference's {amount:+.3}: black and white are swapped, and the \
+             range differs"
         ),
         Rule::Affine(factor, amount) => {
             format!(
-                "its values are {factor:.3} times the reference's {amount:+.3}: another range is mapped to black and white"
+                "its values are {factor:.3} times the reference's {amount:+.3}: a different range is mapped to \
+                 black and white"
             )
         }
         Rule::Recolored(from, to) => {
             let ([r, g, b], [r2, g2, b2]) = (bytes(from), bytes(to));
-            format!("the colour ({r}, {g}, {b}) of the reference, its background perhaps, is ({r2}, {g2}, {b2}) here")
+            format!("the reference's colour ({r}, {g}, {b}), perhaps its background, is ({r2}, {g2}, {b2}) here")
         }
-        Rule::Blurred => "it is blurred: averaged over neighbouring pixels".into(),
+        Rule::Blurred => "it is blurred: each pixel is averaged with its neighbours".into(),
     }
 }
 

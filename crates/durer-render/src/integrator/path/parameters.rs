@@ -11,14 +11,15 @@ use std::sync::Arc;
 described! {
     /// path tracing: global illumination
     Transport ["path" in set::DURER] {
-        /// Maximum brightness of a contribution (one light seen from one path vertex) after more
-        /// than one scattering; removes fireflies, and some light with them [default: no limit]
+        /// Maximum brightness of one contribution (one light seen from one path vertex) after more
+        /// than one scattering event; suppresses fireflies but also removes some light [default: no
+        /// limit]
         clamp: Option<f32> = None, optional, Rule::Positive, ["clamp" in set::DURER];
-        /// Colour mode: rgb, or spectral (four wavelengths per path, for coloured light on coloured
-        /// surfaces and dispersion) [default: rgb]
+        /// Colour mode: rgb, or spectral, which traces four wavelengths per path, for dispersion
+        /// and for coloured light on coloured surfaces [default: rgb]
         color: ColorMode = ColorMode::Rgb, optional, Rule::Any, ["color" in set::DURER];
-        /// Sampling of direct light: both (lights and BSDFs, combined by MIS), lights or bsdf (one
-        /// alone: the same mean and more noise, for comparison) [default: both]
+        /// Sampling of direct light: both (light and BSDF sampling, combined by MIS), or for
+        /// comparison only lights or only bsdf (same mean, more noise) [default: both]
         direct: Direct = Direct::Both, optional, Rule::Any, ["direct" in set::DURER];
     }
 }
@@ -80,8 +81,8 @@ impl Describe for PhotonParameters {
             required: false,
             rule: Rule::Positive,
             spellings: &[("photon-radius", set::DURER)],
-            doc: "Search radius for photons in the first sample, in world units; it shrinks in later samples [default: a \
-                  twentieth of the radius of the smallest object that reflects or refracts]",
+            doc: "Search radius for photons in the first sample, in world units; it shrinks with later samples \
+                  [default: one twentieth of the radius of the smallest object that reflects or refracts]",
         },
     ];
 

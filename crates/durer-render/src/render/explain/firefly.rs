@@ -36,7 +36,8 @@ impl Explanation {
         let mut said = vec![format!("sample {number} alone is {:.0} % of the pixel", 100.0 * share)];
         said.extend(self.samples[number].light.iter().flat_map(cause));
         said.push(
-            "more samples make such pixels rarer, not darker; `--clamp 10` limits them, and removes some light".into(),
+            "more samples make such pixels rarer, not darker; `--clamp 10` limits them but also removes some light"
+                .into(),
         );
         said
     }
@@ -70,8 +71,8 @@ fn cause(light: &Tree) -> Vec<String> {
             let what = if matches!(node.what, TermKind::Sky) { "the sky" } else { "an emitter" };
             said.push(told(what));
             said.push(
-                "light sampling cannot see through mirrors and glass, so such light is found rarely and counts much: \
-                 `--integrator photons` finds it from the light's side"
+                "light sampling cannot follow mirrors and glass, so such light is found rarely and then has a large \
+                 weight: `--integrator photons` traces it from the light instead"
                     .into(),
             );
         }
@@ -89,7 +90,11 @@ fn cause(light: &Tree) -> Vec<String> {
                 number(*mis)
             ));
             if *choice < 0.1 {
-                said.push("the light tree estimated it as dim: its light is divided by that probability".into());
+                said.push(
+                    "the light tree estimated this light as dim, and the sample is divided by that low \
+                           probability"
+                        .into(),
+                );
             }
         }
         _ => {}

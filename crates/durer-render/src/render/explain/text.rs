@@ -210,7 +210,7 @@ impl Explanation {
             let of = match &self.mean {
                 Mean::Own => String::new(),
                 Mean::Around => ", including samples of neighbouring pixels".into(),
-                Mean::SubPixels(_) => ": sub-pixels, blurred and averaged as in 2012".into(),
+                Mean::SubPixels(_) => ": subpixels, blurred and averaged as the 2012 program does".into(),
             };
             say(1, format!("weighted mean of {all} samples{of}; the weights sum to {}", sum as f32));
         }
@@ -234,7 +234,7 @@ impl Explanation {
         match (0..all).filter(|&i| nothing(i)).count() {
             0 => {}
             left => {
-                let text = format!("{left} more samples have no weight here");
+                let text = format!("{left} more samples have no weight in this pixel");
                 lines.push(TextLine::plain(1, text));
             }
         }
@@ -341,7 +341,10 @@ fn node_lines(
             format!("caustics: {value}")
         }
         TermKind::OneWavelength { nm } => {
-            format!("dispersion: only {} nm continues, and counts for all four: {factor} · {value}", number(*nm))
+            format!(
+                "dispersion: only {} nm continues and stands for all four wavelengths: {factor} · {value}",
+                number(*nm)
+            )
         }
         TermKind::Sky if node.throughput.is_some() => format!("background: {value}"),
         TermKind::Sky => "background".into(),
@@ -495,7 +498,7 @@ fn struck_lines(hit: &HitRecord, names: &Names) -> Vec<String> {
 }
 
 fn shadow_line(shadow: &Shadow, names: &Names) -> String {
-    let Some((object, t)) = shadow.blocker else { return "the shadow ray is free".into() };
+    let Some((object, t)) = shadow.blocker else { return "the shadow ray is unoccluded".into() };
     let (object, t) = (names.short_object(object), number(t));
     match shadow.share {
         share if share.is(0.0) => format!("occluded by {object}, {t} away"),

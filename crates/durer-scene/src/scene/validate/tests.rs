@@ -108,7 +108,7 @@ fn material_indices_must_exist_except_for_objects_of_files() {
     assert_eq!(messages(&with_materials(vec![plain(), board(0, 0)])), [""; 0]);
     assert_eq!(
         messages(&with_materials(vec![plain(), board(0, 1)])),
-        ["a solid material must be made of earlier materials"]
+        ["a solid material can only use materials that precede it"]
     );
 }
 

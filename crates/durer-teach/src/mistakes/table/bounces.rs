@@ -186,7 +186,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "fresnel-constant",
         "fresnel",
-        "glass reflects the same share at every angle: R0 instead of Schlick's formula",
+        "glass reflects the same fraction at every angle: R0 instead of Schlick's formula",
         "R = R0 + (1 - R0) (1 - c)^5",
         "R = R0",
         |v, _| v.habits.bounces.fresnel = Fresnel::Constant,
@@ -194,7 +194,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "no-fresnel",
         "fresnel",
-        "Fresnel's law is missing: mirrored and transmitted light of glass both count in full",
+        "Fresnel's law is missing: the mirrored and transmitted light of glass are both added in full",
         "R * trace(R) + (1 - R) * trace(T)",
         "trace(R) + trace(T)",
         |v, _| v.habits.bounces.fresnel = Fresnel::None,
@@ -202,7 +202,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "fresnel-share",
         "fresnel",
-        "glass reflects the same share of the light at every angle: {}",
+        "glass reflects the same fraction of light at every angle: {}",
         "R = R0 + (1 - R0) (1 - c)^5",
         "R = {}",
         |v, share| v.habits.bounces.fresnel = Fresnel::Share(share),
@@ -344,7 +344,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "index-of-all",
         "refraction",
-        "the index of refraction is {}, whatever the scene says",
+        "the index of refraction is {}, regardless of the scene",
         "the material's index",
         "{}",
         |v, index| {

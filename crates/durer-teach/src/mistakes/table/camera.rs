@@ -20,7 +20,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "one-ray",
         "supersampling",
-        "there is one ray per pixel, but the reference has many",
+        "there is one ray per pixel, but the reference uses many",
         "the mean of many samples",
         "one ray through the center of each pixel",
         |v, _| v.aim.rays = Rays::One,
@@ -28,7 +28,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "many-rays",
         "supersampling",
-        "each pixel is the mean of many rays, but the reference has one",
+        "each pixel is the mean of many rays, but the reference uses one",
         "one ray through the center of each pixel",
         "the mean of many samples",
         |v, _| v.aim.rays = Rays::Sixteen,
@@ -37,7 +37,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "border-pixels",
         "rays",
         "the first and last pixels are centered on the picture's border instead of inside it, or the reverse",
-        "as in that year: (i + 0.5) / n, or i / (n - 1)",
+        "as in that year's program: (i + 0.5) / n, or i / (n - 1)",
         "the other",
         |v, _| v.toggle(Compat::BorderPixels),
     ),
@@ -45,14 +45,14 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "stretch",
         "rays",
         "a non-square picture is stretched instead of cropped, or the reverse",
-        "as in that year: both axes in units of the larger side, or each in its own",
+        "as in that year's program: both axes in units of the larger side, or each in its own",
         "the other",
         |v, _| v.toggle(Compat::Stretch),
     ),
     row(
         "aspect-smaller-side",
         "rays",
-        "in a non-square picture the angle spans the smaller side instead of the larger one",
+        "in a non-square picture, the angle spans the smaller side instead of the larger one",
         "larger side from -1 to 1, the other less",
         "smaller side from -1 to 1, the other more",
         |v, _| v.aim.aspect = Aspect::Smaller,
@@ -122,7 +122,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "up-not-orthogonal",
         "rays",
         "the camera's up is made perpendicular to its direction although it should not be, or the reverse",
-        "as in that year: v = cross(u, w), or `up` as written",
+        "as in that year's program: v = cross(u, w), or `up` as written",
         "the other",
         |v, _| {
             let raw = v.world.camera_rules().up != UpRule::Perpendicular;

@@ -89,7 +89,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "other-model",
         "specular",
         "the highlights use the other model: Phong's (R.L) instead of Blinn's (N.H), or the reverse",
-        "as in that year: max(0, dot(N, norm(L + V))) or max(0, dot(R, L))",
+        "as in that year's program: max(0, dot(N, norm(L + V))) or max(0, dot(R, L))",
         "the other",
         |v, _| v.other_highlights(),
     ),
@@ -140,7 +140,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "highlight-behind",
         "specular",
         "highlights on surfaces that face away from the light are present although that year has none, or the reverse",
-        "as in that year: with or without `if (dot(N, L) > 0)`",
+        "as in that year's program: with or without `if (dot(N, L) > 0)`",
         "the reverse",
         |v, _| {
             v.phongs(|phong| {

@@ -33,8 +33,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "ambient-textured",
         "diffuse",
-        "the ambient light is multiplied by the texture (or noise) instead of the diffuse colour, or the reverse",
-        "as in that year: ambient * texel, or ambient * diffuseColor",
+        "the ambient light is multiplied by the texture (or noise) instead of the diffuse colour, or vice versa",
+        "as in that year's program: ambient * texel, or ambient * diffuseColor",
         "the other one",
         |v, _| v.phongs(|phong| phong.ambient = phong.ambient.xor(Some(phong.diffuse))),
     ),
@@ -221,7 +221,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "falloff-1-over-d",
         "diffuse",
-        "light is divided by its distance, whatever the scene says",
+        "light is divided by its distance, regardless of the scene",
         "I = color / (a0 + a1 d + a2 d^2)",
         "I = color / d",
         |v, _| v.habits.lamps.fading = Fading::Linear,
@@ -229,7 +229,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "falloff-1-over-d2",
         "diffuse",
-        "light is divided by the square of its distance, whatever the scene says",
+        "light is divided by the square of its distance, regardless of the scene",
         "I = color / (a0 + a1 d + a2 d^2)",
         "I = color / (d * d)",
         |v, _| v.habits.lamps.fading = Fading::Square,
@@ -237,7 +237,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "falloff-multiplied",
         "diffuse",
-        "light grows with distance: it is multiplied by the falloff instead of divided",
+        "light increases with distance: it is multiplied by the falloff instead of divided",
         "I = color / (a0 + a1 d + a2 d^2)",
         "I = color * (a0 + a1 d + a2 d^2)",
         |v, _| v.habits.lamps.fading = Fading::Multiplied,
@@ -265,7 +265,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "falloff-reversed",
         "diffuse",
-        "the three factors of the attenuation are in the wrong order",
+        "the three attenuation coefficients are in the wrong order",
         "color / (a0 + a1 d + a2 d^2)",
         "color / (a2 + a1 d + a0 d^2)",
         |v, _| {
@@ -277,7 +277,9 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "attenuation-factors",
         "diffuse",
-        "of the three factors of the attenuation {the linear and the square one are exchanged|the constant one is taken as 1|the square one alone counts|the linear one is left out|the square one is left out|the linear one alone counts}",
+        "of the three attenuation coefficients, {the linear and the quadratic one are swapped|the constant one is \
+         taken as 1|only the quadratic one is used|the linear one is left out|the quadratic one is left out|only \
+         the linear one is used}",
         "I = color / (a0 + a1 d + a2 d^2)",
         "I = color / ({a0 + a2 d + a1 d^2|1 + a1 d + a2 d^2|a2 d^2|a0 + a2 d^2|a0 + a1 d|a1 d})",
         |v, how| {
@@ -358,7 +360,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "cosine-step",
         "diffuse",
-        "the diffuse term is all or nothing: 1 where N.L > 0",
+        "the diffuse term is either 0 or 1: it is 1 where N.L > 0",
         "color += kd * max(0, N.L) * I",
         "if (N.L > 0) color += kd * I",
         |v, _| v.habits.cosine = Cosine::Step,

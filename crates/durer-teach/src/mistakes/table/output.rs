@@ -96,7 +96,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "other-rounding",
         "flat",
         "values are rounded instead of truncated, or the reverse: they differ by 1",
-        "as in that year: (int) (c * 255), or round(c * 255)",
+        "as in that year's program: (int) (c * 255), or round(c * 255)",
         "the other",
         |v, _| v.output = Output::OtherRounding,
     ),
@@ -121,7 +121,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "halved",
         "rays",
-        "the picture has half the resolution, doubled",
+        "the picture is rendered at half the resolution and scaled up",
         "one ray per pixel",
         "one ray per two by two pixels",
         |v, _| {

@@ -10,7 +10,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-added",
         "shadows",
-        "there are shadows, but this picture should have none",
+        "there are shadows, although this picture should have none",
         "(nothing, without -shadows)",
         "if (occluded(p, L, d)) continue",
         |v, _| v.settings.shadows = true,
@@ -34,7 +34,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-later",
         "shadows",
-        "if one light is blocked, all later lights are missing too",
+        "if one light is blocked, all lights after it are missing too",
         "if (occluded) continue",
         "if (occluded) break",
         |v, _| v.habits.shadows.later_too = true,
@@ -51,7 +51,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-weak",
         "shadows",
-        "in its shadow a light still contributes a share of {}",
+        "in its shadow, a light still contributes a fraction of {}",
         "if (occluded) continue",
         "if (occluded) I *= {}",
         |v, left| v.habits.shadows.left = left,
@@ -89,7 +89,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-away",
         "shadows",
-        "shadow rays go away from the light",
+        "shadow rays point away from the light",
         "Ray(p, L)",
         "Ray(p, -L)",
         |v, _| v.habits.shadows.way = ShadowWay::Away,
@@ -97,7 +97,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-along-normal",
         "shadows",
-        "shadow rays go along the normal instead of to the light",
+        "shadow rays follow the normal instead of pointing to the light",
         "Ray(p, L)",
         "Ray(p, N)",
         |v, _| v.habits.shadows.way = ShadowWay::Normal,
@@ -113,7 +113,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-inverted",
         "shadows",
-        "light counts where it is blocked instead of where it arrives",
+        "light is added where it is blocked instead of where it arrives",
         "if (!occluded) color += ...",
         "if (occluded) color += ...",
         |v, _| v.habits.shadows.inverted = true,

@@ -220,7 +220,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "black-backs",
         "diffuse",
         "back faces are black although they should not be, or the reverse",
-        "as in that year",
+        "as in that year's program",
         "the reverse",
         |v, _| v.toggle(Compat::BlackBacks),
     ),
