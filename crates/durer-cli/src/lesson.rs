@@ -33,7 +33,7 @@ use written::{Lesson, PAGE, TEXT};
   durer lesson scenes/plates.txt -o lesson/ --samples 32
   durer lesson monday.md
 
-If LESSON is a Markdown file, the lesson that it describes is shown in the browser; docs/live.md explains how to write one.
+If SCENE is a Markdown file, the lesson that it describes is shown in the browser; docs/live.md explains how to write one.
 The lesson of a scene is written to FOLDER as a self-contained page, index.html, and as lesson.md with separate picture files. In an
 existing folder, files of an earlier lesson are replaced and other files are kept.
 Pass the same options as to `durer render`: with the whitted integrator, the last step shows the same picture. Without
