@@ -188,7 +188,8 @@ fn foreign_origins_and_wrong_tokens_get_no_socket() {
 /// Opens a small scene and edits it to have another number of balls; returns how many objects it has.
 fn objects(socket: &mut WebSocket<TcpStream>, count: usize) -> Option<u64> {
     let balls: String = (0..count).map(|i| format!("Sphere {{ center {i} 0 0 radius 0.4 }} ")).collect();
-    let text = format!("PerspectiveCamera {{ center 0 0 9 direction 0 0 -1 up 0 1 0 angle 30 }}\nGroup {{ {balls} }}\n");
+    let text =
+        format!("PerspectiveCamera {{ center 0 0 9 direction 0 0 -1 up 0 1 0 angle 30 }}\nGroup {{ {balls} }}\n");
     ask(socket, serde_json::json!({ "kind": "open", "name": "balls.txt", "text": text }));
     hear(socket, "scene")["contents"]["object_count"].as_u64()
 }

@@ -5,8 +5,8 @@ use crate::document::Compiled;
 use crate::export::export;
 use crate::protocol::{PictureHead, Setting};
 use durer::RenderJob;
-use durer::job::View;
 use durer::image::Layer;
+use durer::job::View;
 use durer::render::{Control, Crop, Job, ProgressiveRender, RenderError, Sampling};
 
 /// Milliseconds that a coarse picture may take: while the camera moves, and else.

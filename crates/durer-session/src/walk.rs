@@ -13,7 +13,11 @@ const MAX_RAYS: u32 = 1 << 16;
 const MAX_OBJECTS: usize = 20_000;
 
 /// Returns the camera's rays through the middles of a raster's pixels, row by row.
-pub(crate) fn rays(world: &World, [columns, rows]: [u32; 2], row: Option<u32>) -> Result<Vec<Option<RayAccount>>, String> {
+pub(crate) fn rays(
+    world: &World,
+    [columns, rows]: [u32; 2],
+    row: Option<u32>,
+) -> Result<Vec<Option<RayAccount>>, String> {
     let wanted = row.map_or(0..rows, |row| row..row + 1);
     let is_sound = (1..=MAX_RAYS).contains(&columns) && (1..=MAX_RAYS).contains(&rows) && wanted.end <= rows;
     if !is_sound || u64::from(columns) * wanted.len() as u64 > MAX_RAYS.into() {

@@ -163,7 +163,9 @@ fn denoising_changes_what_is_shown_and_not_the_sums() {
     let mut answers = page.ask(r#"{"kind":"denoise","on":true}"#);
     let (Event::Picture { head }, clean) = answers.remove(0) else { panic!() };
     assert!(head.denoised && head.hash == noisy.0.hash && clean != noisy.1);
-    let rough = |bytes: &[u8]| bytes.chunks(4).zip(bytes[4..].chunks(4)).map(|(a, b)| u32::from(a[0].abs_diff(b[0]))).sum::<u32>();
+    let rough = |bytes: &[u8]| {
+        bytes.chunks(4).zip(bytes[4..].chunks(4)).map(|(a, b)| u32::from(a[0].abs_diff(b[0]))).sum::<u32>()
+    };
     assert!(rough(&clean) < rough(&noisy.1));
     let mut answers = page.ask(r#"{"kind":"denoise","on":false}"#);
     let (Event::Picture { head }, again) = answers.remove(0) else { panic!() };
@@ -210,7 +212,13 @@ fn a_model_has_a_tree_and_materials_that_change_and_becomes_a_text() {
         .iter()
         .enumerate()
         .find_map(|(i, material)| {
-            Some((i, material.fields.iter().find(|field| field.name.to_lowercase().contains("color") && field.values.len() == 3)?))
+            Some((
+                i,
+                material
+                    .fields
+                    .iter()
+                    .find(|field| field.name.to_lowercase().contains("color") && field.values.len() == 3)?,
+            ))
         })
         .unwrap();
     let set = |values: [f32; 3]| json!({ "kind": "material", "number": number, "name": field.name, "values": values });
