@@ -119,13 +119,13 @@ function ObscuraFigure() {
                         from={point}
                         to={to}
                         color={passes ? "var(--ray-camera)" : "var(--ray-shadowed)"}
-                        width={passes ? 2 : 1}
+                        width={passes ? 1.2 : 0.8}
                       />
                       <Dot
                         view={view}
                         at={to}
                         color={passes ? "var(--ray-lit)" : "var(--ray-shadowed)"}
-                        radius={3.5}
+                        radius={2.5}
                       />
                     </g>
                   );
