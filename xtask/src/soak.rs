@@ -37,7 +37,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let (durer, folder) = (crate::build::durer()?, tempfile::tempdir()?);
     let files = files()?;
     ensure!(!files.is_empty(), "there are no scenes");
-    let methods: Vec<Method> = Method::kinds().collect();
+    let methods: Vec<Method> = Method::kinds();
     let (start, time) = (Instant::now(), Duration::from_secs_f64(60.0 * minutes));
     let mut known: HashMap<u64, Option<String>> = HashMap::new();
     let (mut rounds, mut again, mut commands, mut refused) = (0_u64, 0, 0, 0);
@@ -163,7 +163,9 @@ fn command(durer: &Path, path: &Path, options: &[(&str, &str)], folder: &Path) -
     let mut command = Command::new(durer);
     command.arg("render").arg(path).args(["--hash", "--quiet", "--no-checkpoint", "--memory", "1G", "-o"]);
     command.arg(folder.join("picture.pfm"));
-    options.iter().for_each(|(name, value)| drop(command.args([&format!("--{name}"), *value])));
+    for (name, value) in options {
+        command.args([&format!("--{name}"), *value]);
+    }
     let output = command.output()?;
     let said = String::from_utf8_lossy(&output.stdout);
     let hash = said.lines().last().map(str::to_string);

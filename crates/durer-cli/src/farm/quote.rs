@@ -28,7 +28,9 @@ pub fn bash_word(text: &str) -> String {
             word.push(c);
         } else {
             // Bytes, because `\u` depends on the locale.
-            c.encode_utf8(&mut [0; 4]).bytes().for_each(|byte| drop(write!(word, "\\x{byte:02x}")));
+            c.encode_utf8(&mut [0; 4]).bytes().for_each(|byte| {
+                let _ = write!(word, "\\x{byte:02x}");
+            });
         }
     }
     word + "'"

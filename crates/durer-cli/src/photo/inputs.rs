@@ -6,7 +6,7 @@
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
 use durer::format::folder::FolderSource;
-use durer::options::Memory;
+use durer::options::memory::Memory;
 use durer::source::SourceError;
 use durer_photo::format::{inputs, read_by};
 use durer_photo::{Error, Reconstruction};

@@ -1,6 +1,7 @@
 //! Tests on the course's scenes in the folder `DURER_CORPUS`, if they are there.
 
 use super::*;
+use durer_scene::dialect::set;
 use std::path::{Path, PathBuf};
 
 /// Returns every scene of the course with its dialect; empty if the corpus is absent.
