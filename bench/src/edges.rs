@@ -3,7 +3,7 @@
 use crate::Options;
 use crate::embree::{Embree, Quality};
 use crate::peers::{BvhCrate, Obvhs, Parry};
-use crate::rays::{Found, Mesh, cosine};
+use crate::rays::{BenchHit, Mesh, cosine};
 use anyhow::Result;
 use durer::bvh::{BuildQuality, TriangleBvh};
 use durer::math::{Ray, Vec3};
@@ -78,9 +78,9 @@ fn ray(mesh: &Mesh, center: Vec3, radius: f32, aim: usize, i: u32) -> (Ray, bool
 }
 
 /// Returns the number of lost rays for each target, out of `count`.
-fn lost(mesh: &Mesh, place: (Vec3, f32), count: u32, closest: impl Fn(&Ray) -> Found + Sync) -> [usize; 4] {
+fn lost(mesh: &Mesh, place: (Vec3, f32), count: u32, closest: impl Fn(&Ray) -> BenchHit + Sync) -> [usize; 4] {
     [0, 1, 2, 3].map(|aim| {
-        let is_lost = |i: &u32| closest(&ray(mesh, place.0, place.1, aim, *i).0) == Found::NONE;
+        let is_lost = |i: &u32| closest(&ray(mesh, place.0, place.1, aim, *i).0) == BenchHit::NONE;
         (0..count).into_par_iter().filter(is_lost).count()
     })
 }
@@ -98,7 +98,7 @@ pub fn run(options: &Options, count: u32) -> Result<()> {
         println!("\nsphere of radius {radius} at {center}: {}", AIMS.join(", "));
         let show = |name: &str, lost: [usize; 4]| println!("  {name:<22}{:?}", lost);
         let tree = TriangleBvh::build(&mesh.vertices, &mesh.triangles, BuildQuality::Best);
-        let ours = |ray: &Ray| Found::from(tree.closest(ray));
+        let ours = |ray: &Ray| BenchHit::from(tree.closest(ray));
         show("Dürer", lost(&mesh, (center, radius), count, ours));
         let wrong = [0, 1, 2, 3].map(|aim| {
             let is_wrong = |i: &u32| {

@@ -1,6 +1,6 @@
 //! Bindings to Embree 4, loaded at run time. Names and layouts are those of `rtcore.h`.
 
-use crate::rays::{Found, Mesh};
+use crate::rays::{BenchHit, Mesh};
 use anyhow::{Context, Result, bail};
 use durer::math::Ray;
 use glam::DAffine3;
@@ -282,11 +282,11 @@ fn single(ray: &Ray) -> RayHit1 {
 }
 
 impl Scene {
-    pub fn closest(&self, ray: &Ray) -> Found {
+    pub fn closest(&self, ray: &Ray) -> BenchHit {
         let mut query = single(ray);
         // SAFETY: the record matches the header, and is aligned.
         unsafe { (self.embree.functions.rtcIntersect1)(self.scene, &mut query, std::ptr::null()) };
-        if query.geom == NO_GEOMETRY { Found::NONE } else { Found { t: query.tfar, triangle: query.prim } }
+        if query.geom == NO_GEOMETRY { BenchHit::NONE } else { BenchHit { t: query.tfar, triangle: query.prim } }
     }
 
     pub fn occluded(&self, ray: &Ray) -> bool {
@@ -297,7 +297,7 @@ impl Scene {
     }
 
     /// Traces sixteen rays at once, marked as coherent or not.
-    pub fn packets(&self, rays: &[Ray], found: &mut [Found], any: bool, coherent: bool) {
+    pub fn packets(&self, rays: &[Ray], found: &mut [BenchHit], any: bool, coherent: bool) {
         let arguments = Arguments {
             flags: if coherent { COHERENT } else { 0 },
             feature_mask: c_uint::MAX,
@@ -335,9 +335,9 @@ impl Scene {
             for (i, found) in found.iter_mut().enumerate() {
                 let hit = if any { query.ray[8][i] < 0.0 } else { query.geom[i] != NO_GEOMETRY };
                 *found = match (hit, any) {
-                    (false, _) => Found::NONE,
-                    (true, true) => Found { t: 0.0, triangle: 0 },
-                    (true, false) => Found { t: query.ray[8][i], triangle: query.prim[i] },
+                    (false, _) => BenchHit::NONE,
+                    (true, true) => BenchHit { t: 0.0, triangle: 0 },
+                    (true, false) => BenchHit { t: query.ray[8][i], triangle: query.prim[i] },
                 };
             }
         }

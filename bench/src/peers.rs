@@ -1,6 +1,6 @@
 //! Other Rust crates, each used as its manual shows.
 
-use crate::rays::{Found, Mesh};
+use crate::rays::{BenchHit, Mesh};
 use bvh::aabb::{Aabb, Bounded};
 use bvh::bounding_hierarchy::BHShape;
 use durer::math::{Ray, Vec3};
@@ -35,11 +35,11 @@ impl Obvhs {
         obvhs::ray::Ray::new(origin, dir, ray.t_min, ray.t_max)
     }
 
-    pub fn closest(&self, ray: &Ray) -> Found {
+    pub fn closest(&self, ray: &Ray) -> BenchHit {
         let mut hit = obvhs::ray::RayHit::none();
         match self.tree.ray_traverse(Self::ray(ray), &mut hit, |ray, id| self.triangles[id].intersect(ray)) {
-            true => Found { t: hit.t, triangle: self.tree.primitive_indices[hit.primitive_id as usize] },
-            false => Found::NONE,
+            true => BenchHit { t: hit.t, triangle: self.tree.primitive_indices[hit.primitive_id as usize] },
+            false => BenchHit::NONE,
         }
     }
 
@@ -94,20 +94,20 @@ impl BvhCrate {
         query.intersects_triangle(a, b, c).distance.min(query.intersects_triangle(a, c, b).distance)
     }
 
-    pub fn closest(&self, ray: &Ray) -> Found {
+    pub fn closest(&self, ray: &Ray) -> BenchHit {
         // The crate normalises directions.
         let (query, unit) = (Self::ray(ray), ray.dir.length());
-        let mut best = Found { t: ray.t_max * unit, triangle: u32::MAX };
+        let mut best = BenchHit { t: ray.t_max * unit, triangle: u32::MAX };
         for candidate in self.tree.nearest_traverse_iterator(&query, &self.triangles) {
             if query.intersection_slice_for_aabb(&candidate.aabb()).is_some_and(|(near, _)| near > best.t) {
                 break;
             }
             let t = Self::test(&query, &candidate.points);
             if t < best.t && t > ray.t_min {
-                best = Found { t, triangle: candidate.number };
+                best = BenchHit { t, triangle: candidate.number };
             }
         }
-        if best.triangle == u32::MAX { Found::NONE } else { Found { t: best.t / unit, ..best } }
+        if best.triangle == u32::MAX { BenchHit::NONE } else { BenchHit { t: best.t / unit, ..best } }
     }
 
     pub fn occluded(&self, ray: &Ray) -> bool {
@@ -125,18 +125,18 @@ impl Parry {
         Parry(TriMesh::new(vertices, mesh.triangles.clone()).expect("the mesh has triangles"))
     }
 
-    fn cast(&self, ray: &Ray) -> Option<Found> {
+    fn cast(&self, ray: &Ray) -> Option<BenchHit> {
         let vector = |v: Vec3| parry3d::math::Vector::new(v.x, v.y, v.z);
         let query = parry3d::query::Ray::new(vector(ray.origin), vector(ray.dir));
         let hit = self.0.cast_local_ray_and_get_normal(&query, ray.t_max, true)?;
         // Face indices from `count` on are hits from behind.
         let count = self.0.indices().len() as u32;
         let parry3d::shape::FeatureId::Face(face) = hit.feature else { return None };
-        Some(Found { t: hit.time_of_impact, triangle: face % count })
+        Some(BenchHit { t: hit.time_of_impact, triangle: face % count })
     }
 
-    pub fn closest(&self, ray: &Ray) -> Found {
-        self.cast(ray).unwrap_or(Found::NONE)
+    pub fn closest(&self, ray: &Ray) -> BenchHit {
+        self.cast(ray).unwrap_or(BenchHit::NONE)
     }
 
     pub fn occluded(&self, ray: &Ray) -> bool {

@@ -10,19 +10,19 @@ use std::path::Path;
 
 /// A hit, reduced to what is compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Found {
+pub struct BenchHit {
     pub t: f32,
     pub triangle: u32,
 }
 
-impl From<Option<TriangleHit>> for Found {
-    fn from(hit: Option<TriangleHit>) -> Found {
-        hit.map_or(Found::NONE, |TriangleHit { t, triangle, .. }| Found { t, triangle })
+impl From<Option<TriangleHit>> for BenchHit {
+    fn from(hit: Option<TriangleHit>) -> BenchHit {
+        hit.map_or(BenchHit::NONE, |TriangleHit { t, triangle, .. }| BenchHit { t, triangle })
     }
 }
 
-impl Found {
-    pub const NONE: Found = Found { t: f32::INFINITY, triangle: u32::MAX };
+impl BenchHit {
+    pub const NONE: BenchHit = BenchHit { t: f32::INFINITY, triangle: u32::MAX };
 }
 
 pub struct Mesh {
@@ -109,7 +109,7 @@ pub fn cosine(n: Vec3, i: u32, dimension: u32) -> Vec3 {
 
 /// Generates every kind of rays through a mesh, with `side`^2 primary rays; `closest` finds their
 /// hits.
-pub fn cases(mesh: &Mesh, side: u32, closest: impl Fn(&Ray) -> Found) -> Vec<Case> {
+pub fn cases(mesh: &Mesh, side: u32, closest: impl Fn(&Ray) -> BenchHit) -> Vec<Case> {
     let size = mesh.bounds().size().length();
     let first = primary(mesh, side);
     let (mut bounces, mut shadows, mut occlusions) = (Vec::new(), Vec::new(), Vec::new());
@@ -120,7 +120,7 @@ pub fn cases(mesh: &Mesh, side: u32, closest: impl Fn(&Ray) -> Found) -> Vec<Cas
     for (i, ray) in first.iter().enumerate() {
         let i = i as u32;
         let found = closest(ray);
-        if found == Found::NONE {
+        if found == BenchHit::NONE {
             continue;
         }
         let [a, b, c] = mesh.corners(found.triangle);

@@ -3,7 +3,7 @@
 use crate::Options;
 use crate::embree::{Embree, Quality, Scene};
 use crate::peers::{BvhCrate, Obvhs, Parry};
-use crate::rays::{Case, Found, Mesh, cases};
+use crate::rays::{Case, BenchHit, Mesh, cases};
 use anyhow::{Context, Result};
 use durer::bvh::{BuildQuality, Instance, InstanceBvh, InstanceHit, SimdLevel, TraversalStats, TriangleBvh};
 use durer::math::{Affine, Ray, Vec3, fp};
@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// A tracer; one call traces all rays, so that no dispatch happens per ray.
-type Trace<'a> = Box<dyn Fn(&[Ray], &mut [Found]) + Sync + 'a>;
+type Trace<'a> = Box<dyn Fn(&[Ray], &mut [BenchHit]) + Sync + 'a>;
 
 struct Tracer<'a> {
     name: &'static str,
@@ -23,15 +23,15 @@ struct Tracer<'a> {
 }
 
 /// Traces each ray with a function.
-fn each(rays: &[Ray], found: &mut [Found], trace: impl Fn(&Ray) -> Found) {
+fn each(rays: &[Ray], found: &mut [BenchHit], trace: impl Fn(&Ray) -> BenchHit) {
     for (ray, found) in rays.iter().zip(found) {
         *found = trace(ray);
     }
 }
 
-/// Converts an occlusion result to a `Found`.
-fn hit(occluded: bool) -> Found {
-    if occluded { Found { t: 0.0, triangle: 0 } } else { Found::NONE }
+/// Converts an occlusion result to a `BenchHit`.
+fn hit(occluded: bool) -> BenchHit {
+    if occluded { BenchHit { t: 0.0, triangle: 0 } } else { BenchHit::NONE }
 }
 
 macro_rules! single {
@@ -46,18 +46,18 @@ macro_rules! single {
 }
 
 /// Our tree, with the interface of the others.
-struct Ours(TriangleBvh);
+struct OurTree(TriangleBvh);
 
-impl Ours {
+impl OurTree {
     #[inline]
-    fn closest(&self, ray: &Ray) -> Found {
+    fn closest(&self, ray: &Ray) -> BenchHit {
         self.0.closest(ray).into()
     }
     #[inline]
     fn occluded(&self, ray: &Ray) -> bool {
         self.0.occluded(ray)
     }
-    fn batch(&self, rays: &[Ray], found: &mut [Found], any: bool) {
+    fn batch(&self, rays: &[Ray], found: &mut [BenchHit], any: bool) {
         const AT_ONCE: usize = 1024;
         let (mut hits, mut answers) = ([None; AT_ONCE], [false; AT_ONCE]);
         for (rays, found) in rays.chunks(AT_ONCE).zip(found.chunks_mut(AT_ONCE)) {
@@ -73,7 +73,7 @@ impl Ours {
 }
 
 /// Measures the seconds for all rays on `threads` threads.
-fn time(tracer: &Tracer, rays: &[Ray], found: &mut [Found], threads: usize) -> f64 {
+fn time(tracer: &Tracer, rays: &[Ray], found: &mut [BenchHit], threads: usize) -> f64 {
     let clock = Instant::now();
     if threads == 1 {
         // Thread CPU time excludes other processes.
@@ -113,8 +113,8 @@ fn median(values: &mut [f64]) -> f64 {
 }
 
 /// Counts results that differ by more than rounding.
-fn differences(a: &[Found], b: &[Found]) -> usize {
-    let same = |a: &Found, b: &Found| a.t == b.t || (a.t - b.t).abs() <= 1e-3 * a.t.abs();
+fn differences(a: &[BenchHit], b: &[BenchHit]) -> usize {
+    let same = |a: &BenchHit, b: &BenchHit| a.t == b.t || (a.t - b.t).abs() <= 1e-3 * a.t.abs();
     a.iter().zip(b).filter(|(a, b)| !same(a, b)).count()
 }
 
@@ -163,10 +163,10 @@ pub fn arrays(folder: &Path, options: &Options) -> Result<()> {
     let tree = TriangleBvh::try_build(&points("vertices.f32")?, faces.as_chunks().0, options.preset)?;
     let rays: Vec<Ray> =
         points("origins.f32")?.into_iter().zip(points("directions.f32")?).map(|(o, d)| Ray::new(o, d)).collect();
-    let ours = Ours(tree);
-    let trace = |rays: &[Ray], found: &mut [Found]| ours.batch(rays, found, false);
+    let ours = OurTree(tree);
+    let trace = |rays: &[Ray], found: &mut [BenchHit]| ours.batch(rays, found, false);
     let tracer = Tracer { name: "Dürer batch", trace: Box::new(trace) };
-    let mut found = vec![Found::NONE; rays.len()];
+    let mut found = vec![BenchHit::NONE; rays.len()];
     let mut times: Vec<f64> = (0..options.rounds).map(|_| time(&tracer, &rays, &mut found, options.threads)).collect();
     println!("{:.2}", rays.len() as f64 / median(&mut times) / 1e6);
     Ok(())
@@ -174,7 +174,7 @@ pub fn arrays(folder: &Path, options: &Options) -> Result<()> {
 
 fn one_mesh(mesh: &Mesh, options: &Options, embree: Option<&Arc<Embree>>, ratios: &mut Vec<f64>) {
     println!("{}: {} triangles", mesh.name, mesh.triangles.len());
-    let ours = Ours(TriangleBvh::build(&mesh.vertices, &mesh.triangles, options.preset));
+    let ours = OurTree(TriangleBvh::build(&mesh.vertices, &mesh.triangles, options.preset));
     let scenes = embree.map(|embree| builds(mesh, embree, options.rounds.min(5)));
     let peers = options.peers.then(|| (Obvhs::build(mesh), BvhCrate::build(mesh), Parry::build(mesh)));
     for case in cases(mesh, options.side, |ray| ours.closest(ray)) {
@@ -188,7 +188,7 @@ fn one_mesh(mesh: &Mesh, options: &Options, embree: Option<&Arc<Embree>>, ratios
             tracers.push(single!("Embree medium", medium, case.any));
             tracers.push(single!("Embree high", high, case.any));
             let (any, coherent) = (case.any, case.coherent);
-            let packets = move |rays: &[Ray], found: &mut [Found]| high.packets(rays, found, any, coherent);
+            let packets = move |rays: &[Ray], found: &mut [BenchHit]| high.packets(rays, found, any, coherent);
             tracers.push(Tracer { name: "Embree 16-wide", trace: Box::new(packets) });
         }
         if let Some((obvhs, bvh, parry)) = &peers {
@@ -212,7 +212,7 @@ fn instances(mesh: &Mesh, count: u32, options: &Options, embree: Option<&Arc<Emb
     let tree = Arc::new(TriangleBvh::build(&mesh.vertices, &mesh.triangles, options.preset));
     let place = |place: &DAffine3| Instance::new(tree.clone(), Affine::new(*place).expect("places can be inverted"));
     let clock = Instant::now();
-    let ours = Placed(InstanceBvh::new(places.iter().map(place).collect()), mesh.triangles.len() as u32);
+    let ours = OurInstances(InstanceBvh::new(places.iter().map(place).collect()), mesh.triangles.len() as u32);
     let time = clock.elapsed().as_secs_f64();
     let theirs = embree.map(|embree| {
         let object = embree.build(mesh, Quality::High, false).0;
@@ -239,13 +239,13 @@ fn instances(mesh: &Mesh, count: u32, options: &Options, embree: Option<&Arc<Emb
 }
 
 /// Our instances with the interface of the others, and the number of triangles of each.
-struct Placed(InstanceBvh, u32);
+struct OurInstances(InstanceBvh, u32);
 
-impl Placed {
+impl OurInstances {
     #[inline]
-    fn closest(&self, ray: &Ray) -> Found {
-        let found = |hit: InstanceHit| Found { t: hit.t, triangle: hit.instance * self.1 + hit.triangle };
-        self.0.closest(ray).map_or(Found::NONE, found)
+    fn closest(&self, ray: &Ray) -> BenchHit {
+        let found = |hit: InstanceHit| BenchHit { t: hit.t, triangle: hit.instance * self.1 + hit.triangle };
+        self.0.closest(ray).map_or(BenchHit::NONE, found)
     }
     #[inline]
     fn occluded(&self, ray: &Ray) -> bool {
@@ -287,7 +287,7 @@ fn one_case(
     options: &Options,
     ratios: &mut Vec<f64>,
 ) {
-    let mut found: Vec<Vec<Found>> = vec![vec![Found::NONE; case.rays.len()]; tracers.len()];
+    let mut found: Vec<Vec<BenchHit>> = vec![vec![BenchHit::NONE; case.rays.len()]; tracers.len()];
     let mut seconds = vec![Vec::new(); tracers.len()];
     for round in 0..options.rounds {
         for (i, tracer) in tracers.iter().enumerate() {

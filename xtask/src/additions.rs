@@ -78,7 +78,7 @@ const ADDITIONS: &[Addition] = &[
         content: include_str!("additions/hits.rs"),
         words: &[
             (INTEGRATORS, "pub mod media;", "pub mod hits;\n"),
-            (INTEGRATORS, "Path(path::Transport),", "Hits(hits::HitsParameters),\n    "),
+            (INTEGRATORS, "Path(path::PathOptions),", "Hits(hits::HitsParameters),\n    "),
         ],
     },
     Addition {

@@ -59,8 +59,9 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         let value = crate::value(arguments, name);
         value.map(|value| value.parse().with_context(|| format!("{name} needs a number"))).transpose()
     };
-    let asked = arguments.first().filter(|word| !word.starts_with('-'));
-    let kinds: Vec<&Kind> = KINDS.iter().filter(|kind| asked.is_none_or(|asked| asked == kind.name)).collect();
+    let requested = arguments.first().filter(|word| !word.starts_with('-'));
+    let kinds: Vec<&Kind> =
+        KINDS.iter().filter(|kind| requested.is_none_or(|requested| requested == kind.name)).collect();
     if kinds.is_empty() {
         bail!("there is no such attack; these are: {}", KINDS.map(|kind| kind.name).join(", "));
     }
@@ -109,10 +110,10 @@ impl Attack {
 
 /// Returns why a run is not one that ends by itself with a picture or an error.
 fn broken(output: &Output) -> Option<String> {
-    let said = String::from_utf8_lossy(&output.stderr);
-    let last = said.lines().last().unwrap_or_default();
+    let messages = String::from_utf8_lossy(&output.stderr);
+    let last = messages.lines().last().unwrap_or_default();
     match output.status.code() {
-        Some(0..=2) if !said.contains("panicked") => None,
+        Some(0..=2) if !messages.contains("panicked") => None,
         // `timeout` kills with 137.
         Some(137) => Some("no end".into()),
         Some(code) => Some(format!("exit code {code}: {last}")),
@@ -126,9 +127,9 @@ fn templates(attack: &Attack) -> Result<Outcome> {
     let mut command = Command::new(crate::cargo());
     command.args(["test", "--quiet", "--package", "durer-cli", "--lib", "--", "farm::", "--nocapture"]);
     let output = command.env("DURER_ROUNDS", rounds).current_dir(crate::root()?).output()?;
-    let said = String::from_utf8_lossy(&output.stdout).into_owned();
-    let skipped: Vec<&str> = said.lines().filter(|line| line.contains("skipped")).collect();
-    let fallen = if output.status.success() { Vec::new() } else { said.lines().map(String::from).collect() };
+    let messages = String::from_utf8_lossy(&output.stdout).into_owned();
+    let skipped: Vec<&str> = messages.lines().filter(|line| line.contains("skipped")).collect();
+    let fallen = if output.status.success() { Vec::new() } else { messages.lines().map(String::from).collect() };
     Ok(Outcome { tried: attack.count, fallen, note: skipped.iter().map(|line| format!("; {line}")).collect() })
 }
 

@@ -4,7 +4,7 @@ use anyhow::{Context, Result, bail};
 use durer::diag::{Diagnostics, Files};
 use durer::format::{MESH_FORMATS, read_mesh};
 use durer::math::Vec3;
-use durer::scene::Staging;
+use durer::scene::SceneDefaults;
 use durer::shape::MeshData;
 use durer::{LoadOptions, load_text};
 use std::path::{Path, PathBuf};
@@ -69,7 +69,10 @@ fn read(path: &Path, bytes: &Arc<[u8]>) -> Result<usize> {
         let mesh = read_mesh(bytes, 0, &name, &mut diagnostics);
         return Ok(mesh.with_context(|| format!("{diagnostics:?}"))?.triangles.len());
     }
-    let options = LoadOptions { staging: Staging { bare: true, ..Staging::default() }, ..LoadOptions::default() };
+    let options = LoadOptions {
+        scene_defaults: SceneDefaults { bare: true, ..SceneDefaults::default() },
+        ..LoadOptions::default()
+    };
     let loaded = load_text(path, bytes.clone(), &options, &mut files, &mut diagnostics);
     let loaded = loaded.with_context(|| format!("{diagnostics:?}"))?;
     Ok(loaded.scene.assets.meshes.values().map(|mesh| mesh.triangles.len()).sum())
@@ -97,7 +100,10 @@ fn written(folder: &Path, millions: u32) -> Result<Vec<PathBuf>> {
 
 fn as_gltf(mesh: &MeshData) -> Result<Vec<u8>> {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
-    let options = LoadOptions { staging: Staging { bare: true, ..Staging::default() }, ..LoadOptions::default() };
+    let options = LoadOptions {
+        scene_defaults: SceneDefaults { bare: true, ..SceneDefaults::default() },
+        ..LoadOptions::default()
+    };
     let bytes = (MESH_FORMATS[0].write)(mesh).into();
     let loaded = load_text(Path::new("a.ply"), bytes, &options, &mut files, &mut diagnostics);
     let written = loaded.context("it is read")?.write("a.glb", &mut diagnostics);

@@ -6,7 +6,7 @@ use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::Filter;
 use durer::image::compare::{Options, Picture, Scale, compare};
 use durer::image::{Image, Layer, WriteOptions, format_for, read, save};
-use durer::integrator::{Method, PhotonParameters};
+use durer::integrator::{IntegratorKind, PhotonParameters};
 use durer::math::Vec3;
 use durer::render::{Control, Job, PartialRender, Sampling, Shard};
 use durer::{LoadOptions, load};
@@ -117,10 +117,10 @@ fn compared(folder: &Path, samples: u32, keep: Option<&Path>) -> Result<Row> {
         println!("{name}: {}", finding.message);
     }
     let known = BOUNCES.iter().find(|row| row.0 == name).map(|row| row.1);
-    let bounces = known.or(loaded.scene.wishes.bounces).unwrap_or(16);
+    let bounces = known.or(loaded.scene.render_defaults.bounces).unwrap_or(16);
     let photons = PHOTONS.iter().find(|row| row.0 == name);
-    let method = photons.map_or(Method::PATH, |&(_, count, radius)| {
-        Method::Photons(PhotonParameters { count, radius: Some(radius), ..PhotonParameters::default() })
+    let method = photons.map_or(IntegratorKind::PATH, |&(_, count, radius)| {
+        IntegratorKind::Photons(PhotonParameters { count, radius: Some(radius), ..PhotonParameters::default() })
     });
     let usual = Job::default();
     let job = Job {
@@ -128,7 +128,7 @@ fn compared(folder: &Path, samples: u32, keep: Option<&Path>) -> Result<Row> {
         height: whole.height,
         sampling: Sampling::Filtered { samples, filter: Filter::Box { radius: 0.5 } },
         method,
-        settings: durer::integrator::Settings { bounces, ..usual.settings },
+        settings: durer::integrator::WhittedOptions { bounces, ..usual.settings },
         ..usual
     };
     let part = PartialRender::new(&world, &job, Shard::WHOLE)?;

@@ -2,12 +2,12 @@
 
 use anyhow::{Context, Result};
 use durer::diag::{Diagnostics, Files};
-use durer::integrator::Settings;
+use durer::integrator::WhittedOptions;
 use durer::render::explain::check::{SAMPLINGS, check};
 use durer::render::explain::explain;
 use durer::render::{Job, Sampling};
 use durer::world::World;
-use durer::{LoadOptions, Loaded, load};
+use durer::{LoadOptions, LoadedScene, load};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -18,14 +18,14 @@ const TIMED: u32 = 5;
 const SLOWEST: usize = 5;
 
 /// A scene compiled in one dialect.
-struct Opened {
+struct DialectScene {
     name: String,
     world: World,
-    settings: Settings,
+    settings: WhittedOptions,
 }
 
 /// Results of a scene.
-struct Found {
+struct SceneResult {
     name: String,
     differences: Vec<String>,
     pixels: u32,
@@ -49,11 +49,11 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let ways: Vec<(&PathBuf, bool)> = scenes.iter().flat_map(|scene| [(scene, false), (scene, true)]).collect();
     let pool = rayon::ThreadPoolBuilder::new().stack_size(64 << 20).build()?;
     let read = || ways.par_iter().map(|(scene, official)| read(scene, *official, &course)).collect::<Result<Vec<_>>>();
-    let opened: Vec<Opened> = pool.install(read)?.into_iter().flatten().collect();
+    let opened: Vec<DialectScene> = pool.install(read)?.into_iter().flatten().collect();
     let each = pixels.div_ceil((opened.len() * SAMPLINGS.len()).max(1)) as u32;
-    let one = |(i, opened): (usize, &Opened)| opened.explain(each, i as u64);
-    let mut found: Vec<Found> = pool.install(|| opened.par_iter().enumerate().map(one).collect::<Result<_>>())?;
-    for Found { name, differences, .. } in &found {
+    let one = |(i, opened): (usize, &DialectScene)| opened.explain(each, i as u64);
+    let mut found: Vec<SceneResult> = pool.install(|| opened.par_iter().enumerate().map(one).collect::<Result<_>>())?;
+    for SceneResult { name, differences, .. } in &found {
         differences.iter().for_each(|difference| println!("{name}: {difference}"));
     }
     let explained: u32 = found.iter().map(|found| found.pixels).sum();
@@ -62,7 +62,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     println!("{explained} pixels explained with {} samplers: {differ} differ", SAMPLINGS.len());
     found.sort_by_key(|found| std::cmp::Reverse(found.slowest));
     println!("slowest explanations (16 samples a pixel, 512x512):");
-    for Found { name, slowest, .. } in found.iter().take(SLOWEST) {
+    for SceneResult { name, slowest, .. } in found.iter().take(SLOWEST) {
         println!("{:>8.2} ms  {name}", slowest.as_secs_f64() * 1e3);
     }
     Ok(if differ == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
@@ -83,18 +83,18 @@ fn collect(folder: &Path, scenes: &mut Vec<PathBuf>) -> Result<()> {
 }
 
 /// Reads a scene; `None` if the file is not a scene.
-fn read(scene: &Path, official: bool, course: &Path) -> Result<Option<Opened>> {
+fn read(scene: &Path, official: bool, course: &Path) -> Result<Option<DialectScene>> {
     let assets = ["f16", "f04"].map(|year| course.join(year)).into_iter().filter(|folder| folder.is_dir()).collect();
     let options = LoadOptions { course: official, assets, ..LoadOptions::default() };
     let (mut files, mut findings) = (Files::default(), Diagnostics::default());
     let Some(loaded) = load(scene, &options, &mut files, &mut findings)? else { return Ok(None) };
     let world = loaded.compile(&options, &mut files, &mut findings);
     let name = format!("{}{}", scene.display(), if official { ", as its year's program" } else { "" });
-    Ok(world.map(|world| Opened { name, world, settings: settings(&loaded) }))
+    Ok(world.map(|world| DialectScene { name, world, settings: settings(&loaded) }))
 }
 
-impl Opened {
-    fn explain(&self, pixels: u32, seed: u64) -> Result<Found> {
+impl DialectScene {
+    fn explain(&self, pixels: u32, seed: u64) -> Result<SceneResult> {
         let job = Job { width: 24, height: 20, seed, settings: self.settings, ..Job::default() };
         let differences = check(&self.world, &job, pixels, seed)?;
         let sampling = Sampling::Filtered { samples: 16, filter: Default::default() };
@@ -104,13 +104,13 @@ impl Opened {
             explain(&self.world, &job, 60 + 97 * i, 80 + 83 * i).map(|_| start.elapsed())
         });
         let slowest = timed.collect::<Result<Vec<_>, _>>()?.into_iter().max().unwrap_or_default();
-        Ok(Found { name: self.name.clone(), differences, pixels: pixels * SAMPLINGS.len() as u32, slowest })
+        Ok(SceneResult { name: self.name.clone(), differences, pixels: pixels * SAMPLINGS.len() as u32, slowest })
     }
 }
 
 /// Returns a scene's settings, with shadows and at least some levels of secondary rays.
-fn settings(loaded: &Loaded) -> Settings {
-    Settings {
+fn settings(loaded: &LoadedScene) -> WhittedOptions {
+    WhittedOptions {
         bounces: loaded.rules.bounces.max(4),
         shade_back: loaded.rules.shade_back,
         transparent_shadows: loaded.rules.transparent_shadows,

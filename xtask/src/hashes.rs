@@ -100,7 +100,7 @@ enum Kind {
 const OUTPUT: &str = "@";
 
 /// Outcome of a run.
-struct Ended {
+struct RunOutcome {
     /// The exit code; `None` after a signal.
     code: Option<i32>,
     late: bool,
@@ -306,8 +306,8 @@ impl Case {
         if let Kind::Info | Kind::Check = self.kind {
             // Memory sizes depend on internal structures, which may change.
             let lines = out.lines().filter(|line| !line.starts_with("memory "));
-            let said = format!("{code}\n{}\n{errors}", lines.collect::<Vec<_>>().join("\n"));
-            return Ok(vec![line(kind, Digest::of(said.as_bytes()).to_string())]);
+            let messages = format!("{code}\n{}\n{errors}", lines.collect::<Vec<_>>().join("\n"));
+            return Ok(vec![line(kind, Digest::of(messages.as_bytes()).to_string())]);
         }
         let mut lines = vec![line("messages", Digest::of(errors.as_bytes()).to_string())];
         if ended.code != Some(0) {
@@ -371,7 +371,7 @@ fn hashed(folder: &Path, path: &str, found: &mut Vec<(String, String)>) -> Resul
 }
 
 /// Runs a command with its output in files; kills it after the time limit.
-fn ended(command: &mut Command, place: &Path) -> Result<Ended> {
+fn ended(command: &mut Command, place: &Path) -> Result<RunOutcome> {
     let [out, errors] = ["out", "errors"].map(|name| place.join(name));
     let mut child = command.stdin(Stdio::null()).stdout(File::create(&out)?).stderr(File::create(&errors)?).spawn()?;
     let start = Instant::now();
@@ -387,7 +387,7 @@ fn ended(command: &mut Command, place: &Path) -> Result<Ended> {
         }
         thread::sleep(Duration::from_millis(2));
     };
-    Ok(Ended { code: status.code(), late, out: fs::read(out)?, errors: fs::read(errors)? })
+    Ok(RunOutcome { code: status.code(), late, out: fs::read(out)?, errors: fs::read(errors)? })
 }
 
 fn written(lines: &Lines) -> String {
@@ -420,7 +420,7 @@ fn changed_new_and_missing_lines_are_reported() {
     let new = lines("film\ta b.txt\t01\nfilm\tnew.txt\t02\npixels\ta b.txt: depth\t04\n");
     assert_eq!(differences(&old, &old), [""; 0]);
     assert_eq!(lines(&written(&new)), new);
-    let told = ["film\tgone.txt\t02 -> absent", "film\tnew.txt\tabsent -> 02", "pixels\ta b.txt: depth\t03 -> 04"];
-    assert_eq!(differences(&old, &new), told);
+    let outcome = ["film\tgone.txt\t02 -> absent", "film\tnew.txt\tabsent -> 02", "pixels\ta b.txt: depth\t03 -> 04"];
+    assert_eq!(differences(&old, &new), outcome);
     assert_eq!(parsed("film without tabs\n"), None);
 }

@@ -12,9 +12,9 @@ mod course;
 mod explain;
 mod fuzz;
 mod hashes;
-mod lamps;
 mod long;
 mod manual;
+mod many_lights;
 mod page;
 mod peers;
 mod prose;
@@ -140,7 +140,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("long") => long::run(&arguments[1..]),
         Some("fuzz") => fuzz::run(&arguments[1..]),
         Some("validate") => validate::run(&arguments[1..]),
-        Some("lamps") => lamps::run(),
+        Some("lamps") => many_lights::run(),
         Some("peers") => peers::run(&arguments[1..]),
         Some("manual") => manual::run(),
         Some("page") => page::run(&arguments[1..]),

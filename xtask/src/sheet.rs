@@ -4,10 +4,10 @@ use anyhow::{Context, Result, bail};
 use durer::diag::{Diagnostics, Files};
 use durer::film::Filter;
 use durer::image::{Image, Layer, WriteOptions, format_for, read_srgb, save};
-use durer::integrator::Method;
+use durer::integrator::IntegratorKind;
 use durer::math::Vec3;
 use durer::render::{Control, Job, PartialRender, Sampling, Shard};
-use durer::scene::{Staging, View};
+use durer::scene::{SceneDefaults, View};
 use durer::{LoadOptions, load};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -86,8 +86,8 @@ fn screenshot(path: &Path) -> Option<PathBuf> {
 fn rendered(path: &Path, samples: u32, front: bool) -> Result<Image> {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let view = front.then_some(View::Front);
-    let staging = Staging { aspect: Some(1.0), view, ..Staging::default() };
-    let options = LoadOptions { staging, ..LoadOptions::default() };
+    let scene_defaults = SceneDefaults { aspect: Some(1.0), view, ..SceneDefaults::default() };
+    let options = LoadOptions { scene_defaults, ..LoadOptions::default() };
     let complaint = |diagnostics: &Diagnostics| {
         diagnostics.iter().map(|finding| finding.message.clone()).next().unwrap_or_else(|| "no message".into())
     };
@@ -95,7 +95,7 @@ fn rendered(path: &Path, samples: u32, front: bool) -> Result<Image> {
     let loaded = loaded.with_context(|| complaint(&diagnostics))?;
     let world = loaded.compile(&options, &mut files, &mut diagnostics).with_context(|| complaint(&diagnostics))?;
     let sampling = Sampling::Filtered { samples, filter: Filter::Box { radius: 0.5 } };
-    let job = Job { width: SIDE, height: SIDE, sampling, method: Method::PATH, ..Job::default() };
+    let job = Job { width: SIDE, height: SIDE, sampling, method: IntegratorKind::PATH, ..Job::default() };
     let part = PartialRender::new(&world, &job, Shard::WHOLE)?;
     part.render(&world, &Control::default(), &mut |_, _| {})?;
     Ok(Image::clone(&part.pictures()?.layers.first().context("a picture")?.image))

@@ -4,7 +4,7 @@
 use anyhow::{Context, Result, bail, ensure};
 use durer::describe::DescribedList;
 use durer::diag::{Diagnostics, Files};
-use durer::integrator::Method;
+use durer::integrator::IntegratorKind;
 use durer::render::{Control, PartialRender, Shard};
 use durer::sampler::hash;
 use durer::{LoadOptions, RenderJob, fuzz, load};
@@ -37,7 +37,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let (durer, folder) = (crate::build::durer()?, tempfile::tempdir()?);
     let files = files()?;
     ensure!(!files.is_empty(), "there are no scenes");
-    let methods: Vec<Method> = Method::kinds();
+    let methods: Vec<IntegratorKind> = IntegratorKind::kinds();
     let (start, time) = (Instant::now(), Duration::from_secs_f64(60.0 * minutes));
     let mut known: HashMap<u64, Option<String>> = HashMap::new();
     let (mut rounds, mut again, mut commands, mut refused) = (0_u64, 0, 0, 0);
@@ -167,8 +167,8 @@ fn command(durer: &Path, path: &Path, options: &[(&str, &str)], folder: &Path) -
         command.args([&format!("--{name}"), *value]);
     }
     let output = command.output()?;
-    let said = String::from_utf8_lossy(&output.stdout);
-    let hash = said.lines().last().map(str::to_string);
+    let messages = String::from_utf8_lossy(&output.stdout);
+    let hash = messages.lines().last().map(str::to_string);
     hash.with_context(|| format!("{}: {}", path.display(), String::from_utf8_lossy(&output.stderr)))
 }
 

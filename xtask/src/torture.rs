@@ -179,9 +179,9 @@ fn tiny_disk(bench: &Bench, name: &str, options: &str, spoil: &str, tries: u64) 
 }
 
 fn refused(output: &Output, words: &str, name: &str, limit: u64) -> Result<()> {
-    let said = [&output.stderr[..], &output.stdout].concat();
-    let said = String::from_utf8_lossy(&said);
-    ensure!(output.status.code().is_some_and(|code| code != 0), "{name} at {limit}: {:?} {said}", output.status);
-    ensure!(said.contains(words), "{name} at {limit}: no reason in {said}");
+    let messages = [&output.stderr[..], &output.stdout].concat();
+    let messages = String::from_utf8_lossy(&messages);
+    ensure!(output.status.code().is_some_and(|code| code != 0), "{name} at {limit}: {:?} {messages}", output.status);
+    ensure!(messages.contains(words), "{name} at {limit}: no reason in {messages}");
     Ok(())
 }

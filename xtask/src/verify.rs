@@ -30,12 +30,12 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         let mut command = Command::new(&durer);
         command.arg("verify").arg(scene).args(["--trials", trials]).args(job.split_whitespace());
         let output = command.output()?;
-        let said = [output.stdout, output.stderr].concat();
-        let said = String::from_utf8(said)?;
+        let messages = [output.stdout, output.stderr].concat();
+        let messages = String::from_utf8(messages)?;
         let name = scene.file_stem().context("a name")?.to_string_lossy();
         println!(
             "{name:<16}{job}\n  {}",
-            said.lines().filter(|l| !l.starts_with("note")).collect::<Vec<_>>().join("\n  ")
+            messages.lines().filter(|l| !l.starts_with("note")).collect::<Vec<_>>().join("\n  ")
         );
         failed += usize::from(!output.status.success());
     }

@@ -41,8 +41,8 @@ impl Bvh {
     pub fn refit(&mut self, boxes: &[Aabb]) {
         node::refit(&mut self.nodes, |leaf| {
             let (first, count) = node::items(leaf);
-            let things = self.order[first..first + count].iter();
-            things.fold(Aabb::EMPTY, |all, thing| all.union(boxes[*thing as usize]))
+            let primitives = self.order[first..first + count].iter();
+            primitives.fold(Aabb::EMPTY, |all, primitive| all.union(boxes[*primitive as usize]))
         });
         self.bounds = node::bounds(&self.nodes);
     }
@@ -87,7 +87,9 @@ impl Bvh {
         counter: &mut T,
         mut test: impl FnMut(usize, f32, &mut T) -> f32,
     ) {
-        let mut leaf = |things: Range<usize>, t_max| things.fold(t_max, |t_max, thing| test(thing, t_max, counter));
+        let mut leaf = |primitives: Range<usize>, t_max| {
+            primitives.fold(t_max, |t_max, primitive| test(primitive, t_max, counter))
+        };
         match T::COUNTS_WORK {
             true => {
                 let nodes = self.walk_counting(ray, &mut leaf);
@@ -100,13 +102,17 @@ impl Bvh {
     /// Traverses leaf by leaf; see [`Bvh::traverse`]. `leaf` is a trait object, so that the
     /// traversal is compiled once, here, and not for each caller.
     fn walk_leaves(&self, ray: &Ray, leaf: Leaf) {
-        self.level.run(Walk { bvh: self, ray, visitor: Things { nodes: &self.nodes, counter: (), leaf } });
+        self.level.run(Walk { bvh: self, ray, visitor: LeafVisitor { nodes: &self.nodes, counter: (), leaf } });
     }
 
     /// Traverses as [`Bvh::walk_leaves`] does and returns the number of visited nodes.
     fn walk_counting(&self, ray: &Ray, leaf: Leaf) -> u64 {
         let mut counts = TraversalStats::default();
-        self.level.run(Walk { bvh: self, ray, visitor: Things { nodes: &self.nodes, counter: &mut counts, leaf } });
+        self.level.run(Walk {
+            bvh: self,
+            ray,
+            visitor: LeafVisitor { nodes: &self.nodes, counter: &mut counts, leaf },
+        });
         counts.nodes
     }
 
@@ -120,7 +126,7 @@ impl Bvh {
     pub fn visits(&self, ray: &Ray, mut test: impl FnMut(usize, f32) -> f32) -> Vec<TreeBox> {
         let boxes: BTreeMap<u32, TreeBox> = shown::boxes(&self.nodes).collect();
         let mut codes = Vec::new();
-        let leaf: Leaf = &mut |things, t_max| things.fold(t_max, |t_max, thing| test(thing, t_max));
+        let leaf: Leaf = &mut |primitives, t_max| primitives.fold(t_max, |t_max, primitive| test(primitive, t_max));
         self.level.run(Walk { bvh: self, ray, visitor: Recorder { codes: &mut codes, counter: (), leaf } });
         codes.iter().filter_map(|code| boxes.get(code).cloned()).collect()
     }
@@ -153,13 +159,13 @@ impl<V: Visitor> Kernel for Walk<'_, V> {
     }
 }
 
-struct Things<'a, T> {
+struct LeafVisitor<'a, T> {
     nodes: &'a [WideNode],
     counter: T,
     leaf: Leaf<'a>,
 }
 
-impl<T: TraversalCounter> Visitor for Things<'_, T> {
+impl<T: TraversalCounter> Visitor for LeafVisitor<'_, T> {
     type TraversalCounter = T;
 
     const ANY: bool = false;
@@ -170,13 +176,13 @@ impl<T: TraversalCounter> Visitor for Things<'_, T> {
     }
 
     #[inline(always)]
-    fn fetch<L: Lanes>(&self, lanes: L, met: &NodeHits<L>, _: u32) {
-        let mut rest = met.mask;
+    fn fetch<L: Lanes>(&self, lanes: L, hits: &NodeHits<L>, _: u32) {
+        let mut rest = hits.mask;
         while rest != 0 {
             // For a leaf this is not the address of a node; the prefetch is then useless but
             // harmless.
             // On 32-bit targets the product may wrap around.
-            let child = met.child(rest.trailing_zeros());
+            let child = hits.child(rest.trailing_zeros());
             rest &= rest - 1;
             let offset = ((child & !LEAF) as usize).wrapping_mul(node::UNIT);
             let from = self.nodes.as_ptr().cast::<u8>().wrapping_add(offset);

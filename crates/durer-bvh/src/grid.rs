@@ -26,7 +26,7 @@ pub struct Grid {
     starts: Vec<u32>,
     items: Vec<u32>,
     /// Number of primitives.
-    things: usize,
+    primitive_count: usize,
 }
 
 impl Grid {
@@ -35,14 +35,14 @@ impl Grid {
     /// Maximum number of entries in the lists of all cells.
     const MAX_ENTRIES: u64 = 1 << 28;
 
-    /// Numbers of cells along x, y, and z that suit a box with `things` primitives: about two cells
+    /// Numbers of cells along x, y, and z that suit a box with `primitive_count` primitives: about two cells
     /// per primitive, nearly cubic.
-    pub fn suitable(bounds: Aabb, things: usize) -> [u32; 3] {
+    pub fn suitable(bounds: Aabb, primitive_count: usize) -> [u32; 3] {
         let size = bounds.size();
         let longest = size.max_element().max(f32::MIN_POSITIVE);
         // Flat boxes count as slightly thick, so that the number of cells stays bounded.
         let size = (size / longest).max(Vec3::splat(1e-3)).as_dvec3();
-        let cells_per_length = libm::cbrt(2.0 * things.max(1) as f64 / size.element_product());
+        let cells_per_length = libm::cbrt(2.0 * primitive_count.max(1) as f64 / size.element_product());
         (size * cells_per_length).to_array().map(|n| (n as u32).clamp(1, 256))
     }
 
@@ -86,7 +86,7 @@ impl Grid {
             pad: cell_pad,
             starts: vec![0; cells as usize + 1],
             items: Vec::new(),
-            things: boxes.len(),
+            primitive_count: boxes.len(),
         };
         let entries = boxes.iter().try_fold(0u64, |sum, b| sum.checked_add(grid.cells_of(b)))?;
         if entries > Grid::MAX_ENTRIES {
@@ -200,7 +200,7 @@ impl Grid {
         });
         if !is_done {
             counter.work(1, 0);
-            (0..self.things).fold(ray.t_max, |t_max, thing| test(thing, t_max, counter));
+            (0..self.primitive_count).fold(ray.t_max, |t_max, primitive| test(primitive, t_max, counter));
         }
     }
 
@@ -228,7 +228,7 @@ impl Grid {
         let main = line.dir.abs().max_position();
         let [a, b] = [(main + 1) % 3, (main + 2) % 3];
         let across = |axis: usize| (2.0 * slip / size[axis] + 3.0).min(f64::from(self.counts[axis]));
-        if f64::from(self.counts[main]) * across(a) * across(b) > self.things as f64 {
+        if f64::from(self.counts[main]) * across(a) * across(b) > self.primitive_count as f64 {
             return false;
         }
         let pad = slip / line.dir[main].abs();

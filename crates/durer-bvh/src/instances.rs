@@ -358,7 +358,7 @@ mod tests {
         // Duplicates at the same place: the first is the closest.
         placed.extend_from_within(..4);
         let scene = InstanceBvh::new(placed);
-        let mut met = 0;
+        let mut hits = 0;
         for _ in 0..2_000 {
             let ray = ray(&meshes[0], &mut random, 1.0, Vec3::ZERO);
             let mut expected: Vec<(u32, _)> = (0..scene.instances.len())
@@ -379,9 +379,9 @@ mod tests {
                 (!expected.is_empty(), expected.len()),
                 "{ray:?}"
             );
-            met += usize::from(!expected.is_empty());
+            hits += usize::from(!expected.is_empty());
         }
-        assert!(met > 500, "{met}");
+        assert!(hits > 500, "{hits}");
         assert!(scene.memory_usage() < 2 * (trees[0].memory_usage() + trees[1].memory_usage()));
     }
 
@@ -394,7 +394,7 @@ mod tests {
         let far = DVec3::new(4_194_304.25, -262_144.5, 2_097_152.0);
         let to_world = Affine::new(DAffine3::from_translation(far)).unwrap();
         let scene = InstanceBvh::new(vec![Instance::new(bvh.clone(), to_world)]);
-        let mut met = 0;
+        let mut hits = 0;
         for _ in 0..2_000 {
             let near = ray(&mesh, &mut random, 1.0, Vec3::ZERO);
             let origin = (near.origin * 1024.0).round() / 1024.0;
@@ -404,9 +404,9 @@ mod tests {
             assert_eq!(hit.map(|hit| (hit.t, hit.triangle)), bvh.closest(&near).map(|hit| (hit.t, hit.triangle)));
             assert_eq!(scene.occluded(from_there), bvh.occluded(&near));
             assert_eq!(scene.hit_count(from_there), bvh.hit_count(&near));
-            met += usize::from(hit.is_some());
+            hits += usize::from(hit.is_some());
         }
-        assert!(met > 500, "{met}");
+        assert!(hits > 500, "{hits}");
     }
 
     #[test]
@@ -448,7 +448,7 @@ mod tests {
         let instances: Vec<Instance> =
             (0..12).map(|i| Instance::new(trees[i % 2].clone(), map(&mut random)).with_mask(1 << (i % 3))).collect();
         let mut scene = InstanceBvh::new(instances);
-        let mut met = 0;
+        let mut hit_mask = 0;
         for round in 0..400 {
             if round % 50 == 25 {
                 let moved = map(&mut random);
@@ -467,7 +467,7 @@ mod tests {
                 let first = all.iter().find(|hit| is_seen(hit) && keep(hit)).copied();
                 assert_eq!(scene.closest_where(&ray, mask, |hit, _| keep(hit)), first, "{ray:?}");
                 assert_eq!(scene.occluded_where(&ray, mask, |hit, _| keep(hit)), first.is_some());
-                met += usize::from(first.is_some());
+                hit_mask += usize::from(first.is_some());
             }
             let flat = flattened(&scene, &meshes);
             scene.occluded_where(&ray, u32::MAX, |hit, facing| {
@@ -485,6 +485,6 @@ mod tests {
             assert_eq!((hits[0], occluded[0], counts[0] as usize), (scene.closest(&ray), !all.is_empty(), all.len()));
             scene.all_hits_batch(&[ray], |_, hits| assert_eq!(hits, all));
         }
-        assert!(met > 100, "{met}");
+        assert!(hit_mask > 100, "{hit_mask}");
     }
 }

@@ -42,7 +42,7 @@ struct Pack<const N: usize> {
 impl<const N: usize> Pack<N> {
     /// Lanes in use.
     #[inline(always)]
-    fn things(&self) -> std::ops::Range<usize> {
+    fn indices(&self) -> std::ops::Range<usize> {
         let mut end = WIDTH;
         while end > 0 && self.numbers[end - 1] == u32::MAX {
             end -= 1;
@@ -62,10 +62,10 @@ impl<const N: usize> Pack<N> {
 
     /// Loads one primitive into all lanes.
     #[inline(always)]
-    fn one<L: Lanes>(&self, lanes: L, thing: usize) -> [L::Doubles; N] {
+    fn one<L: Lanes>(&self, lanes: L, primitive: usize) -> [L::Doubles; N] {
         let mut of = [lanes.splat_double(0.0); N];
         for (to, from) in of.iter_mut().zip(&self.of) {
-            *to = lanes.splat_double(from[thing]);
+            *to = lanes.splat_double(from[primitive]);
         }
         of
     }
@@ -150,7 +150,7 @@ impl PrimitivePacks {
     /// tested side by side, one primitive after the other, which is faster if there are few
     /// primitives. Rays that are not finite or have no direction hit nothing.
     pub fn closest_of_eight(&self, rays: [&Ray; WIDTH]) -> [Option<PackHit>; WIDTH] {
-        let found = self.level.run(Together { packs: self, rays });
+        let found = self.level.run(BatchQuery { packs: self, rays });
         found.map(|hit| (hit.number != u32::MAX).then_some(hit))
     }
 
@@ -169,8 +169,8 @@ impl PrimitivePacks {
 /// Adds a primitive in the first free lane.
 fn push<const N: usize>(packs: &mut Vec<Pack<N>>, number: u32, of: [f64; N]) {
     let nothing = Pack { of: [[f64::NAN; WIDTH]; N], numbers: [u32::MAX; WIDTH] };
-    let mut pack = packs.pop_if(|pack| pack.things().end < WIDTH).unwrap_or(nothing);
-    let lane = pack.things().end;
+    let mut pack = packs.pop_if(|pack| pack.indices().end < WIDTH).unwrap_or(nothing);
+    let lane = pack.indices().end;
     pack.numbers[lane] = number;
     (0..N).for_each(|i| pack.of[i][lane] = of[i]);
     packs.push(pack);
@@ -200,7 +200,7 @@ impl<L: Lanes> Rays<L> {
 /// Primitives of a kind, each described by `N` numbers.
 trait Form<const N: usize> {
     /// First hits in the rays' intervals: a mask of lanes, and `t`.
-    fn meet<L: Lanes>(lanes: L, rays: &Rays<L>, of: &[L::Doubles; N]) -> (u32, L::Floats);
+    fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, of: &[L::Doubles; N]) -> (u32, L::Floats);
 }
 
 /// Planes normal · p = offset.
@@ -209,7 +209,7 @@ const PLANE: usize = 4;
 
 impl Form<PLANE> for Planes {
     #[inline(always)]
-    fn meet<L: Lanes>(lanes: L, rays: &Rays<L>, &[x, y, z, offset]: &[L::Doubles; PLANE]) -> (u32, L::Floats) {
+    fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, &[x, y, z, offset]: &[L::Doubles; PLANE]) -> (u32, L::Floats) {
         let normal = [x, y, z];
         // A parallel ray divides by zero and hits nothing.
         let t = lanes.singles(offset.sub(normal.dot(rays.origin)).div(normal.dot(rays.dir)));
@@ -223,7 +223,7 @@ const SPHERE: usize = 4;
 
 impl Form<SPHERE> for Spheres {
     #[inline(always)]
-    fn meet<L: Lanes>(lanes: L, rays: &Rays<L>, &[x, y, z, square]: &[L::Doubles; SPHERE]) -> (u32, L::Floats) {
+    fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, &[x, y, z, square]: &[L::Doubles; SPHERE]) -> (u32, L::Floats) {
         // The discriminant is computed at the point of the ray nearest to the centre, which keeps
         // small, distant spheres exact. Source: Haines, Günther, Akenine-Möller, *Ray Tracing Gems*
         // (2019), chapter 7.
@@ -250,7 +250,7 @@ const DISC: usize = 8;
 
 impl Form<DISC> for Discs {
     #[inline(always)]
-    fn meet<L: Lanes>(lanes: L, rays: &Rays<L>, of: &[L::Doubles; DISC]) -> (u32, L::Floats) {
+    fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, of: &[L::Doubles; DISC]) -> (u32, L::Floats) {
         let &[nx, ny, nz, x, y, z, inner, outer] = of;
         let (normal, center) = ([nx, ny, nz], [x, y, z]);
         let t = normal.dot(center.sub(rays.origin)).div(normal.dot(rays.dir));
@@ -267,14 +267,14 @@ const RECTANGLE: usize = 13;
 
 impl Form<RECTANGLE> for Rectangles {
     #[inline(always)]
-    fn meet<L: Lanes>(lanes: L, rays: &Rays<L>, of: &[L::Doubles; RECTANGLE]) -> (u32, L::Floats) {
+    fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, of: &[L::Doubles; RECTANGLE]) -> (u32, L::Floats) {
         let &[x, y, z, ex, ey, ez, fx, fy, fz, nx, ny, nz, square] = of;
         let (corner, e, f, n) = ([x, y, z], [ex, ey, ez], [fx, fy, fz], [nx, ny, nz]);
         let t = n.dot(corner.sub(rays.origin)).div(n.dot(rays.dir));
         let found = lanes.singles(t);
-        let met = rays.contain(lanes, found);
+        let hits = rays.contain(lanes, found);
         // Most rays do not hit the plane in their interval.
-        if met == 0 {
+        if hits == 0 {
             return (0, found);
         }
         // Cramer's rule.
@@ -282,7 +282,7 @@ impl Form<RECTANGLE> for Rectangles {
         let (u, v) = (q.cross(f).dot(n).div(square), e.cross(q).dot(n).div(square));
         let (zero, one) = (lanes.splat_double(0.0), lanes.splat_double(1.0));
         let on = lanes.le_doubles(zero, u) & lanes.le_doubles(u, one);
-        (met & on & lanes.le_doubles(zero, v) & lanes.le_doubles(v, one), found)
+        (hits & on & lanes.le_doubles(zero, v) & lanes.le_doubles(v, one), found)
     }
 }
 
@@ -293,7 +293,7 @@ const BOX: usize = 6;
 
 impl Form<BOX> for Boxes {
     #[inline(always)]
-    fn meet<L: Lanes>(lanes: L, rays: &Rays<L>, of: &[L::Doubles; BOX]) -> (u32, L::Floats) {
+    fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, of: &[L::Doubles; BOX]) -> (u32, L::Floats) {
         let infinity = lanes.splat_double(f64::INFINITY);
         let (mut enter, mut leave) = (lanes.splat_double(f64::NEG_INFINITY), infinity);
         for axis in 0..3 {
@@ -307,8 +307,8 @@ impl Form<BOX> for Boxes {
             leave = a.max(b).min(leave);
         }
         let inside = !lanes.le_doubles(leave, enter);
-        let (met, t) = first(lanes, rays, [enter, leave]);
-        (met & inside, t)
+        let (hits, t) = first(lanes, rays, [enter, leave]);
+        (hits & inside, t)
     }
 }
 
@@ -336,12 +336,12 @@ impl<const ANY: bool> Query<'_, ANY> {
         best: &mut PackHit,
     ) -> bool {
         for pack in packs {
-            let (met, t) = F::meet(lanes, ray, &pack.eight(lanes));
-            if ANY && met != 0 {
+            let (hits, t) = F::intersect(lanes, ray, &pack.eight(lanes));
+            if ANY && hits != 0 {
                 best.number = 0;
                 return true;
             }
-            *best = nearest(lanes.store(t), met, &pack.numbers, *best);
+            *best = nearest(lanes.store(t), hits, &pack.numbers, *best);
         }
         false
     }
@@ -370,12 +370,12 @@ impl<const ANY: bool> Kernel for Query<'_, ANY> {
 }
 
 /// A query of eight rays side by side.
-struct Together<'a> {
+struct BatchQuery<'a> {
     packs: &'a PrimitivePacks,
     rays: [&'a Ray; WIDTH],
 }
 
-impl Together<'_> {
+impl BatchQuery<'_> {
     /// Tests packs of one kind.
     #[inline(always)]
     fn among<L: Lanes, F: Form<N>, const N: usize>(
@@ -384,22 +384,22 @@ impl Together<'_> {
         best: &mut [PackHit; WIDTH],
     ) {
         for pack in packs {
-            for thing in pack.things() {
-                let (met, t) = F::meet(lanes, rays, &pack.one(lanes, thing));
-                if met & sound != 0 {
-                    nearer(lanes.store(t), met & sound, pack.numbers[thing], best);
+            for primitive in pack.indices() {
+                let (hits, t) = F::intersect(lanes, rays, &pack.one(lanes, primitive));
+                if hits & sound != 0 {
+                    nearer(lanes.store(t), hits & sound, pack.numbers[primitive], best);
                 }
             }
         }
     }
 }
 
-impl Kernel for Together<'_> {
+impl Kernel for BatchQuery<'_> {
     type Output = [PackHit; WIDTH];
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> [PackHit; WIDTH] {
-        let Together { packs, rays } = self;
+        let BatchQuery { packs, rays } = self;
         let mut best = [PackHit { t: 0.0, number: u32::MAX }; WIDTH];
         let mut rows = [lanes.splat(0.0); WIDTH];
         for lane in 0..WIDTH {
@@ -435,26 +435,26 @@ fn sound<L: Lanes>(lanes: L, numbers: [L::Floats; 6]) -> u32 {
 
 /// Updates the best hits of the rays in mask `met` with a hit of primitive `number`.
 #[inline(always)]
-fn nearer(t: [f32; WIDTH], mut met: u32, number: u32, best: &mut [PackHit; WIDTH]) {
-    while met != 0 {
-        let lane = met.trailing_zeros() as usize % WIDTH;
+fn nearer(t: [f32; WIDTH], mut hits: u32, number: u32, best: &mut [PackHit; WIDTH]) {
+    while hits != 0 {
+        let lane = hits.trailing_zeros() as usize % WIDTH;
         if (t[lane], number) < (best[lane].t, best[lane].number) {
             best[lane] = PackHit { t: t[lane], number };
         }
-        met &= met - 1;
+        hits &= hits - 1;
     }
 }
 
 /// Best of a hit and the hits of the lanes in mask `met`.
 #[inline(always)]
-fn nearest(t: [f32; WIDTH], mut met: u32, numbers: &[u32; WIDTH], mut best: PackHit) -> PackHit {
-    while met != 0 {
-        let lane = met.trailing_zeros() as usize % WIDTH;
+fn nearest(t: [f32; WIDTH], mut hits: u32, numbers: &[u32; WIDTH], mut best: PackHit) -> PackHit {
+    while hits != 0 {
+        let lane = hits.trailing_zeros() as usize % WIDTH;
         let hit = PackHit { t: t[lane], number: numbers[lane] };
         if (hit.t, hit.number) < (best.t, best.number) {
             best = hit;
         }
-        met &= met - 1;
+        hits &= hits - 1;
     }
     best
 }

@@ -172,17 +172,17 @@ pub(super) fn traverse<L: Lanes, V: Visitor, const FAST: bool>(
                 loop {
                     visitor.counter().work(1, 0);
                     visitor.enter(address);
-                    let met = intersect_node::<L, FAST>(lanes, &slabs, address, limit);
-                    if met.mask == 0 {
+                    let hits = intersect_node::<L, FAST>(lanes, &slabs, address, limit);
+                    if hits.mask == 0 {
                         break 'visit;
                     }
                     // The next child skips the stack.
-                    let order = met.node.order(V::ANY, boxes.negative);
-                    let likely = end_of(met.mask, order != 0);
-                    let next = met.next::<FAST>(lanes, V::ANY, likely);
-                    visitor.fetch(lanes, &met, likely);
-                    met.push(lanes, &mut stack, next, order);
-                    match met.target::<FAST>(V::ANY, next) {
+                    let order = hits.node.order(V::ANY, boxes.negative);
+                    let likely = end_of(hits.mask, order != 0);
+                    let next = hits.next::<FAST>(lanes, V::ANY, likely);
+                    visitor.fetch(lanes, &hits, likely);
+                    hits.push(lanes, &mut stack, next, order);
+                    match hits.target::<FAST>(V::ANY, next) {
                         Target::Node(next) => address = next,
                         Target::Leaf(leaf) => break leaf,
                     }

@@ -8,21 +8,21 @@ macro_rules! examples {
 
         #[test]
         fn $name() {
-            Ended::ended($name::main());
+            ExampleResult::ended($name::main());
         }
     )*};
 }
 
 /// Return type of an example's `main`.
-trait Ended {
+trait ExampleResult {
     fn ended(self);
 }
 
-impl Ended for () {
+impl ExampleResult for () {
     fn ended(self) {}
 }
 
-impl<E: std::fmt::Debug> Ended for Result<(), E> {
+impl<E: std::fmt::Debug> ExampleResult for Result<(), E> {
     fn ended(self) {
         self.unwrap();
     }

@@ -1,11 +1,11 @@
 //! `durer check`: finds and fixes mistakes in scenes.
 
-mod after;
 mod args;
 mod change;
-mod checked;
+mod checked_scene;
 mod json;
 mod mend;
+mod render_review;
 
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
@@ -18,10 +18,10 @@ use durer::diag::{Edit, Severity};
 use durer::format::folder::FolderSource;
 use std::path::Path;
 
-pub use after::{after_course, after_render, looks};
 pub use args::CheckArgs;
 use change::Change;
-use checked::{Checked, look};
+use checked_scene::{CheckedScene, look};
+pub use render_review::{after_course, after_render, looks};
 
 pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     if args.codes {
@@ -56,7 +56,7 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
 }
 
 /// Checks one scene, applies fixes with `--fix`, and prints the findings.
-fn one(path: &Path, args: &CheckArgs) -> Result<(Checked, Vec<Change>), Failure> {
+fn one(path: &Path, args: &CheckArgs) -> Result<(CheckedScene, Vec<Change>), Failure> {
     let bytes = FolderSource::new(".").allow_outside().read_path(path, &path.display().to_string());
     let bytes = bytes.map_err(report::unreadable)?;
     let mut checked = look(path, bytes.clone(), args)?;
@@ -104,7 +104,7 @@ fn does(edits: &[Edit]) -> String {
 }
 
 /// Prints findings and their counts.
-fn print(checked: &Checked, mended: bool) {
+fn print(checked: &CheckedScene, mended: bool) {
     let offer = |finding: &Finding| {
         let mut diagnostic = finding.diagnostic.clone();
         if !diagnostic.fix.is_empty() && !mended {

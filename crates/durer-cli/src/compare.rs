@@ -1,13 +1,13 @@
 //! `durer compare`: compares pictures with references.
 
 mod args;
-mod compared;
-mod named;
+mod compared_pair;
+mod mistakes;
 mod page;
 mod pairs;
+mod pixel_hit;
 mod stage;
 mod text;
-mod there;
 
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
@@ -16,16 +16,16 @@ use crate::progress;
 use crate::report::counted;
 use crate::terminal::say;
 pub use args::CompareArgs;
-use compared::{Compared, Outcome, name};
+use compared_pair::{ComparedPair, Outcome, name};
 use durer::diag::{at_least, at_most};
 use durer::format::folder::FolderSource;
 use durer::image::compare::{Options, Picture, Verdict, compare, memory_needed};
 use durer::image::{Destination, Encoded, Transfer};
 use page::heat;
 use pairs::Pair;
+use pixel_hit::pixel_hits;
 use stage::{Stage, stage};
 use std::path::{Path, PathBuf};
-use there::there;
 
 /// Runs the comparison. Every failure has the exit code of bad input, because 1 means that pictures
 /// differ.
@@ -54,9 +54,9 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
     let options = Options { tolerance: args.tolerance, allowed: args.allow / 100.0, transfer };
 
     let (names, folders, extra) = (found.pairs.iter().map(name).collect::<Vec<_>>(), found.folders, found.extra);
-    let mut all: Vec<Compared> =
+    let mut all: Vec<ComparedPair> =
         progress::each(&names, found.pairs, false, |pair| one(pair, &options, memory, args.report.is_some()));
-    if let ([Compared { outcome: Outcome::Failed(reason), .. }], false) = (&all[..], folders) {
+    if let ([ComparedPair { outcome: Outcome::Failed(reason), .. }], false) = (&all[..], folders) {
         return Err(bad(reason));
     }
     explain(args, &mut all, memory, &mut guard)?;
@@ -81,7 +81,7 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
         save(&files, args.json)?;
     }
     let failed = all.iter().filter(|c| matches!(c.outcome, Outcome::Failed(_))).count();
-    let bad_verdict = |c: &Compared| match &c.outcome {
+    let bad_verdict = |c: &ComparedPair| match &c.outcome {
         Outcome::Compared(found) => found.verdict == Verdict::Different,
         _ => true,
     };
@@ -93,7 +93,7 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
 }
 
 /// Finds the scene's objects where pictures differ, and the mistakes that explain the difference.
-fn explain(args: &CompareArgs, all: &mut [Compared], memory: u64, guard: &mut Guard) -> Result<(), Failure> {
+fn explain(args: &CompareArgs, all: &mut [ComparedPair], memory: u64, guard: &mut Guard) -> Result<(), Failure> {
     if args.scene.is_none() {
         return Ok(());
     }
@@ -110,17 +110,17 @@ fn explain(args: &CompareArgs, all: &mut [Compared], memory: u64, guard: &mut Gu
         let Some((_, Some(stage))) = known else { continue };
         if found.verdict == Verdict::Different {
             compared.note = stage.note.clone();
-            compared.there = there(stage, found)?;
-            compared.diagnosis = Some(named::named(stage, &reference, &test));
+            compared.hits = pixel_hits(stage, found)?;
+            compared.diagnosis = Some(mistakes::named(stage, &reference, &test));
         }
     }
     Ok(())
 }
 
 /// Compares one pair.
-fn one(pair: Pair, options: &Options, memory: u64, page: bool) -> Compared {
+fn one(pair: Pair, options: &Options, memory: u64, page: bool) -> ComparedPair {
     let Some(path) = &pair.picture else {
-        return Compared::new(pair, Outcome::Missing, None);
+        return ComparedPair::new(pair, Outcome::Missing, None);
     };
     let compared = read_both([&pair.reference, path], memory).and_then(|[reference, picture]| {
         let found = compare(&reference, &picture, options)
@@ -129,8 +129,8 @@ fn one(pair: Pair, options: &Options, memory: u64, page: bool) -> Compared {
         Ok((found, shown))
     });
     match compared {
-        Ok((found, shown)) => Compared::new(pair, Outcome::Compared(Box::new(found)), shown),
-        Err(reason) => Compared::new(pair, Outcome::Failed(reason), None),
+        Ok((found, shown)) => ComparedPair::new(pair, Outcome::Compared(Box::new(found)), shown),
+        Err(reason) => ComparedPair::new(pair, Outcome::Failed(reason), None),
     }
 }
 

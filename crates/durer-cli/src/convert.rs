@@ -11,11 +11,11 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use durer::diag::{Diagnostic, Diagnostics, Files};
 use durer::dialect::Dialect;
-use durer::format::beside::{Beside, plain};
+use durer::format::asset_export::{AssetFile, plain};
 use durer::format::course::write;
 use durer::format::{json, mesh_format_for, scene_format_for};
 use durer::load;
-use durer::scene::{Scene, Studio, Wishes};
+use durer::scene::{DefaultLighting, RenderDefaults, Scene};
 use std::path::{Path, PathBuf};
 
 /// Convert a scene to another dialect, JSON or glTF, or its meshes to PLY, OBJ or STL
@@ -47,7 +47,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let as_mesh = mesh_format_for(&name).filter(|_| args.to.is_none());
     if as_mesh.is_some() {
         // The studio's ground does not belong to the model.
-        options.staging.studio = Some(Studio::None);
+        options.scene_defaults.studio = Some(DefaultLighting::None);
     }
     let ending = args.output.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let has_words = args.to.is_none() && (mesh_format_for(&name).is_some() || scene_format_for(&name).is_some());
@@ -57,9 +57,9 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     }
     let as_scene = scene_format_for(&name).filter(|format| format.write.is_some() && args.to.is_none());
     // Render options add what the model lacks later.
-    options.staging.bare = as_scene.is_some();
+    options.scene_defaults.bare = as_scene.is_some();
     // A written camera has no picture: it is framed for a square one.
-    options.staging.aspect = Some(1.0);
+    options.scene_defaults.aspect = Some(1.0);
     let loaded = load(&args.scene, &options, &mut files, &mut diagnostics).map_err(report::unreadable)?;
     report::print(&files, &diagnostics, false);
     let loaded = loaded.ok_or(Failure::Input(None))?;
@@ -100,13 +100,13 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
              for the model's files",
         ));
     }
-    let (scene, files) = loaded.put_beside(&folder);
+    let (scene, files) = loaded.export_assets(&folder);
     let base = args.output.parent().unwrap_or(Path::new(""));
     std::fs::create_dir_all(base.join(&folder)).with_context(|| format!("cannot create the folder `{folder}`"))?;
-    let writes = |(path, bytes): Beside| Ok((guard.writes("a file of the model", &base.join(path))?, bytes));
+    let writes = |(path, bytes): AssetFile| Ok((guard.writes("a file of the model", &base.join(path))?, bytes));
     let mut all = files.into_iter().map(writes).collect::<Result<Vec<_>, Failure>>()?;
     all.push((place, text(&scene)));
-    if let Some(options) = asked_for(&loaded.scene.wishes) {
+    if let Some(options) = requested_picture(&loaded.scene.render_defaults) {
         let message = "the file also sets the size and quality of its picture, which a scene file cannot store";
         report::note(&Diagnostic::note(message).help(format!("render it with `{options}`")));
     }
@@ -120,11 +120,11 @@ fn is_only_read(name: &str) -> bool {
 }
 
 /// Returns the render options that a file asks for, if any.
-fn asked_for(wishes: &Wishes) -> Option<String> {
-    let size = wishes.size.map(|(width, height)| format!("--size {width}x{height}"));
-    let crop = wishes.crop.map(|(left, top, width, height)| format!("--crop {left},{top},{width}x{height}"));
-    let samples = wishes.samples.map(|samples| format!("--samples {samples}"));
-    let bounces = wishes.bounces.map(|bounces| format!("--bounces {bounces}"));
+fn requested_picture(render_defaults: &RenderDefaults) -> Option<String> {
+    let size = render_defaults.size.map(|(width, height)| format!("--size {width}x{height}"));
+    let crop = render_defaults.crop.map(|(left, top, width, height)| format!("--crop {left},{top},{width}x{height}"));
+    let samples = render_defaults.samples.map(|samples| format!("--samples {samples}"));
+    let bounces = render_defaults.bounces.map(|bounces| format!("--bounces {bounces}"));
     let all: Vec<String> = [size, crop, samples, bounces].into_iter().flatten().collect();
     (!all.is_empty()).then(|| all.join(" "))
 }

@@ -8,7 +8,7 @@ pub use options::{Program, program};
 use crate::diagrams::{self, filter_layer, samples_layer};
 use crate::failure::{Failure, bad, failed};
 use crate::guard::Guard;
-use crate::open::Opened;
+use crate::open::CompiledInput;
 use crate::report::rejected;
 use crate::terminal::say;
 use crate::values::weight;
@@ -17,15 +17,15 @@ use clap::Args;
 use durer::LoadOptions;
 use durer::camera::{Projection, Raster};
 use durer::compile::AccelKind;
-use durer::dialect::{Compat, Dialect};
+use durer::dialect::{Dialect, Quirk};
 use durer::film::aov::Aov;
 use durer::film::course::{CourseFilter, average_3x3};
 use durer::image::{Destination, Format, Image, Layer, Transfer, format_for};
-use durer::integrator::Settings;
+use durer::integrator::WhittedOptions;
 use durer::options::memory::Memory;
 use durer::render::{Control, Job, RenderError, Sampling};
 use durer::sampler::Sampler;
-use options::{Given, PROGRAMS, usage};
+use options::{Arguments, PROGRAMS, usage};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
@@ -53,24 +53,24 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
         usage();
         return if arguments.is_empty() { Err(Failure::Input(None)) } else { Ok(()) };
     }
-    let given = Given::parse(arguments)?;
-    let quiet = given.has("--quiet");
-    let options = load_options(&given, program_name)?;
-    given.check_unknown(options.dialect, quiet)?;
-    let scene = given.text("-input").ok_or_else(|| bad("-input is missing: give the scene file"))?;
+    let parsed = Arguments::parse(arguments)?;
+    let quiet = parsed.has("--quiet");
+    let options = load_options(&parsed, program_name)?;
+    parsed.check_unknown(options.dialect, quiet)?;
+    let scene = parsed.text("-input").ok_or_else(|| bad("-input is missing: give the scene file"))?;
     // Report invalid file names before the work.
     let mut guard = Guard::default();
-    let outputs = Outputs::of(&given, options.dialect, &mut guard)?;
-    let opened = year::open(Path::new(scene), &options, &given, &mut guard)?;
-    let job = job(&given, &opened)?;
-    let control = Arc::new(Control { threads: threads(&given)?, memory: MEMORY.bytes(), ..Control::default() });
-    let world = &opened.world;
-    let zooms = (given.zoom("-render_samples")?, given.zoom("-render_filter")?);
+    let outputs = Outputs::of(&parsed, options.dialect, &mut guard)?;
+    let compiled = year::open(Path::new(scene), &options, &parsed, &mut guard)?;
+    let job = job(&parsed, &compiled)?;
+    let control = Arc::new(Control { threads: threads(&parsed)?, memory: MEMORY.bytes(), ..Control::default() });
+    let world = &compiled.world;
+    let zooms = (parsed.zoom("-render_samples")?, parsed.zoom("-render_filter")?);
     for zoom in [zooms.0, zooms.1].into_iter().flatten() {
         diagrams::check(&job, zoom).map_err(failed)?;
     }
     // The picture of the grid replaces the colour picture.
-    let grid_wanted = job.color && given.has("-visualize_grid");
+    let grid_wanted = job.color && parsed.has("-visualize_grid");
     let job = Job { color: job.color && !grid_wanted, ..job };
     let (rendered, grid, diagrams) = progress::watch(&control, quiet, || {
         let rendered = durer::render::render(world, &job, &control)?;
@@ -85,11 +85,11 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
         return Err(failed(RenderError::Cancelled));
     }
     rejected(&rendered.statistics, Some(world), quiet);
-    if given.has("-stats") {
-        stats(&opened, &control);
+    if parsed.has("-stats") {
+        stats(&compiled, &control);
     }
     let mut rendered = rendered;
-    if odd_size(&given, &opened) == Some(OddSize::Third) {
+    if odd_size(&parsed, &compiled) == Some(OddSize::Third) {
         rendered.pictures.iter_mut().filter(|layer| layer.name == "color").try_for_each(third)?;
     }
     let layers = grid.iter().chain(&rendered.pictures).chain(diagrams.iter().flatten());
@@ -99,44 +99,44 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     }
     output::save(&files, quiet)?;
     if !quiet {
-        check::after_course(&opened, &job, &rendered.pictures, &rendered.statistics);
+        check::after_course(&compiled, &job, &rendered.pictures, &rendered.statistics);
     }
     Ok(())
 }
 
-fn load_options(given: &Given, program_name: Option<&'static Program>) -> Result<LoadOptions, Failure> {
-    let named = match given.text("--program") {
+fn load_options(arguments: &Arguments, program_name: Option<&'static Program>) -> Result<LoadOptions, Failure> {
+    let named = match arguments.text("--program") {
         Some(name) => Some(program(name).ok_or_else(|| {
             bad(format!("unknown program {name}; known programs: {}", PROGRAMS.map(|p| p.name).join(", ")))
         })?),
         None => program_name,
     };
-    let dialect = match given.text("--dialect") {
+    let dialect = match arguments.text("--dialect") {
         Some(name) => Some(Dialect::from_name(name).ok_or_else(|| {
             bad(format!("unknown dialect {name}; known dialects: {}", Dialect::ALL.map(Dialect::name).join(", ")))
         })?),
         None => named.map(|program| program.dialect),
     };
-    let mut compat: Vec<(Compat, bool)> = named.iter().flat_map(|p| p.compat).map(|&compat| (compat, true)).collect();
-    for word in given.text("--compat").into_iter().flat_map(|names| names.split(',')) {
+    let mut compat: Vec<(Quirk, bool)> = named.iter().flat_map(|p| p.compat).map(|&compat| (compat, true)).collect();
+    for word in arguments.text("--compat").into_iter().flat_map(|names| names.split(',')) {
         let (name, on) = word.strip_prefix("no-").map_or((word, true), |name| (name, false));
-        let known = Compat::from_name(name).ok_or_else(|| bad(format!("--compat: unknown quirk {name}")))?;
+        let known = Quirk::from_name(name).ok_or_else(|| bad(format!("--compat: unknown quirk {name}")))?;
         compat.push((known, on));
     }
-    let cells = given.numbers::<u32>("-grid", 3)?.and_then(|cells| <[u32; 3]>::try_from(cells).ok());
+    let cells = arguments.numbers::<u32>("-grid", 3)?.and_then(|cells| <[u32; 3]>::try_from(cells).ok());
     Ok(LoadOptions {
         dialect,
         course: true,
-        hints: given.hints(),
+        hints: arguments.hints(),
         compat,
-        allow_outside: given.has("--allow-outside"),
-        assets: given.text("--assets").map(PathBuf::from).into_iter().collect(),
+        allow_outside: arguments.has("--allow-outside"),
+        assets: arguments.text("--assets").map(PathBuf::from).into_iter().collect(),
         accel: match cells {
-            None if !given.has("-visualize_grid") => AccelKind::Bvh,
+            None if !arguments.has("-visualize_grid") => AccelKind::Bvh,
             cells => AccelKind::Grid(cells),
         },
         strict: false,
-        threads: threads(given)?,
+        threads: threads(arguments)?,
         memory: MEMORY.bytes(),
         ..LoadOptions::default()
     })
@@ -146,16 +146,16 @@ fn load_options(given: &Given, program_name: Option<&'static Program>) -> Result
 struct Outputs(Vec<(Destination, &'static Format)>);
 
 impl Outputs {
-    fn of(given: &Given, asked: Option<Dialect>, guard: &mut Guard) -> Result<Self, Failure> {
+    fn of(arguments: &Arguments, requested: Option<Dialect>, guard: &mut Guard) -> Result<Self, Failure> {
         let names = [
-            ("-output", given.text("-output")),
-            ("-depth", given.values("-depth").map(|values| values[2].as_str())),
-            ("-normals", given.text("-normals")),
-            ("-render_samples", given.text("-render_samples")),
-            ("-render_filter", given.text("-render_filter")),
+            ("-output", arguments.text("-output")),
+            ("-depth", arguments.values("-depth").map(|values| values[2].as_str())),
+            ("-normals", arguments.text("-normals")),
+            ("-render_samples", arguments.text("-render_samples")),
+            ("-render_filter", arguments.text("-render_filter")),
         ];
         let named = names.into_iter().filter_map(|(option, name)| Some((option, name?)));
-        let format = |(option, name)| Ok((option, name, course_format(name, asked)?));
+        let format = |(option, name)| Ok((option, name, course_format(name, requested)?));
         let named: Vec<_> = named.map(format).collect::<Result<_, Failure>>()?;
         let place = |(option, name, format)| Ok((guard.writes(option, Path::new(name))?, format));
         let files: Vec<_> = named.into_iter().map(place).collect::<Result<_, Failure>>()?;
@@ -168,22 +168,22 @@ impl Outputs {
 
 /// Returns the format for a name. Names without an extension are TGA, as in the old programs; with
 /// the dialect f12a4, every name except .bmp is TGA.
-fn course_format(name: &str, asked: Option<Dialect>) -> Result<&'static Format, Failure> {
+fn course_format(name: &str, requested: Option<Dialect>) -> Result<&'static Format, Failure> {
     let nameless = Path::new(name).extension().is_none();
-    let is_tga = nameless || asked == Some(Dialect::F12a4) && !name.ends_with(".bmp");
+    let is_tga = nameless || requested == Some(Dialect::F12a4) && !name.ends_with(".bmp");
     format_for(if is_tga { "picture.tga" } else { name }).map_err(|error| bad(error.to_string()))
 }
 
-fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
-    let rules = &opened.loaded.rules;
-    let size = given.numbers::<u32>("-size", 2)?;
+fn job(arguments: &Arguments, compiled: &CompiledInput) -> Result<Job, Failure> {
+    let rules = &compiled.loaded.rules;
+    let size = arguments.numbers::<u32>("-size", 2)?;
     // A camera with a fixed aspect ratio determines the size; the old programs have no such camera.
-    let natural = || Raster::natural_size(opened.world.camera().proportions(), rules.size);
+    let natural = || Raster::natural_size(compiled.world.camera().proportions(), rules.size);
     let (width, height) = size.map_or_else(natural, |size| (size[0], size[1]));
     if width == 0 || height == 0 {
         return Err(bad("-size: a picture needs at least one pixel"));
     }
-    let odd = odd_size(given, opened);
+    let odd = odd_size(arguments, compiled);
     let (width, height) = match odd {
         Some(OddSize::Threefold) => (width.saturating_mul(3), height.saturating_mul(3)),
         _ => (width, height),
@@ -191,40 +191,40 @@ fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
     if odd == Some(OddSize::Third) && (width < 3 || height < 3) {
         return Err(bad("-filter without -jitter averages three by three pixels, but the picture is smaller"));
     }
-    let depth = given.numbers::<f32>("-depth", 2)?;
+    let depth = arguments.numbers::<f32>("-depth", 2)?;
     let depth_range = depth.map(|range| (range[0], range[1]));
-    let clamped = opened.world.display_rules().clamped_depths;
+    let clamped = compiled.world.display_rules().clamped_depths;
     if depth_range.is_some_and(|(min, max)| !(min.is_finite() && max.is_finite() && (min != max || clamped))) {
         return Err(bad("-depth needs two different numbers"));
     }
     // For an empty range the old program divides zero by zero and writes black, as if everything
     // were behind the range.
     let depth_range = depth_range.map(|range| if range.0 == range.1 { (-2.0, -1.0) } else { range });
-    let bounces = given.number("-bounces")?.unwrap_or(rules.bounces);
-    if bounces > Settings::MAX_BOUNCES {
-        return Err(bad(format!("-bounces: must be at most {}", Settings::MAX_BOUNCES)));
+    let bounces = arguments.number("-bounces")?.unwrap_or(rules.bounces);
+    if bounces > WhittedOptions::MAX_BOUNCES {
+        return Err(bad(format!("-bounces: must be at most {}", WhittedOptions::MAX_BOUNCES)));
     }
-    let weight = given.text("-weight").map(weight).transpose().map_err(|error| bad(format!("-weight: {error}")))?;
+    let weight = arguments.text("-weight").map(weight).transpose().map_err(|error| bad(format!("-weight: {error}")))?;
     let wanted = [("-depth", "depth"), ("-normals", "normals")];
     Ok(Job {
         width,
         height,
-        seed: given.number("--seed")?.unwrap_or(0),
+        seed: arguments.number("--seed")?.unwrap_or(0),
         sampling: match odd {
             Some(OddSize::Threefold) => Sampling::Course2004 { sampler: Sampler::Random, samples: 1, filter: None },
-            _ => sampling(given, opened.loaded.dialect)?,
+            _ => sampling(arguments, compiled.loaded.dialect)?,
         },
-        settings: Settings {
+        settings: WhittedOptions {
             bounces,
-            shadows: given.has("-shadows") || rules.shadows,
-            shade_back: given.has("-shade_back") || rules.shade_back,
-            transparent_shadows: given.has("-transparent_shadows"),
-            reflection: !given.has("-reflection_off"),
-            refraction: !given.has("-refraction_off"),
+            shadows: arguments.has("-shadows") || rules.shadows,
+            shade_back: arguments.has("-shade_back") || rules.shade_back,
+            transparent_shadows: arguments.has("-transparent_shadows"),
+            reflection: !arguments.has("-reflection_off"),
+            refraction: !arguments.has("-refraction_off"),
             least_weight: weight.unwrap_or(0.0),
         },
-        color: given.has("-output"),
-        aovs: wanted.iter().filter(|w| given.has(w.0)).filter_map(|w| Aov::from_name(w.1)).collect(),
+        color: arguments.has("-output"),
+        aovs: wanted.iter().filter(|w| arguments.has(w.0)).filter_map(|w| Aov::from_name(w.1)).collect(),
         depth_range,
         ..Job::default()
     })
@@ -239,9 +239,9 @@ enum OddSize {
     Third,
 }
 
-fn odd_size(given: &Given, opened: &Opened) -> Option<OddSize> {
-    let is_odd = opened.loaded.rules.has(Compat::OddSizes);
-    match (given.has("-jitter"), given.has("-filter")) {
+fn odd_size(arguments: &Arguments, compiled: &CompiledInput) -> Option<OddSize> {
+    let is_odd = compiled.loaded.rules.has(Quirk::OddSizes);
+    match (arguments.has("-jitter"), arguments.has("-filter")) {
         (true, false) if is_odd => Some(OddSize::Threefold),
         (false, true) if is_odd => Some(OddSize::Third),
         _ => None,
@@ -257,8 +257,8 @@ fn third(layer: &mut Layer) -> Result<(), Failure> {
     Ok(())
 }
 
-fn sampling(given: &Given, dialect: Dialect) -> Result<Sampling, Failure> {
-    let (jitter, blur) = (given.has("-jitter"), given.has("-filter"));
+fn sampling(arguments: &Arguments, dialect: Dialect) -> Result<Sampling, Failure> {
+    let (jitter, blur) = (arguments.has("-jitter"), arguments.has("-filter"));
     if jitter || blur {
         // The programs of 2016 and later accept both options without effect.
         let ignored = matches!(dialect, Dialect::F16 | Dialect::F23);
@@ -269,9 +269,9 @@ fn sampling(given: &Given, dialect: Dialect) -> Result<Sampling, Failure> {
         ("-uniform_samples", Sampler::Uniform),
         ("-jittered_samples", Sampler::Jittered),
     ];
-    let sampler = samplers.into_iter().find(|(name, _)| given.has(name));
+    let sampler = samplers.into_iter().find(|(name, _)| arguments.has(name));
     let radius = |name: &str| -> Result<Option<f32>, Failure> {
-        let radius = given.number::<f32>(name)?;
+        let radius = arguments.number::<f32>(name)?;
         if radius.is_some_and(|r| !(0.0..=64.0).contains(&r)) {
             return Err(bad(format!("{name}: must be from 0 to 64")));
         }
@@ -284,7 +284,7 @@ fn sampling(given: &Given, dialect: Dialect) -> Result<Sampling, Failure> {
     } else {
         radius("-gaussian_filter")?.map(|sigma| CourseFilter::Gaussian { sigma })
     };
-    let samples = sampler.map(|(name, _)| given.number::<u32>(name)).transpose()?.flatten();
+    let samples = sampler.map(|(name, _)| arguments.number::<u32>(name)).transpose()?.flatten();
     if samples.is_some_and(|n| n == 0 || n > 1 << 16) {
         return Err(bad("the number of samples must be from 1 to 65536"));
     }
@@ -298,8 +298,8 @@ fn sampling(given: &Given, dialect: Dialect) -> Result<Sampling, Failure> {
     })
 }
 
-fn threads(given: &Given) -> Result<Option<usize>, Failure> {
-    let threads = given.number("--threads")?;
+fn threads(arguments: &Arguments) -> Result<Option<usize>, Failure> {
+    let threads = arguments.number("--threads")?;
     if threads.is_some_and(|n| !(1..=1024).contains(&n)) {
         return Err(bad("--threads must be from 1 to 1024"));
     }
@@ -307,7 +307,7 @@ fn threads(given: &Given) -> Result<Option<usize>, Failure> {
 }
 
 /// Prints the output of `-stats`.
-fn stats(opened: &Opened, control: &Control) {
+fn stats(compiled: &CompiledInput, control: &Control) {
     let rays = control.rays.load(Relaxed);
-    say(&format!("objects {}, rays {rays}", opened.world.objects().len()));
+    say(&format!("objects {}, rays {rays}", compiled.world.objects().len()));
 }

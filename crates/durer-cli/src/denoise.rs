@@ -7,7 +7,7 @@ use crate::report;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use durer::diag::Diagnostic;
 use durer::image::Layer;
-use durer::render::Noisy;
+use durer::render::NoisyPicture;
 
 /// Choice of denoiser.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,7 +34,7 @@ impl Denoiser {
     }
 
     /// Denoises a picture.
-    pub fn clean(self, noisy: Noisy, threads: Option<usize>, quiet: bool) -> Result<Layer, Failure> {
+    pub fn clean(self, noisy: NoisyPicture, threads: Option<usize>, quiet: bool) -> Result<Layer, Failure> {
         if self == Denoiser::Own {
             return Ok(noisy.denoised());
         }

@@ -5,7 +5,7 @@ mod page;
 use crate::failure::{Failure, bad, failed};
 use crate::guard::Guard;
 use crate::job::job;
-use crate::open::{Opened, load_options, open};
+use crate::open::{CompiledInput, load_options, open};
 use crate::options::{RenderArgs, accel, aspect};
 use crate::terminal::say;
 use crate::values::{percent, pixel};
@@ -15,7 +15,7 @@ use durer::film::aov::Aov;
 use durer::film::luminance_of;
 use durer::image::{Image, Transfer};
 use durer::math::{Color, Ray, Vec3};
-use durer::render::explain::{Explanation, Names, Telling, TextLine, explain_of, explain_ray, number, ray_text};
+use durer::render::explain::{ExplainOptions, Explanation, Names, TextLine, explain_of, explain_ray, number, ray_text};
 use durer::render::{Control, Job};
 use durer::report::{self, Subject};
 use durer::sampler::SampleId;
@@ -91,17 +91,17 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     }
     let mut options = load_options(&args.render.reading);
     options.accel = accel(&args.render.job)?;
-    options.staging.aspect = aspect(&args.render.job);
+    options.scene_defaults.aspect = aspect(&args.render.job);
     let mut guard = Guard::default();
     let page_file = args.html.as_ref().map(|path| guard.writes("--html", path)).transpose()?;
-    let opened = open(&args.render.scene, &options, args.render.quiet, &mut guard)?;
-    let job = job(&args.render.job, Some(&args.render.view), &opened.loaded, false)?;
+    let compiled = open(&args.render.scene, &options, args.render.quiet, &mut guard)?;
+    let job = job(&args.render.job, Some(&args.render.view), &compiled.loaded, false)?;
     let (picture, counts) = match args.brightest || args.worst || args.html.is_some() {
-        true => picture(args, &opened, &job)?,
+        true => picture(args, &compiled, &job)?,
         false => (None, None),
     };
-    let subject = subject(args, &opened, &job, picture.as_ref(), counts.as_ref())?;
-    let names = Names { files: &opened.files, scene: &opened.loaded.scene, world: &opened.world };
+    let subject = subject(args, &compiled, &job, picture.as_ref(), counts.as_ref())?;
+    let names = Names { files: &compiled.files, scene: &compiled.loaded.scene, world: &compiled.world };
     // Show one tree: all trees of a pixel would hide each other.
     let sample = match &subject {
         Subject::Pixel(pixel) => match (args.sample, args.worst) {
@@ -113,7 +113,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     };
     let transfer = args.render.display.transfer();
     if let (Some(place), Some(picture)) = (&page_file, &picture) {
-        let page = page::page(report::explanation(&subject, &names), sample, &opened.world, picture, transfer)?;
+        let page = page::page(report::explanation(&subject, &names), sample, &compiled.world, picture, transfer)?;
         output::save(&[(place, page.into_bytes())], args.render.quiet)?;
         return Ok(());
     }
@@ -122,10 +122,10 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         return Ok(());
     }
     let deepest = args.depth.map_or(usize::MAX, |depth| depth as usize);
-    let telling = Telling { least: (args.min / 100.0) as f32, deepest, transfer };
+    let detail = ExplainOptions { least: (args.min / 100.0) as f32, deepest, transfer };
     let lines = match &subject {
-        Subject::Ray(light) => ray_text(light, &names, &telling),
-        Subject::Pixel(pixel) => pixel.lines(&names, sample, &telling),
+        Subject::Ray(light) => ray_text(light, &names, &detail),
+        Subject::Pixel(pixel) => pixel.lines(&names, sample, &detail),
     };
     let colored = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     lines.iter().for_each(|line| say(&shown(line, colored, transfer)));
@@ -138,11 +138,11 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
 }
 
 /// Renders the whole picture, and counts the samples of each pixel if they are adaptive.
-fn picture(args: &ExplainArgs, opened: &Opened, job: &Job) -> Result<(Option<Image>, Option<Image>), Failure> {
+fn picture(args: &ExplainArgs, compiled: &CompiledInput, job: &Job) -> Result<(Option<Image>, Option<Image>), Failure> {
     let counts = if job.adaptive { Aov::from_name("sample-count") } else { None };
     let job = Job { crop: None, color: true, aovs: counts.into_iter().collect(), ..job.clone() };
     let control = Arc::new(Control { threads: args.render.work.threads.map(usize::from), ..Control::default() });
-    let render = || durer::render::render(&opened.world, &job, &control);
+    let render = || durer::render::render(&compiled.world, &job, &control);
     let rendered = progress::watch(&control, args.render.quiet, render).map_err(failed)?;
     let mut images = rendered.layers.into_iter().map(|layer| Arc::unwrap_or_clone(layer.image));
     Ok((images.next(), images.next()))
@@ -150,7 +150,7 @@ fn picture(args: &ExplainArgs, opened: &Opened, job: &Job) -> Result<(Option<Ima
 
 fn subject(
     args: &ExplainArgs,
-    opened: &Opened,
+    compiled: &CompiledInput,
     job: &Job,
     picture: Option<&Image>,
     counts: Option<&Image>,
@@ -162,14 +162,14 @@ fn subject(
             if !(ray.origin.is_finite() && ray.dir.is_finite() && ray.dir != Vec3::ZERO) {
                 return Err(bad("--ray needs finite numbers and a direction other than 0 0 0"));
             }
-            let world = &opened.world;
+            let world = &compiled.world;
             let light = explain_ray(world, job, &ray, SampleId::new(job.seed, (0, 0), 0));
             return light.map(|light| Subject::Ray(light.into())).ok_or_else(|| bad("this ray cannot be explained"));
         }
         (None, Some(pixel), _) => pixel,
         (None, None, Some(picture)) if args.brightest => most(picture, |x, y| luminance_of(at(picture, x, y))),
         (None, None, Some(picture)) if job.method.is_random() => {
-            return worst(opened, job, picture, counts).map(Subject::Pixel);
+            return worst(compiled, job, picture, counts).map(Subject::Pixel);
         }
         (None, None, Some(picture)) => most(picture, |x, y| oddness(picture, x, y)),
         (None, None, None) => return Err(bad("choose a pixel or a ray: --pixel X,Y, --brightest, --worst, or --ray")),
@@ -178,7 +178,7 @@ fn subject(
         let (x, y) = pixel;
         return Err(bad(format!("pixel {x},{y} is outside the picture of {} x {} pixels", job.width, job.height)));
     }
-    let world = &opened.world;
+    let world = &compiled.world;
     // Adaptive sampling of a crop gives other counts than the whole picture.
     let samples = counted(counts.filter(|_| job.crop.is_none()), pixel);
     let explanation = explain_of(world, job, pixel, samples).map_err(failed)?;
@@ -196,7 +196,7 @@ fn counted(counts: Option<&Image>, (x, y): (u32, u32)) -> Option<u32> {
 
 /// Returns the brightest firefly: among the pixels that differ most from their neighbours, the one
 /// to which a single sample adds most.
-fn worst(opened: &Opened, job: &Job, picture: &Image, counts: Option<&Image>) -> Result<Explanation, Failure> {
+fn worst(compiled: &CompiledInput, job: &Job, picture: &Image, counts: Option<&Image>) -> Result<Explanation, Failure> {
     const CANDIDATES: usize = 256;
     let places = (0..picture.height).flat_map(|y| (0..picture.width).map(move |x| (x, y)));
     let mut odd: Vec<(f64, (u32, u32))> = places.map(|(x, y)| (oddness(picture, x, y), (x, y))).collect();
@@ -205,7 +205,7 @@ fn worst(opened: &Opened, job: &Job, picture: &Image, counts: Option<&Image>) ->
     let mut best: Option<(f64, Explanation)> = None;
     for (_, (x, y)) in odd {
         let samples = counted(counts, (x, y));
-        let explanation = explain_of(&opened.world, job, (x, y), samples).map_err(failed)?;
+        let explanation = explain_of(&compiled.world, job, (x, y), samples).map_err(failed)?;
         // The border of a visible light is bright too, but not a firefly.
         let standing_out = if explanation.outlier().is_some() { 1.0 } else { 1e-6 };
         let adds = explanation.brightest().map_or(0.0, |(_, adds)| standing_out * adds);

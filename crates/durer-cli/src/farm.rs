@@ -3,7 +3,7 @@
 mod quote;
 
 use crate::failure::{Failure, bad};
-use crate::frames::{self, Frames, FramesArgs, Moves};
+use crate::frames::{self, Frames, FramesArgs, MotionSource};
 use crate::render::RenderCommand;
 use crate::terminal::say;
 use clap::{Args, FromArgMatches};
@@ -69,7 +69,7 @@ fn job_file(args: &FarmArgs) -> Result<String, Failure> {
         |path: &std::path::Path| path.to_str().map(String::from).ok_or_else(|| bad(format!("{path:?} is not UTF-8")));
     let scene = text(&args.scene)?;
     let names: Vec<&str> = std::iter::once(&scene).chain(&args.options).map(String::as_str).collect();
-    let frames = args.frames.asked(&args.scene, &names)?;
+    let frames = args.frames.resolve(&args.scene, &names)?;
     let stem = args.scene.file_stem().and_then(|stem| stem.to_str()).unwrap_or("picture").to_string();
     let output = args.output.as_deref().map_or_else(|| Ok(format!("{stem}.exr")), text)?;
     let output = if frames.is_some() { frames::pattern(&output) } else { output };
@@ -82,17 +82,17 @@ fn job_file(args: &FarmArgs) -> Result<String, Failure> {
     };
     let shards = args.shards.unwrap_or(if frames.is_some() { 1 } else { 16 });
     let is_animation = frames.is_some();
-    let (numbers, moves) = frames.unwrap_or((Frames { first: 0, last: 0, step: 1 }, Moves::Names));
+    let (numbers, moves) = frames.unwrap_or((Frames { first: 0, last: 0, step: 1 }, MotionSource::Names));
     let Some(tasks) = numbers.count().checked_mul(shards) else {
         return Err(bad(format!("{} frames of {shards} shards are too many tasks", numbers.count())));
     };
     // A frame as command-line words, and as an expression of the template's language.
     let (moving, words) = match moves {
-        Moves::Turntable(count) => {
+        MotionSource::Turntable(count) => {
             (format!("--turntable {count} "), format!(r#", "--turned", str(360 * frame / {count})"#))
         }
-        Moves::Time(rate) => (format!("--fps {rate} "), format!(r#", "--at", str(frame / {rate:?})"#)),
-        Moves::Names => (String::new(), String::new()),
+        MotionSource::Time(rate) => (format!("--fps {rate} "), format!(r#", "--at", str(frame / {rate:?})"#)),
+        MotionSource::Names => (String::new(), String::new()),
     };
     let values = [
         ("NAME", job_name(&stem)),
@@ -120,7 +120,7 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
     let words = ["render", "scene", "--output", "picture.png"].into_iter().chain(options.iter().map(String::as_str));
     let matches = RenderCommand::augment_args(clap::Command::new("render")).try_get_matches_from(words);
     match matches.and_then(|matches| RenderCommand::from_arg_matches(&matches)) {
-        Ok(command) if command.frames.is_asked() => {
+        Ok(command) if command.frames.is_requested() => {
             Err(bad("--frames and --turntable are options of the farm: put them before the render options"))
         }
         Ok(_) => Ok(()),

@@ -2,9 +2,9 @@
 
 use crate::failure::{Failure, bad};
 use crate::options::RenderArgs;
-use crate::picture::{Watched, once, output_of};
+use crate::picture::{WatchState, once, output_of};
 use clap::Args;
-use durer::compile::Kept;
+use durer::compile::AssetCache;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -66,7 +66,7 @@ fn rate(text: &str) -> Result<f64, String> {
 
 /// Source of movement between frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Moves {
+pub enum MotionSource {
     /// One rotation around the model in this many frames.
     Turntable(u16),
     /// Frame numbers in place of `%d`.
@@ -77,7 +77,7 @@ pub enum Moves {
 
 impl FramesArgs {
     /// Returns true if an animation is requested.
-    pub fn is_asked(&self) -> bool {
+    pub fn is_requested(&self) -> bool {
         self.frames.is_some() || self.turntable.is_some()
     }
 
@@ -86,14 +86,14 @@ impl FramesArgs {
     ///
     /// # Errors
     /// All frames would be equal.
-    pub fn asked(&self, scene: &Path, names: &[&str]) -> Result<Option<(Frames, Moves)>, Failure> {
+    pub fn resolve(&self, scene: &Path, names: &[&str]) -> Result<Option<(Frames, MotionSource)>, Failure> {
         let all = |count: u16| Frames { first: 0, last: u32::from(count) - 1, step: 1 };
         let Some(frames) = self.frames.or(self.turntable.map(all)) else { return Ok(None) };
         let extension = scene.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let moves = match self.turntable {
-            Some(count) => Moves::Turntable(count),
-            None if names.iter().any(|name| place(name).is_some()) => Moves::Names,
-            None if ["gltf", "glb"].contains(&extension.as_str()) => Moves::Time(self.fps),
+            Some(count) => MotionSource::Turntable(count),
+            None if names.iter().any(|name| place(name).is_some()) => MotionSource::Names,
+            None if ["gltf", "glb"].contains(&extension.as_str()) => MotionSource::Time(self.fps),
             None => {
                 return Err(bad(
                     "--frames: all frames would be equal; put %d in the name of the scene, --camera or --view-file, \
@@ -133,31 +133,34 @@ pub fn pattern(path: &str) -> String {
 }
 
 /// Renders the frames in order.
-pub fn run(args: &mut RenderArgs, frames: Frames, moves: Moves) -> Result<(), Failure> {
-    let staging = &args.reading.staging;
-    let own = staging.camera.is_some() || staging.view_file.is_some() || staging.turned.is_some();
-    if matches!(moves, Moves::Turntable(_)) && own {
+pub fn run(args: &mut RenderArgs, frames: Frames, moves: MotionSource) -> Result<(), Failure> {
+    let scene_defaults = &args.reading.scene_defaults;
+    let own = scene_defaults.camera.is_some() || scene_defaults.view_file.is_some() || scene_defaults.turned.is_some();
+    if matches!(moves, MotionSource::Turntable(_)) && own {
         return Err(bad("--turntable sets the view of each frame: remove --camera, --view-file and --turned"));
     }
-    if matches!(moves, Moves::Time(_)) && staging.at.is_some() {
+    if matches!(moves, MotionSource::Time(_)) && scene_defaults.at.is_some() {
         return Err(bad("--frames sets the time of each frame: remove --at"));
     }
     let utf8 = |path: &Path| path.to_str().map(String::from).ok_or_else(|| bad(format!("{path:?} is not UTF-8")));
     let (scene, output) = (utf8(&args.scene)?, pattern(&utf8(&output_of(args))?));
-    let (camera, view_file) = (staging.camera.clone(), staging.view_file.as_deref().map(utf8).transpose()?);
+    let (camera, view_file) =
+        (scene_defaults.camera.clone(), scene_defaults.view_file.as_deref().map(utf8).transpose()?);
     // Read meshes and pictures that frames share once.
-    let kept = Arc::new(Kept::default());
+    let kept = Arc::new(AssetCache::default());
     for frame in frames.numbers() {
         (args.scene, args.output) = (numbered(&scene, frame).into(), Some(numbered(&output, frame).into()));
-        let staging = &mut args.reading.staging;
-        staging.camera = camera.as_deref().map(|name| numbered(name, frame));
-        staging.view_file = view_file.as_deref().map(|name| PathBuf::from(numbered(name, frame)));
+        let scene_defaults = &mut args.reading.scene_defaults;
+        scene_defaults.camera = camera.as_deref().map(|name| numbered(name, frame));
+        scene_defaults.view_file = view_file.as_deref().map(|name| PathBuf::from(numbered(name, frame)));
         match moves {
-            Moves::Turntable(count) => staging.turned = Some((360.0 * f64::from(frame) / f64::from(count)) as f32),
-            Moves::Time(rate) => staging.at = Some((f64::from(frame) / rate) as f32),
-            Moves::Names => {}
+            MotionSource::Turntable(count) => {
+                scene_defaults.turned = Some((360.0 * f64::from(frame) / f64::from(count)) as f32)
+            }
+            MotionSource::Time(rate) => scene_defaults.at = Some((f64::from(frame) / rate) as f32),
+            MotionSource::Names => {}
         }
-        once(args, None, &Watched::keeping(&kept))?;
+        once(args, None, &WatchState::keeping(&kept))?;
     }
     Ok(())
 }

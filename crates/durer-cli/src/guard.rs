@@ -12,12 +12,12 @@ use std::path::{Path, PathBuf};
 /// Files of one run.
 #[derive(Default)]
 pub struct Guard {
-    inputs: Vec<Named>,
-    outputs: Vec<Named>,
+    inputs: Vec<NamedFile>,
+    outputs: Vec<NamedFile>,
 }
 
 /// A file, the option that names it, and its identity.
-struct Named {
+struct NamedFile {
     what: &'static str,
     path: PathBuf,
     identity: Identity,
@@ -62,7 +62,7 @@ fn inode(_: &Path) -> Option<(u64, u64)> {
 impl Guard {
     /// Registers an input. Fails if it is also an output.
     pub fn reads(&mut self, path: &Path) -> Result<(), Failure> {
-        let input = Named { what: "", path: path.into(), identity: Identity::of(path) };
+        let input = NamedFile { what: "", path: path.into(), identity: Identity::of(path) };
         if let Some(output) = self.outputs.iter().find(|output| output.identity.is_same(&input.identity)) {
             return Err(both(output, &input));
         }
@@ -95,8 +95,8 @@ impl Guard {
 
     /// Registers a file that is only removed, or replaced under another claim.
     pub fn claim(&mut self, what: &'static str, path: &Path) -> Result<(), Failure> {
-        let output = Named { what, path: path.into(), identity: Identity::of(path) };
-        let same = |other: &&Named| other.identity.is_same(&output.identity);
+        let output = NamedFile { what, path: path.into(), identity: Identity::of(path) };
+        let same = |other: &&NamedFile| other.identity.is_same(&output.identity);
         if let Some(input) = self.inputs.iter().find(same) {
             return Err(both(&output, input));
         }
@@ -127,7 +127,7 @@ pub fn start_of(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(start)
 }
 
-fn both(output: &Named, input: &Named) -> Failure {
+fn both(output: &NamedFile, input: &NamedFile) -> Failure {
     let (what, path) = (output.what, output.path.display());
     let named = if output.path == input.path { String::new() } else { format!(", as `{}`", input.path.display()) };
     bad(format!("{what}: `{path}` would be overwritten, but it is an input of this run{named}: choose another name"))

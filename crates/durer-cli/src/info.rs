@@ -29,10 +29,10 @@ pub struct InfoArgs {
 }
 
 pub fn run(args: &InfoArgs) -> Result<(), Failure> {
-    let opened = open(&args.scene, &load_options(&args.reading), args.json, &mut Guard::default())?;
-    let (loaded, world) = (&opened.loaded, &opened.world);
+    let compiled = open(&args.scene, &load_options(&args.reading), args.json, &mut Guard::default())?;
+    let (loaded, world) = (&compiled.loaded, &compiled.world);
     let dialect = loaded.dialect;
-    let count = Counted::of(world);
+    let count = WorldCounts::of(world);
     let rays = rays(world);
     let per_ray = |count: u64| (rays.rays > 0).then(|| count as f64 / rays.rays as f64);
     if args.json {
@@ -63,7 +63,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let (name, rest) = (camera.keyword(dialect), fields(camera, &["center", "direction"]));
     say(&format!("camera     {name} at {}, looking along {}: {rest}", pose.center, pose.direction));
     let natural = || Raster::natural_size(camera.proportions(), loaded.rules.size);
-    let (width, height) = loaded.scene.wishes.size.unwrap_or_else(natural);
+    let (width, height) = loaded.scene.render_defaults.size.unwrap_or_else(natural);
     say(&format!("picture    {width}x{height} by default"));
     for light in world.lights() {
         say(&format!("light      {}: {}", light.keyword(dialect), fields(light, &[])));
@@ -119,9 +119,9 @@ fn mib(bytes: usize) -> f64 {
 }
 
 /// Formats the fields of an object, except some.
-fn fields<T: DescribedList>(thing: &T, except: &[&str]) -> String {
-    let wanted = thing.fields().iter().enumerate().filter(|(_, field)| !except.contains(&field.name));
-    let shown = wanted.filter_map(|(i, field)| Some(format!("{} {}", field.name, value(&thing.get(i)?))));
+fn fields<T: DescribedList>(item: &T, except: &[&str]) -> String {
+    let wanted = item.fields().iter().enumerate().filter(|(_, field)| !except.contains(&field.name));
+    let shown = wanted.filter_map(|(i, field)| Some(format!("{} {}", field.name, value(&item.get(i)?))));
     shown.collect::<Vec<_>>().join(", ")
 }
 
@@ -139,7 +139,7 @@ fn value(value: &durer::describe::Value) -> String {
 
 /// Contents of a world.
 #[derive(Default)]
-struct Counted {
+struct WorldCounts {
     shapes: BTreeMap<&'static str, usize>,
     triangles: usize,
     distinct_triangles: usize,
@@ -151,7 +151,7 @@ struct Counted {
     object_cost: Option<f64>,
 }
 
-impl Counted {
+impl WorldCounts {
     /// Counts a mesh; memory of a shared mesh counts once.
     fn mesh(&mut self, tree: &Arc<MeshTree>, seen: &mut Vec<*const MeshTree>) {
         self.triangles += tree.mesh.len();
@@ -175,7 +175,7 @@ impl Counted {
     }
 
     fn of(world: &World) -> Self {
-        let mut count = Counted::default();
+        let mut count = WorldCounts::default();
         let mut seen = Vec::new();
         for object in world.objects() {
             let name = match &object.geometry {

@@ -3,17 +3,17 @@
 use crate::failure::{Failure, bad};
 use crate::options::{JobArgs, SceneArgs, ViewArgs};
 use crate::report;
-use durer::Loaded;
+use durer::LoadedScene;
 use durer::camera::{Projection, Raster};
 use durer::diag::Diagnostic;
-use durer::dialect::Compat;
+use durer::dialect::Quirk;
 use durer::job::{RenderJob, View};
 use durer::render::{Job, Sampling};
 use durer::world::World;
 
 /// Returns the job for the options; without a view, the colour of the whole picture. `timed` is
 /// true if a time limit ends it.
-pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &Loaded, timed: bool) -> Result<Job, Failure> {
+pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &LoadedScene, timed: bool) -> Result<Job, Failure> {
     let view = view.map(|view| View { crop: view.crop, show: view.show.clone() });
     args.options.resolve(&loaded.job_context(timed), view.as_ref()).map_err(bad)
 }
@@ -40,15 +40,15 @@ pub fn warn(job: &Job, world: &World) {
 
 /// Returns the options that reproduce a job, without its size: those that differ from the scene's
 /// defaults.
-pub fn spelled(reading: &SceneArgs, job: &Job, loaded: &Loaded) -> String {
-    let asked = loaded.guess.is_none();
+pub fn spelled(reading: &SceneArgs, job: &Job, loaded: &LoadedScene) -> String {
+    let requested = loaded.guess.is_none();
     let mut words: Vec<String> = Vec::new();
     let mut add = |word: String| words.push(word);
-    if asked {
+    if requested {
         add(format!("--dialect {}", loaded.dialect.name()));
     }
     for (compat, on) in &reading.compat {
-        let name = Compat::ALL.iter().find(|row| row.0 == *compat).map_or("", |row| row.1);
+        let name = Quirk::ALL.iter().find(|row| row.0 == *compat).map_or("", |row| row.1);
         add(format!("--compat {}{name}", if *on { "" } else { "no-" }));
     }
     for assets in &reading.assets {

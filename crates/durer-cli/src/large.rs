@@ -52,7 +52,7 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
 }
 
 /// Statistics and hash of a written picture, or the error.
-type Made = Result<(Statistics, Option<Digest>), BandsError>;
+type WriteResult = Result<(Statistics, Option<Digest>), BandsError>;
 
 /// A picture that is rendered when it is written.
 struct Large<'a> {
@@ -62,7 +62,7 @@ struct Large<'a> {
     format: &'a Format,
     options: WriteOptions<'a>,
     /// Result of the render, set by `write_to`.
-    made: RefCell<Option<Made>>,
+    made: RefCell<Option<WriteResult>>,
 }
 
 impl Content for &Large<'_> {

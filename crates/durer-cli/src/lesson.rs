@@ -3,7 +3,7 @@
 mod folder;
 mod markdown;
 mod page;
-mod written;
+mod step_files;
 
 use crate::failure::{Failure, bad, failed};
 use crate::guard::Guard;
@@ -21,7 +21,7 @@ use durer::lesson::{OWN_SCENE, OWN_SCENE_NAME, Stage, TOPICS, Teacher};
 use durer::render::Control;
 use folder::Folder;
 use std::path::{Path, PathBuf};
-use written::{Lesson, PAGE, TEXT};
+use step_files::{Lesson, PAGE, TEXT};
 
 /// Write a lesson about a scene: rays, distance, normals and lights step by step, with equations
 /// and common mistakes
@@ -72,19 +72,19 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     let folder = Folder::new(args.output.clone().unwrap_or_else(|| lengthened(stem, "-lesson")), &mut guard)?;
     let mut options = load_options(&args.reading);
     (options.accel, options.threads) = (accel(&args.job)?, args.threads.map(usize::from));
-    options.staging.aspect = aspect(&args.job);
-    let opened = open(&args.scene, &options, args.quiet, &mut guard)?;
-    let mut job = job(&args.job, None, &opened.loaded, false)?;
+    options.scene_defaults.aspect = aspect(&args.job);
+    let compiled = open(&args.scene, &options, args.quiet, &mut guard)?;
+    let mut job = job(&args.job, None, &compiled.loaded, false)?;
     if args.job.options.given_size().is_none() {
-        let proportions = opened.world.camera().proportions();
+        let proportions = compiled.world.camera().proportions();
         (job.width, job.height) = Raster::natural_size(proportions, (SIDE, SIDE));
     }
     checked_count(job.width, job.height).map_err(|error| bad(error.to_string()))?;
     if !args.quiet {
-        warn(&job, &opened.world);
+        warn(&job, &compiled.world);
     }
     let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
-    let mut teacher = Teacher::new(Stage::new(opened.loaded.scene, opened.files, opened.world, job), transfer);
+    let mut teacher = Teacher::new(Stage::new(compiled.loaded.scene, compiled.files, compiled.world, job), transfer);
     let control = Control { threads: options.threads, ..Control::default() };
     let scene = args.scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut lesson = Lesson { scene, steps: Vec::new(), pictures: Vec::new(), transfer };

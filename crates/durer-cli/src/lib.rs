@@ -1,6 +1,7 @@
 //! The `durer` command: a thin shell over the library.
 
 mod args;
+mod autosave;
 mod check;
 mod compare;
 mod convert;
@@ -15,7 +16,6 @@ mod frames;
 mod guard;
 mod info;
 mod job;
-mod keep;
 mod large;
 mod lesson;
 mod live;
@@ -32,7 +32,7 @@ mod pointers;
 mod progress;
 mod render;
 mod report;
-mod staging;
+mod scene_defaults;
 mod stats;
 mod terminal;
 mod values;
@@ -53,7 +53,7 @@ pub use terminal::look_at_standard_output;
 /// Executes a command line, whose first word is the program's name, and returns the exit code.
 /// Handles signals. `end` ends the process immediately with an exit code: after a second Ctrl-C, or
 /// if standard output cannot be written to.
-pub fn run(words: Vec<OsString>, end: terminal::End) -> u8 {
+pub fn run(words: Vec<OsString>, end: terminal::ExitFn) -> u8 {
     terminal::set_end(end);
     progress::hear_interrupts();
     if let Err(error) = durer::bvh::SimdLevel::from_environment() {

@@ -34,12 +34,12 @@ pub fn run(args: &LiveArgs) -> Result<(), Failure> {
 /// Fails if a file cannot be opened.
 fn readable(path: &Path) -> Result<(), Failure> {
     // Opening a pipe would block.
-    let opened = match std::fs::metadata(path) {
+    let compiled = match std::fs::metadata(path) {
         Ok(metadata) if !metadata.is_file() => return Err(bad(format!("{}: not a file", path.display()))),
         Ok(_) => std::fs::File::open(path).map(drop),
         Err(error) => Err(error),
     };
-    opened.map_err(|error| bad(format!("{}: {error}", path.display())))
+    compiled.map_err(|error| bad(format!("{}: {error}", path.display())))
 }
 
 /// Serves a teacher's lesson.

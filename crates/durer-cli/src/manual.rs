@@ -4,14 +4,14 @@ use crate::args::Cli;
 use crate::failure::Failure;
 use crate::terminal::say;
 use clap::CommandFactory;
-use durer::dialect::{Compat, Dialect};
+use durer::dialect::{Dialect, Quirk};
 
 /// `durer dialects`: prints the dialects and the quirks.
 pub fn dialects() -> Result<(), Failure> {
     say("Dialects (--dialect NAME):");
     for dialect in Dialect::ALL {
         let rules = dialect.rules();
-        let names = Compat::ALL.iter().filter(|row| rules.has(row.0)).map(|row| row.1);
+        let names = Quirk::ALL.iter().filter(|row| rules.has(row.0)).map(|row| row.1);
         let quirks: Vec<&str> = names.collect();
         say(&format!("  {:<7}{}", rules.name, rules.title));
         if !quirks.is_empty() {
@@ -19,7 +19,7 @@ pub fn dialects() -> Result<(), Failure> {
         }
     }
     say("\nQuirks of the official programs, and a common bug (--compat NAME, --compat no-NAME):");
-    for (_, name, doc) in Compat::ALL {
+    for (_, name, doc) in Quirk::ALL {
         say(&format!("  {name:<18}{}", doc.split_whitespace().collect::<Vec<_>>().join(" ")));
     }
     Ok(())

@@ -3,17 +3,17 @@
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
 use crate::open::{load_options, open};
-use crate::options::{MethodArgs, SceneArgs};
+use crate::options::{IntegratorArgs, SceneArgs};
 use crate::report;
 use crate::terminal::say;
 use clap::Args;
 use durer::diag::Diagnostic;
-use durer::integrator::{Integrate, Integrator, Method, Settings, Setup};
+use durer::integrator::{Integrate, Integrator, IntegratorContext, IntegratorKind, WhittedOptions};
 use durer::math::{Color, LUMINANCE, Ray64, Vec3};
 use durer::render::Job;
 use durer::sampler::SampleId;
 use durer::scene::Axis;
-use durer::scene::staging::Sides;
+use durer::scene::defaults::Sides;
 use durer::threads;
 use durer::world::World;
 use rayon::prelude::*;
@@ -54,7 +54,7 @@ pub struct MeasureArgs {
     #[arg(long, default_value_t = durer::job::PATH_BOUNCES, value_parser = clap::value_parser!(u32).range(0..=256))]
     pub bounces: u32,
     #[command(flatten)]
-    pub method: MethodArgs,
+    pub method: IntegratorArgs,
     /// Samples per point
     #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u32).range(2..=1 << 24))]
     pub samples: u32,
@@ -146,11 +146,11 @@ fn vector_of(v: Vec3) -> String {
 pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let mut options = load_options(&args.reading);
     // Measure only the scene's own light.
-    options.staging.own_light = options.staging.studio.is_none();
-    let opened = open(&args.scene, &options, false, &mut Guard::default())?;
-    let scene = &opened.loaded.scene;
+    options.scene_defaults.own_light = options.scene_defaults.studio.is_none();
+    let compiled = open(&args.scene, &options, false, &mut Guard::default())?;
+    let scene = &compiled.loaded.scene;
     let up = Sides::new(scene.up.unwrap_or(Axis::Y)).up.as_vec3();
-    let lumens = opened.world.lumens().unwrap_or(LUMINANCE);
+    let lumens = compiled.world.lumens().unwrap_or(LUMINANCE);
     let grids = args.grid.iter().flat_map(|grid| {
         let normal = grid.edges[1].cross(grid.edges[0]).normalize_or(up);
         let normal = if normal.dot(up) < 0.0 { -normal } else { normal };
@@ -165,14 +165,14 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         let Some(normal) = normal.try_normalize() else { return Err(bad("--normal must not be 0,0,0")) };
         places.iter_mut().for_each(|place| place.1 = normal);
     }
-    let settings = Settings { bounces: args.bounces, ..Job::default().settings };
-    let method = args.method.0.resolved_method(Method::PATH).map_err(bad)?;
-    let setup = Setup { world: &opened.world, settings, cone: None, seed: args.seed, cancel: None };
+    let settings = WhittedOptions { bounces: args.bounces, ..Job::default().settings };
+    let method = args.method.0.resolved_method(IntegratorKind::PATH).map_err(bad)?;
+    let setup = IntegratorContext { world: &compiled.world, settings, cone: None, seed: args.seed, cancel: None };
     let (Integrator::Path(path) | Integrator::Photons(path)) = method.over(setup) else {
         return Err(bad("only path tracing can measure illuminance: set --integrator path or photons"));
     };
     if path.photons.is_some()
-        && let Some(point) = in_the_air(&opened.world, &places)
+        && let Some(point) = in_the_air(&compiled.world, &places)
     {
         let message = format!(
             "photons are stored on surfaces, but {} is not on one: light from mirrors and glass would be missing",

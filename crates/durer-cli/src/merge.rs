@@ -1,9 +1,9 @@
 //! `durer merge`: merges the parts of a picture.
 
+use crate::autosave::read_part;
 use crate::display::DisplayArgs;
 use crate::failure::{Failure, bad, failed};
 use crate::guard::Guard;
-use crate::keep::read_part;
 use crate::output;
 use crate::output::Target;
 use crate::report::rejected;

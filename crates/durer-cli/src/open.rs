@@ -7,12 +7,12 @@ use crate::report;
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::Dialect;
 use durer::world::World;
-use durer::{LoadOptions, Loaded, load};
+use durer::{LoadOptions, LoadedScene, load};
 use std::path::Path;
 
 /// A compiled scene.
-pub struct Opened {
-    pub loaded: Loaded,
+pub struct CompiledInput {
+    pub loaded: LoadedScene,
     pub world: World,
     pub files: Files,
     /// Diagnostics, already printed.
@@ -20,19 +20,19 @@ pub struct Opened {
 }
 
 /// A scene that was read but not compiled. Compiling it prints the diagnostics.
-pub struct Read {
-    pub loaded: Loaded,
+pub struct ParsedInput {
+    pub loaded: LoadedScene,
     files: Files,
     diagnostics: Diagnostics,
     quiet: bool,
 }
 
 /// Reads a scene.
-pub fn read(path: &Path, options: &LoadOptions, quiet: bool, guard: &mut Guard) -> Result<Read, Failure> {
+pub fn read(path: &Path, options: &LoadOptions, quiet: bool, guard: &mut Guard) -> Result<ParsedInput, Failure> {
     guard.reads(path)?;
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     match load(path, options, &mut files, &mut diagnostics).map_err(report::unreadable)? {
-        Some(loaded) => Ok(Read { loaded, files, diagnostics, quiet }),
+        Some(loaded) => Ok(ParsedInput { loaded, files, diagnostics, quiet }),
         None => {
             report::print(&files, &diagnostics, quiet);
             Err(Failure::Input(None))
@@ -40,24 +40,24 @@ pub fn read(path: &Path, options: &LoadOptions, quiet: bool, guard: &mut Guard) 
     }
 }
 
-impl Read {
+impl ParsedInput {
     /// The same scene, whose warnings are not printed when it is compiled.
     pub fn quiet(self) -> Self {
-        Read { quiet: true, ..self }
+        ParsedInput { quiet: true, ..self }
     }
 
     /// Compiles the scene and prints the diagnostics.
-    pub fn compile(mut self, options: &LoadOptions, guard: &mut Guard) -> Result<Opened, Failure> {
+    pub fn compile(mut self, options: &LoadOptions, guard: &mut Guard) -> Result<CompiledInput, Failure> {
         let world = self.loaded.compile(options, &mut self.files, &mut self.diagnostics);
         report::print(&self.files, &self.diagnostics, self.quiet);
         let world = world.ok_or(Failure::Input(None))?;
         self.loaded.files().iter().try_for_each(|path| guard.reads(path))?;
-        Ok(Opened { loaded: self.loaded, world, files: self.files, diagnostics: self.diagnostics })
+        Ok(CompiledInput { loaded: self.loaded, world, files: self.files, diagnostics: self.diagnostics })
     }
 }
 
 /// Reads and compiles a scene.
-pub fn open(path: &Path, options: &LoadOptions, quiet: bool, guard: &mut Guard) -> Result<Opened, Failure> {
+pub fn open(path: &Path, options: &LoadOptions, quiet: bool, guard: &mut Guard) -> Result<CompiledInput, Failure> {
     read(path, options, quiet, guard)?.compile(options, guard)
 }
 
@@ -77,7 +77,7 @@ pub fn load_options(args: &SceneArgs) -> LoadOptions {
         allow_outside: args.allow_outside,
         assets: args.assets.clone(),
         memory: args.memory.bytes(),
-        staging: args.staging.staging(),
+        scene_defaults: args.scene_defaults.scene_defaults(),
         ..LoadOptions::default()
     }
 }

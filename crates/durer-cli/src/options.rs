@@ -5,10 +5,10 @@ mod method;
 
 use crate::denoise::Denoiser;
 use crate::display::DisplayArgs;
-use crate::staging::StagingArgs;
+use crate::scene_defaults::SceneDefaultsArgs;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use durer::dialect::{Compat, Dialect};
+use durer::dialect::{Dialect, Quirk};
 use durer::film::aov::AOVS;
 use durer::options::memory::Memory;
 use durer::options::{compat, crop, doc};
@@ -17,7 +17,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 pub use job::{JobArgs, accel, aspect};
-pub use method::MethodArgs;
+pub use method::IntegratorArgs;
 
 /// Options for reading a scene
 #[derive(Args)]
@@ -25,7 +25,7 @@ pub struct SceneArgs {
     #[arg(long, value_parser = PossibleValuesParser::new(Dialect::ALL.map(Dialect::name)), help = doc("dialect"))]
     pub dialect: Option<String>,
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = compat, help = doc("compat"))]
-    pub compat: Vec<(Compat, bool)>,
+    pub compat: Vec<(Quirk, bool)>,
     #[arg(long, help = doc("strict"))]
     pub strict: bool,
     #[arg(long, help = doc("allow-outside"))]
@@ -35,7 +35,7 @@ pub struct SceneArgs {
     #[arg(long, default_value = "80%", hide_default_value = true, value_name = "SIZE", value_parser = Memory::parse, help = doc("memory"))]
     pub memory: Memory,
     #[command(flatten)]
-    pub staging: StagingArgs,
+    pub scene_defaults: SceneDefaultsArgs,
 }
 
 /// Options for rendering a picture

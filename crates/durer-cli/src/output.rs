@@ -5,7 +5,7 @@ use crate::guard::Guard;
 use crate::options::DIAGRAMS;
 use crate::progress;
 use crate::terminal::say;
-use durer::check::picture::Looks;
+use durer::check::picture::PictureScan;
 use durer::image::{Content, Depth, Destination, Display, Format, Layer, WriteOptions, format_for, save_all};
 use durer::render::{BandsError, PartialRender, Rendered};
 use std::cell::RefCell;
@@ -59,12 +59,17 @@ impl Target {
 
     /// Saves the colours of a part row by row, without a whole picture in memory. Returns
     /// statistics of the colours, or `None` if the file needs more than that.
-    pub fn save_colors(&self, part: &PartialRender, display: Display, quiet: bool) -> Result<Option<Looks>, Failure> {
+    pub fn save_colors(
+        &self,
+        part: &PartialRender,
+        display: Display,
+        quiet: bool,
+    ) -> Result<Option<PictureScan>, Failure> {
         let only_colors = part.job().color && part.job().aovs.is_empty();
         let rows = |format: &Format| only_colors && format.rows.is_some() && !format.layers;
         let Some((place, format)) = self.single().filter(|(_, format)| rows(format)) else { return Ok(None) };
         progress::saving();
-        let colors = Colors { part, format, display, looks: RefCell::new(Looks::new(display.exposure)) };
+        let colors = Colors { part, format, display, looks: RefCell::new(PictureScan::new(display.exposure)) };
         save_all(&[(place, &colors)])?;
         wrote(place, quiet);
         Ok(Some(colors.looks.into_inner()))
@@ -96,7 +101,7 @@ struct Colors<'a> {
     format: &'static Format,
     display: Display,
     /// Statistics of the colours.
-    looks: RefCell<Looks>,
+    looks: RefCell<PictureScan>,
 }
 
 impl Content for &Colors<'_> {

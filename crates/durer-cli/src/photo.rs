@@ -16,7 +16,7 @@ use crate::failure::Failure;
 use crate::guard::Guard;
 use args::PhotoCommand;
 use inputs::read;
-use results::{Results, tell};
+use results::{Results, report};
 
 pub fn run(args: &PhotoArgs) -> Result<(), Failure> {
     match &args.command {
@@ -32,7 +32,7 @@ pub fn run(args: &PhotoArgs) -> Result<(), Failure> {
             results.add(&all)?;
             results.save(args.quiet)?;
             if !args.quiet {
-                tell(&all);
+                report(&all);
             }
             Ok(())
         }

@@ -1,8 +1,8 @@
 //! One picture, from the scene file to the written files.
 
+use crate::autosave::Autosave;
 use crate::failure::{Failure, bad, failed};
 use crate::guard::Guard;
-use crate::keep::Keeper;
 use crate::open::{load_options, read};
 use crate::options::{DIAGRAMS, ERROR, RenderArgs, accel, aspect};
 use crate::output::{Target, lengthened};
@@ -10,7 +10,7 @@ use crate::report::rejected;
 use crate::stats::Stages;
 use crate::terminal::{complain, say};
 use crate::{check, diagrams, job, large, output, progress};
-use durer::compile::Kept;
+use durer::compile::AssetCache;
 use durer::image::checked_count;
 use durer::render::{
     Bands, Control, Job, Panicked, PartialRender, RenderError, RenderOutcome, Rendered, Shard, ShardBy, replay,
@@ -22,20 +22,20 @@ use std::sync::{Arc, Mutex};
 
 /// State shared between a render and `--watch`.
 #[derive(Default)]
-pub struct Watched {
+pub struct WatchState {
     /// Files that the scene uses, besides its own.
     pub files: Mutex<Vec<PathBuf>>,
     /// True if a file has been saved since the render began.
     pub stale: AtomicBool,
     /// Data kept from earlier renders.
-    pub kept: Option<Arc<Kept>>,
+    pub cache: Option<Arc<AssetCache>>,
     control: Mutex<Option<Arc<Control>>>,
 }
 
-impl Watched {
+impl WatchState {
     /// Keeps the scene's data from one picture to the next.
-    pub fn keeping(kept: &Arc<Kept>) -> Self {
-        Watched { kept: Some(Arc::clone(kept)), ..Watched::default() }
+    pub fn keeping(cache: &Arc<AssetCache>) -> Self {
+        WatchState { cache: Some(Arc::clone(cache)), ..WatchState::default() }
     }
 
     /// Cancels the render.
@@ -71,7 +71,7 @@ pub fn output_of(args: &RenderArgs) -> PathBuf {
 }
 
 /// Renders a scene.
-pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Result<(), Failure> {
+pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchState) -> Result<(), Failure> {
     let shard = match args.work.shard {
         Some(shard) if args.work.shard_by == "samples" => Shard { by: ShardBy::Samples, ..shard },
         shard => shard.unwrap_or(Shard::WHOLE),
@@ -79,20 +79,20 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
     let output = output_of(args);
     // Report what would prevent writing before the work.
     let mut guard = Guard::default();
-    let (target, keeper) = match (pixel, args.work.shard) {
+    let (target, autosave) = match (pixel, args.work.shard) {
         (Some(_), _) => (None, None),
-        (_, Some(_)) => (None, Some(Keeper::new(args, &output, &mut guard)?)),
+        (_, Some(_)) => (None, Some(Autosave::new(args, &output, &mut guard)?)),
         _ => {
             let target = Target::new(&output, &shows(args)?, &mut guard)?;
-            (Some(target), Some(Keeper::new(args, &output, &mut guard)?))
+            (Some(target), Some(Autosave::new(args, &output, &mut guard)?))
         }
     };
     let mut options = load_options(&args.reading);
     let memory = options.memory;
     let threads = args.work.threads.map(usize::from);
     (options.accel, options.threads) = (accel(&args.job)?, threads);
-    options.staging.aspect = aspect(&args.job);
-    options.kept = watched.kept.clone();
+    options.scene_defaults.aspect = aspect(&args.job);
+    options.cache = watched.cache.clone();
     let mut stages = Stages::begin();
     let scene = read(&args.scene, &options, args.quiet, &mut guard)?;
     stages.ends("reading");
@@ -115,13 +115,13 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
         return Err(failed(RenderError::Memory { needed, allowed }));
     }
     options.rays = Some(window.pixels().saturating_mul(u64::from(job.sampling.samples())));
-    let opened = scene.compile(&options, &mut guard)?;
+    let compiled = scene.compile(&options, &mut guard)?;
     stages.ends("meshes, pictures and trees");
     if let Ok(mut files) = watched.files.lock() {
-        *files = opened.loaded.files();
+        *files = compiled.loaded.files();
     }
     if !args.quiet {
-        job::warn(&job, &opened.world);
+        job::warn(&job, &compiled.world);
     }
     let control = Arc::new(Control {
         threads,
@@ -134,11 +134,11 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
     });
     watched.begins(&control);
     if let (Some(bands), Some(target)) = (&bands, &target) {
-        return large::render(bands, &opened.world, &control, target, args);
+        return large::render(bands, &compiled.world, &control, target, args);
     }
-    let keeper = match (pixel, keeper) {
-        (None, Some(keeper)) => keeper,
-        (pixel, _) => return print_pixel(&opened.world, &job, &control, pixel.unwrap_or_default()),
+    let autosave = match (pixel, autosave) {
+        (None, Some(autosave)) => autosave,
+        (pixel, _) => return print_pixel(&compiled.world, &job, &control, pixel.unwrap_or_default()),
     };
     let shows_error = args.view.show.iter().any(|show| show == ERROR);
     if shows_error && (target.is_none() || job.method.transport().is_none()) {
@@ -153,22 +153,22 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
         }
         diagrams::check(&job, args.view.zoom).map_err(failed)?;
     }
-    let part = keeper.begin(PartialRender::new(&opened.world, &job, shard).map_err(failed)?)?;
+    let part = autosave.begin(PartialRender::new(&compiled.world, &job, shard).map_err(failed)?)?;
     let stop = progress::watch(&control, args.quiet, || {
-        part.render(&opened.world, &control, &mut |part, moment| keeper.watch(part, moment))
+        part.render(&compiled.world, &control, &mut |part, moment| autosave.watch(part, moment))
     })
     .map_err(failed)?;
     stages.ends("rendering");
-    rejected(&part.statistics(), Some(&opened.world), args.quiet);
+    rejected(&part.statistics(), Some(&compiled.world), args.quiet);
     let finished = match &stop {
         RenderOutcome::Finished => true,
         RenderOutcome::OutOfTime => part.is_finished(),
         RenderOutcome::Cancelled if watched.stale.load(Relaxed) => return Err(Failure::Interrupted(String::new())),
-        RenderOutcome::Cancelled => return Err(stopped(args, &part, &keeper, target.as_ref())),
-        RenderOutcome::Panicked(panicked) => return Err(keeper.after_panic(&part, panicked, &replaying(panicked))),
+        RenderOutcome::Cancelled => return Err(stopped(args, &part, &autosave, target.as_ref())),
+        RenderOutcome::Panicked(panicked) => return Err(autosave.after_panic(&part, panicked, &replaying(panicked))),
     };
     match target {
-        None => keeper.save(&part)?,
+        None => autosave.save(&part)?,
         Some(target) => {
             let display = args.display.display()?;
             let plain = args.view.show == ["color"] && args.denoise.is_none();
@@ -176,15 +176,15 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
             let (looks, pictures) = match durer::threads::install(threads, saved)? {
                 Some(looks) => (Some(looks), Vec::new()),
                 None => {
-                    let rendered = pictures(args, &opened.world, &part, &control)?;
+                    let rendered = pictures(args, &compiled.world, &part, &control)?;
                     let files = durer::threads::install(threads, || target.files(&rendered, display))?;
                     output::save(&files, args.quiet)?;
                     (check::looks(&job, &rendered.pictures, display.exposure), rendered.pictures)
                 }
             };
-            keeper.done(&part, finished);
+            autosave.done(&part, finished);
             if finished && !args.quiet {
-                check::after_render(&opened, &job, looks.as_ref(), &pictures, &part.statistics(), display);
+                check::after_render(&compiled, &job, looks.as_ref(), &pictures, &part.statistics(), display);
             }
         }
     }
@@ -193,7 +193,7 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
     }
     stages.ends("writing");
     if args.stats {
-        stages.tell(&opened.world, &part)?;
+        stages.report(&compiled.world, &part)?;
     }
     if args.hash {
         say(&part.hash().to_string());
@@ -238,8 +238,8 @@ fn shows(args: &RenderArgs) -> Result<Vec<&str>, Failure> {
 
 /// Saves the work after Ctrl-C. Writes the picture only if every pixel has a sample: it may replace
 /// a better one.
-fn stopped(args: &RenderArgs, part: &PartialRender, keeper: &Keeper, target: Option<&Target>) -> Failure {
-    let mut written = keeper.after_interrupt(part);
+fn stopped(args: &RenderArgs, part: &PartialRender, autosave: &Autosave, target: Option<&Target>) -> Failure {
+    let mut written = autosave.after_interrupt(part);
     if let Some(target) = target.filter(|_| part.is_whole()) {
         let display = args.display.display().unwrap_or_default();
         let files = part.pictures().map_err(failed).and_then(|rendered| target.files(&rendered, display));

@@ -45,7 +45,7 @@ fn interrupt(signal: u8) {
     interrupted_by(signal);
     match &mut *phase {
         Phase::Rendering(control) if !control.cancel.swap(true, Relaxed) => {}
-        Phase::Saving(asked @ false) => *asked = true,
+        Phase::Saving(requested @ false) => *requested = true,
         Phase::Idle => end(0),
         phase => {
             let what =

@@ -3,7 +3,7 @@
 use crate::failure::{Failure, bad};
 use crate::frames::FramesArgs;
 use crate::options::RenderArgs;
-use crate::picture::{Pixel, Watched, once};
+use crate::picture::{Pixel, WatchState, once};
 use crate::values::pixel;
 use crate::{frames, watching};
 use clap::Args;
@@ -49,10 +49,10 @@ pub struct RenderCommand {
 }
 
 pub fn run(mut command: RenderCommand) -> Result<(), Failure> {
-    let (args, staging) = (&command.render, &command.render.reading.staging);
-    let view = staging.view_file.as_deref().unwrap_or(Path::new("")).to_string_lossy();
-    let names = [&args.scene.to_string_lossy(), staging.camera.as_deref().unwrap_or_default(), &view];
-    match (command.frames.asked(&args.scene, &names)?, args.watch) {
+    let (args, scene_defaults) = (&command.render, &command.render.reading.scene_defaults);
+    let view = scene_defaults.view_file.as_deref().unwrap_or(Path::new("")).to_string_lossy();
+    let names = [&args.scene.to_string_lossy(), scene_defaults.camera.as_deref().unwrap_or_default(), &view];
+    match (command.frames.resolve(&args.scene, &names)?, args.watch) {
         (Some((frames, moves)), _) => {
             let work = &args.work;
             if work.checkpoint.is_some() || work.preview.is_some() || args.watch || command.pixel.is_some() {
@@ -69,7 +69,7 @@ pub fn run(mut command: RenderCommand) -> Result<(), Failure> {
         }
         (None, false) => {
             let sample = command.sample;
-            once(args, command.pixel.map(|place| Pixel { place, sample }), &Watched::default())
+            once(args, command.pixel.map(|place| Pixel { place, sample }), &WatchState::default())
         }
     }
 }

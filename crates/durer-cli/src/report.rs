@@ -7,7 +7,7 @@ use codespan_reporting::files::{self, SimpleFiles};
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use codespan_reporting::term::{Config, emit_to_write_style};
 use durer::diag::{Diagnostic, Diagnostics, ERROR_LIMIT, Files, Severity, Span};
-use durer::light::{Emitter as _, Light};
+use durer::light::{Illuminate as _, Light};
 use durer::math::Vec3;
 use durer::render::Statistics;
 use durer::source::SourceError;
@@ -75,7 +75,7 @@ pub fn rejected(statistics: &Statistics, world: Option<&World>, quiet: bool) {
 /// programs.
 fn cause(world: &World) -> Option<String> {
     let divides = |light: &Light| match light {
-        Light::Point(lamp) => lamp.attenuation == Some(Vec3::ZERO),
+        Light::Point(emitter) => emitter.attenuation == Some(Vec3::ZERO),
         light => light.color().is_nan(),
     };
     if let Some(number) = world.lights().iter().position(divides) {
@@ -93,8 +93,8 @@ fn cause(world: &World) -> Option<String> {
         return Some(format!("the shininess of material {number} is below 0, and its highlight grows without end"));
     }
     let highlights = |material: &Material| matches!(material, Material::Phong(phong) if phong.highlight.is_some());
-    let shines = |number: u32| world.materials().get(number as usize).is_some_and(highlights);
-    let is_long = world.objects().iter().any(|object| object.normal_length > 1.0 && shines(object.material));
+    let has_highlight = |number: u32| world.materials().get(number as usize).is_some_and(highlights);
+    let is_long = world.objects().iter().any(|object| object.normal_length > 1.0 && has_highlight(object.material));
     is_long.then(|| "the normal of a plane is longer than 1, and its highlight exceeds all numbers".into())
 }
 

@@ -28,7 +28,7 @@ impl Stages {
     }
 
     /// Prints the stages, and the rays of a part.
-    pub fn tell(&self, world: &World, part: &PartialRender) -> Result<(), Failure> {
+    pub fn report(&self, world: &World, part: &PartialRender) -> Result<(), Failure> {
         complain("time");
         for (name, time) in &self.done {
             complain(&format!("  {:>9.1} ms  {name}", time.as_secs_f64() * 1e3));

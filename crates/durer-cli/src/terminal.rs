@@ -11,13 +11,13 @@ pub const OTHER_FAILURE: u8 = 1;
 static CLOSED: AtomicBool = AtomicBool::new(false);
 
 /// Function that ends the program with an exit code.
-pub type End = fn(u8) -> !;
+pub type ExitFn = fn(u8) -> !;
 
 /// Function that ends the program early.
-static END: OnceLock<End> = OnceLock::new();
+static END: OnceLock<ExitFn> = OnceLock::new();
 
 /// Sets the function that ends the program; only the first call counts.
-pub fn set_end(end: End) {
+pub fn set_end(end: ExitFn) {
     let _ = END.set(end);
 }
 

@@ -10,7 +10,7 @@ use anyhow::Context;
 use clap::Args;
 use durer::bvh::SimdLevel;
 use durer::compile::AccelKind;
-use durer::render::verify::{Way, WayError, compare};
+use durer::render::verify::{RenderVariant, VariantError, compare};
 use durer::render::{Control, LEAST_ADAPTIVE, PartialRender, RenderError};
 use durer::world::World;
 use std::ffi::OsString;
@@ -66,10 +66,10 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
         let mut options = load_options(&args.reading);
         options.accel = accel;
         let (width, height) = args.job.options.given_size().unwrap_or(SIZE);
-        options.staging.aspect = Some(width as f32 / height as f32);
+        options.scene_defaults.aspect = Some(width as f32 / height as f32);
         // Print diagnostics only for the first structure.
-        let opened = open(&args.scene, &options, args.quiet || !worlds.is_empty(), &mut Guard::default())?;
-        let mut job = job::job(&args.job, Some(&args.view), &opened.loaded, false)?;
+        let compiled = open(&args.scene, &options, args.quiet || !worlds.is_empty(), &mut Guard::default())?;
+        let mut job = job::job(&args.job, Some(&args.view), &compiled.loaded, false)?;
         (job.width, job.height) = (width, height);
         // The cost depends on the structure.
         job.aovs.retain(|aov| aov.name != "cost");
@@ -77,20 +77,20 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
             job.sampling = job.sampling.with_samples(if job.adaptive { LEAST_ADAPTIVE } else { 8 });
         }
         wanted = Some(job);
-        worlds.push((name, opened.world));
+        worlds.push((name, compiled.world));
     }
     let Some(job) = wanted else { return Ok(()) };
     let control = Control::default();
     control.all.store(args.trials.into(), Relaxed);
     let never = AtomicBool::new(false);
     let made = progress::show(&control, args.quiet, || {
-        let plain = Way::PLAIN.make(&worlds[0].1, &job, &never).map_err(cancelled)?;
+        let plain = RenderVariant::PLAIN.make(&worlds[0].1, &job, &never).map_err(cancelled)?;
         for number in 0..u64::from(args.trials) {
-            let way = Way::numbered(number, &job, worlds.len());
+            let way = RenderVariant::numbered(number, &job, worlds.len());
             let (structure, world) = &worlds[way.world];
             let way_name = format!("{structure}, {way}");
             match way.make(world, &job, &never) {
-                Err(WayError::Cancelled) => return Err(RenderError::Cancelled),
+                Err(VariantError::Cancelled) => return Err(RenderError::Cancelled),
                 Err(error) => return Ok(Err(format!("way {number} ({way_name}) failed: {error}"))),
                 Ok(other) => {
                     if let Some(different) = compare(&plain, &other) {
@@ -139,9 +139,9 @@ fn hash_at(level: &str) -> anyhow::Result<String> {
     text.lines().last().map(str::to_string).with_context(|| String::from_utf8_lossy(&output.stderr).trim().to_string())
 }
 
-fn cancelled(error: WayError) -> RenderError {
+fn cancelled(error: VariantError) -> RenderError {
     match error {
-        WayError::Render(error) => error,
+        VariantError::Render(error) => error,
         _ => RenderError::Cancelled,
     }
 }

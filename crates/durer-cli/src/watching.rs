@@ -2,10 +2,10 @@
 
 use crate::failure::Failure;
 use crate::options::RenderArgs;
-use crate::picture::{Watched, once};
+use crate::picture::{WatchState, once};
 use crate::terminal::complain;
 use crate::{progress, report};
-use durer::compile::Kept;
+use durer::compile::AssetCache;
 use durer::format::folder::stamp_of;
 use durer::source::Stamp;
 use std::path::{Path, PathBuf};
@@ -26,14 +26,14 @@ fn stamp(files: &[PathBuf]) -> Vec<Option<Stamp>> {
 
 /// Renders until Ctrl-C. Errors in the scene are printed, and the loop waits until a file changes.
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
-    let named = [&args.reading.staging.view_file, &args.reading.staging.environment];
+    let named = [&args.reading.scene_defaults.view_file, &args.reading.scene_defaults.environment];
     let always: Vec<PathBuf> =
         [Some(args.scene.clone())].into_iter().chain(named.map(Clone::clone)).flatten().collect();
     let mut files = always.clone();
-    let kept = Arc::new(Kept::default());
+    let kept = Arc::new(AssetCache::default());
     loop {
         let before = stamp(&files);
-        let watched = Watched::keeping(&kept);
+        let watched = WatchState::keeping(&kept);
         let result = while_watching(&files, &before, &watched, || once(args, None, &watched));
         let stale = watched.stale.load(Relaxed);
         match result {
@@ -90,7 +90,7 @@ fn settle(files: &[PathBuf]) {
 }
 
 /// Runs some work and cancels it when a file is saved.
-fn while_watching<R>(files: &[PathBuf], before: &[Option<Stamp>], watched: &Watched, work: impl FnOnce() -> R) -> R {
+fn while_watching<R>(files: &[PathBuf], before: &[Option<Stamp>], watched: &WatchState, work: impl FnOnce() -> R) -> R {
     let (finished, wait) = mpsc::channel::<()>();
     std::thread::scope(|scope| {
         let look = move || {

@@ -31,9 +31,10 @@ pub fn run(args: &WordsArgs) -> Result<(), Failure> {
         all.iter().flat_map(|entry| entry.fields.iter().filter(is_field).map(move |field| (entry, field))).collect();
     if begun.is_empty() && in_blocks.is_empty() {
         let place = dialect.map_or("the language".to_string(), |dialect| format!("the dialect `{}`", dialect.name()));
-        let meant = did_you_mean(word, all_words());
-        let meant = meant.map_or("`durer words` lists them all".to_string(), |near| format!("did you mean `{near}`?"));
-        return Err(bad(format!("`{word}` is not a word of {place}: {meant}")));
+        let suggestion = did_you_mean(word, all_words());
+        let suggestion =
+            suggestion.map_or("`durer words` lists them all".to_string(), |near| format!("did you mean `{near}`?"));
+        return Err(bad(format!("`{word}` is not a word of {place}: {suggestion}")));
     }
     let mut parts: Vec<String> = begun.into_iter().map(described).collect();
     if !in_blocks.is_empty() {

@@ -83,11 +83,11 @@ fn every_command_of_the_book_runs() {
         }
         for command in commands {
             count += 1;
-            let ran = durer(folder.path(), &smaller(&command));
-            let said = String::from_utf8_lossy(&ran.stderr);
+            let output = durer(folder.path(), &smaller(&command));
+            let errors = String::from_utf8_lossy(&output.stderr);
             // `compare` exits with 1 because the pictures on these pages differ.
-            let fine = ran.status.success() || command.starts_with("compare") && ran.status.code() == Some(1);
-            assert!(fine, "{page}: {command}\n{said}");
+            let fine = output.status.success() || command.starts_with("compare") && output.status.code() == Some(1);
+            assert!(fine, "{page}: {command}\n{errors}");
         }
     }
     println!("{count} commands");

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Place, SCENE};
+use common::{SCENE, TestFolder};
 
 /// Returns the common scene with another camera.
 fn seen_by(camera: &str) -> String {
@@ -13,7 +13,7 @@ fn seen_by(camera: &str) -> String {
 const POSE: &str = "center 0 1 8 direction 0 -0.1 -1 up 0 1 0";
 
 /// Returns the bits a pixel and the RGBA pixels of an uncompressed Targa picture, bottom row first.
-fn targa(place: &Place, name: &str) -> (u8, Vec<[u8; 4]>) {
+fn targa(place: &TestFolder, name: &str) -> (u8, Vec<[u8; 4]>) {
     let bytes = place.bytes(name);
     let (head, rest) = bytes.split_at(18);
     let pixels = match head[16] {
@@ -25,7 +25,7 @@ fn targa(place: &Place, name: &str) -> (u8, Vec<[u8; 4]>) {
 
 #[test]
 fn pixels_outside_the_camera_are_transparent_with_any_sampling() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("eye.txt", seen_by(&format!("FisheyeCamera {{ {POSE} angle 160 }}")));
     let ways = [
         "--samples 1",
@@ -37,7 +37,7 @@ fn pixels_outside_the_camera_are_transparent_with_any_sampling() {
         "--show object",
     ];
     for way in ways {
-        place.gives(0, &format!("render eye.txt --size 40x40 -o eye.tga {way}"));
+        place.expect_exit(0, &format!("render eye.txt --size 40x40 -o eye.tga {way}"));
         let (bits, pixels) = targa(&place, "eye.tga");
         assert_eq!(bits, 32, "{way}");
         let at = |x: usize, y: usize| pixels[y * 40 + x];
@@ -51,15 +51,15 @@ fn pixels_outside_the_camera_are_transparent_with_any_sampling() {
         assert!((area / (400.0 * std::f64::consts::PI) - 1.0).abs() < 0.02, "{way}: {area}");
     }
     // Formats without alpha show black there; a fully covered picture has no alpha.
-    place.gives(0, "render eye.txt --size 40x40 -o eye.ppm");
+    place.expect_exit(0, "render eye.txt --size 40x40 -o eye.ppm");
     assert_eq!(place.image8("eye.ppm").pixels[0], [0; 3]);
-    place.gives(0, "render eye.txt --size 40x40 -o inside.tga --crop 10,10,20x20");
+    place.expect_exit(0, "render eye.txt --size 40x40 -o inside.tga --crop 10,10,20x20");
     assert_eq!(targa(&place, "inside.tga").0, 24);
 }
 
 #[test]
 fn pictures_have_the_aspect_ratio_of_their_cameras() {
-    let place = Place::new();
+    let place = TestFolder::new();
     for (camera, size) in [
         ("FisheyeCamera {@}", (512, 512)),
         ("EquirectangularCamera {@}", (720, 360)),
@@ -72,45 +72,45 @@ fn pictures_have_the_aspect_ratio_of_their_cameras() {
         ("PerspectiveCamera {@ angle 40}", (512, 512)),
     ] {
         place.put("shape.txt", seen_by(&camera.replace('@', POSE)));
-        let said = place.gives(0, "info shape.txt").out;
+        let output = place.expect_exit(0, "info shape.txt").out;
         let (width, height) = size;
-        assert!(said.contains(&format!("picture    {width}x{height} by default")), "{camera}: {said}");
+        assert!(output.contains(&format!("picture    {width}x{height} by default")), "{camera}: {output}");
     }
     // With another aspect ratio the image stays whole, and a warning reports the empty pixels.
     place.put("sphere.txt", seen_by(&format!("EquirectangularCamera {{ {POSE} }}")));
-    let said = place.gives(0, "render sphere.txt -o a.tga --size 40x40 --samples 1").err;
-    assert!(said.contains("20 rows of 40x40 stay empty") && said.contains("--size 56x28"), "{said}");
+    let output = place.expect_exit(0, "render sphere.txt -o a.tga --size 40x40 --samples 1").err;
+    assert!(output.contains("20 rows of 40x40 stay empty") && output.contains("--size 56x28"), "{output}");
     let (_, square) = targa(&place, "a.tga");
-    let said = place.gives(0, "render sphere.txt -o b.tga --size 40x20 --samples 1").err;
-    assert!(!said.contains("empty"), "{said}");
+    let output = place.expect_exit(0, "render sphere.txt -o b.tga --size 40x20 --samples 1").err;
+    assert!(!output.contains("empty"), "{output}");
     let (bits, whole) = targa(&place, "b.tga");
     assert_eq!((bits, &square[400..1200], square[0]), (24, &whole[..], [0; 4]));
 }
 
 #[test]
 fn lens_pictures_are_identical_in_crops_and_on_any_number_of_threads() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let lens = format!("ThinLensCamera {{ {POSE} angle 40 aperture 0.8 focusDistance 8 blades 5 }}");
     place.put("lens.txt", seen_by(&lens));
     place.put("sharp.txt", seen_by(&lens.replace("aperture 0.8", "aperture 0")));
     for way in ["--samples 8", "--sampler random --samples 8"] {
-        place.gives(0, &format!("render lens.txt -o whole.pfm --size 40x40 --threads 2 {way}"));
-        place.gives(0, &format!("render lens.txt -o part.pfm --size 40x40 --crop 7,9,20x21 --threads 1 {way}"));
+        place.expect_exit(0, &format!("render lens.txt -o whole.pfm --size 40x40 --threads 2 {way}"));
+        place.expect_exit(0, &format!("render lens.txt -o part.pfm --size 40x40 --crop 7,9,20x21 --threads 1 {way}"));
         let (whole, part) = (place.image("whole.pfm"), place.image("part.pfm"));
         for (x, y) in (0..21).flat_map(|y| (0..20).map(move |x| (x, y))) {
             assert_eq!(part.get(x, y), whole.get(x + 7, y + 9), "{way} {x},{y}");
         }
     }
     // One sample passes through the lens's centre, as without an aperture.
-    let said = place.gives(0, "render lens.txt -o one.pfm --size 40x40 --samples 1").err;
-    assert!(said.contains("everything is in focus"), "{said}");
-    place.gives(0, "render sharp.txt -o sharp.pfm --size 40x40 --samples 1");
+    let output = place.expect_exit(0, "render lens.txt -o one.pfm --size 40x40 --samples 1").err;
+    assert!(output.contains("everything is in focus"), "{output}");
+    place.expect_exit(0, "render sharp.txt -o sharp.pfm --size 40x40 --samples 1");
     assert_eq!(place.bytes("one.pfm"), place.bytes("sharp.pfm"));
 }
 
 #[test]
 fn invalid_cameras_are_refused() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let refused = |camera: &str, words: &[&str]| {
         place.put("wrong.txt", seen_by(&camera.replace('@', POSE)));
         place.refused(2, "render wrong.txt -o p.png --dialect durer", words);
@@ -137,14 +137,14 @@ fn invalid_cameras_are_refused() {
     place.put("ours.txt", seen_by(&format!("FisheyeCamera {{ {POSE} }}")).replace("# ours\n", ""));
     place.refused(2, "render ours.txt -o p.png --strict", &["`FisheyeCamera` is a Dürer extension"]);
     place.refused(2, "render ours.txt -o p.png --strict --dialect f04", &["`FisheyeCamera`"]);
-    let said = place.gives(0, "render ours.txt -o p.png --size 9x9 --dialect f04").err;
-    assert!(said.contains("`FisheyeCamera` is not a word of f04"), "{said}");
-    assert_eq!(said.matches("warning").count(), 1, "{said}");
+    let output = place.expect_exit(0, "render ours.txt -o p.png --size 9x9 --dialect f04").err;
+    assert!(output.contains("`FisheyeCamera` is not a word of f04"), "{output}");
+    assert_eq!(output.matches("warning").count(), 1, "{output}");
     place.put("short.txt", seen_by("FisheyeCamera { center 0 1 8 up 0 1 0 }").replace("# ours\n", ""));
     place.refused(2, "render short.txt -o q.png --dialect f04", &["`FisheyeCamera` has no `direction`"]);
     // Converted scenes give the same picture.
-    place.gives(0, "convert ours.txt -o again.txt");
-    place.gives(0, "render ours.txt -o a.pfm --size 20x20 --samples 2");
-    place.gives(0, "render again.txt -o b.pfm --size 20x20 --samples 2");
+    place.expect_exit(0, "convert ours.txt -o again.txt");
+    place.expect_exit(0, "render ours.txt -o a.pfm --size 20x20 --samples 2");
+    place.expect_exit(0, "render again.txt -o b.pfm --size 20x20 --samples 2");
     assert_eq!(place.bytes("a.pfm"), place.bytes("b.pfm"));
 }

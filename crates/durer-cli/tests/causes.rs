@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::Place;
+use common::TestFolder;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -75,7 +75,7 @@ fn cases() -> Vec<Case> {
 }
 
 /// A cube of quads, a cube of triangles, and a picture of hills.
-fn put_files(place: &Place) {
+fn put_files(place: &TestFolder) {
     let corners = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
     let faces = [[1, 4, 3, 2], [5, 6, 7, 8], [1, 2, 6, 5], [2, 3, 7, 6], [3, 4, 8, 7], [4, 1, 5, 8]];
     let quads: String = faces.iter().map(|[a, b, c, d]| format!("f {a} {b} {c} {d}\n")).collect();
@@ -99,10 +99,10 @@ fn put_files(place: &Place) {
 
 #[test]
 fn each_cause_is_reported_first_and_its_near_miss_is_not() {
-    let place = Place::new();
+    let place = TestFolder::new();
     put_files(&place);
     let cases = cases();
-    let (mut wrong, mut told) = (Vec::new(), BTreeSet::new());
+    let (mut wrong, mut text) = (Vec::new(), BTreeSet::new());
     // Check scenes with equal options in one run.
     let mut of_options: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (number, case) in cases.iter().enumerate() {
@@ -112,9 +112,9 @@ fn each_cause_is_reported_first_and_its_near_miss_is_not() {
     let mut found: BTreeMap<usize, Value> = BTreeMap::new();
     for (options, numbers) in of_options {
         let names: String = numbers.iter().map(|number| format!("{number}.txt ")).collect();
-        let ran = place.run(&format!("check {names} --json {options}"));
+        let output = place.run(&format!("check {names} --json {options}"));
         let json: Value =
-            serde_json::from_str(&ran.out).unwrap_or_else(|error| panic!("{options}: {error}\n{}", ran.err));
+            serde_json::from_str(&output.out).unwrap_or_else(|error| panic!("{options}: {error}\n{}", output.err));
         found.extend(numbers.into_iter().zip(json["scenes"].as_array().unwrap().iter().cloned()));
     }
     for (number, case) in cases.iter().enumerate() {
@@ -127,10 +127,10 @@ fn each_cause_is_reported_first_and_its_near_miss_is_not() {
         if !is_right {
             wrong.push(format!("{}: {codes:?}", case.line));
         }
-        told.extend((case.kind == Kind::Broken).then_some(case.code.as_str()));
+        text.extend((case.kind == Kind::Broken).then_some(case.code.as_str()));
     }
     assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), cases.len(), wrong.join("\n"));
-    assert!(cases.len() > 100 && told.len() > 50, "{} cases of {} causes", cases.len(), told.len());
+    assert!(cases.len() > 100 && text.len() > 50, "{} cases of {} causes", cases.len(), text.len());
 }
 
 /// Every code has a scene, here or in its own file.
@@ -140,7 +140,7 @@ fn every_cause_has_a_scene() {
     let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     let of_files = files.filter_map(|name| Some(name.split_once('.')?.0.to_string()));
     let shown: BTreeSet<String> = cases().into_iter().map(|case| case.code).chain(of_files).collect();
-    let list = Place::new().gives(0, "check --codes").out;
+    let list = TestFolder::new().expect_exit(0, "check --codes").out;
     let listed = list.lines().map(|line| line.split(' ').next().unwrap());
     let without: Vec<&str> = listed.filter(|code| !shown.contains(*code)).collect();
     assert_eq!(without, WITHOUT.map(|(code, _)| code));

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Place, Ran};
+use common::{ProgramOutput, TestFolder};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -22,9 +22,9 @@ fn code(name: &str) -> &str {
 }
 
 /// Returns a folder with the broken scenes and their meshes, and the scenes' names.
-fn with_broken() -> (Place, Vec<String>) {
+fn with_broken() -> (TestFolder, Vec<String>) {
     let (folder, names) = broken();
-    let place = Place::new();
+    let place = TestFolder::new();
     for entry in std::fs::read_dir(&folder).unwrap() {
         let path = entry.unwrap().path();
         place.put(&path.file_name().unwrap().to_string_lossy(), std::fs::read(&path).unwrap());
@@ -32,8 +32,8 @@ fn with_broken() -> (Place, Vec<String>) {
     (place, names)
 }
 
-fn json(ran: &Ran) -> Value {
-    serde_json::from_str(&ran.out).unwrap_or_else(|error| panic!("{error}\n{}\n{}", ran.out, ran.err))
+fn json(output: &ProgramOutput) -> Value {
+    serde_json::from_str(&output.out).unwrap_or_else(|error| panic!("{error}\n{}\n{}", output.out, output.err))
 }
 
 fn codes(scene: &Value) -> Vec<String> {
@@ -44,8 +44,8 @@ fn codes(scene: &Value) -> Vec<String> {
 #[test]
 fn cause_is_among_the_first_two() {
     let (place, names) = with_broken();
-    let ran = place.gives(2, &format!("check --json {}", names.join(" ")));
-    let all = json(&ran);
+    let output = place.expect_exit(2, &format!("check --json {}", names.join(" ")));
+    let all = json(&output);
     assert_eq!(all["version"], 1);
     let mut wrong = Vec::new();
     for (name, scene) in names.iter().zip(all["scenes"].as_array().unwrap()) {
@@ -108,20 +108,20 @@ fn mechanical_faults_are_fixed() {
     let (place, names) = with_broken();
     for name in &names {
         let before = place.bytes(name);
-        let ran = place.run(&format!("check {name} --fix -o mended.txt --json"));
+        let output = place.run(&format!("check {name} --fix -o mended.txt --json"));
         assert_eq!(place.bytes(name), before, "{name} itself was changed");
-        let scene = &json(&ran)["scenes"][0];
+        let scene = &json(&output)["scenes"][0];
         let mended = scene["mended"].as_array().unwrap();
         // A second run does not report repaired findings either.
         let again = place.run("check mended.txt --json");
-        assert_eq!(again.code, ran.code, "{name}\n{}", ran.out);
+        assert_eq!(again.code, output.code, "{name}\n{}", output.out);
         let found = codes(&json(&again)["scenes"][0]);
         assert_eq!(codes(scene), found, "{name}");
         for change in mended {
             assert!(!found.iter().any(|code| change["code"] == code.as_str()), "{name}: {change} {found:?}");
         }
         if MENDED.contains(&name.trim_end_matches(".txt")) {
-            assert_eq!(ran.code, Some(0), "{name}\n{}", ran.out);
+            assert_eq!(output.code, Some(0), "{name}\n{}", output.out);
             assert!(!mended.is_empty(), "{name}");
         }
         assert_eq!(mended.is_empty(), place.bytes("mended.txt") == before, "{name}");
@@ -131,27 +131,27 @@ fn mechanical_faults_are_fixed() {
 #[test]
 fn fixing_in_place_reports_the_changes() {
     let (place, _) = with_broken();
-    let ran = place.gives(0, "check wrong-count.group.txt --fix");
+    let output = place.expect_exit(0, "check wrong-count.group.txt --fix");
     assert!(
-        ran.out.contains("wrong-count.group.txt:8:9: `numObjects 3` is now `numObjects 2` [wrong-count]"),
+        output.out.contains("wrong-count.group.txt:8:9: `numObjects 3` is now `numObjects 2` [wrong-count]"),
         "{}",
-        ran.out
+        output.out
     );
-    assert!(ran.out.contains("wrote wrong-count.group.txt"), "{}", ran.out);
-    assert!(ran.out.contains("no findings left"), "{}", ran.out);
+    assert!(output.out.contains("wrote wrong-count.group.txt"), "{}", output.out);
+    assert!(output.out.contains("no findings left"), "{}", output.out);
     // A second run changes nothing.
-    let ran = place.gives(0, "check wrong-count.group.txt --fix");
-    assert!(!ran.out.contains("wrote"), "{}", ran.out);
+    let output = place.expect_exit(0, "check wrong-count.group.txt --fix");
+    assert!(!output.out.contains("wrote"), "{}", output.out);
     // A finding without a fix is reported, and the scene stays unchanged.
     let before = place.bytes("camera-inside.sphere.txt");
-    let ran = place.gives(1, "check camera-inside.sphere.txt --fix");
-    assert!(ran.out.contains("1 warning left"), "{}", ran.out);
+    let output = place.expect_exit(1, "check camera-inside.sphere.txt --fix");
+    assert!(output.out.contains("1 warning left"), "{}", output.out);
     assert_eq!(place.bytes("camera-inside.sphere.txt"), before);
     // A failed write changes nothing.
     let before = place.bytes("extra-brace.txt");
-    let ran = place.run("check extra-brace.txt --fix -o no/such/folder.txt");
-    assert_ne!(ran.code, Some(0));
-    assert!(ran.err.contains("no folder"), "{}", ran.err);
+    let output = place.run("check extra-brace.txt --fix -o no/such/folder.txt");
+    assert_ne!(output.code, Some(0));
+    assert!(output.err.contains("no folder"), "{}", output.err);
     assert_eq!(place.bytes("extra-brace.txt"), before);
     place.refused(2, "check extra-brace.txt scene.txt --fix -o one.txt", &["--output takes one scene"]);
 }
@@ -159,20 +159,27 @@ fn fixing_in_place_reports_the_changes() {
 #[test]
 fn exit_code_reflects_the_worst_finding() {
     let (place, _) = with_broken();
-    assert!(place.gives(0, "check scene.txt").out.contains("scene.txt: no findings"));
+    assert!(place.expect_exit(0, "check scene.txt").out.contains("scene.txt: no findings"));
     // Notes do not change the exit code.
-    assert!(place.gives(0, "check material-index.counted-from-1.txt --fix").out.contains("no findings left"));
-    assert!(place.gives(1, "check scene.txt light-inside.txt").out.contains("[light-inside]"));
-    assert!(place.gives(2, "check light-inside.txt no-camera.txt scene.txt").out.contains("scene.txt: no findings"));
-    let ran = place.gives(2, "check nowhere.txt scene.txt");
-    assert!(ran.err.contains("nowhere.txt") && ran.out.contains("scene.txt: no findings"), "{}{}", ran.err, ran.out);
+    assert!(place.expect_exit(0, "check material-index.counted-from-1.txt --fix").out.contains("no findings left"));
+    assert!(place.expect_exit(1, "check scene.txt light-inside.txt").out.contains("[light-inside]"));
+    assert!(
+        place.expect_exit(2, "check light-inside.txt no-camera.txt scene.txt").out.contains("scene.txt: no findings")
+    );
+    let output = place.expect_exit(2, "check nowhere.txt scene.txt");
+    assert!(
+        output.err.contains("nowhere.txt") && output.out.contains("scene.txt: no findings"),
+        "{}{}",
+        output.err,
+        output.out
+    );
     place.refused(2, "check nowhere.txt", &["nowhere.txt"]);
     place.refused(2, "check", &["SCENE"]);
 }
 
 #[test]
 fn options_affect_the_findings() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put(
         "back.txt",
         "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }
@@ -181,28 +188,32 @@ Materials { numMaterials 1 PhongMaterial { diffuseColor 1 1 1 } }
 Group { numObjects 1 MaterialIndex 0 Triangle { vertex0 -1 0 0 vertex1 0 1 0 vertex2 1 0 0 } }
 ",
     );
-    place.gives(0, "check back.txt");
+    place.expect_exit(0, "check back.txt");
     // The course's programs leave back faces black, so here the triangle is at fault.
-    let ran = place.gives(1, "check back.txt --dialect f04");
-    assert!(ran.out.contains("[seen-from-behind]") && ran.out.contains("its back stays black"), "{}", ran.out);
-    place.gives(0, "check back.txt --dialect f04 --fix -o front.txt");
-    place.gives(0, "check front.txt --dialect f04");
-    place.gives(0, "check back.txt --dialect f04 --shade-back");
+    let output = place.expect_exit(1, "check back.txt --dialect f04");
+    assert!(output.out.contains("[seen-from-behind]") && output.out.contains("its back stays black"), "{}", output.out);
+    place.expect_exit(0, "check back.txt --dialect f04 --fix -o front.txt");
+    place.expect_exit(0, "check front.txt --dialect f04");
+    place.expect_exit(0, "check back.txt --dialect f04 --shade-back");
 
-    place.gives(0, "check scene.txt --depth-range 6 30");
+    place.expect_exit(0, "check scene.txt --depth-range 6 30");
     for range in ["100 200", "0.1 1", "0 100000"] {
-        let ran = place.gives(1, &format!("check scene.txt --depth-range {range}"));
-        assert!(ran.out.contains("[depth-range]") && ran.out.contains("the picture has depths from"), "{}", ran.out);
+        let output = place.expect_exit(1, &format!("check scene.txt --depth-range {range}"));
+        assert!(
+            output.out.contains("[depth-range]") && output.out.contains("the picture has depths from"),
+            "{}",
+            output.out
+        );
     }
-    let ran = place.gives(1, "check scene.txt --bounces 0");
-    assert!(ran.out.contains("[no-bounces]"), "{}", ran.out);
+    let output = place.expect_exit(1, "check scene.txt --bounces 0");
+    assert!(output.out.contains("[no-bounces]"), "{}", output.out);
 }
 
 #[test]
 fn faulty_picture_is_reported_after_the_render() {
     let (place, _) = with_broken();
     let render = |scene: &str, more: &str| {
-        place.gives(0, &format!("render {scene} -o p.png --size 40x30 --samples 2 {more}")).err
+        place.expect_exit(0, &format!("render {scene} -o p.png --size 40x30 --samples 2 {more}")).err
     };
     let err = render("scene.txt", "");
     assert!(!err.contains("the picture"), "{err}");
@@ -217,7 +228,7 @@ fn faulty_picture_is_reported_after_the_render() {
     assert!(err.contains("[depth-range]"), "{err}");
     assert_eq!(render("camera-away.point.txt", "--quiet"), "");
 
-    let course = |scene: &str| place.gives(0, &format!("course -input {scene} -output p.tga -size 30 30")).err;
+    let course = |scene: &str| place.expect_exit(0, &format!("course -input {scene} -output p.tga -size 30 30")).err;
     assert!(!course("scene.txt").contains("the picture"));
     // Students judge the light themselves; only a picture of one colour is reported.
     assert!(!course("color-range.light.txt").contains("the picture"));
@@ -226,8 +237,8 @@ fn faulty_picture_is_reported_after_the_render() {
 
 #[test]
 fn every_code_is_listed_once() {
-    let place = Place::new();
-    let list = place.gives(0, "check --codes").out;
+    let place = TestFolder::new();
+    let list = place.expect_exit(0, "check --codes").out;
     let listed: Vec<&str> = list.lines().map(|line| line.split(' ').next().unwrap()).collect();
     let distinct: BTreeSet<&str> = listed.iter().copied().collect();
     assert_eq!(listed.len(), distinct.len());

@@ -3,14 +3,14 @@
 mod common;
 
 use common::browser::sees;
-use common::{Place, corpus};
+use common::{TestFolder, corpus};
 use durer::image::{Image8, read8};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 
 /// Writes a picture as PPM.
-fn put(place: &Place, name: &str, picture: &Image8) {
+fn put(place: &TestFolder, name: &str, picture: &Image8) {
     let mut bytes = format!("P6 {} {} 255\n", picture.width, picture.height).into_bytes();
     bytes.extend(picture.pixels.iter().flatten());
     if let Some(folder) = place.path(name).parent() {
@@ -30,10 +30,10 @@ fn json(text: &str) -> Value {
 }
 
 /// Renders `a.png`, and the same picture in floating point as `a.exr`.
-fn rendered() -> (Place, Image8) {
-    let place = Place::new();
-    place.gives(0, "render scene.txt --size 60x50 --samples 1 -q -o a.png");
-    place.gives(0, "render scene.txt --size 60x50 --samples 1 -q -o a.exr");
+fn rendered() -> (TestFolder, Image8) {
+    let place = TestFolder::new();
+    place.expect_exit(0, "render scene.txt --size 60x50 --samples 1 -q -o a.png");
+    place.expect_exit(0, "render scene.txt --size 60x50 --samples 1 -q -o a.exr");
     let picture = place.image8("a.png");
     (place, picture)
 }
@@ -41,33 +41,33 @@ fn rendered() -> (Place, Image8) {
 #[test]
 fn exit_codes_and_words() {
     let (place, a) = rendered();
-    assert!(place.gives(0, "compare a.png a.png").out.starts_with("identical\n"));
+    assert!(place.expect_exit(0, "compare a.png a.png").out.starts_with("identical\n"));
     put(&place, "mirror.ppm", &changed(&a, |x, y, at| at(a.width - 1 - x, y)));
-    let ran = place.gives(1, "compare a.png mirror.ppm");
-    assert!(ran.out.starts_with("different: ") && ran.err.is_empty(), "{}{}", ran.out, ran.err);
+    let output = place.expect_exit(1, "compare a.png mirror.ppm");
+    assert!(output.out.starts_with("different: ") && output.err.is_empty(), "{}{}", output.out, output.err);
     for word in ["mirrored left to right: explains 100.0 %", "RMSE", "PSNR", "SSIM", "FLIP", "largest", "where"] {
-        assert!(ran.out.contains(word), "{word}: {}", ran.out);
+        assert!(output.out.contains(word), "{word}: {}", output.out);
     }
     put(&place, "near.ppm", &changed(&a, |x, y, at| at(x, y).map(|v| v.saturating_add(2))));
-    place.gives(1, "compare a.png near.ppm");
-    assert!(place.gives(0, "compare a.png near.ppm --tolerance 2/255").out.starts_with("same: 0 of"));
-    place.gives(0, "compare a.png near.ppm --tolerance 0.008");
-    place.gives(0, "compare a.png near.ppm --allow 100");
+    place.expect_exit(1, "compare a.png near.ppm");
+    assert!(place.expect_exit(0, "compare a.png near.ppm --tolerance 2/255").out.starts_with("same: 0 of"));
+    place.expect_exit(0, "compare a.png near.ppm --tolerance 0.008");
+    place.expect_exit(0, "compare a.png near.ppm --allow 100");
     // A floating point picture equals its 8-bit version.
-    place.gives(0, "compare a.png a.exr");
-    place.gives(1, "compare a.png a.exr --transfer linear");
-    let light = json(&place.gives(0, "compare a.exr a.exr --json").out);
+    place.expect_exit(0, "compare a.png a.exr");
+    place.expect_exit(1, "compare a.png a.exr --transfer linear");
+    let light = json(&place.expect_exit(0, "compare a.exr a.exr --json").out);
     assert_eq!(light["pairs"][0]["hdr_flip"].as_f64(), Some(0.0));
 }
 
 #[test]
 fn regions_name_the_hit_objects() {
-    let place = Place::new();
+    let place = TestFolder::new();
     ["a", "b"].iter().for_each(|folder| std::fs::create_dir(place.path(folder)).unwrap());
-    place.gives(0, "render scene.txt --size 60x50 --samples 1 -q -o a/scene.png");
-    place.gives(0, "render scene.txt --size 60x50 --samples 1 --shadows=off -q -o b/scene.png");
+    place.expect_exit(0, "render scene.txt --size 60x50 --samples 1 -q -o a/scene.png");
+    place.expect_exit(0, "render scene.txt --size 60x50 --samples 1 --shadows=off -q -o b/scene.png");
     for (pictures, scene) in [("a/scene.png b/scene.png", "scene.txt"), ("a b", ".")] {
-        let found = json(&place.gives(1, &format!("compare {pictures} --scene {scene} --json")).out);
+        let found = json(&place.expect_exit(1, &format!("compare {pictures} --scene {scene} --json")).out);
         let regions = found["pairs"][0]["regions"].as_array().unwrap();
         assert!(!regions.is_empty());
         for region in regions {
@@ -79,17 +79,17 @@ fn regions_name_the_hit_objects() {
             // The command lists every option of the reference, also inferred ones.
             let options = format!("--pixel {},{} --size 60x50 --samples 1", worst[0], worst[1]);
             assert!(command.ends_with(&options), "{command}");
-            place.gives(0, command);
-            let told = there["explanation"].as_array().unwrap();
-            assert!(told.iter().any(|line| line.as_str().unwrap().contains("DirectionalLight")), "{told:?}");
+            place.expect_exit(0, command);
+            let output = there["explanation"].as_array().unwrap();
+            assert!(output.iter().any(|line| line.as_str().unwrap().contains("DirectionalLight")), "{output:?}");
         }
     }
-    let text = place.gives(1, "compare a/scene.png b/scene.png --scene scene.txt").out;
+    let text = place.expect_exit(1, "compare a/scene.png b/scene.png --scene scene.txt").out;
     assert!(text.contains("Plane scene.txt:") && text.contains("durer explain scene.txt --pixel"), "{text}");
-    assert!(place.gives(1, "compare a/scene.png b/scene.png --json").out.contains("\"there\": null"));
+    assert!(place.expect_exit(1, "compare a/scene.png b/scene.png --json").out.contains("\"there\": null"));
     place.refused(2, "compare a b --scene a", &["no `scene.txt`"]);
     place.refused(2, "compare a b --scene none.txt", &["none.txt"]);
-    place.gives(1, "compare a/scene.png b/scene.png --scene scene.txt --report r.html");
+    place.expect_exit(1, "compare a/scene.png b/scene.png --scene scene.txt --report r.html");
     assert!(String::from_utf8(place.bytes("r.html")).unwrap().contains("durer explain scene.txt --pixel"));
 }
 
@@ -127,7 +127,7 @@ fn bad_input_is_exit_code_2() {
     #[cfg(target_os = "linux")]
     {
         std::os::unix::fs::symlink("/dev/full", place.path("full.html")).unwrap();
-        assert!(place.gives(2, "compare a.png a.png --report full.html").err.contains("No space left"));
+        assert!(place.expect_exit(2, "compare a.png a.png --report full.html").err.contains("No space left"));
     }
 }
 
@@ -148,19 +148,25 @@ fn folders_of_pictures_and_of_students() {
     ] {
         put(&place, name, picture);
     }
-    let ran = place.gives(1, "compare ref mine");
-    assert!(ran.out.contains("darker by a factor of 0.49") && ran.err.contains("more.ppm"), "{}{}", ran.out, ran.err);
-    place.gives(0, "compare ref/deep mine/deep --allow 100");
-    let found = json(&place.gives(1, "compare ref mine --json").out);
+    let output = place.expect_exit(1, "compare ref mine");
+    assert!(
+        output.out.contains("darker by a factor of 0.49") && output.err.contains("more.ppm"),
+        "{}{}",
+        output.out,
+        output.err
+    );
+    place.expect_exit(0, "compare ref/deep mine/deep --allow 100");
+    let found = json(&place.expect_exit(1, "compare ref mine --json").out);
     assert_eq!(
         (found["version"].as_u64(), found["identical"].as_u64(), found["different"].as_u64()),
         (Some(1), Some(1), Some(1))
     );
     assert_eq!(found["pairs"][0]["findings"][0]["kind"], "factor");
 
-    let ran = place.gives(1, "compare ref class");
+    let output = place.expect_exit(1, "compare ref class");
     let row = |who: &str| {
-        ran.out
+        output
+            .out
             .lines()
             .rfind(|l| l.starts_with(who))
             .unwrap()
@@ -180,12 +186,12 @@ fn folders_of_pictures_and_of_students() {
     // An unreadable picture does not stop the others.
     place.put("class/bob/deep.png", "");
     place.put("class/ada/one.ppm", "P6 9 9");
-    let ran = place.gives(2, "compare ref class --report class.html");
+    let output = place.expect_exit(2, "compare ref class --report class.html");
     assert!(
-        ran.out.contains("eve/one.ppm") && ran.out.contains("error") && ran.err.contains("1 of 6"),
+        output.out.contains("eve/one.ppm") && output.out.contains("error") && output.err.contains("1 of 6"),
         "{}{}",
-        ran.out,
-        ran.err
+        output.out,
+        output.err
     );
     assert!(place.path("class.html").is_file());
 }
@@ -194,8 +200,8 @@ fn folders_of_pictures_and_of_students() {
 fn heat_map_is_black_where_nothing_differs() {
     let (place, a) = rendered();
     put(&place, "patch.ppm", &changed(&a, |x, y, at| if x > 50 && y > 40 { [255, 0, 255] } else { at(x, y) }));
-    let ran = place.gives(1, "compare a.png patch.ppm --heat heat.png");
-    assert!(ran.out.contains("wrote heat.png"));
+    let output = place.expect_exit(1, "compare a.png patch.ppm --heat heat.png");
+    assert!(output.out.contains("wrote heat.png"));
     let heat = place.image8("heat.png");
     assert_eq!((heat.width, heat.height, heat.pixels[0]), (60, 50, [0, 0, 8]));
     assert!(heat.pixels[60 * 50 - 1][0] > 200);
@@ -205,7 +211,7 @@ fn heat_map_is_black_where_nothing_differs() {
 #[test]
 fn mistakes_in_real_pictures_are_named() {
     let Some(course) = corpus() else { return };
-    let place = Place::new();
+    let place = TestFolder::new();
     for name in ["f04/f04-handout/output2_14.png", "f04/f04-handout/output6_04ab.png", "f12a4/binary-f12-a4/07.png"] {
         let path = course.join("reference").join(name);
         let a = read8(&std::fs::read(&path).unwrap(), name).unwrap();
@@ -239,13 +245,13 @@ fn mistakes_in_real_pictures_are_named() {
 /// Rays through the corners of pixels instead of their centres: the most common mistake.
 #[test]
 fn border_pixels_and_missing_shadows_are_recognised() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/whitted.txt");
     std::fs::copy(&scene, place.path("whitted.txt")).unwrap();
     for (name, options) in [("right", ""), ("border", "--compat border-pixels"), ("bare", "--shadows=off")] {
-        place.gives(0, &format!("render whitted.txt --size 150x150 --samples 1 -q -o {name}.png {options}"));
+        place.expect_exit(0, &format!("render whitted.txt --size 150x150 --samples 1 -q -o {name}.png {options}"));
     }
-    let words = |name: &str| place.gives(1, &format!("compare right.png {name}.png")).out;
+    let words = |name: &str| place.expect_exit(1, &format!("compare right.png {name}.png")).out;
     // A fine pattern changes everywhere: pixels alone give no diagnosis.
     assert!(!words("border").contains("noise"), "{}", words("border"));
     // Brightness has many possible causes: pixels alone give no diagnosis.
@@ -254,7 +260,7 @@ fn border_pixels_and_missing_shadows_are_recognised() {
         "{}",
         words("bare")
     );
-    let tried = |name: &str| place.gives(1, &format!("compare right.png {name}.png --scene whitted.txt")).out;
+    let tried = |name: &str| place.expect_exit(1, &format!("compare right.png {name}.png --scene whitted.txt")).out;
     assert!(tried("bare").contains("there are no shadows: explains 100.0 %"), "{}", tried("bare"));
     assert!(tried("border").contains("on the picture's border"), "{}", tried("border"));
 }
@@ -283,14 +289,17 @@ setTimeout(() => { see(`blinked ${getComputedStyle($("over")).visibility}`); don
 /// A class: the page groups equal mistakes, and the table can be saved.
 #[test]
 fn class_report_is_a_matrix_of_students_and_pictures() {
-    let place = Place::new();
+    let place = TestFolder::new();
     std::fs::create_dir_all(place.path("ref")).unwrap();
-    place.gives(0, "render scene.txt --size 60x50 --samples 1 -q -o ref/scene.png");
+    place.expect_exit(0, "render scene.txt --size 60x50 --samples 1 -q -o ref/scene.png");
     for (who, options) in [("ada", "--shadows=off"), ("bob", "--shadows=off"), ("eve", "")] {
         std::fs::create_dir_all(place.path(&format!("class/{who}"))).unwrap();
-        place.gives(0, &format!("render scene.txt --size 60x50 --samples 1 -q -o class/{who}/scene.png {options}"));
+        place.expect_exit(
+            0,
+            &format!("render scene.txt --size 60x50 --samples 1 -q -o class/{who}/scene.png {options}"),
+        );
     }
-    place.gives(1, "compare ref class --scene . --report class.html");
+    place.expect_exit(1, "compare ref class --scene . --report class.html");
     let clicks = r##"
 see(`cells ${document.querySelectorAll("#matrix td figure img").length}`);
 see(`same ${document.querySelector(".group").textContent}`);
@@ -315,7 +324,7 @@ fn page_works_in_a_browser_without_network() {
         let name = name.replace("</", "<").replace('/', std::path::MAIN_SEPARATOR_STR);
         put(&place, &name, &changed(&a, |x, y, at| if x > left { [255, 0, 0] } else { at(x, y) }));
     }
-    place.gives(1, "compare ref mine --report report.html");
+    place.expect_exit(1, "compare ref mine --report report.html");
     let wanted = [
         "rows 2",
         "natural 60x50",
@@ -358,36 +367,36 @@ Group {
 /// Pictures of paths are judged against their noise, and other dialects' errors are not printed.
 #[test]
 fn pictures_of_paths_are_judged_against_their_noise() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("room.txt", ROOM);
     let options = "--integrator path --samples 32 --bounces 6";
     let render = |name: &str, more: &str| {
-        place.gives(0, &format!("render room.txt -o {name}.png -q --size 64x48 {options} {more}"));
+        place.expect_exit(0, &format!("render room.txt -o {name}.png -q --size 64x48 {options} {more}"));
     };
     render("right", "");
     render("other", "--seed 5");
     render("few", "--samples 4 --seed 3");
     render("direct", "--bounces 0");
     render("one", "--bounces 1 --seed 9");
-    let told = |name: &str| {
-        let ran = place.gives(1, &format!("compare right.png {name}.png --scene room.txt {options} --json"));
-        assert!(!ran.err.contains("error["), "{}", ran.err);
-        json(&ran.out)["pairs"][0]["diagnosis"].clone()
+    let text = |name: &str| {
+        let output = place.expect_exit(1, &format!("compare right.png {name}.png --scene room.txt {options} --json"));
+        assert!(!output.err.contains("error["), "{}", output.err);
+        json(&output.out)["pairs"][0]["diagnosis"].clone()
     };
-    let words = |name: &str| told(name)["lines"][0].as_str().unwrap().to_string();
+    let words = |name: &str| text(name)["lines"][0].as_str().unwrap().to_string();
     assert!(words("other").contains("the difference is noise"), "{}", words("other"));
     assert!(words("few").contains("times the variance of the reference"), "{}", words("few"));
     for name in ["direct", "one"] {
-        let told = told(name);
-        assert_eq!(told["named"][0]["mistakes"][0]["name"], "path-depth", "{told:#}");
+        let text = text(name);
+        assert_eq!(text["named"][0]["mistakes"][0]["name"], "path-depth", "{text:#}");
     }
     // Another scene's reference is told as such, with a share that is measured against noise.
     place.put(
         "other.txt",
         ROOM.replace("baseColor 0.7 0.2 0.1", "baseColor 0.1 0.7 0.2").replace("0.6 2 radius", "1.6 2 radius"),
     );
-    let ran = place.gives(1, &format!("compare right.png one.png --scene other.txt {options}"));
-    assert!(ran.out.contains("cause unknown") && !ran.err.contains("error["), "{}{}", ran.out, ran.err);
+    let output = place.expect_exit(1, &format!("compare right.png one.png --scene other.txt {options}"));
+    assert!(output.out.contains("cause unknown") && !output.err.contains("error["), "{}{}", output.out, output.err);
 }
 
 #[test]
@@ -397,9 +406,9 @@ fn a_class_is_a_table_of_comma_separated_values() {
     std::fs::create_dir_all(place.path("class/ann")).unwrap();
     put(&place, "ref/a.ppm", &picture);
     put(&place, "class/ann/a.ppm", &changed(&picture, |x, y, at| at(picture.width - 1 - x, y)));
-    let ran = place.gives(1, "compare ref class --csv");
-    let lines: Vec<&str> = ran.out.lines().collect();
+    let output = place.expect_exit(1, "compare ref class --csv");
+    let lines: Vec<&str> = output.out.lines().collect();
     assert_eq!(lines[0], "student,picture,verdict,differ_percent,rmse,ssim,flip,mistake,why");
-    assert!(lines[1].starts_with("ann,a.ppm,different,") && lines[1].contains(",mirrored,"), "{}", ran.out);
+    assert!(lines[1].starts_with("ann,a.ppm,different,") && lines[1].contains(",mirrored,"), "{}", output.out);
     place.refused(2, "compare ref class --csv --json", &["--csv"]);
 }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Place, corpus};
+use common::{TestFolder, corpus};
 use std::collections::BTreeSet;
 
 const MODELS: [&str; 7] = [
@@ -18,7 +18,7 @@ const MODELS: [&str; 7] = [
 #[test]
 fn year_of_every_official_command_is_guessed() {
     let Some(course) = corpus() else { return };
-    let place = Place::new();
+    let place = TestFolder::new();
     let table = std::fs::read_to_string(course.join("reference.csv")).unwrap();
     let rows: BTreeSet<(&str, &str)> = table
         .lines()
@@ -62,18 +62,21 @@ fn year_of_every_official_command_is_guessed() {
 fn models_converted_to_text_render_the_same_picture() {
     let Some(course) = corpus() else { return };
     let models = course.join("../samples/gltf/khronos");
-    let place = Place::new();
+    let place = TestFolder::new();
     // Transformed and repeated textures, vertex colours, tangents, skins, thin films, glass,
     // instances.
     for name in MODELS {
         let model = models.join(name);
         let picture = |path: &str| {
-            place.gives(0, &format!("render {path} -o a.ppm --integrator path --size 24x24 --samples 4 -q --restart"));
+            place.expect_exit(
+                0,
+                &format!("render {path} -o a.ppm --integrator path --size 24x24 --samples 4 -q --restart"),
+            );
             std::fs::read(place.path("a.ppm")).unwrap()
         };
         let first = picture(&model.display().to_string());
         for written in ["m.txt", "m.json"] {
-            place.gives(0, &format!("convert {} -o {written}", model.display()));
+            place.expect_exit(0, &format!("convert {} -o {written}", model.display()));
             assert!(picture(written) == first, "{name} as {written}");
         }
     }
@@ -82,7 +85,7 @@ fn models_converted_to_text_render_the_same_picture() {
 #[test]
 fn converted_scenes_render_the_same_picture() {
     let Some(course) = corpus() else { return };
-    let place = Place::new();
+    let place = TestFolder::new();
     let mut count = 0;
     for dialect in ["f04", "f12a4", "f12a5", "f16", "f23"] {
         let folder = course.join("scenes").join(dialect);
@@ -96,11 +99,11 @@ fn converted_scenes_render_the_same_picture() {
         for scene in scenes.iter().step_by(3) {
             let assets = format!("--dialect {dialect} --assets {} --quiet", folder.display());
             let path = scene.display();
-            let convert = place.gives(0, &format!("convert {path} -o again.txt --dialect {dialect}"));
+            let convert = place.expect_exit(0, &format!("convert {path} -o again.txt --dialect {dialect}"));
             assert!(convert.out.contains("wrote again.txt"));
             let render = |scene: &str, name: &str| {
-                let ran = place.run(&format!("render {scene} {assets} --allow-outside --size 24x24 -o {name}"));
-                (ran.code, ran.err.is_empty())
+                let output = place.run(&format!("render {scene} {assets} --allow-outside --size 24x24 -o {name}"));
+                (output.code, output.err.is_empty())
             };
             let first = render(&path.to_string(), "first.pfm");
             if first.0 != Some(0) {

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Place, SCENE};
+use common::{SCENE, TestFolder};
 
 /// A scene that every year except 2003 and 2020 reads.
 fn plain() -> String {
@@ -11,33 +11,36 @@ fn plain() -> String {
 
 #[test]
 fn every_option_of_2004() {
-    let place = Place::new();
-    let ran = place.gives(
+    let place = TestFolder::new();
+    let output = place.expect_exit(
         0,
         "course -input scene.txt -size 20 10 -output o.tga -depth 9 10 d.tga -normals n.tga -shadows -bounces 4 \
          -shade_back -weight 0.01 -gui -tessellation 100 50 -gouraud -stats -grid 10 10 10 -transparent_shadows \
          -jittered_samples 4 -gaussian_filter 0.4 -render_samples s.tga 3 -render_filter f.tga 4",
     );
     // The keywords identify the dialect.
-    assert!(!ran.err.contains("read as"), "{}", ran.err);
-    assert!(ran.out.starts_with("objects 2, rays "), "{}", ran.out);
+    assert!(!output.err.contains("read as"), "{}", output.err);
+    assert!(output.out.starts_with("objects 2, rays "), "{}", output.out);
     for (name, size) in [("o", (20, 10)), ("d", (20, 10)), ("n", (20, 10)), ("s", (60, 30)), ("f", (81, 41))] {
         let image = place.image8(&format!("{name}.tga"));
         assert_eq!((image.width, image.height), size, "{name}");
-        assert!(ran.out.contains(&format!("wrote {name}.tga\n")));
+        assert!(output.out.contains(&format!("wrote {name}.tga\n")));
     }
     for samples in ["random", "uniform", "jittered"] {
         for filter in ["box", "tent", "gaussian"] {
-            place.gives(0, &format!("course -input scene.txt -output o.tga -{samples}_samples 9 -{filter}_filter 1.5"));
+            place.expect_exit(
+                0,
+                &format!("course -input scene.txt -output o.tga -{samples}_samples 9 -{filter}_filter 1.5"),
+            );
         }
     }
-    place.gives(0, "course -input scene.txt -depth -2 -1.5 d.tga");
-    place.gives(0, "course -input scene.txt -render_filter f.tga 2 -size 9 9");
+    place.expect_exit(0, "course -input scene.txt -depth -2 -1.5 d.tga");
+    place.expect_exit(0, "course -input scene.txt -render_filter f.tga 2 -size 9 9");
 }
 
 #[test]
 fn options_of_later_years() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("plain.txt", plain());
     for options in [
         "--dialect f12a4 -output o.bmp -depth 8 18 d.bmp -normals n.bmp",
@@ -46,17 +49,20 @@ fn options_of_later_years() {
         "--program a4 -output o.png -shadows -bounces 4 -jitter -filter -depth 8 18 d.png -normals n.png",
         "--dialect f16 -size 20 20 -output o.png --seed 3 --threads 2 --compat no-stretch,raw-up --assets .",
     ] {
-        let ran = place.gives(0, &format!("course -input plain.txt -size 12 12 {options} --quiet"));
-        assert_eq!((ran.out.as_str(), ran.err.as_str()), ("", ""), "{options}");
+        let output = place.expect_exit(0, &format!("course -input plain.txt -size 12 12 {options} --quiet"));
+        assert_eq!((output.out.as_str(), output.err.as_str()), ("", ""), "{options}");
     }
 }
 
 #[test]
 fn grid_picture_replaces_the_colour_picture() {
-    let place = Place::new();
-    place.gives(0, "course -input scene.txt -size 60 60 -output a.tga -grid 1 1 1 -visualize_grid -depth 5 9 d.tga");
-    place.gives(0, "course -input scene.txt -size 60 60 -output b.tga -visualize_grid");
-    place.gives(0, "course -input scene.txt -size 60 60 -output c.tga");
+    let place = TestFolder::new();
+    place.expect_exit(
+        0,
+        "course -input scene.txt -size 60 60 -output a.tga -grid 1 1 1 -visualize_grid -depth 5 9 d.tga",
+    );
+    place.expect_exit(0, "course -input scene.txt -size 60 60 -output b.tga -visualize_grid");
+    place.expect_exit(0, "course -input scene.txt -size 60 60 -output c.tga");
     let pictures = ["a.tga", "b.tga", "c.tga"].map(|name| place.bytes(name));
     // Without a number of cells, the grid chooses one: here one cell, as requested in the first
     // run.
@@ -66,9 +72,9 @@ fn grid_picture_replaces_the_colour_picture() {
 
 #[test]
 fn values_are_truncated_without_a_curve() {
-    let place = Place::new();
+    let place = TestFolder::new();
     // Corners see the sky, 0.2 0.1 0.5, and the depth there is black.
-    place.gives(0, "course -input scene.txt --dialect f04 -output o.tga -depth 5 10 d.tga -normals n.tga");
+    place.expect_exit(0, "course -input scene.txt --dialect f04 -output o.tga -depth 5 10 d.tga -normals n.tga");
     let image = place.image8("o.tga");
     assert_eq!((image.width, image.height, image.pixels[0]), (100, 100, [51, 25, 127]));
     assert_eq!(place.image8("d.tga").pixels[0], [0, 0, 0]);
@@ -79,7 +85,7 @@ fn values_are_truncated_without_a_curve() {
 
 #[test]
 fn invalid_arguments_are_refused() {
-    let place = Place::new();
+    let place = TestFolder::new();
     for (options, words) in [
         ("-output o.tga", "-input is missing"),
         ("-input scene.txt", "nothing to write"),
@@ -114,16 +120,16 @@ fn invalid_arguments_are_refused() {
     ] {
         place.refused(2, &format!("course {options}"), &[words]);
     }
-    assert!(place.gives(2, "course").out.contains("-tent_filter"));
-    assert!(place.gives(0, "course --help").out.contains("-tent_filter"));
+    assert!(place.expect_exit(2, "course").out.contains("-tent_filter"));
+    assert!(place.expect_exit(0, "course --help").out.contains("-tent_filter"));
 }
 
 #[test]
 fn only_f12a4_ignores_unknown_options() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("plain.txt", plain());
-    let ran = place.gives(0, "course --dialect f12a4 -input plain.txt -size 4 4 -output o.bmp -frobnicate");
-    assert!(ran.err.contains("warning: unknown option -frobnicate"), "{}", ran.err);
+    let output = place.expect_exit(0, "course --dialect f12a4 -input plain.txt -size 4 4 -output o.bmp -frobnicate");
+    assert!(output.err.contains("warning: unknown option -frobnicate"), "{}", output.err);
     for dialect in ["f04", "f12a5", "f16"] {
         place.refused(
             2,
@@ -135,30 +141,30 @@ fn only_f12a4_ignores_unknown_options() {
 
 #[test]
 fn f12a4_writes_tga_unless_the_name_ends_in_bmp() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("plain.txt", plain());
     for name in ["o.tga", "o.foo", "o.png", "o", "o.bmp"] {
-        place.gives(0, &format!("course --dialect f12a4 -input plain.txt -size 4 4 -output {name}"));
+        place.expect_exit(0, &format!("course --dialect f12a4 -input plain.txt -size 4 4 -output {name}"));
         let is_bmp = place.bytes(name).starts_with(b"BM");
         assert_eq!(is_bmp, name == "o.bmp", "{name}");
         assert_eq!(durer::image::read8(&place.bytes(name), "o.tga").unwrap().width, 4);
     }
     // Without that year's dialect, names have their plain meaning.
-    place.gives(0, "course -input plain.txt -size 4 4 -output p.png");
+    place.expect_exit(0, "course -input plain.txt -size 4 4 -output p.png");
     assert!(place.bytes("p.png").starts_with(b"\x89PNG"));
 }
 
 #[test]
 fn last_occurrence_of_an_option_counts() {
-    let place = Place::new();
-    place.gives(0, "course -input missing.txt -input scene.txt -size 9 9 -size 5 4 -output a.tga -output b.tga");
+    let place = TestFolder::new();
+    place.expect_exit(0, "course -input missing.txt -input scene.txt -size 9 9 -size 5 4 -output a.tga -output b.tga");
     assert_eq!((place.image8("b.tga").width, place.path("a.tga").exists()), (5, false));
 }
 
 #[cfg(unix)]
 #[test]
 fn link_with_a_programs_name_acts_as_that_program() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("plain.txt", plain());
     let nodes = "Camera { center 0 0 8 direction 0 0 -1 up 0 1 0 fov 40 }
 Background { color 0.2 0.1 0.5 ambient_light 0.2 0.2 0.2 }
@@ -185,7 +191,7 @@ Scene { Node { Component<Light> { type directional direction 0 0 -1 color 1 1 1 
 
 #[test]
 fn files_are_found_from_the_current_folder_and_beside_the_scene() {
-    let place = Place::new();
+    let place = TestFolder::new();
     std::fs::create_dir(place.path("scenes")).unwrap();
     let scene = plain().replace("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file one.obj }");
     place.put("scenes/mesh.txt", scene);
@@ -194,10 +200,14 @@ fn files_are_found_from_the_current_folder_and_beside_the_scene() {
         place.put(&mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
         for dialect in ["f04", "f12a4", "f16"] {
             let arguments = format!("course --dialect {dialect} -input scenes/mesh.txt -size 4 4 -output o.bmp");
-            let ran = place.run(&arguments);
-            println!("{mesh} {dialect}: {:?}", ran.code);
+            let output = place.run(&arguments);
+            println!("{mesh} {dialect}: {:?}", output.code);
             // 2004 and 2012 look in the current folder; all look beside the scene.
-            assert!(ran.code == Some(0) || (dialect == "f16" && folder.is_empty()), "{mesh} {dialect}: {}", ran.err);
+            assert!(
+                output.code == Some(0) || (dialect == "f16" && folder.is_empty()),
+                "{mesh} {dialect}: {}",
+                output.err
+            );
         }
         std::fs::remove_file(place.path(&mesh)).unwrap();
     }
@@ -206,11 +216,11 @@ fn files_are_found_from_the_current_folder_and_beside_the_scene() {
 
 #[test]
 fn options_of_another_year_do_not_change_the_guess() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let shiny = plain().replace("diffuseColor 0.8", "specularColor 0.9 0.9 0.9 shininess 20 diffuseColor 0.8");
     place.put("shiny.txt", shiny);
     // Greys of depths, and highlights, differ between the years.
-    for (options, dialect, told) in [
+    for (options, dialect, expected) in [
         ("-output o.bmp", "f12a4", false),
         ("-output o.bmp -shadows", "f12a5", true),
         ("-output o.bmp -shade_back", "f12a4", false),
@@ -218,67 +228,68 @@ fn options_of_another_year_do_not_change_the_guess() {
         ("-output o.png -depth 5 20 d.png", "f16", true),
         ("-output o.tga -grid 3 3 3 -shadows", "f12a5", true),
     ] {
-        let ran = place.gives(0, &format!("course -input shiny.txt -size 40 40 {options}"));
-        assert_eq!(ran.err.contains(&format!("note: read as {dialect}")), told, "{options}: {}", ran.err);
-        assert_eq!(ran.err.contains("read as"), told, "{options}: {}", ran.err);
-        assert_eq!(ran.err.matches("read as").count(), usize::from(told));
+        let output = place.expect_exit(0, &format!("course -input shiny.txt -size 40 40 {options}"));
+        assert_eq!(output.err.contains(&format!("note: read as {dialect}")), expected, "{options}: {}", output.err);
+        assert_eq!(output.err.contains("read as"), expected, "{options}: {}", output.err);
+        assert_eq!(output.err.matches("read as").count(), usize::from(expected));
     }
-    let ran = place.gives(0, "course -input scene.txt -size 4 4 -output o.png -jitter");
-    assert!(!ran.err.contains("read as"), "{}", ran.err);
+    let output = place.expect_exit(0, "course -input scene.txt -size 4 4 -output o.png -jitter");
+    assert!(!output.err.contains("read as"), "{}", output.err);
 }
 
 #[test]
 fn guess_is_reported_only_where_it_changed_the_picture() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("matte.txt", plain().replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8"));
     // Matte things in the light of the sun look the same in 2012 and 2016.
-    let ran = place.gives(0, "course -input matte.txt -size 40 40 -output o.png");
-    assert!(!ran.err.contains("read as"), "{}", ran.err);
-    let official = place.gives(0, "course --dialect f16 -input matte.txt -size 40 40 -output f.png");
+    let output = place.expect_exit(0, "course -input matte.txt -size 40 40 -output o.png");
+    assert!(!output.err.contains("read as"), "{}", output.err);
+    let official = place.expect_exit(0, "course --dialect f16 -input matte.txt -size 40 40 -output f.png");
     assert_eq!(place.bytes("o.png"), place.bytes("f.png"), "{}", official.err);
 }
 
 #[test]
 fn year_whose_picture_has_nan_samples_is_not_guessed() {
-    let place = Place::new();
-    let lamp = |falloff: &str| format!("PointLight {{ position 2 4 3 color 0.9 0.9 0.8 {falloff} }}");
+    let place = TestFolder::new();
+    let light = |falloff: &str| format!("PointLight {{ position 2 4 3 color 0.9 0.9 0.8 {falloff} }}");
     let sun = "DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 }";
     let shiny = plain().replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8");
     // In 2016 both lights divide by zero.
-    place.put("none.txt", shiny.replace(sun, &lamp("")));
-    place.put("zero.txt", shiny.replace(sun, &lamp("falloff 0")));
+    place.put("none.txt", shiny.replace(sun, &light("")));
+    place.put("zero.txt", shiny.replace(sun, &light("falloff 0")));
     for (scene, options, year) in [
         ("none", "", "f12a4"),
         ("none", "-shadows -bounces 2", "f12a5"),
         ("zero", "", "f12a5"),
         ("zero", "-shadows", "f12a5"),
     ] {
-        let ran = place.gives(0, &format!("course -input {scene}.txt -size 30 30 -output o.png {options}"));
-        assert!(!ran.err.contains("not finite"), "{scene} {options}: {}", ran.err);
-        assert!(ran.err.matches("read as").count() <= 1, "{}", ran.err);
-        place.gives(0, &format!("course --dialect {year} -input {scene}.txt -size 30 30 -output y.png {options}"));
+        let output = place.expect_exit(0, &format!("course -input {scene}.txt -size 30 30 -output o.png {options}"));
+        assert!(!output.err.contains("not finite"), "{scene} {options}: {}", output.err);
+        assert!(output.err.matches("read as").count() <= 1, "{}", output.err);
+        place
+            .expect_exit(0, &format!("course --dialect {year} -input {scene}.txt -size 30 30 -output y.png {options}"));
         assert_eq!(place.bytes("o.png"), place.bytes("y.png"), "{scene} {options}");
     }
     // Where no other year fits, the picture is made, and says what is wrong with it.
-    place.put("only.txt", shiny.replace(sun, &lamp("falloff 0")).replace("Background {", "Background { cubeMap sky "));
+    place.put("only.txt", shiny.replace(sun, &light("falloff 0")).replace("Background {", "Background { cubeMap sky "));
     std::fs::create_dir(place.path("sky")).unwrap();
     for face in ["left", "right", "up", "down", "front", "back"] {
-        place.gives(0, &format!("course -input scene.txt -size 4 4 -output sky/{face}.png"));
+        place.expect_exit(0, &format!("course -input scene.txt -size 4 4 -output sky/{face}.png"));
     }
-    let ran = place.gives(0, "course -input only.txt -size 30 30 -output o.png");
-    assert!(ran.err.contains("not finite") && ran.err.contains("the first in pixel"), "{}", ran.err);
+    let output = place.expect_exit(0, "course -input only.txt -size 30 30 -output o.png");
+    assert!(output.err.contains("not finite") && output.err.contains("the first in pixel"), "{}", output.err);
 }
 
 #[test]
 fn output_name_alone_does_not_decide_the_year() {
-    let place = Place::new();
-    let lamp = "PointLight { position 2 4 3 color 0.9 0.9 0.8 }";
-    let lit = plain().replace("DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 }", lamp);
+    let place = TestFolder::new();
+    let light = "PointLight { position 2 4 3 color 0.9 0.9 0.8 }";
+    let lit = plain().replace("DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 }", light);
     // In 2016 this light would divide by zero. Its scene has another word that tells years apart.
     place.put("lamp.txt", lit.replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8"));
     let picture = |ending: &str| {
-        let ran = place.gives(0, &format!("course -input lamp.txt -size 9 9 -output o.{ending}"));
-        assert!(!ran.err.contains("read as"), "{ending}: {}", ran.err);
+        let output = place.expect_exit(0, &format!("course -input lamp.txt -size 9 9 -output o.{ending}"));
+        assert!(!output.err.contains("read as"), "{ending}: {}", output.err);
         place.image8(&format!("o.{ending}")).pixels
     };
     let pictures = ["png", "bmp", "tga"].map(picture);
@@ -289,30 +300,30 @@ fn output_name_alone_does_not_decide_the_year() {
 
 #[test]
 fn nan_light_is_reported_with_its_pixel_and_cause() {
-    let place = Place::new();
-    let lamp = "PointLight { position 2 4 3 color 0.9 0.9 0.8 }";
-    let lit = plain().replace("DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 }", lamp);
+    let place = TestFolder::new();
+    let light = "PointLight { position 2 4 3 color 0.9 0.9 0.8 }";
+    let lit = plain().replace("DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 }", light);
     place.put("lamp.txt", lit);
-    let ran = place.gives(0, "course --dialect f16 -input lamp.txt -size 9 9 -output o.png");
-    let told = ran.err.lines().find(|line| line.contains("not finite")).unwrap_or_else(|| panic!("{}", ran.err));
+    let output = place.expect_exit(0, "course --dialect f16 -input lamp.txt -size 9 9 -output o.png");
+    let text = output.err.lines().find(|line| line.contains("not finite")).unwrap_or_else(|| panic!("{}", output.err));
     assert!(
-        told.contains("the first in pixel ") && told.contains("light 0 divides by its falloff, which is missing"),
-        "{told}"
+        text.contains("the first in pixel ") && text.contains("light 0 divides by its falloff, which is missing"),
+        "{text}"
     );
 }
 
 #[test]
 fn empty_depth_range_is_black_in_2012() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("plain.txt", plain());
-    place.gives(0, "course --dialect f12a4 -input plain.txt -size 9 9 -depth 5 5 d.bmp");
+    place.expect_exit(0, "course --dialect f12a4 -input plain.txt -size 9 9 -depth 5 5 d.bmp");
     assert!(place.image8("d.bmp").pixels.iter().all(|pixel| *pixel == [0; 3]));
     place.refused(2, "course --dialect f16 -input plain.txt -size 9 9 -depth 5 5 d.bmp", &["two different"]);
 }
 
 #[test]
 fn jitter_or_filter_alone_has_the_picture_size_of_2012() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("plain.txt", plain());
     for (options, dialect, size) in [
         ("-jitter -filter", "f12a5", (20, 11)),
@@ -321,7 +332,10 @@ fn jitter_or_filter_alone_has_the_picture_size_of_2012() {
         ("-jitter", "f16", (20, 11)),
         ("-filter", "f16", (20, 11)),
     ] {
-        place.gives(0, &format!("course --dialect {dialect} -input plain.txt -size 20 11 {options} -output o.bmp"));
+        place.expect_exit(
+            0,
+            &format!("course --dialect {dialect} -input plain.txt -size 20 11 {options} -output o.bmp"),
+        );
         let image = place.image8("o.bmp");
         assert_eq!((image.width, image.height), size, "{options} {dialect}");
     }
@@ -331,7 +345,7 @@ fn jitter_or_filter_alone_has_the_picture_size_of_2012() {
 #[cfg(target_os = "linux")]
 #[test]
 fn standard_output_has_only_the_picture() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let output = place.command("course -input scene.txt -size 8 4 -output /dev/stdout").output().unwrap();
     let image = durer::image::read8(&output.stdout, "o.tga").unwrap();
     assert_eq!((output.status.code(), image.width, image.height, output.stdout.len()), (Some(0), 8, 4, 18 + 96));
@@ -339,12 +353,12 @@ fn standard_output_has_only_the_picture() {
 
 #[test]
 fn camera_with_fixed_aspect_ratio_sets_the_picture_size() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let camera = "EquirectangularCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 }";
     let rest = SCENE.split_once("Lights").unwrap().1;
     place.put("around.txt", format!("{camera}\nLights{rest}"));
     for (options, size) in [("--dialect durer", (720, 360)), ("--dialect durer -size 30 20", (30, 20))] {
-        place.gives(0, &format!("course -input around.txt {options} -output o.png --quiet"));
+        place.expect_exit(0, &format!("course -input around.txt {options} -output o.png --quiet"));
         let image = place.image8("o.png");
         assert_eq!((image.width, image.height), size, "{options}");
     }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::Place;
+use common::TestFolder;
 use common::browser::sees;
 use serde_json::Value;
 
@@ -28,12 +28,12 @@ fn sum(node: &Value) -> [f32; 3] {
 
 #[test]
 fn tree_sums_to_the_pixel_of_the_picture() {
-    let place = Place::new();
-    place.gives(0, &format!("render scene.txt -o p.pfm --samples 1 {SMALL}"));
+    let place = TestFolder::new();
+    place.expect_exit(0, &format!("render scene.txt -o p.pfm --samples 1 {SMALL}"));
     let picture = place.image("p.pfm");
     for (x, y) in [(20, 12), (20, 26), (3, 3), (31, 20)] {
-        let ran = place.gives(0, &format!("explain scene.txt --pixel {x},{y} --samples 1 --json {SMALL}"));
-        let json: Value = serde_json::from_str(&ran.out).unwrap();
+        let output = place.expect_exit(0, &format!("explain scene.txt --pixel {x},{y} --samples 1 --json {SMALL}"));
+        let json: Value = serde_json::from_str(&output.out).unwrap();
         let light = &json["pixel"]["samples"][0]["light"];
         assert_eq!(sum(light), picture.get(x, y).unwrap().to_array(), "{x},{y}");
     }
@@ -41,24 +41,25 @@ fn tree_sums_to_the_pixel_of_the_picture() {
 
 #[test]
 fn course_samplers_are_explained_with_neighbouring_pixels() {
-    let place = Place::new();
-    let ran = |options: &str| place.gives(0, &format!("explain scene.txt --pixel 20,13 {options} {SMALL}")).out;
-    let text = ran("--sampler jittered --samples 4 --filter gaussian");
+    let place = TestFolder::new();
+    let output =
+        |options: &str| place.expect_exit(0, &format!("explain scene.txt --pixel 20,13 {options} {SMALL}")).out;
+    let text = output("--sampler jittered --samples 4 --filter gaussian");
     assert!(text.contains("weighted mean of 36 samples, including samples of neighbouring pixels; "), "{text}");
     assert!(text.contains("(number 3 of pixel 21,14) at 21."), "{text}");
     // Only a count is printed for surfaces that are too far away.
-    let text = ran("--sampler uniform --samples 4 --filter tent --filter-radius 0.9");
+    let text = output("--sampler uniform --samples 4 --filter tent --filter-radius 0.9");
     assert!(text.contains(" more samples have no weight in this pixel"), "{text}");
-    let text = ran("--jitter --blur");
+    let text = output("--jitter --blur");
     assert!(text.contains("weighted mean of 49 samples: subpixels, blurred"), "{text}");
     assert!(text.contains("hits Sphere of line 8"), "{text}");
-    assert_eq!(ran("--sampler random --samples 5").matches("  sample ").count(), 5);
+    assert_eq!(output("--sampler random --samples 5").matches("  sample ").count(), 5);
 }
 
 #[test]
 fn text_names_objects_by_their_place_in_the_file() {
-    let place = Place::new();
-    let ran = place.gives(0, &format!("explain scene.txt --pixel 20,13 {SMALL}"));
+    let place = TestFolder::new();
+    let result = place.expect_exit(0, &format!("explain scene.txt --pixel 20,13 {SMALL}"));
     for wanted in [
         "pixel 20,13 = (",
         "weighted mean of 16 samples",
@@ -69,12 +70,12 @@ fn text_names_objects_by_their_place_in_the_file() {
         " alone ",
         "the shadow ray is unoccluded",
     ] {
-        assert!(ran.out.contains(wanted), "{wanted}\n{}", ran.out);
+        assert!(result.out.contains(wanted), "{wanted}\n{}", result.out);
     }
-    assert!(!ran.out.contains('\x1b'), "no colours into a pipe");
+    assert!(!result.out.contains('\x1b'), "no colours into a pipe");
     // A ray needs and accepts no sample.
-    let ran = place.gives(2, "explain scene.txt --quiet --ray 0,3,0,0,-1,0");
-    assert!(ran.err.contains("--ray"), "{}", ran.err);
+    let result = place.expect_exit(2, "explain scene.txt --quiet --ray 0,3,0,0,-1,0");
+    assert!(result.err.contains("--ray"), "{}", result.err);
     for ray in [
         &["0 3 0 0 -1 0"][..],
         &["0", "3", "0", "0", "-1", "0"],
@@ -90,7 +91,7 @@ fn text_names_objects_by_their_place_in_the_file() {
 /// Prints the vectors of highlights and the colour weight of 2012's glass.
 #[test]
 fn formulas_show_all_factors() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let scene = common::SCENE
         .replace("diffuseColor 0.8 0.3 0.2", "diffuseColor 0.8 0.3 0.2 specularColor 0.5 0.5 0.5 shininess 4");
     for (year, words, wanted) in [
@@ -99,50 +100,52 @@ fn formulas_show_all_factors() {
         ("f12a5", "refractionIndex 1.5", "`specularColor` (0.5, 0.5, 0.5) · 0.04"),
     ] {
         place.put("year.txt", scene.replace("shininess 4", words));
-        let ran = place.gives(0, &format!("explain year.txt --pixel 19,13 --bounces 1 --dialect {year} {SMALL}"));
-        assert!(ran.out.contains(wanted), "{year}: {}", ran.out);
+        let output =
+            place.expect_exit(0, &format!("explain year.txt --pixel 19,13 --bounces 1 --dialect {year} {SMALL}"));
+        assert!(output.out.contains(wanted), "{year}: {}", output.out);
     }
-    place.gives(0, &format!("explain scene.txt --pixel 19,13 --transfer linear --html linear.html {SMALL}"));
+    place.expect_exit(0, &format!("explain scene.txt --pixel 19,13 --transfer linear --html linear.html {SMALL}"));
     assert!(String::from_utf8(place.bytes("linear.html")).unwrap().contains("\"transfer\":\"linear\""));
 }
 
 /// Omits small and deep terms and says so; prints no minus before 0 and at most four digits.
 #[test]
 fn text_is_readable() {
-    let place = Place::new();
-    let told =
-        |options: &str| place.gives(0, &format!("explain scene.txt --pixel 20,26 --samples 1 {options} {SMALL}")).out;
-    let all = told("");
+    let place = TestFolder::new();
+    let output = |options: &str| {
+        place.expect_exit(0, &format!("explain scene.txt --pixel 20,26 --samples 1 {options} {SMALL}")).out
+    };
+    let all = output("");
     assert!(all.contains("mirrored light\n") && !all.contains("index 1 to 1"), "{all}");
     assert!(!all.contains("-0,") && !all.contains("-0)"), "{all}");
     let digits =
         |word: &str| word.chars().filter(char::is_ascii_digit).collect::<String>().trim_start_matches('0').len();
     assert!(all.split(|c: char| !(c.is_ascii_digit() || c == '.')).all(|word| digits(word) <= 4), "{all}");
-    let pruned = told("--min 20%");
+    let pruned = output("--min 20%");
     assert!(pruned.contains("of less than 20 % each (--min)") && pruned.len() < all.len(), "{pruned}");
-    let flat = told("--depth 3");
+    let flat = output("--depth 3");
     assert!(flat.contains(" below (--depth)") && flat.len() < all.len(), "{flat}");
 }
 
 #[test]
 fn brightest_and_worst_pixels_are_found() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let scene = common::SCENE.replace("color 0.2 0.1 0.5", "color 0 0 0");
     place.put("dark.txt", scene);
-    place.gives(0, &format!("render dark.txt -o p.pfm {SMALL}"));
+    place.expect_exit(0, &format!("render dark.txt -o p.pfm {SMALL}"));
     let picture = place.image("p.pfm");
     let light = |x, y| picture.get(x, y).unwrap().dot([0.2126, 0.7152, 0.0722].into());
-    let ran = place.gives(0, &format!("explain dark.txt --brightest --json {SMALL}"));
-    let json: Value = serde_json::from_str(&ran.out).unwrap();
+    let output = place.expect_exit(0, &format!("explain dark.txt --brightest --json {SMALL}"));
+    let json: Value = serde_json::from_str(&output.out).unwrap();
     let (x, y) = (json["pixel"]["x"].as_u64().unwrap() as u32, json["pixel"]["y"].as_u64().unwrap() as u32);
     let most = (0..30).flat_map(|y| (0..40).map(move |x| (x, y))).map(|(x, y)| light(x, y)).fold(0.0, f32::max);
     assert_eq!(light(x, y), most);
-    place.gives(0, &format!("explain dark.txt --worst {SMALL}"));
+    place.expect_exit(0, &format!("explain dark.txt --worst {SMALL}"));
 }
 
 #[test]
 fn invalid_options_are_refused() {
-    let place = Place::new();
+    let place = TestFolder::new();
     for (question, answer) in [
         ("", "choose a pixel or a ray"),
         ("--pixel 40,3", "pixel 40,3 is outside the picture of 40 x 30 pixels"),
@@ -151,17 +154,17 @@ fn invalid_options_are_refused() {
         ("--pixel 4,3 --time 1s", "a different number of samples on each run"),
         ("--pixel 4,3 --brightest", "cannot be used with"),
     ] {
-        let ran = place.gives(2, &format!("explain scene.txt {SMALL} {question}"));
-        assert!(ran.err.contains(answer), "{question}: {}", ran.err);
+        let output = place.expect_exit(2, &format!("explain scene.txt {SMALL} {question}"));
+        assert!(output.err.contains(answer), "{question}: {}", output.err);
     }
 }
 
 #[test]
 fn page_is_self_contained() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("a<b.txt", common::SCENE);
-    let ran = place.gives(0, "explain a<b.txt --pixel 20,12 --size 40x30 --html why.html");
-    assert!(ran.out.contains("wrote why.html"), "{}", ran.out);
+    let output = place.expect_exit(0, "explain a<b.txt --pixel 20,12 --size 40x30 --html why.html");
+    assert!(output.out.contains("wrote why.html"), "{}", output.out);
     let page = std::fs::read_to_string(place.path("why.html")).unwrap();
     assert!(page.contains("data:image/png;base64,iVBOR") && page.contains("a\\u003cb.txt") && !page.contains("@DATA@"));
     assert!(!page.contains("http:") && !page.contains("https:"), "nothing is fetched");
@@ -189,7 +192,7 @@ fn words(json: &Value, found: &mut std::collections::BTreeSet<String>) {
 
 #[test]
 fn every_json_field_is_documented() {
-    let (place, mut found) = (Place::new(), Default::default());
+    let (place, mut found) = (TestFolder::new(), Default::default());
     let glass = common::ENDLESS.replace("indexOfRefraction", "refractionIndex");
     place.put("glass.txt", glass);
     for arguments in [
@@ -198,8 +201,8 @@ fn every_json_field_is_documented() {
         "scene.txt --pixel 20,13 --sampler random --samples 2 --filter box",
         "glass.txt --pixel 20,13 --bounces 3 --min-throughput 0.5 --samples 1",
     ] {
-        let ran = place.gives(0, &format!("explain {arguments} --json {SMALL}"));
-        words(&serde_json::from_str(&ran.out).unwrap(), &mut found);
+        let output = place.expect_exit(0, &format!("explain {arguments} --json {SMALL}"));
+        words(&serde_json::from_str(&output.out).unwrap(), &mut found);
     }
     assert!(found.len() > 60, "{found:?}");
     let guide = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/explain.md")).unwrap();
@@ -249,8 +252,8 @@ setTimeout(() => {
 
 #[test]
 fn page_works_in_a_browser_without_network() {
-    let place = Place::new();
-    place.gives(0, &format!("explain scene.txt --pixel 20,26 --html why.html --samples 4 {SMALL}"));
+    let place = TestFolder::new();
+    place.expect_exit(0, &format!("explain scene.txt --pixel 20,26 --html why.html --samples 4 {SMALL}"));
     let wanted = [
         "terms true",
         "folded true",
@@ -290,7 +293,7 @@ Group {
 /// The equation of a hit, a matrix, a cell, texels and Snell's law stand under their terms.
 #[test]
 fn numbers_say_where_they_come_from() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("s.txt", ORIGINS);
     place.put("two.ppm", "P3\n2 1\n255\n99 99 99 200 20 20\n");
     place.put(
@@ -309,11 +312,11 @@ fn numbers_say_where_they_come_from() {
         ),
         ("3.3 0 5 0 0 -1", &["Snell: sin i = 0.3, sin t = n₁/n₂ sin i = 1 / 1.5 · 0.3 = 0.2"]),
     ] {
-        let text = place.gives(0, &format!("explain s.txt --bounces 2 --ray {ray}")).out;
+        let text = place.expect_exit(0, &format!("explain s.txt --bounces 2 --ray {ray}")).out;
         for word in words {
             assert!(text.contains(word), "`{word}` is not in:\n{text}");
         }
-        let json = place.gives(0, &format!("explain s.txt --bounces 2 --json --ray {ray}")).out;
+        let json = place.expect_exit(0, &format!("explain s.txt --bounces 2 --json --ray {ray}")).out;
         assert!(json.contains("\"origins\"") && json.contains(words[0]), "{json}");
     }
 }

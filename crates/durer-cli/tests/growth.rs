@@ -4,17 +4,17 @@
 
 mod common;
 
-use common::{Place, SCENE};
+use common::{SCENE, TestFolder};
 use std::fmt::Write;
 
 /// Runs the program with little address space and time.
 #[track_caller]
-fn refused(place: &Place, line: &str, words: &str) {
+fn refused(place: &TestFolder, line: &str, words: &str) {
     let script = format!("ulimit -v 900000; export RAYON_NUM_THREADS=2; timeout 60 $DURER {line}");
-    let ran = place.shell(&script);
-    assert_eq!(ran.code, Some(2), "{line}: {}", ran.err);
-    assert!(ran.err.contains(words), "{line}: {}", ran.err);
-    assert!(ran.err.len() < 40_000, "{line}: {}", ran.err.len());
+    let output = place.shell(&script);
+    assert_eq!(output.code, Some(2), "{line}: {}", output.err);
+    assert!(output.err.contains(words), "{line}: {}", output.err);
+    assert!(output.err.len() < 40_000, "{line}: {}", output.err.len());
 }
 
 fn render(file: &str) -> String {
@@ -31,7 +31,7 @@ fn doubled(first: &str, double: impl Fn(usize) -> String, last: &str) -> String 
 
 #[test]
 fn what_doubles_forty_times_in_a_mitsuba_scene_is_refused() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let variable = doubled(
         r#"<default name="a0" value="xx"/>"#,
         |i| format!("<default name=\"a{i}\" value=\"$a{0}$a{0}\"/>\n", i - 1),
@@ -85,7 +85,7 @@ fn what_doubles_forty_times_in_a_mitsuba_scene_is_refused() {
 
 #[test]
 fn names_that_double_in_the_scene_language_are_refused() {
-    let place = Place::new();
+    let place = TestFolder::new();
     for inner in ["Group { }", "Sphere { center 0 0 0 radius 1 }"] {
         let mut text = format!("define a0 {inner}\n");
         (1..=40).for_each(|i| text += &format!("define a{i} Group {{ use a{0} use a{0} }}\n", i - 1));
@@ -125,7 +125,7 @@ fn gltf(nodes: usize, primitives: usize, copies: usize) -> String {
 
 #[test]
 fn a_gltf_file_shows_no_more_objects_than_another_scene() {
-    let place = Place::new();
+    let place = TestFolder::new();
     for (nodes, primitives, copies) in [(1, 5000, 5000), (5000, 5000, 0), (50, 50, 5000)] {
         place.put("many.gltf", gltf(nodes, primitives, copies));
         refused(&place, &render("many.gltf"), "more than 1048576 objects");
@@ -134,7 +134,7 @@ fn a_gltf_file_shows_no_more_objects_than_another_scene() {
 
 #[test]
 fn rows_that_no_file_holds_count_as_memory() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let model = |attributes: &str, count: u32, more: &str| {
         format!(
             r#"{{"asset":{{"version":"2.0"}},"nodes":[{{"mesh":0}}],"scenes":[{{"nodes":[0]}}],
@@ -154,9 +154,9 @@ fn rows_that_no_file_holds_count_as_memory() {
     ] {
         place.put("rows.gltf", model(attributes, count, more));
         let script = format!("ulimit -v 900000; export RAYON_NUM_THREADS=2; timeout 60 $DURER {}", render("rows.gltf"));
-        let ran = place.shell(&script);
-        assert_eq!(ran.code, Some(2), "{count} {attributes} {more}: {}", ran.err);
-        assert!(ran.err.contains("memory"), "{count} {attributes} {more}: {}", ran.err);
+        let output = place.shell(&script);
+        assert_eq!(output.code, Some(2), "{count} {attributes} {more}: {}", output.err);
+        assert!(output.err.contains("memory"), "{count} {attributes} {more}: {}", output.err);
     }
 }
 
@@ -186,7 +186,7 @@ fn jpeg(kind: u8, [width, height]: [u16; 2], factors: &[u8]) -> Vec<u8> {
 
 #[test]
 fn photographs_take_the_memory_that_their_heads_announce() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("texture.txt", SCENE.replace("Material { diffuse", "PhongMaterial { texture p.jpg diffuse"));
     for (size, factors) in [
         ([65_500, 64], &[0x44, 0x11, 0x11][..]),
@@ -200,22 +200,27 @@ fn photographs_take_the_memory_that_their_heads_announce() {
             let script = "ulimit -v 500000; export RAYON_NUM_THREADS=2; \
                 timeout 60 $DURER render texture.txt --dialect durer --size 8x8 --samples 1 -q --restart -o o.png \
                 --threads 2 --memory 16M";
-            let ran = place.shell(script);
-            assert!(matches!(ran.code, Some(0 | 2)), "{size:?} {factors:?} {kind:x}: {:?} {}", ran.code, ran.err);
+            let output = place.shell(script);
+            assert!(
+                matches!(output.code, Some(0 | 2)),
+                "{size:?} {factors:?} {kind:x}: {:?} {}",
+                output.code,
+                output.err
+            );
         }
     }
 }
 
 #[test]
 fn large_pictures_under_limits_of_the_system_are_errors() {
-    let place = Place::new();
+    let place = TestFolder::new();
     for options in ["--size 268435456x1", "--size 1x268435456", "--size 268435456x1 --memory 64G"] {
         let line = format!("render scene.txt {options} --samples 1 -q --restart -o o.pfm --threads 2");
         let script = format!("ulimit -v 900000; export RAYON_NUM_THREADS=2; timeout 20 $DURER {line}");
-        let ran = place.shell(&script);
+        let output = place.shell(&script);
         // A tall picture is made in bands, which takes longer.
-        assert!(matches!(ran.code, Some(2 | 124)), "{options}: {:?} {}", ran.code, ran.err);
-        assert!(ran.code == Some(124) || ran.err.contains("memory"), "{options}: {}", ran.err);
+        assert!(matches!(output.code, Some(2 | 124)), "{options}: {:?} {}", output.code, output.err);
+        assert!(output.code == Some(124) || output.err.contains("memory"), "{options}: {}", output.err);
     }
     let sizes = ["--size 16384x16384", "--size 16384x16384 --memory 64G"];
     for command in
@@ -225,8 +230,8 @@ fn large_pictures_under_limits_of_the_system_are_errors() {
             let script = format!(
                 "ulimit -v 900000; export RAYON_NUM_THREADS=2; timeout 20 $DURER {command} {size} -q --restart --samples 1 --threads 2"
             );
-            let ran = place.shell(&script);
-            assert!(matches!(ran.code, Some(2 | 124)), "{command} {size}: {:?} {}", ran.code, ran.err);
+            let output = place.shell(&script);
+            assert!(matches!(output.code, Some(2 | 124)), "{command} {size}: {:?} {}", output.code, output.err);
         }
     }
     for line in [
@@ -235,7 +240,7 @@ fn large_pictures_under_limits_of_the_system_are_errors() {
         "photo place scene.txt --backplate o.png -o p.png",
     ] {
         let script = format!("ulimit -v 500000; export RAYON_NUM_THREADS=2; timeout 20 $DURER {line}");
-        let ran = place.shell(&script);
-        assert!(matches!(ran.code, Some(0..=2 | 124)), "{line}: {:?} {}", ran.code, ran.err);
+        let output = place.shell(&script);
+        assert!(matches!(output.code, Some(0..=2 | 124)), "{line}: {:?} {}", output.code, output.err);
     }
 }

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::Place;
+use common::TestFolder;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
@@ -12,7 +12,7 @@ const SOON: Duration = Duration::from_secs(8);
 
 #[test]
 fn rendering_stops_soon_and_leaves_no_empty_files() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("old.png", "an old picture");
     let before = place.names();
     for options in [
@@ -23,26 +23,26 @@ fn rendering_stops_soon_and_leaves_no_empty_files() {
         "endless.txt --bounces 256 --show cost",
         "endless.txt --bounces 256 --show samples --size 9x9",
     ] {
-        let (ran, latency) = place.interrupted(&format!("render {options} -o old.png"), Duration::from_millis(400));
-        assert_eq!((ran.code, ran.out.as_str()), (Some(130), ""), "{options}: {}", ran.err);
+        let (output, latency) = place.interrupted(&format!("render {options} -o old.png"), Duration::from_millis(400));
+        assert_eq!((output.code, output.out.as_str()), (Some(130), ""), "{options}: {}", output.err);
         // If a few blocks of pixels are done, they are saved.
         let part = place.path("old.png.part");
-        let told = ran.err.lines().last().unwrap_or_default();
-        assert!(told == "interrupted; nothing was written" || told.contains("old.png.part (--resume"), "{told}");
-        assert_eq!(told.contains("old.png.part"), part.exists(), "{options}: {told}");
+        let text = output.err.lines().last().unwrap_or_default();
+        assert!(text == "interrupted; nothing was written" || text.contains("old.png.part (--resume"), "{text}");
+        assert_eq!(text.contains("old.png.part"), part.exists(), "{options}: {text}");
         let _ = std::fs::remove_file(part);
         assert!(latency < SOON, "{options}: {latency:?}");
         assert_eq!(place.names(), before, "{options}");
         assert_eq!(place.bytes("old.png"), b"an old picture");
     }
     let grid = "course -input scene.txt -output old.png -grid 200 200 200 -visualize_grid -size 15000 15000";
-    let (ran, latency) = place.interrupted(grid, Duration::from_millis(400));
-    assert!(ran.code == Some(130) && latency < SOON, "{latency:?} {}", ran.err);
+    let (output, latency) = place.interrupted(grid, Duration::from_millis(400));
+    assert!(output.code == Some(130) && latency < SOON, "{latency:?} {}", output.err);
 }
 
 #[test]
 fn finished_work_is_saved_on_interrupt() {
-    let place = Place::new();
+    let place = TestFolder::new();
     for options in [
         "scene.txt --samples 1048576",
         "scene.txt --sampler uniform --samples 100 --size 1000x1000",
@@ -53,27 +53,27 @@ fn finished_work_is_saved_on_interrupt() {
     ] {
         place.put("old.png", "an old picture");
         let _ = std::fs::remove_file(place.path("old.png.part"));
-        let (ran, latency) = place.interrupted(&format!("render {options} -o old.png"), Duration::from_millis(400));
-        assert_eq!((ran.code, ran.out.as_str()), (Some(130), ""), "{options}: {}", ran.err);
+        let (output, latency) = place.interrupted(&format!("render {options} -o old.png"), Duration::from_millis(400));
+        assert_eq!((output.code, output.out.as_str()), (Some(130), ""), "{options}: {}", output.err);
         assert!(latency < SOON, "{options}: {latency:?}");
-        let told = ran.err.lines().last().unwrap_or_default();
-        assert_eq!(told.contains("old.png.part (--resume"), place.path("old.png.part").exists(), "{options}: {told}");
+        let text = output.err.lines().last().unwrap_or_default();
+        assert_eq!(text.contains("old.png.part (--resume"), place.path("old.png.part").exists(), "{options}: {text}");
         // An incomplete picture does not replace an old one.
-        if told.ends_with("and old.png") {
+        if text.ends_with("and old.png") {
             assert!(place.image8("old.png").width > 0);
         } else {
-            assert_eq!(place.bytes("old.png"), b"an old picture", "{options}: {told}");
+            assert_eq!(place.bytes("old.png"), b"an old picture", "{options}: {text}");
         }
         assert!(place.names().iter().all(|name| !name.ends_with(".tmp")));
         if options.ends_with("1048576") {
-            assert!(told.ends_with("and old.png"), "{told}");
+            assert!(text.ends_with("and old.png"), "{text}");
         }
     }
 }
 
 #[test]
 fn reading_stops_on_interrupt() {
-    let place = Place::new();
+    let place = TestFolder::new();
     // Two million triangles take seconds to read and sort, in any build.
     let mut mesh = String::new();
     for i in 0..400_000 {
@@ -86,22 +86,26 @@ fn reading_stops_on_interrupt() {
     );
     for command in ["render large.txt -o p.png", "info large.txt", "course -input large.txt -output p.tga"] {
         // Late enough for a busy machine to have started.
-        let (ran, latency) = place.interrupted(command, Duration::from_millis(250));
-        assert!(ran.code == Some(130) && ran.out.is_empty() && latency < SOON, "{command}: {:?} {latency:?}", ran.code);
+        let (output, latency) = place.interrupted(command, Duration::from_millis(250));
+        assert!(
+            output.code == Some(130) && output.out.is_empty() && latency < SOON,
+            "{command}: {:?} {latency:?}",
+            output.code
+        );
     }
     assert!(!place.path("p.png").exists());
 }
 
 #[test]
 fn interrupt_leaves_a_complete_file_or_none() {
-    let place = Place::new();
+    let place = TestFolder::new();
     for after in (0..120).step_by(8) {
         let _ = std::fs::remove_file(place.path("p.png"));
-        let (ran, _) = place.interrupted(
+        let (output, _) = place.interrupted(
             "render scene.txt --size 300x300 --samples 1 --restart -o p.png",
             Duration::from_millis(after),
         );
-        match ran.code {
+        match output.code {
             Some(0) => assert_eq!(place.image8("p.png").width, 300),
             // The signal may have arrived after the work was done.
             Some(130) => assert!(!place.path("p.png").exists() || place.image8("p.png").width == 300),
@@ -115,7 +119,7 @@ fn interrupt_leaves_a_complete_file_or_none() {
 
 #[test]
 fn progress_bar_appears_on_terminals_only() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let on_terminal = |options: &str| {
         let line =
             format!("{} render scene.txt --size 1000x1000 --samples 100 --restart -o p.png {options}", common::durer());
@@ -130,14 +134,14 @@ fn progress_bar_appears_on_terminals_only() {
     let quiet = on_terminal("--quiet").unwrap();
     assert!(String::from_utf8_lossy(&shown.stdout).contains("rays/s"), "{shown:?}");
     assert!(!String::from_utf8_lossy(&quiet.stdout).contains("rays/s"), "{quiet:?}");
-    let (ran, _) = place
+    let (output, _) = place
         .interrupted("render scene.txt --size 1000x1000 --samples 100 --restart -o p.png", Duration::from_millis(1500));
-    assert!(!ran.err.contains("rays/s"), "{}", ran.err);
+    assert!(!output.err.contains("rays/s"), "{}", output.err);
 }
 
 #[test]
 fn watch_renders_saved_changes_until_ctrl_c() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let scene = std::fs::read_to_string(place.path("scene.txt")).unwrap();
     let mut child = place
         .command("render scene.txt -o a.png --watch --size 16x16 --samples 2")
@@ -211,7 +215,7 @@ fn problem(cameras: usize, points: usize) -> String {
 
 #[test]
 fn every_command_ends_soon_after_a_signal() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("mesh.obj", mesh(700));
     let large = common::SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file mesh.obj }");
     place.put("mesh.txt", &large);
@@ -246,23 +250,23 @@ fn every_command_ends_soon_after_a_signal() {
         "photo solve problem.txt -o solved.txt",
     ] {
         for (signal, code) in [("INT", 130), ("TERM", 143)] {
-            let (ran, latency) = place.signalled(line, Duration::from_millis(400), &[signal]);
-            assert_eq!(ran.code, Some(code), "{line}: {}", ran.err);
+            let (output, latency) = place.signalled(line, Duration::from_millis(400), &[signal]);
+            assert_eq!(output.code, Some(code), "{line}: {}", output.err);
             // An idle machine takes half a second at most.
             assert!(latency < Duration::from_secs(3), "{line}: {latency:?}");
             println!("{line}: {latency:?} after {signal}");
         }
     }
     for line in ["live scene.txt", "render scene.txt --size 8x8 --samples 1 --watch -o w.png"] {
-        let (ran, latency) = place.signalled(line, Duration::from_millis(600), &["TERM"]);
-        assert!(ran.code == Some(0) && latency < Duration::from_secs(3), "{line}: {:?} {latency:?}", ran.code);
+        let (output, latency) = place.signalled(line, Duration::from_millis(600), &["TERM"]);
+        assert!(output.code == Some(0) && latency < Duration::from_secs(3), "{line}: {:?} {latency:?}", output.code);
     }
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn a_verification_leaves_no_process_behind() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let alive = || {
         let found =
             place.shell("pgrep -f \"verify $PWD/scene.txt\" | grep -vw $$ | xargs -r ps -o stat= -p | grep -cv Z");

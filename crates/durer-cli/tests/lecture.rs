@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::Place;
+use common::TestFolder;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -62,7 +62,7 @@ fn links_are_valid_and_every_picture_is_shown() {
 
 #[test]
 fn commands_reproduce_the_pictures() {
-    let (guide, place) = (guide(), Place::new());
+    let (guide, place) = (guide(), TestFolder::new());
     let commands: Vec<&str> = guide.lines().filter_map(|line| line.strip_prefix("    cargo durer ")).collect();
     assert_eq!(commands.len(), between(&guide, "](lecture/", ")").count());
     let check = |(number, command): (usize, &&str)| {

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::Place;
+use common::TestFolder;
 use common::browser::sees;
 use std::path::Path;
 
@@ -17,9 +17,9 @@ fn names(folder: &Path) -> Vec<String> {
 
 #[test]
 fn lesson_folder_has_page_text_and_pictures() {
-    let place = Place::new();
-    let ran = place.gives(0, &format!("lesson scene.txt -o out {SMALL}"));
-    assert!(ran.out.starts_with("wrote out/index.html, lesson.md and "), "{}", ran.out);
+    let place = TestFolder::new();
+    let output = place.expect_exit(0, &format!("lesson scene.txt -o out {SMALL}"));
+    assert!(output.out.starts_with("wrote out/index.html, lesson.md and "), "{}", output.out);
     let (text, files) = (String::from_utf8(place.bytes("out/lesson.md")).unwrap(), names(&place.path("out")));
     // The folder has exactly the files that the text links to.
     let shown = |name: &str| text.contains(&format!("]({name})")) || name == "lesson.md";
@@ -31,26 +31,26 @@ fn lesson_folder_has_page_text_and_pictures() {
     assert!(text.contains("> scene.txt cannot show this: no glass is visible in it"), "{text}");
     assert!(text.contains("`crates/durer-render/src/integrator/whitted/secondary.rs`: `fn refract`"));
     // The last picture equals that of `render`.
-    place.gives(0, &format!("render scene.txt -o p.png -q {SMALL}"));
+    place.expect_exit(0, &format!("render scene.txt -o p.png -q {SMALL}"));
     let last = files.iter().rfind(|name| name.ends_with("-supersampling.png")).unwrap();
     assert_eq!(place.bytes(&format!("out/{last}")), place.bytes("p.png"));
     // A second run writes equal files.
-    place.gives(0, &format!("lesson scene.txt -o again --quiet {SMALL}"));
+    place.expect_exit(0, &format!("lesson scene.txt -o again --quiet {SMALL}"));
     assert_eq!(names(&place.path("again")), files);
     assert!(files.iter().all(|name| place.bytes(&format!("out/{name}")) == place.bytes(&format!("again/{name}"))));
 }
 
 #[test]
 fn only_files_of_an_earlier_lesson_are_replaced() {
-    let place = Place::new();
+    let place = TestFolder::new();
     std::fs::create_dir(place.path("out")).unwrap();
     place.put("out/notes.txt", "mine");
-    place.gives(0, &format!("lesson scene.txt -o out -q {SMALL}"));
+    place.expect_exit(0, &format!("lesson scene.txt -o out -q {SMALL}"));
     let first = names(&place.path("out"));
     // Another scene has other steps; stale files are removed, and foreign files stay.
     place.put("dull.txt", common::SCENE.replace("reflectiveColor 0.5 0.5 0.5", ""));
-    place.gives(0, &format!("lesson dull.txt -o out -q {SMALL}"));
-    place.gives(0, &format!("lesson dull.txt -o fresh -q {SMALL}"));
+    place.expect_exit(0, &format!("lesson dull.txt -o out -q {SMALL}"));
+    place.expect_exit(0, &format!("lesson dull.txt -o fresh -q {SMALL}"));
     let mut fresh = names(&place.path("fresh"));
     fresh.push("notes.txt".into());
     fresh.sort();
@@ -60,14 +60,14 @@ fn only_files_of_an_earlier_lesson_are_replaced() {
     // A foreign file with a lesson's file name stops the lesson.
     std::fs::create_dir(place.path("site")).unwrap();
     place.put("site/index.html", "my own page");
-    let ran = place.gives(2, &format!("lesson scene.txt -o site -q {SMALL}"));
-    assert!(ran.err.contains("`site/index.html` does not belong to an earlier lesson"), "{}", ran.err);
+    let output = place.expect_exit(2, &format!("lesson scene.txt -o site -q {SMALL}"));
+    assert!(output.err.contains("`site/index.html` does not belong to an earlier lesson"), "{}", output.err);
     assert_eq!(names(&place.path("site")), ["index.html"]);
 }
 
 #[test]
 fn invalid_arguments_leave_no_files() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("broken.txt", "PerspectiveCamera {");
     for (arguments, words) in [
         ("scene.txt -o scene.txt", "is a file"),
@@ -86,8 +86,8 @@ fn invalid_arguments_leave_no_files() {
         std::os::unix::fs::symlink("/dev/full", place.path("out/x.png")).unwrap();
         place.put("out/lesson.md", "<!-- Written by durer lesson, which also replaces or removes the files that are linked here. -->\n![x](index.html)");
         std::os::unix::fs::symlink("/dev/full", place.path("out/index.html")).unwrap();
-        let ran = place.gives(1, &format!("lesson scene.txt -o out {SMALL}"));
-        assert!(ran.err.contains("No space left"), "{}", ran.err);
+        let output = place.expect_exit(1, &format!("lesson scene.txt -o out {SMALL}"));
+        assert!(output.err.contains("No space left"), "{}", output.err);
         assert_eq!(names(&place.path("out")), ["index.html", "lesson.md", "x.png"]);
     }
 }
@@ -119,11 +119,11 @@ setTimeout(() => {
 
 #[test]
 fn page_works_in_a_browser_without_network() {
-    let place = Place::new();
+    let place = TestFolder::new();
     // A name that would end the script or link to a file to remove, if it were not escaped.
     let scene = "<b>](a).txt";
     place.put(scene, common::SCENE);
-    place.gives(0, &format!("lesson {scene} -o out -q {SMALL}"));
+    place.expect_exit(0, &format!("lesson {scene} -o out -q {SMALL}"));
     let text = String::from_utf8(place.bytes("out/lesson.md")).unwrap();
     assert!(text.contains("# &lt;b>&#93;(a).txt") && !text.contains("](a)"), "{text}");
     let steps = names(&place.path("out")).iter().filter(|name| name.ends_with("-change.png")).count() + 4;

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::Place;
+use common::TestFolder;
 
 /// A diffuse floor under a light with measured intensities, with an emissive ball.
 const LIT: &str = "PerspectiveCamera { center 0 2 6 direction 0 -0.3 -1 up 0 1 0 angle 40 }
@@ -15,12 +15,12 @@ Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere {
 ";
 
 /// 1000 candela straight down, with a cosine falloff.
-const LAMP: &str = "IESNA:LM-63-1995\nTILT=NONE\n1 -1 1 4 1 1 2 0 0 0\n1 1 60\n0 30 60 90\n0\n1000 866.025 500 0\n";
+const LIGHT: &str = "IESNA:LM-63-1995\nTILT=NONE\n1 -1 1 4 1 1 2 0 0 0\n1 1 60\n0 30 60 90\n0\n1000 866.025 500 0\n";
 
-fn lit() -> Place {
-    let place = Place::new();
+fn lit() -> TestFolder {
+    let place = TestFolder::new();
     place.put("lit.txt", LIT);
-    place.put("lamp.ies", LAMP);
+    place.put("lamp.ies", LIGHT);
     place
 }
 
@@ -29,32 +29,33 @@ fn photometric_light_has_its_specified_illuminance() {
     let place = lit();
     place.put("open.txt", LIT.replace("emissionLuminance 20", ""));
     // Beside the ball: E = I cos / d^2 with I = 1000 cos.
-    let ran = place.gives(0, "measure open.txt --at 0,0,0 --grid 0,0,0:-1,0,0:0,0,1:1x1 --samples 64 --bounces 0");
+    let output =
+        place.expect_exit(0, "measure open.txt --at 0,0,0 --grid 0,0,0:-1,0,0:0,0,1:1x1 --samples 64 --bounces 0");
     let rows: Vec<Vec<f64>> =
-        ran.out.lines().skip(1).map(|row| row.split(',').map(|word| word.parse().unwrap()).collect()).collect();
-    assert!(ran.out.starts_with("x,y,z,nx,ny,nz,illuminance,illuminance_error,"));
+        output.out.lines().skip(1).map(|row| row.split(',').map(|word| word.parse().unwrap()).collect()).collect();
+    assert!(output.out.starts_with("x,y,z,nx,ny,nz,illuminance,illuminance_error,"));
     assert!((rows[0][6] - 250.0).abs() < 0.1, "{rows:?}");
     // At (-0.5, 0, 0.5), 19.4712 degrees from straight down: candela are linear between 0 and 30
     // degrees.
     let candela = 1000.0 - (1000.0 - 866.025) * 19.4712 / 30.0;
     let expected = candela * (4.0_f64 / 4.5).sqrt() / 4.5;
     assert!((rows[1][6] / expected - 1.0).abs() < 1e-4 && rows[1][4] == 1.0, "{rows:?}");
-    assert!(place.gives(2, "measure open.txt").err.contains("--at X,Y,Z or --grid"));
-    assert!(place.gives(2, "measure open.txt --at 0,0").err.contains("three numbers"));
-    assert!(place.gives(2, "measure open.txt --at 0,0,0 --normal 0,0,0").err.contains("--normal"));
+    assert!(place.expect_exit(2, "measure open.txt").err.contains("--at X,Y,Z or --grid"));
+    assert!(place.expect_exit(2, "measure open.txt --at 0,0").err.contains("three numbers"));
+    assert!(place.expect_exit(2, "measure open.txt --at 0,0,0 --normal 0,0,0").err.contains("--normal"));
 }
 
 #[test]
 fn photons_measure_light_through_glass() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let scene = "PerspectiveCamera { center 0 2 6 direction 0 -0.3 -1 up 0 1 0 angle 40 } Background { color 0 0 0 }
 Lights { PointLight { position 0 2 0 color 31.830989 31.830989 31.830989 attenuation 0 0 1 } }
 Materials { PrincipledMaterial { baseColor 0 0 0 specularWeight 0 } PrincipledMaterial { transmissionWeight 1 specularRoughness 0 } }
 Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Box { min -1 1 -1 max 1 1.002 1 } }";
     place.put("pane.txt", scene);
     let lux = |options: &str| {
-        let ran = place.gives(0, &format!("measure pane.txt --at 0,0,0 {options}"));
-        let row: Vec<f64> = ran.out.lines().nth(1).unwrap().split(',').map(|word| word.parse().unwrap()).collect();
+        let output = place.expect_exit(0, &format!("measure pane.txt --at 0,0,0 {options}"));
+        let row: Vec<f64> = output.out.lines().nth(1).unwrap().split(',').map(|word| word.parse().unwrap()).collect();
         (row[6], row[7])
     };
     // 100 cd from 2 m: 25 lux without the pane. Each of its faces reflects 0.04: T = (1 - F) / (1 +
@@ -64,15 +65,16 @@ Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Box { mi
     assert!((mean - expected).abs() < 3.0 * error + 0.02 * expected, "{mean} ± {error}, not {expected}");
     // Path tracing cannot find a point light behind glass.
     assert_eq!(lux("--samples 32").0, 0.0);
-    assert!(place.gives(2, "measure pane.txt --at 0,0,0 --integrator ao").err.contains("path or photons"));
+    assert!(place.expect_exit(2, "measure pane.txt --at 0,0,0 --integrator ao").err.contains("path or photons"));
 }
 
 #[test]
 fn paths_are_deterministic_and_explanations_sum_up() {
     let place = lit();
     let hash = |options: &str| {
-        let ran = place.gives(0, &format!("render lit.txt -o p.pfm --size 32x24 --samples 8 --hash -q {options}"));
-        ran.out.lines().last().unwrap().to_string()
+        let output =
+            place.expect_exit(0, &format!("render lit.txt -o p.pfm --size 32x24 --samples 8 --hash -q {options}"));
+        output.out.lines().last().unwrap().to_string()
     };
     let one = hash("--threads 1");
     assert_eq!((hash("--threads 3 --tile 8"), hash("--accel grid")), (one.clone(), one.clone()));
@@ -80,7 +82,7 @@ fn paths_are_deterministic_and_explanations_sum_up() {
     assert_ne!(hash("--integrator whitted"), one);
     let picture = place.image("p.pfm");
     assert!(picture.pixels.iter().all(|pixel| pixel.is_finite()));
-    let why = place.gives(0, "explain lit.txt --pixel 16,20 --size 32x24 --samples 8 -q").out;
+    let why = place.expect_exit(0, "explain lit.txt --pixel 16,20 --size 32x24 --samples 8 -q").out;
     assert!(why.contains("direct light of PhotometricLight") && why.contains("chosen by Diffuse"), "{why}");
 }
 
@@ -88,40 +90,45 @@ fn paths_are_deterministic_and_explanations_sum_up() {
 fn exposure_and_tone_change_8_bit_pictures_only() {
     let place = lit();
     let bright = |options: &str| {
-        place.gives(0, &format!("render lit.txt -o p.png --size 16x12 --samples 4 -q {options}"));
+        place.expect_exit(0, &format!("render lit.txt -o p.png --size 16x12 --samples 4 -q {options}"));
         place.image("p.png").pixels.iter().map(|pixel| pixel.x).sum::<f32>()
     };
     let (plain, darker) = (bright(""), bright("--exposure -7"));
     assert!(darker < 0.5 * plain, "{darker} {plain}");
     assert!(bright("--tone reinhard") < plain);
-    place.gives(0, "render lit.txt -o a.pfm --size 16x12 --samples 4 -q --exposure -3");
-    place.gives(0, "render lit.txt -o b.pfm --size 16x12 --samples 4 -q");
+    place.expect_exit(0, "render lit.txt -o a.pfm --size 16x12 --samples 4 -q --exposure -3");
+    place.expect_exit(0, "render lit.txt -o b.pfm --size 16x12 --samples 4 -q");
     assert_eq!(place.image("a.pfm"), place.image("b.pfm"));
-    assert!(place.gives(2, "render lit.txt -o p.png --exposure 1e9").err.contains("--exposure"));
-    assert!(place.gives(2, "render lit.txt -o p.png --clamp 1 --integrator ao").err.contains("--clamp does not apply"));
+    assert!(place.expect_exit(2, "render lit.txt -o p.png --exposure 1e9").err.contains("--exposure"));
+    assert!(
+        place
+            .expect_exit(2, "render lit.txt -o p.png --clamp 1 --integrator ao")
+            .err
+            .contains("--clamp does not apply")
+    );
 }
 
 #[test]
 fn invalid_photometric_files_names_and_dark_scenes_are_reported() {
     let place = lit();
-    place.put("lamp.ies", LAMP.replace("0 30 60 90", "0 30 20 90"));
-    let told = place.gives(2, "render lit.txt -o p.png").err;
-    assert!(told.contains("lamp.ies:5:6") && told.contains("must rise"), "{told}");
+    place.put("lamp.ies", LIGHT.replace("0 30 60 90", "0 30 20 90"));
+    let output = place.expect_exit(2, "render lit.txt -o p.png").err;
+    assert!(output.contains("lamp.ies:5:6") && output.contains("must rise"), "{output}");
     assert!(!place.path("p.png").exists());
-    place.put("lamp.ies", LAMP);
+    place.put("lamp.ies", LIGHT);
     place.put("name.txt", LIT.replace("preset gold", "preset golt"));
-    let told = place.gives(2, "render name.txt -o p.png").err;
-    assert!(told.contains("did you mean `gold`"), "{told}");
+    let output = place.expect_exit(2, "render name.txt -o p.png").err;
+    assert!(output.contains("did you mean `gold`"), "{output}");
     let dark = LIT.replace("PhotometricLight { position 0 2 0 file lamp.ies }", "").replace("emissionLuminance 20", "");
     place.put("dark.txt", &dark);
-    assert!(place.gives(1, "check dark.txt").out.contains("no-emitter"));
+    assert!(place.expect_exit(1, "check dark.txt").out.contains("no-emitter"));
     // The message uses the words of the file's format.
     let scene =
         "<scene version='3.0.0'><sensor type='perspective'/><emitter type='projector'/><shape type='sphere'/></scene>";
     place.put("dark.xml", scene);
-    let told = place.gives(1, "check dark.xml").out;
-    let foreign = ["emissionLuminance", "Background"].iter().any(|word| told.contains(word));
-    assert!(told.contains("no-emitter") && told.contains("<emitter type=\"area\"/>") && !foreign, "{told}");
+    let output = place.expect_exit(1, "check dark.xml").out;
+    let foreign = ["emissionLuminance", "Background"].iter().any(|word| output.contains(word));
+    assert!(output.contains("no-emitter") && output.contains("<emitter type=\"area\"/>") && !foreign, "{output}");
     let turned =
         "MaterialIndex 2 Rectangle { corner -1 3 -1 edge0 0 0 2 edge1 2 0 0 } MaterialIndex 1 Sphere { center 0";
     place.put(
@@ -129,11 +136,11 @@ fn invalid_photometric_files_names_and_dark_scenes_are_reported() {
         dark.replace("baseColor 0 0 0", "baseColor 0 0 0 emissionLuminance 9")
             .replace("MaterialIndex 1 Sphere { center 1", turned),
     );
-    let told = place.gives(1, "check turned.txt").out;
-    assert!(told.contains("lamp-turned") && told.contains("swap `edge0` and `edge1`"), "{told}");
+    let output = place.expect_exit(1, "check turned.txt").out;
+    assert!(output.contains("lamp-turned") && output.contains("swap `edge0` and `edge1`"), "{output}");
     place.put("milk.txt", LIT.replace("preset gold", "preset gold transmissionScatter 1 1 1"));
-    let told = place.gives(1, "check milk.txt").out;
-    assert!(told.contains("no-depth") && told.contains("transmissionDepth 1"), "{told}");
+    let output = place.expect_exit(1, "check milk.txt").out;
+    assert!(output.contains("no-depth") && output.contains("transmissionDepth 1"), "{output}");
     place.put(
         "bulb.txt",
         "PerspectiveCamera { center 0 1 8 direction 0 0 -1 up 0 1 0 angle 30 } Background { color 0.5 0.5 0.5 }\n\
@@ -141,9 +148,9 @@ fn invalid_photometric_files_names_and_dark_scenes_are_reported() {
          Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 } PrincipledMaterial { preset glass } }\n\
          Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 1 0 radius 0.6 } }",
     );
-    let told = place.gives(1, "check bulb.txt").out;
-    assert!(told.contains("lamp-in-glass") && told.contains("--integrator photons"), "{told}");
-    assert!(!place.gives(0, "check bulb.txt --integrator photons").out.contains("lamp-in-glass"));
+    let output = place.expect_exit(1, "check bulb.txt").out;
+    assert!(output.contains("lamp-in-glass") && output.contains("--integrator photons"), "{output}");
+    assert!(!place.expect_exit(0, "check bulb.txt --integrator photons").out.contains("lamp-in-glass"));
 }
 
 /// A light over a floor, with a ball of glass between.
@@ -162,7 +169,7 @@ Group {
 
 #[test]
 fn photons_spectra_and_fog_are_deterministic() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("scene.txt", CAUSTIC);
     place.put("fog.txt", format!("Fog {{ extinction 0.2 color 0.9 0.8 0.7 min -3 0 -3 max 3 3 3 }}\n{CAUSTIC}"));
     for (scene, options) in [
@@ -171,12 +178,12 @@ fn photons_spectra_and_fog_are_deterministic() {
         ("scene.txt", "--color spectral"),
         ("fog.txt", "--integrator path"),
     ] {
-        let told = place.gives(0, &format!("verify {scene} {options} --size 20x16 --samples 5 --trials 4"));
-        assert!(told.out.contains("same") || told.out.contains("one hash"), "{} {}", told.out, told.err);
+        let output = place.expect_exit(0, &format!("verify {scene} {options} --size 20x16 --samples 5 --trials 4"));
+        assert!(output.out.contains("same") || output.out.contains("one hash"), "{} {}", output.out, output.err);
     }
     // Photons carry light that paths do not find.
     let mean = |options: &str| {
-        place.gives(0, &format!("render scene.txt {options} --size 24x18 --samples 16 -o p.pfm -q --restart"));
+        place.expect_exit(0, &format!("render scene.txt {options} --size 24x18 --samples 16 -o p.pfm -q --restart"));
         let bytes = std::fs::read(place.path("p.pfm")).unwrap();
         let floats = bytes[bytes.len() - 24 * 18 * 12..].chunks_exact(4);
         floats.map(|four| f32::from_le_bytes(four.try_into().unwrap())).sum::<f32>() / (24.0 * 18.0 * 3.0)
@@ -187,75 +194,77 @@ fn photons_spectra_and_fog_are_deterministic() {
 
 #[test]
 fn invalid_light_options_are_refused_and_denoising_keeps_the_hash() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("scene.txt", CAUSTIC);
     for (options, word) in [
         ("--integrator path --photons 9", "--photons does not apply to --integrator path"),
         ("--integrator whitted --color spectral", "--color does not apply"),
         ("--photon-radius 0", "--photon-radius must be more than 0"),
     ] {
-        let told = place.gives(2, &format!("render scene.txt {options} -o p.png")).err;
-        assert!(told.contains(word), "{told}");
+        let output = place.expect_exit(2, &format!("render scene.txt {options} -o p.png")).err;
+        assert!(output.contains(word), "{output}");
     }
     let explain = "explain scene.txt --pixel 3,3 --size 8x8 --samples 2 --color spectral";
-    let told = place.gives(0, explain).out;
-    assert!(told.contains(" nm; converted to RGB") && told.contains("red: ("), "{told}");
-    let told: serde_json::Value = serde_json::from_str(&place.gives(0, &format!("{explain} --json")).out).unwrap();
-    let light = &told["pixel"]["samples"][0]["light"];
+    let output = place.expect_exit(0, explain).out;
+    assert!(output.contains(" nm; converted to RGB") && output.contains("red: ("), "{output}");
+    let output: serde_json::Value =
+        serde_json::from_str(&place.expect_exit(0, &format!("{explain} --json")).out).unwrap();
+    let light = &output["pixel"]["samples"][0]["light"];
     let (value, observer) = (light["value"].as_array().unwrap(), light["waves"]["observer"].as_array().unwrap());
     assert_eq!((value.len(), observer.len(), light["waves"]["nm"].as_array().unwrap().len()), (4, 3, 4), "{light}");
     let of = |options: &str| {
-        let told = place.gives(0, &format!("render scene.txt --size 24x18 --samples 16 --hash --restart -q {options}"));
-        (told.out, std::fs::read(place.path("p.png")).unwrap())
+        let output =
+            place.expect_exit(0, &format!("render scene.txt --size 24x18 --samples 16 --hash --restart -q {options}"));
+        (output.out, std::fs::read(place.path("p.png")).unwrap())
     };
     let (noisy, clean) = (of("-o p.png"), of("-o p.png --denoise"));
     assert_eq!(noisy.0, clean.0);
     assert_ne!(noisy.1, clean.1);
-    place.gives(0, "render scene.txt --size 24x18 --samples 4 -o p.exr --denoise -q");
+    place.expect_exit(0, "render scene.txt --size 24x18 --samples 4 -o p.exr --denoise -q");
     assert!(String::from_utf8_lossy(&std::fs::read(place.path("p.exr")).unwrap()).contains("denoised"));
 }
 
 #[test]
 fn spectra_are_files_or_named_illuminants() {
-    let place = Place::new();
-    let scene = |base: &str, lamp: &str, sky: &str| {
+    let place = TestFolder::new();
+    let scene = |base: &str, emitter: &str, sky: &str| {
         format!(
             "PerspectiveCamera {{ center 0 1 6 direction 0 0 -1 up 0 1 0 angle 40 }} Background {{ color 0 0 0 {sky} }}
 Materials {{ PrincipledMaterial {{ {base} specularWeight 0 }}
-  PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 100 {lamp} }} }}
+  PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 100 {emitter} }} }}
 Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 Disc {{ center 0 2 0 normal 0 -1 0 radius 1 }} }}"
         )
     };
-    let write = |base, lamp, sky| place.put("s.txt", scene(base, lamp, sky));
+    let write = |base, emitter, sky| place.put("s.txt", scene(base, emitter, sky));
     place.put("paints.csv", "nm,grey,red\n400,0.5,0.1\n580,0.5,0.1\n600,0.5,0.8\n");
     place.put("lamp.csv", "400 0\n700 3\n");
     // The illuminance does not depend on the colour: E = pi L r^2 / (r^2 + d^2).
-    for lamp in
+    for emitter in
         ["", "emissionSpectrum A", "emissionSpectrum F11", "emissionSpectrum 2700K", "emissionSpectrum lamp.csv"]
     {
-        write("baseSpectrum paints.csv:red", lamp, "");
+        write("baseSpectrum paints.csv:red", emitter, "");
         for color in ["rgb", "spectral"] {
             let measure = format!("measure s.txt --at 0,0,0 --samples 4096 --bounces 0 --color {color}");
-            let row = place.gives(0, &measure).out.lines().nth(1).unwrap().to_string();
+            let row = place.expect_exit(0, &measure).out.lines().nth(1).unwrap().to_string();
             let lux: f64 = row.split(',').nth(6).unwrap().parse().unwrap();
-            assert!((lux / (20.0 * std::f64::consts::PI) - 1.0).abs() < 0.01, "{lamp} {color}: {row}");
+            assert!((lux / (20.0 * std::f64::consts::PI) - 1.0).abs() < 0.01, "{emitter} {color}: {row}");
         }
     }
     // A small area light and point lights with equal power and spectrum show a paint in the same
     // colour.
-    let shown = |lights: &str, things: &str| -> Vec<f64> {
+    let shown = |lights: &str, objects: &str| -> Vec<f64> {
         place.put(
             "t.txt",
             format!(
                 "PerspectiveCamera {{ center 0 1 6 direction 0 -1 -6 up 0 1 0 angle 0.1 }} Background {{ color 0 0 0 }}
 Lights {{ {lights} }} Materials {{ PrincipledMaterial {{ baseSpectrum paints.csv:red specularWeight 0 }}
   PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 100 emissionSpectrum lamp.csv }} }}
-Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {things} }}"
+Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {objects} }}"
             ),
         );
         let explain = "explain t.txt --pixel 0,0 --size 1x1 --samples 512 --bounces 0 --color spectral --json";
-        let told: serde_json::Value = serde_json::from_str(&place.gives(0, explain).out).unwrap();
-        told["pixel"]["color"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+        let output: serde_json::Value = serde_json::from_str(&place.expect_exit(0, explain).out).unwrap();
+        output["pixel"]["color"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
     };
     let wanted = shown("", "Disc { center 0 2 0 normal 0 -1 0 radius 0.02 }");
     assert!(wanted[0] > 3.0 * wanted[1], "{wanted:?}");
@@ -270,7 +279,7 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {thin
         assert!(found.iter().zip(&wanted).all(near), "{light}: {found:?}, and not {wanted:?}");
     }
     let render = "render s.txt -o p.png --size 8x8 --samples 1 -q";
-    for (base, lamp, sky, words) in [
+    for (base, emitter, sky, words) in [
         ("baseSpectrum paints.csv:blue", "", "", "there are grey, red"),
         ("baseSpectrum none.csv", "", "", "none.csv"),
         ("baseSpectrum lamp.csv", "", "", "must be from 0 to 1"),
@@ -285,19 +294,19 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {thin
         ("", "", "latitude 60 longitude 25 date 2026 2 3 time 12 70 0", "`time` does not exist"),
         ("", "", "latitude 60 longitude 25 date 2026 2.5 3 time 12 0 0", "must be whole numbers"),
     ] {
-        write(base, lamp, sky);
+        write(base, emitter, sky);
         place.refused(2, render, &[words]);
     }
     place.put("paints.csv", "nm,grey\n400,0.5\n390,0.5\n");
     write("baseSpectrum paints.csv", "", "");
     place.refused(2, render, &["paints.csv:3:1", "ascend"]);
     write("", "", "cieSky 16 zenithLuminance 1");
-    place.gives(0, render);
+    place.expect_exit(0, render);
 }
 
 #[test]
 fn sun_position_follows_from_angles_or_place_and_time() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let lux = |sky: &str| -> Vec<f64> {
         let scene = format!(
             "PerspectiveCamera {{ center 0 1 6 direction 0 -1 -6 up 0 1 0 angle 30 }} Background {{ {sky} }}
@@ -307,7 +316,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         place.put("s.txt", scene);
         let at = |normal: &str| -> f64 {
             let measure = format!("measure s.txt --at 0,0,0 --normal {normal} --samples 1024");
-            let row = place.gives(0, &measure).out.lines().nth(1).unwrap().to_string();
+            let row = place.expect_exit(0, &measure).out.lines().nth(1).unwrap().to_string();
             row.split(',').nth(6).unwrap().parse().unwrap()
         };
         ["0,1,0", "1,0,0", "-1,0,0", "0,0,1", "0,0,-1"].map(at).to_vec()
@@ -329,13 +338,13 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
     assert_eq!(lux("latitude 39.742476 longitude -105.1786 date 2003 10 17 time 7 0 0")[0], 0.0);
     assert_eq!(lux("cieSky 12 sunAltitude -20 sunAzimuth 0")[0], 0.0);
     lux("latitude 39.742476 longitude -105.1786 date 2003 10 17 time 7 0 0");
-    let told = place.gives(1, "check s.txt --exposure -13").out;
-    assert!(told.contains("degrees below the horizon") && told.contains("s.txt:1:"), "{told}");
+    let output = place.expect_exit(1, "check s.txt --exposure -13").out;
+    assert!(output.contains("degrees below the horizon") && output.contains("s.txt:1:"), "{output}");
 }
 
 #[test]
 fn lights_in_candela_lumen_and_lux_have_that_strength() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("lamp.ies", "TILT=NONE\n1 -1 2 3 1 1 2 0 0 0\n0.5 1 60\n0 90 180\n0\n100 100 100\n");
     let pi = std::f64::consts::PI;
     let lux = |light: &str| -> f64 {
@@ -345,7 +354,7 @@ Materials {{ PrincipledMaterial {{ baseColor 0.5 0.5 0.5 }} }}
 Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         );
         place.put("s.txt", scene);
-        let row = place.gives(0, "measure s.txt --at 0,0,0 --samples 16").out.lines().nth(1).unwrap().to_string();
+        let row = place.expect_exit(0, "measure s.txt --at 0,0,0 --samples 16").out.lines().nth(1).unwrap().to_string();
         row.split(',').nth(6).unwrap().parse().unwrap()
     };
     for (light, expected) in [
@@ -389,13 +398,13 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
 
 #[test]
 fn camera_settings_give_the_exposure() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let scene =
         "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 } Background { color 3840 3840 3840 }
 Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 } } Group { MaterialIndex 0 Sphere { center 0 0 9 radius 1 } }";
     place.put("s.txt", scene);
     let pixel = |options: &str| -> u8 {
-        place.gives(
+        place.expect_exit(
             0,
             &format!("render s.txt -o p.ppm --size 1x1 --samples 1 --transfer linear --quiet --restart {options}"),
         );
@@ -417,19 +426,19 @@ Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 } } Group { MaterialIndex
     }
     // `check` uses the same exposure.
     place.put("lit.txt", scene.replace("0 0 9", "0 0 0"));
-    assert!(place.gives(1, "check lit.txt").out.contains("too-bright"));
-    place.gives(0, "check lit.txt --shutter 1/125 --f-number 8");
+    assert!(place.expect_exit(1, "check lit.txt").out.contains("too-bright"));
+    place.expect_exit(0, "check lit.txt --shutter 1/125 --f-number 8");
 }
 
 #[test]
 fn radiance_scenes_are_measured_in_lux_from_above() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let sky = "void glow g 0 0 4 2 1 .5 0\ng source s 0 0 4 0 0 1 180\n";
     place.put("sky.rad", sky);
     place.put("dark.rad", "void plastic w 0 0 5 .5 .5 .5 0 0\nw sphere s 0 0 4 0 0 -9 1\n");
     let rows = |measure: &str| -> Vec<Vec<f64>> {
-        let ran = place.gives(0, measure);
-        ran.out.lines().skip(1).map(|row| row.split(',').map(|word| word.parse().unwrap()).collect()).collect()
+        let output = place.expect_exit(0, measure);
+        output.out.lines().skip(1).map(|row| row.split(',').map(|word| word.parse().unwrap()).collect()).collect()
     };
     // Half of the sphere emits: pi L, with rtrace's weights and 179 lm/W.
     let expected = std::f64::consts::PI * 179.0 * (2.0 * 0.265 + 0.670 + 0.5 * 0.065);
@@ -453,8 +462,8 @@ m polygon p 0 0 12 2 -9 -9 2 9 -9 2 9 9 2 -9 9\nvoid plastic w 0 0 5 .5 .5 .5 0 
 
 #[test]
 fn sky_fields_without_effect_are_reported() {
-    let place = Place::new();
-    let told = |sky: &str| {
+    let place = TestFolder::new();
+    let output = |sky: &str| {
         let scene = format!(
             "PerspectiveCamera {{ center 0 1 6 direction 0 -1 -6 up 0 1 0 angle 30 }}\n{sky}
 Materials {{ PrincipledMaterial {{ baseColor 0.5 0.5 0.5 }} }}
@@ -462,7 +471,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         );
         place.put("s.txt", scene);
         place.put("black.ppm", "P3 2 1 255 0 0 0 0 0 0\n");
-        place.gives(0, "measure s.txt --at 0,0,0 --samples 4").err
+        place.expect_exit(0, "measure s.txt --at 0,0,0 --samples 4").err
     };
     let sun = "sunAltitude 30 sunAzimuth 0";
     for (sky, words) in [
@@ -474,17 +483,17 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         ("environmentScale 2 2 2".into(), "`environmentScale` has no effect"),
         ("environment black.ppm".into(), "the environment `black.ppm` is black"),
     ] {
-        let said = told(&format!("Background {{ {sky} }}"));
-        assert!(said.contains(words) && said.contains("s.txt:2:"), "{sky}: {said}");
+        let text = output(&format!("Background {{ {sky} }}"));
+        assert!(text.contains(words) && text.contains("s.txt:2:"), "{sky}: {text}");
     }
     for sky in [
         format!("{sun} turbidity 3 groundReflectance 0.3 environmentRotation 30 environmentScale 2 2 2"),
         "cieSky 16 zenithLuminance 900 groundReflectance 0.3 environmentRotation 30".into(),
         "color 0.5 0.5 0.5".into(),
     ] {
-        let said = told(&format!("Background {{ {sky} }}"));
-        assert!(!said.contains("no effect") && !said.contains("grey"), "{sky}: {said}");
+        let text = output(&format!("Background {{ {sky} }}"));
+        assert!(!text.contains("no effect") && !text.contains("grey"), "{sky}: {text}");
     }
     // Without a background, the message does not suggest to turn it off.
-    assert!(!told("").contains("`Background { color 0 0 0 }`"), "{}", told(""));
+    assert!(!output("").contains("`Background { color 0 0 0 }`"), "{}", output(""));
 }

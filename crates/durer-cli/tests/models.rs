@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::Place;
+use common::TestFolder;
 
 const STL: &str = "solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 1\nendloop\nendfacet\n\
     facet normal 0 0 0\nouter loop\nvertex 1 0 0\nvertex 1 1 0.5\nvertex 0 1 1\nendloop\nendfacet\nendsolid a\n";
@@ -11,9 +11,9 @@ const SMALL: &str = "--size 24x16 --samples 2";
 
 #[test]
 fn model_is_rendered_with_every_view_and_studio() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("a.stl", STL);
-    let hash = |more: &str| place.gives(0, &format!("render a.stl -o a.png {SMALL} --hash -q {more}")).out;
+    let hash = |more: &str| place.expect_exit(0, &format!("render a.stl -o a.png {SMALL} --hash -q {more}")).out;
     let usual = hash("");
     assert_eq!(hash("--up z --view three-quarter --studio soft"), usual);
     for other in ["--up y", "--view front", "--view side", "--view top", "--view iso", "--studio sun", "--studio none"]
@@ -22,29 +22,29 @@ fn model_is_rendered_with_every_view_and_studio() {
     }
     place.refused(2, "render a.stl -o a.png --view behind", &["behind", "three-quarter"]);
     place.refused(2, "render a.stl -o a.png --at soon", &["--at", "seconds"]);
-    assert!(place.gives(0, "info a.stl").out.contains("2 in meshes"));
+    assert!(place.expect_exit(0, "info a.stl").out.contains("2 in meshes"));
 }
 
 #[test]
 fn model_is_converted_to_meshes_and_scenes() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("a.stl", STL);
     for name in ["b.ply", "b.obj", "b.stl", "b.glb", "b.gltf"] {
-        place.gives(0, &format!("convert a.stl -o {name}"));
-        assert!(place.gives(0, &format!("info {name}")).out.contains("2 in meshes"), "{name}");
+        place.expect_exit(0, &format!("convert a.stl -o {name}"));
+        assert!(place.expect_exit(0, &format!("info {name}")).out.contains("2 in meshes"), "{name}");
     }
-    let hash = |name: &str| place.gives(0, &format!("render {name} -o a.png {SMALL} --hash -q")).out;
+    let hash = |name: &str| place.expect_exit(0, &format!("render {name} -o a.png {SMALL} --hash -q")).out;
     // A model without a camera is framed for a square picture.
     let picture = |name: &str| {
-        place.gives(0, &format!("render {name} -o a.ppm --size 24x24 --samples 2 -q --restart"));
+        place.expect_exit(0, &format!("render {name} -o a.ppm --size 24x24 --samples 2 -q --restart"));
         std::fs::read(place.path("a.ppm")).unwrap()
     };
     for name in ["words.txt", "json.json"] {
-        let said = place.gives(0, &format!("convert a.stl -o {name}")).out;
-        assert!(said.contains(name) && said.contains("a.stl.ply"), "{said}");
+        let output = place.expect_exit(0, &format!("convert a.stl -o {name}")).out;
+        assert!(output.contains(name) && output.contains("a.stl.ply"), "{output}");
         assert_eq!(picture(name), picture("a.stl"), "{name}");
         // Converted files are ordinary scenes.
-        place.gives(0, &format!("convert {name} -o again-{name}"));
+        place.expect_exit(0, &format!("convert {name} -o again-{name}"));
         assert_eq!(hash(&format!("again-{name}")), hash(name), "{name}");
     }
     place.refused(2, "convert a.stl -o b --to durer", &["the output needs an extension"]);
@@ -52,7 +52,7 @@ fn model_is_converted_to_meshes_and_scenes() {
 
 #[test]
 fn crop_of_a_file_is_rendered() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let film = |more: &str| {
         format!(
             "Film \"rgb\" \"integer xresolution\" 30 \"integer yresolution\" 20 {more} Camera \"perspective\" WorldBegin\n\
@@ -62,7 +62,7 @@ fn crop_of_a_file_is_rendered() {
     place.put("whole.pbrt", film(""));
     place.put("part.pbrt", film("\"integer pixelbounds\" [5 20 3 15]"));
     let picture = |options: &str| {
-        place.gives(0, &format!("render {options} -o a.pfm --samples 4 -q --restart"));
+        place.expect_exit(0, &format!("render {options} -o a.pfm --samples 4 -q --restart"));
         place.image("a.pfm")
     };
     let part = picture("part.pbrt");
@@ -75,7 +75,7 @@ fn crop_of_a_file_is_rendered() {
 
 #[test]
 fn model_errors_have_line_and_column() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("a.stl", STL.replace("1 1 0.5", "1 1 x"));
     place.refused(2, "render a.stl -o a.png", &["a.stl:12:12", "expected a number, found `x`"]);
     place.put("a.gltf", "{ \"asset\": { \"version\": \"2.0\" },\n  \"nodes\": [{ \"mesh\": 3 }] }");
@@ -85,11 +85,11 @@ fn model_errors_have_line_and_column() {
 
 #[test]
 fn model_objects_are_reported_once_by_name() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("empty.gltf", r#"{"asset":{"version":"2.0"},"scenes":[{"name":"S"}]}"#);
-    let ran = place.gives(0, &format!("render empty.gltf -o a.png {SMALL}"));
-    assert!(ran.err.contains("empty.gltf:1:38") && !ran.err.contains("Group"), "{}", ran.err);
-    assert_eq!(ran.err.matches("no-objects").count(), 1, "{}", ran.err);
+    let output = place.expect_exit(0, &format!("render empty.gltf -o a.png {SMALL}"));
+    assert!(output.err.contains("empty.gltf:1:38") && !output.err.contains("Group"), "{}", output.err);
+    assert_eq!(output.err.matches("no-objects").count(), 1, "{}", output.err);
     place.put("empty.obj", "# nothing\n");
     let found = place.run("check empty.obj");
     assert!(found.out.contains("the scene has no surfaces") && !found.out.contains("Group"), "{}", found.out);
@@ -97,7 +97,7 @@ fn model_objects_are_reported_once_by_name() {
                 0 -1 0 color 1 1 1 } }\nMaterials { PhongMaterial { diffuseColor 1 1 1 } }\nGroup { MaterialIndex 0 Box { min \
                 -1 -1 -1 max 1 1 1 } }\n";
     place.put("room.txt", room);
-    place.gives(0, "convert room.txt -o room.gltf");
+    place.expect_exit(0, "convert room.txt -o room.gltf");
     let text = String::from_utf8(place.bytes("room.gltf")).unwrap();
     place.put("named.gltf", text.replacen("\"mesh\": 0", "\"name\": \"Room\", \"mesh\": 0", 1));
     assert!(place.run("check room.gltf").out.contains("the camera is inside the mesh at "));
@@ -113,14 +113,14 @@ const RAD: &str = "void plastic grey 0 0 5 .5 .5 .5 0 0\nvoid light lamp 0 0 3 9
 
 #[test]
 fn radiance_views_are_cameras() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("a.rad", RAD);
     place.put(
         "a.rif",
         "scene = a.rad\nRES = 24\nview = one -vp 0 -9 3 -vd 0 9 -2 -vh 40 -vv 30\nview = two -vp 3 -9 3 -vd 0 9 -2\n",
     );
     place.put("a.vf", "VIEW= -vp 0 -9 3 -vd 0 9 -2 -vh 40 -vv 30\n");
-    let hash = |what: &str| place.gives(0, &format!("render {what} -o a.png --samples 2 --hash -q")).out;
+    let hash = |what: &str| place.expect_exit(0, &format!("render {what} -o a.png --samples 2 --hash -q")).out;
     let usual = hash("a.rif");
     assert_eq!(hash("a.rif --camera one"), usual);
     assert_eq!(hash("a.rad --view-file a.vf --size 24x17"), hash("a.rif --size 24x17"));
@@ -139,15 +139,15 @@ const XML: &str = "<scene version='3.0.0'><sensor type='perspective' id='one'><f
 
 #[test]
 fn mitsuba_sensors_are_cameras_and_scenes_convert_to_gltf() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("a.xml", XML);
-    let hash = |what: &str| place.gives(0, &format!("render {what} -o a.png --samples 2 --hash -q")).out;
+    let hash = |what: &str| place.expect_exit(0, &format!("render {what} -o a.png --samples 2 --hash -q")).out;
     let usual = hash("a.xml");
     assert_eq!(hash("a.xml --camera one"), usual);
     assert_ne!(hash("a.xml --camera two --size 24x16"), usual);
     place.refused(2, "render a.xml -o a.png --camera three", &["unknown sensor `three`"]);
-    place.gives(0, "convert a.xml -o a.glb");
-    assert!(place.gives(0, "info a.glb").out.contains("in meshes"));
+    place.expect_exit(0, "convert a.xml -o a.glb");
+    assert!(place.expect_exit(0, "info a.glb").out.contains("in meshes"));
     place.put("b.xml", XML.replace("'40'", "'wide'"));
     place.refused(2, "render b.xml -o b.png", &["b.xml:1:85", "expected a number, found `wide`"]);
 }
@@ -157,9 +157,9 @@ const COURSE: &str = "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0
 
 #[test]
 fn frames_are_times_cameras_and_files() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("a.stl", STL);
-    let hash = |words: &str| place.gives(0, &format!("render {words} {SMALL} --hash -q")).out;
+    let hash = |words: &str| place.expect_exit(0, &format!("render {words} {SMALL} --hash -q")).out;
     // A turntable's frame equals the same frame alone, and the view of `--turned`.
     let all = hash("a.stl -o a.png --turntable 3");
     let alone: String = (0..3).map(|i| hash(&format!("a.stl -o a.png --turntable 3 --frames {i}"))).collect();
@@ -183,7 +183,7 @@ fn frames_are_times_cameras_and_files() {
     for shard in [1, 2] {
         hash(&format!("walk.%02d.txt --frames 8-9 --shard {shard}/2 -o %d.{shard}.part"));
     }
-    assert_eq!(place.gives(0, "merge 9.1.part 9.2.part -o b.png --hash -q").out, hash("walk.09.txt -o a.png"));
+    assert_eq!(place.expect_exit(0, "merge 9.1.part 9.2.part -o b.png --hash -q").out, hash("walk.09.txt -o a.png"));
     place.refused(2, "render walk.08.txt --frames 1-3", &["all frames would be equal"]);
     place.refused(2, "render walk.%02d.txt --frames 3-1", &["expected frames from 0 to 9999999"]);
     place.refused(2, "render walk.%02d.txt --frames 8-9 --watch", &["apply to one picture"]);
@@ -191,14 +191,14 @@ fn frames_are_times_cameras_and_files() {
     // A scene with a camera cannot be turned, and the error says so.
     place.refused(2, "render walk.08.txt --turntable 4", &["`durer convert` to a glTF file"]);
     place.refused(2, "render a.stl --fps 4", &["--frames"]);
-    assert!(place.gives(2, "render walk.%02d.txt --frames 10-11 -q").err.contains("walk.11.txt"));
+    assert!(place.expect_exit(2, "render walk.%02d.txt --frames 10-11 -q").err.contains("walk.11.txt"));
 }
 
 #[test]
 fn turntable_rotates_and_fit_moves_the_camera() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("a.stl", STL);
-    place.gives(0, &format!("render a.stl -o a.png {SMALL} --turntable 4"));
+    place.expect_exit(0, &format!("render a.stl -o a.png {SMALL} --turntable 4"));
     let frame = |i: u32| std::fs::read(place.path(&format!("a.000{i}.png"))).unwrap();
     assert!(frame(0) != frame(1) && frame(1) != frame(2) && frame(2) != frame(3));
     assert!(!place.path("a.0004.png").exists() && !place.path("a.png").exists());
@@ -207,25 +207,27 @@ fn turntable_rotates_and_fit_moves_the_camera() {
     // With --fit, a camera that looked past the model sees it.
     place.put("a.rad", RAD);
     place.put("a.vf", "VIEW= -vp 0 -900 900 -vd 0 -1 -.1 -vh 40 -vv 30\n");
-    let hash =
-        |more: &str| place.gives(0, &format!("render a.rad -o a.png {SMALL} --hash -q --view-file a.vf {more}")).out;
+    let hash = |more: &str| {
+        place.expect_exit(0, &format!("render a.rad -o a.png {SMALL} --hash -q --view-file a.vf {more}")).out
+    };
     assert_ne!(hash("--fit"), hash(""));
 }
 
 #[test]
 fn environment_lights_a_model() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("a.stl", STL);
     let view = "EquirectangularCamera { center 0 0 0 direction 0 0 -1 up 0 1 0 } Background { color 2 3 4 }";
     place.put("sky.txt", format!("{view} Lights {{ }} Materials {{ PhongMaterial {{ diffuseColor 0 0 0 }} }} Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset -1 }} }}"));
-    place.gives(0, "render sky.txt -o sky.hdr --size 64x32 --samples 1 -q");
-    let hash = |more: &str| place.gives(0, &format!("render a.stl -o a.png {SMALL} --hash -q {more}")).out;
+    place.expect_exit(0, "render sky.txt -o sky.hdr --size 64x32 --samples 1 -q");
+    let hash = |more: &str| place.expect_exit(0, &format!("render a.stl -o a.png {SMALL} --hash -q {more}")).out;
     assert_ne!(hash("--environment sky.hdr"), hash(""));
     // The environment's orientation matters.
     assert_ne!(hash("--environment sky.hdr --up y"), hash("--environment sky.hdr --up z"));
     // A black environment is legal, but reported.
     place.put("black.pfm", b"PF\n1 1\n-1\n\0\0\0\0\0\0\0\0\0\0\0\0".as_slice());
-    let dark = place.gives(0, &format!("render a.stl -o dark.pfm {SMALL} --environment black.pfm --integrator path"));
+    let dark =
+        place.expect_exit(0, &format!("render a.stl -o dark.pfm {SMALL} --environment black.pfm --integrator path"));
     assert!(dark.err.contains("is black: it emits no light"), "{}", dark.err);
     assert!(place.bytes("dark.pfm").iter().rev().take(48).all(|&byte| byte == 0));
     place.refused(2, "render a.stl -o a.png --environment none.hdr", &["none.hdr"]);
@@ -234,14 +236,14 @@ fn environment_lights_a_model() {
 
 #[test]
 fn json_scene_works_with_every_command() {
-    let place = Place::new();
-    place.gives(0, "convert scene.txt -o a.json");
-    let hash = |name: &str| place.gives(0, &format!("render {name} -o a.png {SMALL} --hash -q")).out;
+    let place = TestFolder::new();
+    place.expect_exit(0, "convert scene.txt -o a.json");
+    let hash = |name: &str| place.expect_exit(0, &format!("render {name} -o a.png {SMALL} --hash -q")).out;
     assert_eq!(hash("a.json"), hash("scene.txt"));
-    let said = |name: &str| place.run(&format!("check {name}")).out.replace(name, "");
-    assert_eq!(said("a.json").lines().count(), said("scene.txt").lines().count());
-    assert!(place.gives(0, "info a.json").out.contains("Sphere"));
-    place.gives(0, "explain a.json --pixel 256,256");
+    let output = |name: &str| place.run(&format!("check {name}")).out.replace(name, "");
+    assert_eq!(output("a.json").lines().count(), output("scene.txt").lines().count());
+    assert!(place.expect_exit(0, "info a.json").out.contains("Sphere"));
+    place.expect_exit(0, "explain a.json --pixel 256,256");
     let text = "{\"type\": \"Scene\",\n \"camera\": {\"type\": \"PerspectiveCamra\"}}";
     place.put("b.json", text);
     place.refused(2, "render b.json -o b.png", &["b.json:2:21", "did you mean `PerspectiveCamera`?"]);

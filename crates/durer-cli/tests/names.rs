@@ -3,12 +3,12 @@
 
 mod common;
 
-use common::{Place, Ran, SCENE};
+use common::{ProgramOutput, SCENE, TestFolder};
 use std::os::unix::fs::symlink;
 use std::process::Command;
 
 /// A COLMAP folder of two photographs of 32 x 32 pixels.
-fn colmap(place: &Place, folder: &str, names: [&str; 2]) {
+fn colmap(place: &TestFolder, folder: &str, names: [&str; 2]) {
     std::fs::create_dir_all(place.path(folder)).unwrap();
     place.put(&format!("{folder}/cameras.txt"), "1 PINHOLE 32 32 30 30 16 16\n");
     let [a, b] = names;
@@ -17,31 +17,31 @@ fn colmap(place: &Place, folder: &str, names: [&str; 2]) {
     place.put(&format!("{folder}/points3D.txt"), "1 0 0 0 255 0 0 0.1 1 0 2 0\n");
 }
 
-fn picture(place: &Place, path: &str) {
-    place.gives(0, &format!("render scene.txt --size 32x32 --samples 1 -q --restart -o {path}"));
+fn picture(place: &TestFolder, path: &str) {
+    place.expect_exit(0, &format!("render scene.txt --size 32x32 --samples 1 -q --restart -o {path}"));
 }
 
-fn fifo(place: &Place, name: &str) {
+fn fifo(place: &TestFolder, name: &str) {
     assert!(Command::new("mkfifo").arg(place.path(name)).status().unwrap().success());
 }
 
 /// Runs a command, which must end within ten seconds.
-fn ends(place: &Place, line: &str) -> Ran {
-    let ran = place.shell(&format!("timeout 10 $DURER {line}"));
-    assert_ne!(ran.code, Some(124), "{line} does not end");
-    ran
+fn ends(place: &TestFolder, line: &str) -> ProgramOutput {
+    let output = place.shell(&format!("timeout 10 $DURER {line}"));
+    assert_ne!(output.code, Some(124), "{line} does not end");
+    output
 }
 
 #[track_caller]
-fn refused(place: &Place, line: &str, words: &str) {
-    let ran = ends(place, line);
-    assert_eq!(ran.code, Some(2), "{line}: {}", ran.err);
-    assert!(ran.err.contains(words), "{line}: {}", ran.err);
+fn refused(place: &TestFolder, line: &str, words: &str) {
+    let output = ends(place, line);
+    assert_eq!(output.code, Some(2), "{line}: {}", output.err);
+    assert!(output.err.contains(words), "{line}: {}", output.err);
 }
 
 #[test]
 fn a_tour_embeds_only_pictures_of_its_folder() {
-    let place = Place::new();
+    let place = TestFolder::new();
     std::fs::create_dir_all(place.path("photos/more")).unwrap();
     for path in ["secret.png", "photos/a.png", "photos/more/b.png"] {
         picture(&place, path);
@@ -68,14 +68,14 @@ fn a_tour_embeds_only_pictures_of_its_folder() {
         assert!(!place.path("t.html").exists(), "{name}");
     }
     colmap(&place, "solved", ["a.png", "more/b.png"]);
-    place.gives(0, "photo tour solved --pictures photos -o t.html -q");
+    place.expect_exit(0, "photo tour solved --pictures photos -o t.html -q");
     colmap(&place, "solved", ["a.png", "inner.png"]);
-    place.gives(0, "photo tour solved --pictures photos -o t.html -q");
+    place.expect_exit(0, "photo tour solved --pictures photos -o t.html -q");
 }
 
 #[test]
 fn folders_of_photographs_and_cameras_lead_nowhere_else() {
-    let place = Place::new();
+    let place = TestFolder::new();
     std::fs::create_dir(place.path("photos")).unwrap();
     for path in ["secret.png", "photos/a.png", "photos/b.png"] {
         picture(&place, path);
@@ -98,7 +98,7 @@ fn folders_of_photographs_and_cameras_lead_nowhere_else() {
     // Photographs whose sizes a Bundler file lacks.
     let bundle = "# Bundle file v0.3\n2 0\n30 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 0\n30 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0\n";
     place.put("two.out", bundle);
-    place.gives(0, "photo convert two.out --pictures photos -o two.gltf -q");
+    place.expect_exit(0, "photo convert two.out --pictures photos -o two.gltf -q");
     std::fs::remove_file(place.path("photos/b.png")).unwrap();
     symlink("../secret.png", place.path("photos/b.png")).unwrap();
     for line in [
@@ -112,7 +112,7 @@ fn folders_of_photographs_and_cameras_lead_nowhere_else() {
 
 #[test]
 fn pipes_and_devices_that_are_named_are_refused() {
-    let place = Place::new();
+    let place = TestFolder::new();
     fifo(&place, "pipe.txt");
     fifo(&place, "pipe.png");
     fifo(&place, "pipe.json");
@@ -145,21 +145,21 @@ fn pipes_and_devices_that_are_named_are_refused() {
 #[test]
 fn a_lesson_waits_for_no_pipe_and_reads_no_device() {
     for target in ["pipe.txt", "/dev/zero"] {
-        let place = Place::new();
+        let place = TestFolder::new();
         std::fs::create_dir(place.path("lesson")).unwrap();
         fifo(&place, "pipe.txt");
         symlink(place.path(target), place.path("lesson/lesson.md")).unwrap();
-        let ran = ends(&place, "lesson scene.txt -o lesson --size 16x12 --samples 1 -q");
-        assert_ne!(ran.code, Some(0), "{target}");
+        let output = ends(&place, "lesson scene.txt -o lesson --size 16x12 --samples 1 -q");
+        assert_ne!(output.code, Some(0), "{target}");
     }
 }
 
 #[test]
 fn pipes_with_names_of_temporary_files_delay_no_save() {
-    let place = Place::new();
+    let place = TestFolder::new();
     // A render that is killed while it saves leaves such a name; ask the program for one.
-    let ran = place.shell("$DURER render scene.txt --size 8x8 --samples 1 -q -o o.png; ls -a");
-    assert_eq!(ran.code, Some(0), "{}", ran.err);
+    let output = place.shell("$DURER render scene.txt --size 8x8 --samples 1 -q -o o.png; ls -a");
+    assert_eq!(output.code, Some(0), "{}", output.err);
     for name in [".durer-ready-1.tmp", ".durer-1.tmp", ".durer-x.tmp"] {
         fifo(&place, name);
     }
@@ -168,14 +168,14 @@ fn pipes_with_names_of_temporary_files_delay_no_save() {
 
 #[test]
 fn a_scene_that_is_watched_reads_nothing_else() {
-    let place = Place::new();
+    let place = TestFolder::new();
     picture(&place, "secret.png");
     std::fs::create_dir(place.path("below")).unwrap();
     let field = "HeightField { picture ../secret.png min -1 0 -1  max 1 1 1 }";
     place.put("below/scene.txt", SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", field));
-    let ran = place.shell(
+    let output = place.shell(
         "timeout -s INT 3 $DURER render below/scene.txt --dialect durer --watch --size 8x8 --samples 1 -o below/o.png",
     );
-    assert!(ran.err.contains("lies outside the scene's folder"), "{}", ran.err);
+    assert!(output.err.contains("lies outside the scene's folder"), "{}", output.err);
     assert!(!place.path("below/o.png").exists());
 }

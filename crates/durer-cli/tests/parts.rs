@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Place, SCENE};
+use common::{SCENE, TestFolder};
 
 const SMALL: &str = "render scene.txt --size 40x30 --samples 6 --show color,depth,variance --quiet";
 
@@ -12,29 +12,29 @@ fn last_line(text: &str) -> String {
 
 #[test]
 fn shards_merge_to_the_bytes_of_one_run() {
-    let place = Place::new();
-    let hash = last_line(&place.gives(0, &format!("{SMALL} -o whole.exr --hash")).out);
+    let place = TestFolder::new();
+    let hash = last_line(&place.expect_exit(0, &format!("{SMALL} -o whole.exr --hash")).out);
     assert_eq!(hash.len(), 64, "{hash}");
     for (by, tile) in [("tiles", 8), ("samples", 32)] {
         for index in 1..=3 {
             let shard = format!("--shard {index}/3 --shard-by {by} --tile {tile} --threads {index}");
-            let ran = place.gives(0, &format!("{SMALL} {shard} -o {index}.part"));
-            assert_eq!(ran.out, "");
+            let output = place.expect_exit(0, &format!("{SMALL} {shard} -o {index}.part"));
+            assert_eq!(output.out, "");
         }
-        let ran = place.gives(0, "merge 2.part 3.part 1.part -o merged.exr --hash");
-        assert_eq!(ran.out, format!("wrote merged.exr\n{hash}\n"), "by {by}");
+        let output = place.expect_exit(0, "merge 2.part 3.part 1.part -o merged.exr --hash");
+        assert_eq!(output.out, format!("wrote merged.exr\n{hash}\n"), "by {by}");
         assert!(place.bytes("merged.exr") == place.bytes("whole.exr"), "by {by}");
         place.refused(2, "merge 3.part 1.part -o m.exr", &["missing", "2/3", by]);
         place.refused(2, "merge 1.part 2.part 3.part 2.part -o m.exr", &["`2.part` and `2.part` overlap"]);
         place.refused(2, "merge 1.part 2.part 3.part -o m.xyz", &["m.xyz"]);
     }
     // Separate pictures go into separate files, named by the job stored in the parts.
-    place.gives(0, "merge 1.part 2.part 3.part -o m.png --quiet");
-    place.gives(0, &format!("{SMALL} -o w.png"));
+    place.expect_exit(0, "merge 1.part 2.part 3.part -o m.png --quiet");
+    place.expect_exit(0, &format!("{SMALL} -o w.png"));
     assert!(place.bytes("m.depth.png") == place.bytes("w.depth.png"));
     assert!(place.bytes("m.color.png") == place.bytes("w.color.png"));
     // Parts of another picture, and files that are not parts.
-    place.gives(0, &format!("{SMALL} --seed 7 --shard 2/3 --shard-by samples -o other.part"));
+    place.expect_exit(0, &format!("{SMALL} --seed 7 --shard 2/3 --shard-by samples -o other.part"));
     place.refused(2, "merge 1.part other.part 3.part -o m.exr", &["other.part", "`seed` is 7"]);
     let bytes = place.bytes("2.part");
     place.put("torn.part", &bytes[..bytes.len() / 2]);
@@ -47,10 +47,10 @@ fn shards_merge_to_the_bytes_of_one_run() {
 
 #[test]
 fn stopped_work_is_resumed() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let work = "render scene.txt --size 120x90 --samples 300 --quiet --hash";
-    let hash = last_line(&place.gives(0, &format!("{work} -o calm.png")).out);
-    place.gives(0, &format!("{work} --time-limit 30ms --checkpoint c.part -o p.png"));
+    let hash = last_line(&place.expect_exit(0, &format!("{work} -o calm.png")).out);
+    place.expect_exit(0, &format!("{work} --time-limit 30ms --checkpoint c.part -o p.png"));
     assert!(place.path("c.part").exists(), "it cannot have been finished in 30 ms");
     // Saved work of another job is rejected and stays.
     let other = |options: &str, words: &[&str]| {
@@ -65,19 +65,19 @@ fn stopped_work_is_resumed() {
     place.put("c.part", &bytes[..bytes.len() - 1]);
     other("", &["c.part", "torn"]);
     place.put("c.part", &bytes);
-    let ran = place.gives(0, &format!("{work} --resume --checkpoint c.part -o p.png --threads 3 --tile 40"));
-    assert_eq!(last_line(&ran.out), hash);
+    let output = place.expect_exit(0, &format!("{work} --resume --checkpoint c.part -o p.png --threads 3 --tile 40"));
+    assert_eq!(last_line(&output.out), hash);
     assert!(place.bytes("p.png") == place.bytes("calm.png") && !place.path("c.part").exists());
     // Without saved work, --resume starts from the beginning.
-    let ran = place.gives(0, &format!("{work} --resume --checkpoint c.part -o p.png"));
-    assert_eq!(last_line(&ran.out), hash);
+    let output = place.expect_exit(0, &format!("{work} --resume --checkpoint c.part -o p.png"));
+    assert_eq!(last_line(&output.out), hash);
 }
 
 #[test]
 fn single_pixel_is_printed() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let options = "render scene.txt --size 40x30 --samples 4 --pixel 20,15";
-    let one = place.gives(0, &format!("{options} --sample 3")).out;
+    let one = place.expect_exit(0, &format!("{options} --sample 3")).out;
     assert!(one.starts_with("pixel 20,15, sample 3: 0."), "{one}");
     assert_eq!(place.names(), ["endless.txt", "scene.txt"]);
     place.refused(2, &format!("{options} --sample 4"), &["samples from 0 to 3"]);
@@ -88,19 +88,21 @@ fn single_pixel_is_printed() {
 
 #[test]
 fn stopping_rules_and_limits() {
-    let place = Place::new();
-    let ran = place.gives(0, "render scene.txt --size 64x48 --noise-threshold 0.005 --show sample-count -o n.exr");
-    assert_eq!(ran.out, "wrote n.exr\n");
+    let place = TestFolder::new();
+    let output =
+        place.expect_exit(0, "render scene.txt --size 64x48 --noise-threshold 0.005 --show sample-count -o n.exr");
+    assert_eq!(output.out, "wrote n.exr\n");
     let counts = place.image("n.exr");
     let most = counts.pixels.iter().fold(0.0_f32, |most, p| most.max(p.x));
     assert!(counts.pixels.iter().any(|p| p.x == 16.0) && most > 16.0 && most < 4096.0, "{most}");
-    let ran = place.gives(0, "render scene.txt --size 64x48 --samples 32 --adaptive --show sample-count -o a.exr");
-    assert_eq!(ran.out, "wrote a.exr\n");
+    let output =
+        place.expect_exit(0, "render scene.txt --size 64x48 --samples 32 --adaptive --show sample-count -o a.exr");
+    assert_eq!(output.out, "wrote a.exr\n");
     let counts: Vec<f32> = place.image("a.exr").pixels.iter().map(|p| p.x).collect();
     assert_eq!((counts.iter().sum::<f32>(), counts.contains(&8.0)), (32.0 * 64.0 * 48.0, true));
-    let told = place.gives(0, "explain scene.txt --size 64x48 --samples 32 --adaptive --pixel 30,20 --json").out;
-    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
-    assert_eq!(told["pixel"]["samples"].as_array().unwrap().len() as f32, counts[20 * 64 + 30]);
+    let text = place.expect_exit(0, "explain scene.txt --size 64x48 --samples 32 --adaptive --pixel 30,20 --json").out;
+    let text: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(text["pixel"]["samples"].as_array().unwrap().len() as f32, counts[20 * 64 + 30]);
     let adaptive = "render scene.txt --size 64x48 --adaptive -o x.exr";
     place.refused(2, &format!("{adaptive} --samples 15"), &["at least 16"]);
     place.refused(2, &format!("{adaptive} --noise-threshold 0.1"), &["--adaptive", "cannot be used with"]);
@@ -108,8 +110,8 @@ fn stopping_rules_and_limits() {
     place.refused(2, &format!("{adaptive} --time-limit 1s"), &["--samples"]);
     place.refused(2, &format!("{adaptive} --shard 1/2"), &["cannot be split"]);
     place.refused(2, &format!("{adaptive} --integrator photons"), &["photons"]);
-    let ran = place.gives(0, "render scene.txt --size 64x48 --time 100ms --preview v.png -o t.png");
-    assert!(ran.err.contains("the time limit ended the render after"), "{}", ran.err);
+    let output = place.expect_exit(0, "render scene.txt --size 64x48 --time 100ms --preview v.png -o t.png");
+    assert!(output.err.contains("the time limit ended the render after"), "{}", output.err);
     assert_eq!((place.image8("v.png").width, place.image8("t.png").width), (64, 64));
     assert!(!place.path("t.png.part").exists(), "what nobody wanted is not left");
     let large = "render scene.txt --size 4000x4000 --memory 100M";
@@ -126,9 +128,9 @@ fn stopping_rules_and_limits() {
     let size = "--size 700x500 --samples 2 --hash";
     let [bands, whole] = ["--memory 12M", ""].map(|memory| {
         let name = if memory.is_empty() { "w.ppm" } else { "b.ppm" };
-        let ran = place.gives(0, &format!("render scene.txt {size} {memory} -o {name}"));
-        assert!(ran.out.contains(&format!("wrote {name}")), "{}", ran.out);
-        (place.bytes(name), ran.out.lines().last().map(String::from))
+        let output = place.expect_exit(0, &format!("render scene.txt {size} {memory} -o {name}"));
+        assert!(output.out.contains(&format!("wrote {name}")), "{}", output.out);
+        (place.bytes(name), output.out.lines().last().map(String::from))
     });
     assert!(bands == whole, "{:?} {:?}", bands.1, whole.1);
     place.refused(2, "render scene.txt --memory 5Q", &["8G"]);
@@ -146,28 +148,28 @@ fn stopping_rules_and_limits() {
 
 #[test]
 fn verify_reports_one_hash() {
-    let place = Place::new();
-    let ran = place.gives(0, "verify scene.txt --trials 6 --size 24x20");
-    assert!(ran.out.starts_with("6 ways, structures bvh, grid, none"), "{}", ran.out);
-    let hash = last_line(&ran.out);
-    assert_eq!(last_line(&place.gives(0, "verify scene.txt --trials 1 --size 24x20 --quiet").out), hash);
+    let place = TestFolder::new();
+    let output = place.expect_exit(0, "verify scene.txt --trials 6 --size 24x20");
+    assert!(output.out.starts_with("6 ways, structures bvh, grid, none"), "{}", output.out);
+    let hash = last_line(&output.out);
+    assert_eq!(last_line(&place.expect_exit(0, "verify scene.txt --trials 1 --size 24x20 --quiet").out), hash);
     place.refused(2, "verify missing.txt", &["missing.txt"]);
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn killed_program_is_resumed_by_the_next_run() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let work = "render scene.txt --size 160x120 --samples 80 --quiet --hash --resume --checkpoint-every 5ms";
-    let hash = last_line(&place.gives(0, &format!("{work} -o calm.exr")).out);
+    let hash = last_line(&place.expect_exit(0, &format!("{work} -o calm.exr")).out);
     for i in 0..8 {
         let mut child = place.command(&format!("{work} -o p.exr")).stdout(std::process::Stdio::null()).spawn().unwrap();
         std::thread::sleep(std::time::Duration::from_millis(10 + 23 * i));
         child.kill().unwrap();
         child.wait().unwrap();
     }
-    let ran = place.gives(0, &format!("{work} -o p.exr"));
-    assert_eq!(last_line(&ran.out), hash);
+    let output = place.expect_exit(0, &format!("{work} -o p.exr"));
+    assert_eq!(last_line(&output.out), hash);
     assert_eq!(place.names(), ["calm.exr", "endless.txt", "p.exr", "scene.txt"]);
     assert!(place.bytes("p.exr") == place.bytes("calm.exr"));
 }
@@ -175,7 +177,7 @@ fn killed_program_is_resumed_by_the_next_run() {
 #[cfg(target_os = "linux")]
 #[test]
 fn full_disk_is_reported_and_keeps_the_old_file() {
-    let place = Place::new();
+    let place = TestFolder::new();
     for (name, options) in [("p.png", ""), ("p.exr", ""), ("p.part", "--shard 1/2")] {
         // Saved work replaces only saved work.
         let old = if name == "p.part" { "" } else { "old" };
@@ -190,12 +192,12 @@ fn full_disk_is_reported_and_keeps_the_old_file() {
                 common::durer(),
             ]);
             let output = command.args(line.split_whitespace()).current_dir(place.path("")).output().unwrap();
-            let said = String::from_utf8_lossy(&output.stderr).into_owned();
-            if said.contains("prlimit: not found") {
+            let text = String::from_utf8_lossy(&output.stderr).into_owned();
+            if text.contains("prlimit: not found") {
                 return println!("skipped: `prlimit` not found");
             }
-            assert_eq!(output.status.code(), Some(1), "{said}");
-            assert!(said.contains(&format!("cannot write `{name}`")), "{said}");
+            assert_eq!(output.status.code(), Some(1), "{text}");
+            assert!(text.contains(&format!("cannot write `{name}`")), "{text}");
             assert_eq!(place.bytes(name), old.as_bytes());
             assert!(place.names().iter().all(|name| !name.ends_with(".tmp")));
         }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::Place;
+use common::TestFolder;
 
 /// A light over a floor, with a ball of glass between.
 const GLASS: &str = "PerspectiveCamera { center 0 2 6 direction 0 -0.25 -1 up 0 1 0 angle 30 }
@@ -19,8 +19,8 @@ Group {
 }
 ";
 
-fn place() -> Place {
-    let place = Place::new();
+fn place() -> TestFolder {
+    let place = TestFolder::new();
     place.put("glass.txt", GLASS);
     place
 }
@@ -29,19 +29,20 @@ fn place() -> Place {
 fn error_bounds_do_not_change_the_hash() {
     let place = place();
     let render = "render glass.txt --integrator photons --photons 500 --size 16x12 --samples 8 --hash -q --restart";
-    let plain = place.gives(0, &format!("{render} -o p.png")).out;
-    let shown = place.gives(0, &format!("{render} --show color,error -o p.exr")).out;
+    let plain = place.expect_exit(0, &format!("{render} -o p.png")).out;
+    let shown = place.expect_exit(0, &format!("{render} --show color,error -o p.exr")).out;
     assert_eq!(plain, shown);
     assert!(String::from_utf8_lossy(&place.bytes("p.exr")).contains("error.R"));
-    place.gives(0, &format!("{render} --show error -o e.pfm"));
+    place.expect_exit(0, &format!("{render} --show error -o e.pfm"));
     let errors = place.image("e.pfm");
     assert!(errors.pixels.iter().all(|error| error.x.is_finite() && error.x >= 0.0));
     // It equals the error in the pixel's explanation.
     let explain = "explain glass.txt --integrator photons --photons 500 --size 16x12 --samples 8 --pixel 8,8";
-    let told: serde_json::Value = serde_json::from_str(&place.gives(0, &format!("{explain} --json")).out).unwrap();
-    let bound = told["pixel"]["error"]["bound"].as_f64().unwrap();
+    let output: serde_json::Value =
+        serde_json::from_str(&place.expect_exit(0, &format!("{explain} --json")).out).unwrap();
+    let bound = output["pixel"]["error"]["bound"].as_f64().unwrap();
     assert_eq!(errors.get(8, 8).unwrap().x, bound as f32);
-    let text = place.gives(0, explain).out;
+    let text = place.expect_exit(0, explain).out;
     assert!(text.contains("with 90 % confidence: "), "{text}");
     place.refused(2, "render glass.txt --integrator whitted --show error -o p.png", &["--show error"]);
     place.refused(2, "render glass.txt --show error --shard 1/2 -o p.part", &["--show error"]);
@@ -55,7 +56,7 @@ fn light_sampling_strategies_differ_in_noise_only() {
     let place = place();
     let render = |way: &str| {
         let options = format!("--size 16x12 --samples 64 --seed {} --direct {way} -q", way.len());
-        place.gives(0, &format!("render glass.txt {options} --show luminance,variance -o {way}.pfm"));
+        place.expect_exit(0, &format!("render glass.txt {options} --show luminance,variance -o {way}.pfm"));
         let mean = |name: &str| {
             let pixels = place.image(name).pixels;
             pixels.iter().map(|pixel| f64::from(pixel.x)).sum::<f64>() / pixels.len() as f64
@@ -85,12 +86,12 @@ fn denoiser_is_chosen_or_install_hint_is_printed() {
         let done = command.env("OIDN_DIR", place.path("")).output().unwrap();
         (done.status.code(), String::from_utf8(done.stdout).unwrap(), String::from_utf8(done.stderr).unwrap())
     };
-    let (code, _, told) = run("--denoise=oidn -o p.png");
-    assert!(code == Some(2) && told.contains("pip install pyoidn") && told.contains("OIDN_DIR"), "{told}");
-    let (_, auto, told) = run("--denoise -o auto.png");
-    assert!(told.contains("the built-in denoiser") && told.contains("pip install pyoidn"), "{told}");
-    let (code, own, told) = run("--denoise=own -o own.png");
-    assert!(code == Some(0) && !told.contains("pyoidn"), "{told}");
+    let (code, _, output) = run("--denoise=oidn -o p.png");
+    assert!(code == Some(2) && output.contains("pip install pyoidn") && output.contains("OIDN_DIR"), "{output}");
+    let (_, auto, output) = run("--denoise -o auto.png");
+    assert!(output.contains("the built-in denoiser") && output.contains("pip install pyoidn"), "{output}");
+    let (code, own, output) = run("--denoise=own -o own.png");
+    assert!(code == Some(0) && !output.contains("pyoidn"), "{output}");
     assert_eq!(place.bytes("auto.png"), place.bytes("own.png"));
     let hash = |out: &str| out.lines().last().unwrap().to_string();
     assert_eq!(hash(&auto), hash(&own));

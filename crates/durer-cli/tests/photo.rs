@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Place, browser, corpus};
+use common::{TestFolder, browser, corpus};
 use durer::image::read8;
 use durer_photo::format::{projective_camera, read};
 use durer_photo::geometry::align::cameras as aligned;
@@ -65,30 +65,35 @@ fn differences(all: &Reconstruction, truth: &[Pose]) -> (f64, f64) {
 
 #[test]
 fn photographs_of_a_known_scene_give_its_cameras() {
-    let place = Place::new();
+    let place = TestFolder::new();
     std::fs::create_dir(place.path("photos")).unwrap();
     let lens = Lens::new(SIZE, FOCAL);
     for (i, pose) in cameras().iter().enumerate() {
         place.put("shot.txt", projective_camera(&lens, pose) + SCENE);
         let [width, height] = SIZE;
-        place.gives(0, &format!("render shot.txt -o photos/{i:02}.png --size {width}x{height} --samples 4 -q"));
+        place.expect_exit(0, &format!("render shot.txt -o photos/{i:02}.png --size {width}x{height} --samples 4 -q"));
     }
-    place.gives(0, "photo match photos -o matches.json --features 1200 --field 60 -q");
-    let solved = place.gives(0, "photo solve matches.json -o solved -o points.ply -o scene.gltf -o bundle.out");
+    place.expect_exit(0, "photo match photos -o matches.json --features 1200 --field 60 -q");
+    let solved = place.expect_exit(0, "photo solve matches.json -o solved -o points.ply -o scene.gltf -o bundle.out");
     println!("{}", solved.out);
-    place.gives(0, "photo explain solved --camera 03.png");
-    place.gives(0, "photo explain bundle.out --point 3");
+    place.expect_exit(0, "photo explain solved --camera 03.png");
+    place.expect_exit(0, "photo explain bundle.out --point 3");
     for (file, there) in [("points.ply", "0 of 0"), ("scene.gltf", "20 of 20")] {
         let points = solved.out.split("; ").nth(1).and_then(|rest| rest.split('\n').next()).unwrap();
         assert_eq!(
-            place.gives(0, &format!("photo convert {file}")).out,
+            place.expect_exit(0, &format!("photo convert {file}")).out,
             format!("{there} photographs registered; {points}\n")
         );
     }
     assert!(
-        place.gives(0, "photo explain scene.gltf --camera 03.png").out.contains("the file has no observations of it")
+        place
+            .expect_exit(0, "photo explain scene.gltf --camera 03.png")
+            .out
+            .contains("the file has no observations of it")
     );
-    assert!(place.gives(0, "photo explain points.ply --point 3").out.contains("the file has no observations of it"));
+    assert!(
+        place.expect_exit(0, "photo explain points.ply --point 3").out.contains("the file has no observations of it")
+    );
     place.refused(2, "photo convert matches.json", &["these are matches without cameras"]);
     place.refused(2, "photo solve scene.gltf -o no.out", &["there is nothing to adjust"]);
     place.refused(
@@ -96,7 +101,7 @@ fn photographs_of_a_known_scene_give_its_cameras() {
         "photo tour points.ply --pictures photos -o no.html",
         &["no photograph of `points.ply` has a camera position"],
     );
-    place.gives(0, "photo tour solved --pictures photos -o tour.html --side 64 -q");
+    place.expect_exit(0, "photo tour solved --pictures photos -o tour.html --side 64 -q");
     let walked = [
         "20 photographs, ",
         "button first: choose a photograph first, at -1",
@@ -124,10 +129,13 @@ fn photographs_of_a_known_scene_give_its_cameras() {
 
 #[test]
 fn results_are_independent_of_threads() {
-    let place = Place::new();
+    let place = TestFolder::new();
     for threads in [1, 2, 5] {
-        place.gives(0, &format!("photo match {PHOTOGRAPHS} -o {threads}.json --features 800 --threads {threads} -q"));
-        place.gives(0, &format!("photo solve {threads}.json -o {threads}.out --threads {threads} -q"));
+        place.expect_exit(
+            0,
+            &format!("photo match {PHOTOGRAPHS} -o {threads}.json --features 800 --threads {threads} -q"),
+        );
+        place.expect_exit(0, &format!("photo solve {threads}.json -o {threads}.out --threads {threads} -q"));
     }
     assert_eq!(place.bytes("1.json"), place.bytes("2.json"));
     assert_eq!(place.bytes("1.json"), place.bytes("5.json"));
@@ -152,7 +160,7 @@ fn with_exif(jpeg: &[u8], millimetres: [u32; 2], pixels: [u32; 2]) -> Vec<u8> {
 
 #[test]
 fn implausible_exif_is_reported_and_wrong_exif_is_corrected() {
-    let place = Place::new();
+    let place = TestFolder::new();
     std::fs::create_dir(place.path("photos")).unwrap();
     let photographs = (0..6).map(|i| (i, std::fs::read(Path::new(PHOTOGRAPHS).join(format!("{i}.jpg"))).unwrap()));
     for (i, jpeg) in photographs {
@@ -165,11 +173,11 @@ fn implausible_exif_is_reported_and_wrong_exif_is_corrected() {
         };
         place.put(&format!("photos/{i}.jpg"), with_exif(&jpeg, millimetres, pixels));
     }
-    let matched = place.gives(0, "photo match photos -o m.json --features 1500 --field 60");
+    let matched = place.expect_exit(0, "photo match photos -o m.json --features 1500 --field 60");
     assert!(matched.err.contains("warning: 0.jpg: EXIF's focal length, 196850394 pixels from 5 mm"), "{}", matched.err);
     assert!(!matched.err.contains("1.jpg") && matched.out.contains("1.jpg: 320x240, 1500 features, focal length 277"));
     assert!(matched.out.contains("2.jpg: 320x240, 1500 features, focal length 660 (EXIF: 25.4 mm"), "{}", matched.out);
-    let solved = place.gives(0, "photo solve m.json -o m.out");
+    let solved = place.expect_exit(0, "photo solve m.json -o m.out");
     assert!(solved.err.contains("EXIF says 660: EXIF is wrong"), "{}", solved.err);
     for lens in read(&place.path("m.out")).unwrap().lenses {
         assert!((lens.focal - 330.0).abs() < 5.0, "{lens:?}");
@@ -187,7 +195,7 @@ fn noise(seed: u64) -> Vec<u8> {
 
 #[test]
 fn unsuitable_photographs_are_refused() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let refused = |words: &[&str]| place.refused(2, "photo match photos -o m.json", words);
     refused(&["cannot read the folder `photos`"]);
     std::fs::create_dir(place.path("photos")).unwrap();
@@ -216,7 +224,7 @@ fn unsuitable_photographs_are_refused() {
 }
 
 /// Twenty thousand random correspondences of eight photographs.
-fn false_matches_are_refused(place: &Place) {
+fn false_matches_are_refused(place: &TestFolder) {
     let mut random = durer_photo::random::Random::new(7);
     let picture = |i: usize| {
         format!(
@@ -247,7 +255,7 @@ fn false_matches_are_refused(place: &Place) {
 
 #[test]
 fn broken_files_are_refused_with_their_place() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("p.png", noise(1));
     let flat =
         "# X Y Z u v\n0 0 0 10 10\n1 0 0 50 10\n0 1 0 10 50\n1 1 0 50 52\n2 0 0 90 11\n0 2 0 12 90\n2 2 0 95 96\n";
@@ -333,12 +341,12 @@ fn square() -> Vec<u8> {
 
 #[test]
 fn objects_are_placed_in_a_photograph_with_shadows() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let ours = |name: &str| Path::new(PHOTOGRAPHS).join(name);
     for name in ["placed.txt", "2.jpg"] {
         place.put(name, std::fs::read(ours(name)).unwrap());
     }
-    place.gives(0, "photo place placed.txt --backplate 2.jpg -o placed.png --samples 4 -q");
+    place.expect_exit(0, "photo place placed.txt --backplate 2.jpg -o placed.png --samples 4 -q");
     let placed = read8(&std::fs::read(place.path("placed.png")).unwrap(), "placed.png").unwrap();
     let plate = image::open(ours("2.jpg")).unwrap().into_rgb8();
     assert_eq!((placed.width, placed.height), plate.dimensions());
@@ -377,10 +385,10 @@ fn object_is_placed_in_an_external_photograph() {
     if !picture.is_file() {
         return println!("skipped: {} not found", picture.display());
     }
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("plate.jpg", std::fs::read(&picture).unwrap());
     let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/chair.txt");
-    place.gives(0, &format!("photo place {scene} --backplate plate.jpg -o placed.png --samples 4 -q"));
+    place.expect_exit(0, &format!("photo place {scene} --backplate plate.jpg -o placed.png --samples 4 -q"));
     let placed = read8(&place.bytes("placed.png"), "placed.png").unwrap();
     let plate = image::open(picture).unwrap().into_rgb8();
     let luma = |left: u32, top: u32, width: u32, height: u32| {

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Place, SCENE};
+use common::{SCENE, TestFolder};
 
 /// Every kind of sampling.
 const SAMPLINGS: [&str; 9] = [
@@ -19,7 +19,7 @@ const SAMPLINGS: [&str; 9] = [
 
 #[test]
 fn crop_equals_that_part_of_the_whole_picture() {
-    let place = Place::new();
+    let place = TestFolder::new();
     for sampling in SAMPLINGS {
         for dialect in ["f04", "f12a4", "durer"] {
             let render =
@@ -28,8 +28,8 @@ fn crop_equals_that_part_of_the_whole_picture() {
                 "scene.txt",
                 if dialect == "f12a4" { SCENE.replace("reflectiveColor 0.5 0.5 0.5", "") } else { SCENE.into() },
             );
-            place.gives(0, &format!("{render} -o whole.pfm"));
-            place.gives(0, &format!("{render} -o part.pfm --crop 11,7,19x21"));
+            place.expect_exit(0, &format!("{render} -o whole.pfm"));
+            place.expect_exit(0, &format!("{render} -o part.pfm --crop 11,7,19x21"));
             for show in ["color", "depth", "normals"] {
                 let (whole, part) =
                     (place.image(&format!("whole.{show}.pfm")), place.image(&format!("part.{show}.pfm")));
@@ -49,12 +49,12 @@ fn crop_equals_that_part_of_the_whole_picture() {
 
 #[test]
 fn threads_and_accelerators_change_no_bit() {
-    let place = Place::new();
+    let place = TestFolder::new();
     for sampling in SAMPLINGS {
         let render = format!("render scene.txt --size 40x30 {sampling} -o");
-        place.gives(0, &format!("{render} first.pfm --threads 1"));
+        place.expect_exit(0, &format!("{render} first.pfm --threads 1"));
         for other in ["--threads 2", "--threads 7", "--accel none", "--accel grid", "--grid 3x4x5"] {
-            place.gives(0, &format!("{render} other.pfm {other}"));
+            place.expect_exit(0, &format!("{render} other.pfm {other}"));
             assert!(place.bytes("first.pfm") == place.bytes("other.pfm"), "{sampling} {other}");
         }
     }
@@ -62,11 +62,11 @@ fn threads_and_accelerators_change_no_bit() {
 
 #[test]
 fn seed_changes_random_pictures_only() {
-    let place = Place::new();
+    let place = TestFolder::new();
     for sampling in SAMPLINGS {
         let render = format!("render scene.txt --size 30x30 {} -o", sampling.replace("--seed 7", ""));
-        place.gives(0, &format!("{render} 0.pfm"));
-        place.gives(0, &format!("{render} 1.pfm --seed 18446744073709551615"));
+        place.expect_exit(0, &format!("{render} 0.pfm"));
+        place.expect_exit(0, &format!("{render} 1.pfm --seed 18446744073709551615"));
         let fixed = matches!(sampling, "--samples 1" | "--blur") || sampling.contains("uniform");
         assert_eq!(place.bytes("0.pfm") == place.bytes("1.pfm"), fixed, "{sampling}");
     }
@@ -74,13 +74,13 @@ fn seed_changes_random_pictures_only() {
 
 #[test]
 fn every_format_is_written_and_read_back() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let mut eight_bit = Vec::new();
     for format in durer::image::FORMATS {
         for extension in format.extensions {
             let name = format!("picture.{extension}");
-            let ran = place.gives(0, &format!("render scene.txt --size 13x7 -o {name}"));
-            assert_eq!(ran.out, format!("wrote {name}\n"));
+            let output = place.expect_exit(0, &format!("render scene.txt --size 13x7 -o {name}"));
+            assert_eq!(output.out, format!("wrote {name}\n"));
             if format.depth == durer::image::Depth::EightBit {
                 eight_bit.push(place.image8(&name));
             } else {
@@ -94,12 +94,12 @@ fn every_format_is_written_and_read_back() {
 
 #[test]
 fn several_pictures_are_separate_files_or_layers() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let before = place.names();
     let all = "color,depth,normals,position,uv,barycentric,object,material,cost,samples,filter";
-    let ran = place.gives(0, &format!("render scene.txt --size 9x8 --zoom 5 --show {all} -o a.b.png"));
+    let output = place.expect_exit(0, &format!("render scene.txt --size 9x8 --zoom 5 --show {all} -o a.b.png"));
     for name in all.split(',') {
-        assert!(ran.out.contains(&format!("wrote a.b.{name}.png\n")), "{}", ran.out);
+        assert!(output.out.contains(&format!("wrote a.b.{name}.png\n")), "{}", output.out);
         let size = match name {
             "samples" => (45, 40),
             "filter" => (46, 41),
@@ -110,34 +110,34 @@ fn several_pictures_are_separate_files_or_layers() {
     }
     assert_eq!(place.names().len(), before.len() + 11);
     // EXR holds every picture except diagrams, whose sizes differ.
-    let ran = place.gives(0, "render scene.txt --size 9x8 --show color,depth,normals -o layers.exr");
-    assert_eq!(ran.out, "wrote layers.exr\n");
+    let output = place.expect_exit(0, "render scene.txt --size 9x8 --show color,depth,normals -o layers.exr");
+    assert_eq!(output.out, "wrote layers.exr\n");
     let text = String::from_utf8_lossy(&place.bytes("layers.exr")).into_owned();
     assert!(["depth.R", "normals.G"].iter().all(|layer| text.contains(layer)));
-    let ran = place.gives(0, "render scene.txt --size 9x8 --show depth,samples -o dots.exr");
-    assert_eq!(ran.out, "wrote dots.depth.exr\nwrote dots.samples.exr\n");
-    let ran = place.gives(0, "render scene.txt --size 9x9 --show samples -o dots.png");
-    assert_eq!(ran.out, "wrote dots.png\n");
+    let output = place.expect_exit(0, "render scene.txt --size 9x8 --show depth,samples -o dots.exr");
+    assert_eq!(output.out, "wrote dots.depth.exr\nwrote dots.samples.exr\n");
+    let output = place.expect_exit(0, "render scene.txt --size 9x9 --show samples -o dots.png");
+    assert_eq!(output.out, "wrote dots.png\n");
 }
 
 #[test]
 fn names_and_defaults() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("my.best.scene.txt", SCENE);
-    let ran = place.gives(0, "render my.best.scene.txt --quiet");
-    assert_eq!((ran.out.as_str(), ran.err.as_str()), ("", ""));
+    let output = place.expect_exit(0, "render my.best.scene.txt --quiet");
+    assert_eq!((output.out.as_str(), output.err.as_str()), ("", ""));
     assert_eq!((place.image8("my.best.scene.png").width, place.image8("my.best.scene.png").height), (512, 512));
-    let ran = place.gives(0, "render scene.txt --size 3x3 -o p.png");
-    assert_eq!(ran.err, "", "an explicit option needs no note");
-    let ran = place.gives(0, "render scene.txt --dialect f04 -o p.png");
-    assert_eq!((ran.err.as_str(), place.image8("p.png").width), ("", 100));
+    let output = place.expect_exit(0, "render scene.txt --size 3x3 -o p.png");
+    assert_eq!(output.err, "", "an explicit option needs no note");
+    let output = place.expect_exit(0, "render scene.txt --dialect f04 -o p.png");
+    assert_eq!((output.err.as_str(), place.image8("p.png").width), ("", 100));
 }
 
 #[test]
 fn eight_bits_by_transfer() {
-    let place = Place::new();
+    let place = TestFolder::new();
     for transfer in ["srgb", "linear", "course"] {
-        place.gives(
+        place.expect_exit(
             0,
             &format!("render scene.txt --size 2x2 --samples 1 --crop 0,0,1x1 --transfer {transfer} -o {transfer}.png"),
         );
@@ -150,7 +150,7 @@ fn eight_bits_by_transfer() {
 
 #[test]
 fn extreme_values_work() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("mirrors.txt", common::ENDLESS.replace("transparentColor 1 1 1 indexOfRefraction 1.5", ""));
     for options in [
         "mirrors.txt --bounces 256",
@@ -167,18 +167,18 @@ fn extreme_values_work() {
         "scene.txt --depth-range 9 -5 --show depth --size 2x2",
     ] {
         let size = if options.contains("--size") { "" } else { "--size 20x20" };
-        place.gives(0, &format!("render {options} {size} -o p.png"));
+        place.expect_exit(0, &format!("render {options} {size} -o p.png"));
     }
 }
 
 #[test]
 fn existing_link_is_kept() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("real.png", "old");
     #[cfg(unix)]
     {
         std::os::unix::fs::symlink("real.png", place.path("link.png")).unwrap();
-        place.gives(0, "render scene.txt --size 3x3 -o link.png");
+        place.expect_exit(0, "render scene.txt --size 3x3 -o link.png");
         assert!(place.path("link.png").is_symlink());
         assert_eq!(place.image8("real.png").width, 3);
     }

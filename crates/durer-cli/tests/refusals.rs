@@ -2,12 +2,12 @@
 
 mod common;
 
-use common::{Place, SCENE};
+use common::{SCENE, TestFolder};
 use std::process::{Command, Stdio};
 
 #[test]
 fn invalid_scene_gives_all_errors_with_their_places() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put(
         "bad.txt",
         SCENE.replace("angle 40", "angle x").replace("Sphere", "Spheer").replace("center 0 0.5", "centre 0"),
@@ -24,7 +24,7 @@ fn invalid_scene_gives_all_errors_with_their_places() {
             "note[dialect]: read as f04",
         ],
     );
-    let quiet = place.gives(2, "render bad.txt -o p.png --quiet");
+    let quiet = place.expect_exit(2, "render bad.txt -o p.png --quiet");
     assert!(quiet.err.contains("Spheer") && !quiet.err.contains("note"), "{}", quiet.err);
     place.refused(2, "info bad.txt", &["Spheer"]);
     place.refused(2, "convert bad.txt -o c.txt", &["Spheer"]);
@@ -33,16 +33,16 @@ fn invalid_scene_gives_all_errors_with_their_places() {
 
 #[test]
 fn at_most_twenty_errors_are_shown() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("bad.txt", SCENE.replace("numObjects 2", &format!("numObjects 2 {}", "Spheer { } ".repeat(1000))));
-    let ran = place.gives(2, "render bad.txt");
-    assert!(ran.err.matches("\nerror").count() < 20, "{}", ran.err);
-    assert!(ran.err.len() < 20_000, "{} bytes", ran.err.len());
+    let output = place.expect_exit(2, "render bad.txt");
+    assert!(output.err.matches("\nerror").count() < 20, "{}", output.err);
+    assert!(output.err.len() < 20_000, "{} bytes", output.err.len());
 }
 
 #[test]
 fn missing_files_are_reported_at_their_line() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let scene = SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "\nTriangleMesh { obj_file cube.obj }");
     place.put("mesh.txt", &scene);
     place.put("cubes.obj", "");
@@ -50,12 +50,12 @@ fn missing_files_are_reported_at_their_line() {
     place.put("texture.txt", SCENE.replace("diffuseColor 0.8", "texture wood.bmp diffuseColor 0.8"));
     place.refused(2, "render texture.txt -o p.png --dialect durer", &["texture.txt:5:", "wood.bmp"]);
     place.put("outside.txt", scene.replace("cube.obj", "../cube.obj"));
-    place.gives(2, "render outside.txt -o p.png");
+    place.expect_exit(2, "render outside.txt -o p.png");
 }
 
 #[test]
 fn files_other_than_scenes_are_refused_at_once() {
-    let place = Place::new();
+    let place = TestFolder::new();
     for (name, content) in [
         ("empty.txt", Vec::new()),
         ("binary.txt", (0..200_000u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect()),
@@ -78,7 +78,7 @@ fn files_other_than_scenes_are_refused_at_once() {
 #[cfg(unix)]
 #[test]
 fn pipes_and_devices_are_refused() {
-    let place = Place::new();
+    let place = TestFolder::new();
     assert!(Command::new("mkfifo").arg(place.path("pipe.txt")).status().unwrap().success());
     place.refused(2, "render pipe.txt -o p.png", &["not a regular file"]);
     place.refused(2, "render /dev/zero -o p.png", &["not a regular file"]);
@@ -86,7 +86,7 @@ fn pipes_and_devices_are_refused() {
 
 #[test]
 fn bad_options_of_render() {
-    let place = Place::new();
+    let place = TestFolder::new();
     for (options, words) in [
         ("--size 0x5", "width and height must be at least 1"),
         ("--size 5", "640x480"),
@@ -146,7 +146,7 @@ fn bad_options_of_render() {
 
 #[test]
 fn write_errors_have_exit_code_1_and_keep_old_files() {
-    let place = Place::new();
+    let place = TestFolder::new();
     std::fs::create_dir(place.path("folder.png")).unwrap();
     place.refused(1, "render scene.txt -o missing/p.png", &["the folder `missing` does not exist"]);
     place.refused(1, "render scene.txt -o folder.png", &["it is a folder"]);
@@ -156,7 +156,7 @@ fn write_errors_have_exit_code_1_and_keep_old_files() {
     place.refused(1, "course -input scene.txt -output missing/p.tga", &["does not exist"]);
     place.put("old.png", "an old picture");
     for arguments in ["missing.txt -o old.png", "scene.txt --size 4294967295x70000 -o old.png"] {
-        place.gives(2, &format!("render {arguments}"));
+        place.expect_exit(2, &format!("render {arguments}"));
         assert_eq!(place.bytes("old.png"), b"an old picture");
     }
     // If one of two files cannot be written, neither is.
@@ -166,27 +166,27 @@ fn write_errors_have_exit_code_1_and_keep_old_files() {
 #[cfg(target_os = "linux")]
 #[test]
 fn full_disk_is_an_error() {
-    let place = Place::new();
+    let place = TestFolder::new();
     std::os::unix::fs::symlink("/dev/full", place.path("full.png")).unwrap();
     place.refused(1, "render scene.txt --size 8x8 -o full.png", &["No space left"]);
     place.refused(1, "course -input scene.txt -size 8 8 -output p.tga -normals full.png", &["No space left"]);
     let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-    let ran = place.command("man").stdout(full).stderr(Stdio::null()).status().unwrap();
-    assert_eq!(ran.code(), Some(1));
+    let output = place.command("man").stdout(full).stderr(Stdio::null()).status().unwrap();
+    assert_eq!(output.code(), Some(1));
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn closed_pipes_and_odd_names_do_not_panic() {
     use std::os::unix::ffi::OsStrExt;
-    let place = Place::new();
+    let place = TestFolder::new();
     for arguments in
         ["dialects", "man", "completions bash", "info scene.txt --json", "course --help", "render missing.txt"]
     {
         let script =
             format!("{} {arguments} 2>&1 | true; {} {arguments} 2>&1 | head -1", common::durer(), common::durer());
-        let ran = Command::new("bash").args(["-c", &script]).current_dir(place.path("")).output().unwrap();
-        assert!(!String::from_utf8_lossy(&ran.stdout).contains("panicked"), "{arguments}");
+        let output = Command::new("bash").args(["-c", &script]).current_dir(place.path("")).output().unwrap();
+        assert!(!String::from_utf8_lossy(&output.stdout).contains("panicked"), "{arguments}");
     }
     // The reading end of standard error is closed, and there is a message to print.
     let mut child = place.command("render missing.txt").stderr(Stdio::piped()).spawn().unwrap();
@@ -197,14 +197,14 @@ fn closed_pipes_and_odd_names_do_not_panic() {
         assert_eq!(place.command(command).arg(odd).output().unwrap().status.code(), Some(2), "{command}");
     }
     std::os::unix::fs::symlink(common::durer(), place.path("a4soln")).unwrap();
-    let ran = Command::new(place.path("a4soln")).arg(odd).output().unwrap();
-    assert_eq!(ran.status.code(), Some(2));
+    let output = Command::new(place.path("a4soln")).arg(odd).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
 }
 
 /// Options of other programs point to ours, and never to an option that does something else.
 #[test]
 fn options_of_other_programs_are_pointed_to_ours() {
-    let place = Place::new();
+    let place = TestFolder::new();
     for (options, words, course) in [
         ("--width 640", "`--size 640x480`", false),
         ("--height=480", "`--size 640x480`", false),
@@ -213,12 +213,12 @@ fn options_of_other_programs_are_pointed_to_ours() {
         ("--verbose", "`--stats`", false),
         ("-size 200 200", "`--size 640x480`", true),
     ] {
-        let ran = place.gives(2, &format!("render scene.txt -o x.png {options}"));
-        assert!(ran.err.contains("unexpected argument") && ran.err.contains(words), "{}", ran.err);
-        assert_eq!(ran.err.contains("`durer course`"), course, "{}", ran.err);
-        assert!(!ran.err.contains("similar argument") && !ran.err.contains("as a value"), "{}", ran.err);
+        let output = place.expect_exit(2, &format!("render scene.txt -o x.png {options}"));
+        assert!(output.err.contains("unexpected argument") && output.err.contains(words), "{}", output.err);
+        assert_eq!(output.err.contains("`durer course`"), course, "{}", output.err);
+        assert!(!output.err.contains("similar argument") && !output.err.contains("as a value"), "{}", output.err);
     }
-    let ran = place.gives(2, "check scene.txt --verbose");
-    assert!(ran.err.contains("`--json` prints everything"), "{}", ran.err);
-    assert!(!ran.err.contains("--stats"), "{}", ran.err);
+    let output = place.expect_exit(2, "check scene.txt --verbose");
+    assert!(output.err.contains("`--json` prints everything"), "{}", output.err);
+    assert!(!output.err.contains("--stats"), "{}", output.err);
 }

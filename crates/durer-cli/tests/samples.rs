@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Place, corpus};
+use common::{TestFolder, corpus};
 use durer::diag::{Diagnostics, Files};
 use durer::image::Image8;
 use durer::{LoadOptions, load};
@@ -14,8 +14,8 @@ const SMALL: &str = "--size 16x16 --samples 2 --quiet --hash";
 
 /// Returns the hash of a small picture.
 #[track_caller]
-fn hash(place: &Place, scene: impl AsRef<Path>, more: &str) -> String {
-    place.gives(0, &format!("render {} -o x.png {SMALL} {more}", scene.as_ref().display())).out
+fn hash(place: &TestFolder, scene: impl AsRef<Path>, more: &str) -> String {
+    place.expect_exit(0, &format!("render {} -o x.png {SMALL} {more}", scene.as_ref().display())).out
 }
 
 /// Collects the files with these extensions in and below a folder, sorted. Skips paths with blanks,
@@ -55,7 +55,7 @@ fn course_scenes_survive_conversion_to_durer_and_json() {
     let mut all = Vec::new();
     below(&folder, &["txt"], &mut all);
     let mut tried = BTreeMap::new();
-    let place = Place::new();
+    let place = TestFolder::new();
     for path in all {
         // Skip files that are not scenes; find the dialect.
         let options = LoadOptions::default();
@@ -68,17 +68,17 @@ fn course_scenes_survive_conversion_to_durer_and_json() {
         }
         let files = format!("--assets {}", path.parent().unwrap().display());
         let shown = path.display().to_string();
-        place.gives(0, &format!("convert {shown} -o ours.txt --to durer {files}"));
-        place.gives(0, &format!("convert ours.txt -o back.txt --dialect durer --to {dialect} {files}"));
+        place.expect_exit(0, &format!("convert {shown} -o ours.txt --to durer {files}"));
+        place.expect_exit(0, &format!("convert ours.txt -o back.txt --dialect durer --to {dialect} {files}"));
         // With every quirk of the year's program.
-        let asked = format!("{files} --dialect {dialect}");
-        assert_eq!(hash(&place, "back.txt", &asked), hash(&place, &path, &asked), "{shown}");
+        let requested = format!("{files} --dialect {dialect}");
+        assert_eq!(hash(&place, "back.txt", &requested), hash(&place, &path, &requested), "{shown}");
         // JSON records its dialect: words may have another meaning in another year.
-        place.gives(0, &format!("convert {shown} -o scene.json {files}"));
-        place.gives(0, &format!("convert scene.json -o back.txt --to {dialect} {files}"));
+        place.expect_exit(0, &format!("convert {shown} -o scene.json {files}"));
+        place.expect_exit(0, &format!("convert scene.json -o back.txt --to {dialect} {files}"));
         let usual = hash(&place, &path, &files);
         assert_eq!(hash(&place, "scene.json", &files), usual, "{shown}");
-        assert_eq!(hash(&place, "back.txt", &asked), hash(&place, &path, &asked), "{shown}");
+        assert_eq!(hash(&place, "back.txt", &requested), hash(&place, &path, &requested), "{shown}");
     }
     assert!(tried.len() >= 5, "{tried:?}");
 }
@@ -101,23 +101,23 @@ const WRITTEN: [&str; 12] = [
 
 #[test]
 fn converted_gltf_renders_the_same_picture() {
-    let place = Place::new();
+    let place = TestFolder::new();
     for name in WRITTEN {
         let Some(path) = khronos(name) else { continue };
-        let told = place.gives(0, &format!("convert {} -o a.glb", path.display())).err;
-        place.gives(0, "convert a.glb -o b.gltf");
+        let output = place.expect_exit(0, &format!("convert {} -o a.glb", path.display())).err;
+        place.expect_exit(0, "convert a.glb -o b.gltf");
         let (first, again) = (hash(&place, "a.glb", ""), hash(&place, "b.gltf", ""));
         assert_eq!(first, again, "{name}");
         let usual = hash(&place, &path, "");
         assert_eq!(first, usual, "{name}");
         // The conversion is lossless and reports no loss.
-        assert!(!told.contains("NO_COUNTERPART"), "{name}: {told}");
+        assert!(!output.contains("NO_COUNTERPART"), "{name}: {output}");
     }
 }
 
 #[test]
 fn mesh_is_equal_in_all_formats_with_the_same_attributes() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/meshes");
     // PLY and STL are written without normals, so a mesh with normals changes.
     for (mesh, its_own) in [("durer-solid.obj", false), ("knot.ply", true)] {
@@ -126,7 +126,7 @@ fn mesh_is_equal_in_all_formats_with_the_same_attributes() {
         for (name, has_normals) in
             [("a.obj", true), ("a.glb", true), ("a.gltf", true), ("a.ply", false), ("a.stl", false)]
         {
-            place.gives(0, &format!("convert {} -o {name}", path.display()));
+            place.expect_exit(0, &format!("convert {} -o {name}", path.display()));
             let same = hash(&place, name, "--up y") == usual;
             assert_eq!(same, has_normals || !its_own, "{mesh} as {name}");
         }
@@ -203,12 +203,12 @@ fn mean(picture: &Image8, place: (usize, usize)) -> [f64; 3] {
 
 #[test]
 fn test_cards_show_ticks_and_no_crosses() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let all = CARDS.iter().map(|card| (card, "--studio none --samples 4"));
     for ((name, marks), options) in all.chain(BEHIND.iter().map(|card| (card, "--samples 16"))) {
         let Some(path) = khronos(name) else { continue };
         let options = format!("--view front {options} --size {SIDE}x{SIDE} -q");
-        place.gives(0, &format!("render {} -o card.png {options}", path.display()));
+        place.expect_exit(0, &format!("render {} -o card.png {options}", path.display()));
         let picture = place.image8("card.png");
         for &(x, y, mark) in *marks {
             let here = mean(&picture, (x, y));

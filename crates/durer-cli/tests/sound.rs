@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Place, corpus};
+use common::{TestFolder, corpus};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -41,7 +41,7 @@ fn scenes(folder: &Path) -> Vec<PathBuf> {
 
 /// Returns the findings of some scenes as (scene, severity, code).
 fn found(scenes: &[PathBuf], options: &str) -> Vec<(String, String, String)> {
-    let place = Place::new();
+    let place = TestFolder::new();
     let mut command = place.command(&format!("check --json {options}"));
     let output = command.args(scenes).output().unwrap();
     let err = String::from_utf8_lossy(&output.stderr);

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::Place;
+use common::TestFolder;
 use serde_json::Value;
 
 const SCENE: &str = "PerspectiveCamera { center 0 2 9 direction 0 -0.15 -1 up 0 1 0 angle 35 }
@@ -36,12 +36,13 @@ fn scene(year: &str, changes: &[(&str, &str)]) -> String {
     text
 }
 
-fn found(place: &Place, year: &str, options: &str, changes: &[(&str, &str)]) -> (Vec<String>, String) {
+fn found(place: &TestFolder, year: &str, options: &str, changes: &[(&str, &str)]) -> (Vec<String>, String) {
     place.put("broken.txt", scene(year, changes));
-    let ran = place.run(&format!("check broken.txt --json --dialect {year} {options}"));
-    let json: Value = serde_json::from_str(&ran.out).unwrap_or_else(|error| panic!("{error}: {}{}", ran.out, ran.err));
+    let output = place.run(&format!("check broken.txt --json --dialect {year} {options}"));
+    let json: Value =
+        serde_json::from_str(&output.out).unwrap_or_else(|error| panic!("{error}: {}{}", output.out, output.err));
     let findings = json["scenes"][0]["findings"].as_array().unwrap();
-    (findings.iter().map(|finding| finding["code"].as_str().unwrap().to_string()).collect(), ran.out)
+    (findings.iter().map(|finding| finding["code"].as_str().unwrap().to_string()).collect(), output.out)
 }
 
 /// Year, options, changes, and the first finding; `None` if there must be no warning.
@@ -121,7 +122,7 @@ const ANGLE: &str = "PerspectiveCamera { center 0 2 9 direction 0 -0.15 -1 up 0 
 
 #[test]
 fn cause_is_reported_first() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("quad.obj", "v -2 0 0\nv 0 0 0\nv 0 2 0\nv -2 2 0\nf 1 2 3 4\n");
     for year in ["f04", "f12a4", "f12a5", "f16"] {
         let bounces = if year == "f04" { "--bounces 3" } else { "" };
@@ -142,7 +143,7 @@ fn cause_is_reported_first() {
 /// hidden.
 #[test]
 fn consequences_are_not_reported() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let (codes, _) = found(&place, "f04", "--bounces 3", &[("color 0.9 0.9 0.9", "color 230 230 230")]);
     assert!(!codes.iter().any(|code| code == "too-bright"), "{codes:?}");
     let behind = [("center -1.2 1 0 radius 1", "center 1.2 1 -1.5 radius 0.3")];
@@ -153,7 +154,7 @@ fn consequences_are_not_reported() {
 /// A possible intention gets at most a note, and no change.
 #[test]
 fn possible_intentions_are_left_unchanged() {
-    let place = Place::new();
+    let place = TestFolder::new();
     // A crescent moon; and only ambient light of 1, as in the first assignment.
     let moon = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 20 }
 Lights { numLights 1 DirectionalLight { direction -1 -0.1 0.35 color 1 1 0.9 } }
@@ -167,9 +168,9 @@ Group { numObjects 1 MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }
 ";
     for text in [moon, flat] {
         place.put("meant.txt", text);
-        let ran = place.gives(0, "check meant.txt --dialect f04");
-        assert!(!ran.out.contains("warning["), "{}", ran.out);
-        place.gives(0, "check meant.txt --dialect f04 --fix");
+        let output = place.expect_exit(0, "check meant.txt --dialect f04");
+        assert!(!output.out.contains("warning["), "{}", output.out);
+        place.expect_exit(0, "check meant.txt --dialect f04 --fix");
         assert_eq!(place.bytes("meant.txt"), text.as_bytes());
     }
 }
@@ -177,7 +178,7 @@ Group { numObjects 1 MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }
 /// A colour of 5 does not mean 5 of 255, and messages use the year's own words.
 #[test]
 fn help_suggests_the_intended_value() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("five.txt", scene("f04", &[("diffuseColor 0.6 0.6 0.6", "diffuseColor 5 5 5")]));
     let before = place.bytes("five.txt");
     place.run("check five.txt --dialect f04 --fix");
@@ -208,23 +209,23 @@ Scene { Node { Component<Object> { type sphere radius 1 } }
   Node { Transform { translate 0 3 4 } Component<Light> { type point color 1 1 1 attenuation 0.05 } } }
 ";
     place.put("nodes.txt", nodes);
-    let told = place.run("check nodes.txt --dialect f23").out;
-    assert!(told.contains("`Component<Material> { index 0 }`") && !told.contains("MaterialIndex"), "{told}");
+    let output = place.run("check nodes.txt --dialect f23").out;
+    assert!(output.contains("`Component<Material> { index 0 }`") && !output.contains("MaterialIndex"), "{output}");
     // Each mention of `--fix` says what it changes.
     place.put("bytes.txt", scene("f04", &[("diffuseColor 0.7 0.3 0.2", "diffuseColor 204 51 51")]));
-    let told = place.run("check bytes.txt --dialect f04 --bounces 3").out;
-    assert!(told.contains("(`--fix` writes `0.8 0.2 0.2`)"), "{told}");
+    let output = place.run("check bytes.txt --dialect f04 --bounces 3").out;
+    assert!(output.contains("(`--fix` writes `0.8 0.2 0.2`)"), "{output}");
 }
 
 #[test]
 fn reader_suggests_the_intended_word() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let says = |dialect: &str, text: &str, wanted: &str| {
         place.put("words.txt", text);
         let dialect = if dialect.is_empty() { String::new() } else { format!("--dialect {dialect}") };
-        let ran = place.run(&format!("render words.txt -q -o words.png {dialect}"));
-        assert!(ran.code == Some(2) && ran.err.contains(wanted), "{wanted}: {}", ran.err);
-        assert!(ran.err.lines().count() < 60, "{}", ran.err);
+        let output = place.run(&format!("render words.txt -q -o words.png {dialect}"));
+        assert!(output.code == Some(2) && output.err.contains(wanted), "{wanted}: {}", output.err);
+        assert!(output.err.lines().count() < 60, "{}", output.err);
     };
     let sphere = "Sphere { center -1.2 1 0 radius 1 }";
     for (old, new, wanted) in [
@@ -246,23 +247,23 @@ Scene { Node { Component<Material> { index 0 } Component<Object> { type sphere r
 ";
     // One foreign word does not change a file's dialect; the message names it and its equivalent.
     place.put("nodes.txt", nodes);
-    let told = place.run("check nodes.txt").out;
-    assert!(told.contains("`angle` is not a word of f23") && told.contains("in f23 it is `fov`"), "{told}");
+    let errors = place.run("check nodes.txt").out;
+    assert!(errors.contains("`angle` is not a word of f23") && errors.contains("in f23 it is `fov`"), "{errors}");
     let wide: Vec<u8> = SCENE.bytes().flat_map(|b| [b, 0]).collect();
     place.put("wide.txt", [&[0xff, 0xfe][..], &wide].concat());
-    let ran = place.gives(2, "render wide.txt -q -o words.png");
-    assert!(ran.err.contains("UTF-16") && ran.err.lines().count() < 8, "{}", ran.err);
+    let output = place.expect_exit(2, "render wide.txt -q -o words.png");
+    assert!(output.err.contains("UTF-16") && output.err.lines().count() < 8, "{}", output.err);
     place.put("binary.txt", (0..4000_u32).map(|i| (i * 7919 % 251) as u8).collect::<Vec<u8>>());
-    let ran = place.gives(2, "render binary.txt -q -o words.png");
-    assert!(ran.err.contains("binary") && ran.err.lines().count() < 8, "{}", ran.err);
+    let output = place.expect_exit(2, "render binary.txt -q -o words.png");
+    assert!(output.err.contains("binary") && output.err.lines().count() < 8, "{}", output.err);
     // A light's direction is not a camera's.
     let still = ("PointLight { position 3 5 4", "DirectionalLight { direction 0 0 0");
     says("", &scene("f12a4", &[still]), "for a light, it is the direction in which the light shines");
     // An input that the year's own program would reject gets a note.
     place.put("brace.txt", scene("f04", &[("Group {", "Group{")]));
-    let ran = place.run("check brace.txt --dialect f04 --bounces 3");
-    assert!(ran.out.contains("would refuse this file"), "{}{}", ran.out, ran.err);
+    let output = place.run("check brace.txt --dialect f04 --bounces 3");
+    assert!(output.out.contains("would refuse this file"), "{}{}", output.out, output.err);
     place.put("count.txt", scene("f04", &[("numObjects 3", "")]));
-    let ran = place.run("check count.txt --dialect f04 --bounces 3");
-    assert!(ran.out.contains("would refuse this file: `Group` has no `numObjects`"), "{}{}", ran.out, ran.err);
+    let output = place.run("check count.txt --dialect f04 --bounces 3");
+    assert!(output.out.contains("would refuse this file: `Group` has no `numObjects`"), "{}{}", output.out, output.err);
 }

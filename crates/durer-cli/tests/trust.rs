@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Place, SCENE};
+use common::{SCENE, TestFolder};
 use std::os::unix::fs::symlink;
 use std::time::Duration;
 
@@ -36,7 +36,7 @@ fn zeros(count: u64) -> Vec<u8> {
     packer.finish().unwrap()
 }
 
-fn with_pictures(place: &Place, name: &str) -> [String; 3] {
+fn with_pictures(place: &TestFolder, name: &str) -> [String; 3] {
     let texture = "PhongMaterial { texture PICTURE diffuseColor 0.8 0.3 0.2 }";
     let field = "HeightField { picture PICTURE min -1 0 -1  max 1 1 1 }";
     let sky = "Background { cubeMap sky color 0.2 0.1 0.5";
@@ -63,28 +63,28 @@ const LIMITED: &str = "ulimit -v 700000; export RAYON_NUM_THREADS=2; $DURER ";
 #[cfg(target_os = "linux")]
 #[test]
 fn compression_bombs_in_profiles_are_not_inflated() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let mut profile = b"x\0\0".to_vec();
     profile.extend(zeros(1 << 29));
     place.put("bomb.png", png(4, &chunk(b"iCCP", &profile)));
     for line in with_pictures(&place, "bomb.png") {
-        let ran = place.shell(&format!("{LIMITED}{line} --threads 2"));
-        assert_eq!(ran.code, Some(0), "{line}: {}", ran.err);
+        let output = place.shell(&format!("{LIMITED}{line} --threads 2"));
+        assert_eq!(output.code, Some(0), "{line}: {}", output.err);
     }
-    let ran = place.shell(&format!("{LIMITED}compare bomb.png bomb.png"));
-    assert_eq!((ran.code, ran.out.lines().next()), (Some(0), Some("identical")), "{}", ran.err);
+    let output = place.shell(&format!("{LIMITED}compare bomb.png bomb.png"));
+    assert_eq!((output.code, output.out.lines().next()), (Some(0), Some("identical")), "{}", output.err);
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn large_pictures_are_refused_by_their_headers() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("large.png", png(6000, b""));
     let [texture, field, sky] = with_pictures(&place, "large.png");
     for (line, words) in [(texture, "need about 275"), (field, "a height field cannot have"), (sky, "need about 275")] {
-        let ran = place.shell(&format!("{LIMITED}{line} --threads 2 --memory 64M"));
-        assert_eq!(ran.code, Some(2), "{line}: {}", ran.err);
-        assert!(ran.err.contains(words), "{}", ran.err);
+        let output = place.shell(&format!("{LIMITED}{line} --threads 2 --memory 64M"));
+        assert_eq!(output.code, Some(2), "{line}: {}", output.err);
+        assert!(output.err.contains(words), "{}", output.err);
     }
     // Readers of other formats decode pictures themselves, within the same memory.
     let pbrt = "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n";
@@ -106,31 +106,31 @@ fn large_pictures_are_refused_by_their_headers() {
     place.put("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     for scene in ["lit.pbrt", "rough.pbrt", "lit.xml", "bright.rad", "m.obj --environment large.png --up z"] {
         let line = format!("render {scene} --size 8x8 --samples 1 --quiet --restart -o o.png");
-        let ran = place.shell(&format!("{LIMITED}{line} --threads 2 --memory 64M"));
-        assert_eq!(ran.code, Some(2), "{line}: {}", ran.err);
-        assert!(ran.err.contains("need about") && ran.err.contains("see `--memory`"), "{line}: {}", ran.err);
+        let output = place.shell(&format!("{LIMITED}{line} --threads 2 --memory 64M"));
+        assert_eq!(output.code, Some(2), "{line}: {}", output.err);
+        assert!(output.err.contains("need about") && output.err.contains("see `--memory`"), "{line}: {}", output.err);
     }
     // A decoded picture is copied once, so both copies exist for a moment.
     place.put("large.png", png(5000, b""));
     let [texture, ..] = with_pictures(&place, "large.png");
-    let ran = place.shell(&format!("{LIMITED}{texture} --threads 2 --memory 120M"));
-    assert!(ran.code == Some(2) && ran.err.contains("need about 191 MiB"), "{}", ran.err);
+    let output = place.shell(&format!("{LIMITED}{texture} --threads 2 --memory 120M"));
+    assert!(output.code == Some(2) && output.err.contains("need about 191 MiB"), "{}", output.err);
     // Six faces exceed the limit together, though each would fit alone.
     place.put("large.png", png(2000, b""));
     let [texture, _, sky] = with_pictures(&place, "large.png");
     assert_eq!(place.shell(&format!("{LIMITED}{texture} --threads 2 --memory 32M")).code, Some(0));
-    let ran = place.shell(&format!("{LIMITED}{sky} --threads 2 --memory 32M"));
-    assert!(ran.code == Some(2) && ran.err.contains(" left"), "{}", ran.err);
+    let output = place.shell(&format!("{LIMITED}{sky} --threads 2 --memory 32M"));
+    assert!(output.code == Some(2) && output.err.contains(" left"), "{}", output.err);
     place.put("small.png", png(8, b""));
-    let ran = place.shell(&format!("{LIMITED}compare large.png large.png --memory 300M"));
-    assert!(ran.code == Some(2) && ran.err.contains("the limit is 300 MiB"), "{}", ran.err);
-    let ran = place.shell(&format!("{LIMITED}compare large.png small.png"));
-    assert!(ran.code == Some(2) && ran.err.contains("different sizes"), "{}", ran.err);
+    let output = place.shell(&format!("{LIMITED}compare large.png large.png --memory 300M"));
+    assert!(output.code == Some(2) && output.err.contains("the limit is 300 MiB"), "{}", output.err);
+    let output = place.shell(&format!("{LIMITED}compare large.png small.png"));
+    assert!(output.code == Some(2) && output.err.contains("different sizes"), "{}", output.err);
 }
 
 #[test]
 fn no_input_is_overwritten() {
-    let place = Place::new();
+    let place = TestFolder::new();
     place.put("p.png", png(8, b""));
     place.put("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     let mesh = SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file m.obj }");
@@ -167,8 +167,8 @@ fn no_input_is_overwritten() {
     ] {
         let before = ["scene.txt", "p.png", "m.obj"].map(|name| place.bytes(name));
         let names = place.names();
-        let ran = place.gives(2, &line);
-        assert!(ran.err.contains("it is an input of this run"), "{line}: {}", ran.err);
+        let result = place.expect_exit(2, &line);
+        assert!(result.err.contains("it is an input of this run"), "{line}: {}", result.err);
         assert!(before == ["scene.txt", "p.png", "m.obj"].map(|name| place.bytes(name)), "{line}");
         assert_eq!(place.names(), names, "{line}");
     }
@@ -177,7 +177,7 @@ fn no_input_is_overwritten() {
     place.refused(2, &format!("render scene.txt {size} -o o.png --checkpoint ./o.png"), &[two]);
     place.refused(2, "course -input scene.txt -output o.tga -normals ./o.tga", &[two]);
     // A part to merge, named like a picture.
-    place.gives(0, &format!("render scene.txt {size} --shard 1/1 -o part.png --quiet"));
+    place.expect_exit(0, &format!("render scene.txt {size} --shard 1/1 -o part.png --quiet"));
     place.refused(2, "merge part.png -o here/part.png", &["it is an input of this run"]);
     // Saved work never replaces another file.
     for option in ["--checkpoint scene.txt", "--checkpoint here/m.obj", "--shard 1/1"] {
@@ -203,21 +203,22 @@ fn no_input_is_overwritten() {
 
 #[test]
 fn lesson_replaces_no_file_of_its_scene() {
-    let place = Place::new();
-    place.gives(0, "lesson scene.txt -o lesson --size 16x12 --samples 1 --quiet");
+    let place = TestFolder::new();
+    place.expect_exit(0, "lesson scene.txt -o lesson --size 16x12 --samples 1 --quiet");
     let own: Vec<_> = std::fs::read_dir(place.path("lesson")).unwrap().map(|e| e.unwrap().file_name()).collect();
     let picture = own.iter().map(|name| name.to_str().unwrap()).find(|name| name.ends_with(".png")).unwrap();
     let field = format!("HeightField {{ picture {picture} min -1 0 -1  max 1 1 1 }}");
     place.put("lesson/mine.txt", SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", &field));
     let before = place.bytes(&format!("lesson/{picture}"));
-    let ran = place.gives(2, "lesson lesson/mine.txt --dialect durer -o lesson --size 16x12 --samples 1 --quiet");
-    assert!(ran.err.contains("it is an input of this run"), "{}", ran.err);
+    let output =
+        place.expect_exit(2, "lesson lesson/mine.txt --dialect durer -o lesson --size 16x12 --samples 1 --quiet");
+    assert!(output.err.contains("it is an input of this run"), "{}", output.err);
     assert!(place.bytes(&format!("lesson/{picture}")) == before);
 }
 
 #[test]
 fn special_files_are_written_through_or_refused_at_once() {
-    let place = Place::new();
+    let place = TestFolder::new();
     symlink("nowhere", place.path("dangling.png")).unwrap();
     symlink("loop.png", place.path("loop.png")).unwrap();
     assert!(std::process::Command::new("mkfifo").arg(place.path("pipe.png")).status().unwrap().success());
@@ -228,22 +229,22 @@ fn special_files_are_written_through_or_refused_at_once() {
     place.refused(1, &format!("{work} -o pipe.png"), &["a pipe without a reader"]);
     place.refused(1, &format!("{work} -o o.png --preview pipe.png"), &["a pipe without a reader"]);
     place.refused(2, &format!("{work} -o o.png --checkpoint null.png"), &["is not a regular file"]);
-    place.gives(0, &format!("{work} -o null.png --no-checkpoint"));
+    place.expect_exit(0, &format!("{work} -o null.png --no-checkpoint"));
     let reader = place.path("pipe.png");
     let reader = std::thread::spawn(move || std::fs::read(reader).unwrap());
     // The reader may need a moment.
-    let ran = (0..100).map(|_| place.run(&format!("{work} -o pipe.png"))).find(|ran| ran.code == Some(0));
-    assert!(ran.is_some() && reader.join().unwrap().starts_with(b"\x89PNG"));
+    let output = (0..100).map(|_| place.run(&format!("{work} -o pipe.png"))).find(|output| output.code == Some(0));
+    assert!(output.is_some() && reader.join().unwrap().starts_with(b"\x89PNG"));
 }
 
 #[test]
 fn unfinished_work_is_kept_unless_restarted() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let work = "render scene.txt --size 300x200 --samples 100000 --quiet";
     for (place_of_part, options) in [("o.png.part", "-o o.png"), ("s.part", "--shard 1/2 -o s.part")] {
-        let (ran, _) =
+        let (output, _) =
             place.interrupted(&format!("{work} {options} --checkpoint-every 50ms"), Duration::from_millis(700));
-        assert_eq!(ran.code, Some(130), "{}", ran.err);
+        assert_eq!(output.code, Some(130), "{}", output.err);
         let saved = place.bytes(place_of_part);
         for other in ["", "--seed 3", "--bounces 1"] {
             let line = format!("{work} {options} {other}");
@@ -252,9 +253,9 @@ fn unfinished_work_is_kept_unless_restarted() {
         place.refused(2, &format!("{work} {options} --resume --seed 3"), &["another job", "--restart"]);
         place.refused(2, &format!("{work} {options} --resume --restart"), &["cannot be used with"]);
         assert!(place.bytes(place_of_part) == saved);
-        place.gives(0, &format!("render scene.txt --size 48x32 --quiet {options} --restart"));
+        place.expect_exit(0, &format!("render scene.txt --size 48x32 --quiet {options} --restart"));
         // A finished shard is replaced like any picture.
-        place.gives(0, &format!("render scene.txt --size 48x32 --seed 1 --quiet {options}"));
+        place.expect_exit(0, &format!("render scene.txt --size 48x32 --seed 1 --quiet {options}"));
         assert!(!place.path("o.png.part").exists());
     }
     let saved = place.bytes("s.part");
@@ -264,7 +265,7 @@ fn unfinished_work_is_kept_unless_restarted() {
 
 #[test]
 fn terminating_signals_save_the_work() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let work = "render scene.txt --size 300x200 --samples 100000 --quiet --restart -o o.png";
     for (signals, code) in [
         (&["INT"][..], 130),
@@ -275,31 +276,31 @@ fn terminating_signals_save_the_work() {
         (&["TERM", "TERM"], 143),
         (&["HUP", "TERM"], 129),
     ] {
-        let (ran, latency) = place.signalled(work, Duration::from_millis(500), signals);
-        assert_eq!(ran.code, Some(code), "{signals:?}: {}", ran.err);
-        assert!(ran.err.contains("o.png.part (--resume"), "{signals:?}: {}", ran.err);
+        let (output, latency) = place.signalled(work, Duration::from_millis(500), signals);
+        assert_eq!(output.code, Some(code), "{signals:?}: {}", output.err);
+        assert!(output.err.contains("o.png.part (--resume"), "{signals:?}: {}", output.err);
         assert!(latency < Duration::from_secs(5), "{latency:?}");
     }
     // A program started with nohup outlives its terminal.
-    let ran = place.shell(
+    let output = place.shell(
         "trap '' HUP; $DURER render scene.txt --size 200x150 --samples 400 --quiet --restart -o n.png & \
          sleep 0.3; kill -HUP $!; wait $!",
     );
-    assert_eq!(ran.code, Some(0), "{}", ran.err);
+    assert_eq!(output.code, Some(0), "{}", output.err);
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn system_limits_are_named_errors() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let work = "$DURER render scene.txt --size 64x64 --samples 1 --quiet";
-    let ran = place.shell(&format!("(ulimit -f 1; {work} -o o.pfm 2>&1) | cat; exit ${{PIPESTATUS[0]}}"));
-    assert_eq!(ran.code, Some(1), "{}", ran.out);
-    assert!(ran.out.contains("cannot write `o.pfm`: File too large"), "{}", ran.out);
-    let ran = place.shell(&format!("RAYON_NUM_THREADS=100000 {work} -o o.png"));
-    assert_eq!(ran.code, Some(0), "{}", ran.err);
-    let ran = place.shell(&format!("{work} -o o.png --memory 1"));
-    assert!(ran.code == Some(2) && ran.err.contains("the limit is 1 byte;"), "{}", ran.err);
+    let output = place.shell(&format!("(ulimit -f 1; {work} -o o.pfm 2>&1) | cat; exit ${{PIPESTATUS[0]}}"));
+    assert_eq!(output.code, Some(1), "{}", output.out);
+    assert!(output.out.contains("cannot write `o.pfm`: File too large"), "{}", output.out);
+    let output = place.shell(&format!("RAYON_NUM_THREADS=100000 {work} -o o.png"));
+    assert_eq!(output.code, Some(0), "{}", output.err);
+    let output = place.shell(&format!("{work} -o o.png --memory 1"));
+    assert!(output.code == Some(2) && output.err.contains("the limit is 1 byte;"), "{}", output.err);
     for (line, code) in [
         ("$DURER info scene.txt >&-", 1),
         ("$DURER render scene.txt --size 8x8 -o c.png >&-", 1),
@@ -308,16 +309,16 @@ fn system_limits_are_named_errors() {
         ("$DURER info scene.txt >/dev/null", 0),
         ("$DURER info scene.txt 1<>/dev/null", 0),
     ] {
-        let ran = place.shell(line);
-        assert_eq!(ran.code, Some(code), "{line}: {}", ran.err);
-        assert_eq!(ran.err.contains("it is closed"), code == 1, "{line}: {}", ran.err);
+        let output = place.shell(line);
+        assert_eq!(output.code, Some(code), "{line}: {}", output.err);
+        assert_eq!(output.err.contains("it is closed"), code == 1, "{line}: {}", output.err);
     }
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn calling_thread_does_all_work_without_threads() {
-    let place = Place::new();
+    let place = TestFolder::new();
     // The superuser has no such limit, so the test runs as nobody, in a folder that nobody may
     // write to.
     let nobody = "setpriv --reuid=65534 --regid=65534 --clear-groups";
@@ -326,10 +327,10 @@ fn calling_thread_does_all_work_without_threads() {
         return println!("skipped: cannot switch to another user: {}", usable.err);
     }
     let run = |limit: u32, arguments: &str| {
-        let ran = place.shell(&format!("{nobody} bash -c 'ulimit -u {limit}; exec ./own {arguments}'"));
-        assert_eq!(ran.code, Some(0), "{limit} {arguments}: {}", ran.err);
-        assert!(!ran.err.contains("panicked"), "{}", ran.err);
-        ran.out
+        let output = place.shell(&format!("{nobody} bash -c 'ulimit -u {limit}; exec ./own {arguments}'"));
+        assert_eq!(output.code, Some(0), "{limit} {arguments}: {}", output.err);
+        assert!(!output.err.contains("panicked"), "{}", output.err);
+        output.out
     };
     let work = "render scene.txt --size 48x40 --samples 4 --bounces 256 --show color,depth --quiet --hash";
     let hashes = [1, 2, 3, 4, 1000].map(|limit| run(limit, &format!("{work} -o {limit}.exr")));

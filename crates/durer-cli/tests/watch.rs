@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Place, SCENE};
+use common::{SCENE, TestFolder};
 use std::os::unix::fs::symlink;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -15,7 +15,7 @@ fn scene(color: &str) -> String {
     mesh.replace("0.8 0.3 0.2", color)
 }
 
-fn watching(place: &Place) -> Child {
+fn watching(place: &TestFolder) -> Child {
     place.put("scene.txt", scene("0.5 0.5 0.5"));
     place.put("mesh.obj", MESH);
     let errors = std::fs::File::create(place.path("errors")).unwrap();
@@ -24,8 +24,8 @@ fn watching(place: &Place) -> Child {
 }
 
 /// Waits until the picture is that of the files as they are, rendered once.
-fn shows_what_is_there(place: &Place, child: &mut Child, after: &str) {
-    place.gives(0, "render scene.txt -o b.png --size 16x16 --samples 2 --dialect durer --quiet --restart");
+fn shows_what_is_there(place: &TestFolder, child: &mut Child, after: &str) {
+    place.expect_exit(0, "render scene.txt -o b.png --size 16x16 --samples 2 --dialect durer --quiet --restart");
     let start = Instant::now();
     let read = |name: &str| std::fs::read(place.path(name)).unwrap_or_default();
     while read("a.png") != read("b.png") {
@@ -42,7 +42,7 @@ fn shows_what_is_there(place: &Place, child: &mut Child, after: &str) {
 
 #[test]
 fn what_happens_to_the_files_ends_no_watch() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let mut child = watching(&place);
     shows_what_is_there(&place, &mut child, "the start");
     let pause = || std::thread::sleep(Duration::from_millis(120));
@@ -117,7 +117,7 @@ fn what_happens_to_the_files_ends_no_watch() {
 
 #[test]
 fn a_thousand_saves_a_second_end_in_the_last_picture() {
-    let place = Place::new();
+    let place = TestFolder::new();
     let mut child = watching(&place);
     shows_what_is_there(&place, &mut child, "the start");
     for number in 0..2000 {
@@ -137,11 +137,11 @@ fn a_thousand_saves_a_second_end_in_the_last_picture() {
     ended(&place, child);
 }
 
-fn ended(place: &Place, mut child: Child) {
+fn ended(place: &TestFolder, mut child: Child) {
     Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(0));
-    let said = String::from_utf8_lossy(&place.bytes("errors")).into_owned();
-    assert!(!said.contains("panicked"), "{said}");
+    let output = String::from_utf8_lossy(&place.bytes("errors")).into_owned();
+    assert!(!output.contains("panicked"), "{output}");
     let left: Vec<String> =
         place.names().into_iter().filter(|name| name.ends_with(".tmp") || name.ends_with(".part")).collect();
     assert!(left.is_empty(), "{left:?}");

@@ -263,11 +263,11 @@ impl Files {
 
     /// Drops the end of a large file that was read, to save memory. Keeps the first `end` bytes, to
     /// which later spans may refer, and everything to which diagnostics in `said` refer.
-    pub fn cut(&mut self, file: u32, end: usize, said: &Diagnostics) {
+    pub fn cut(&mut self, file: u32, end: usize, messages: &Diagnostics) {
         let Some((_, bytes)) = self.files.get_mut(file as usize).filter(|(_, bytes)| bytes.len() > Self::SMALL) else {
             return;
         };
-        let end = end.max(said.end_in(file));
+        let end = end.max(messages.end_in(file));
         if end < bytes.len() {
             // Keep the rest of the last line, which is printed with a diagnostic. Binary files may
             // have no lines.

@@ -32,11 +32,11 @@ fn large_files_keep_what_is_said_of_them() {
     let mut files = Files::default();
     let small = files.add("small", vec![b'\n'; 1 << 10].into());
     let large = files.add("large", vec![b'\n'; Files::SMALL + 1].into());
-    let mut said = Diagnostics::default();
-    said.push(Diagnostic::warning("odd").at(Span { file: large, start: 5000, end: 5002 }));
-    files.cut(small, 0, &said);
+    let mut messages = Diagnostics::default();
+    messages.push(Diagnostic::warning("odd").at(Span { file: large, start: 5000, end: 5002 }));
+    files.cut(small, 0, &messages);
     assert_eq!(files.whole(small).map(<[u8]>::len), Some(1 << 10));
-    files.cut(large, 10, &said);
+    files.cut(large, 10, &messages);
     assert_eq!((files.whole(large), files.bytes(large).map(<[u8]>::len)), (None, Some(5002 + 256)));
     assert_eq!(files.position(Span { file: large, start: 5000, end: 5002 }), Some((5001, 1)));
 }
@@ -44,10 +44,10 @@ fn large_files_keep_what_is_said_of_them() {
 #[test]
 fn what_is_meant_is_near_or_of_the_same_letters() {
     let words = ["Rotate", "XRotate", "YRotate", "Scale", "Translate"];
-    let meant = |word| did_you_mean(word, words);
-    assert_eq!(meant("RotateY"), Some("YRotate"));
-    assert_eq!(meant("rotate"), Some("Rotate"));
-    assert_eq!(meant("Rotat"), Some("Rotate"));
-    assert_eq!(meant("Tanslate"), Some("Translate"));
-    assert_eq!(meant("Sphere"), None);
+    let suggestion = |word| did_you_mean(word, words);
+    assert_eq!(suggestion("RotateY"), Some("YRotate"));
+    assert_eq!(suggestion("rotate"), Some("Rotate"));
+    assert_eq!(suggestion("Rotat"), Some("Rotate"));
+    assert_eq!(suggestion("Tanslate"), Some("Translate"));
+    assert_eq!(suggestion("Sphere"), None);
 }

@@ -21,9 +21,9 @@ pub fn read(bytes: &[u8], column: Option<&str>, file: u32, diagnostics: &mut Dia
         .ok()
 }
 
-type Wrong = (Range<usize>, String);
+type ParseError = (Range<usize>, String);
 
-fn parse(text: &str, column: Option<&str>) -> Result<Vec<[f32; 2]>, Wrong> {
+fn parse(text: &str, column: Option<&str>) -> Result<Vec<[f32; 2]>, ParseError> {
     let (mut rows, mut number, mut at) = (Vec::<[f32; 2]>::new(), None, 0);
     for line in text.split_inclusive('\n') {
         let content = line.split('#').next().unwrap_or_default().trim_end();

@@ -3,7 +3,7 @@
 use crate::{curve, photometry, read_mesh_as, vol};
 use durer_diag::Diagnostics;
 use durer_scene::asset::AssetDecoder;
-use durer_scene::dialect::CompatSet;
+use durer_scene::dialect::QuirkSet;
 use durer_scene::light::Profile;
 use durer_scene::math::Aabb;
 use durer_scene::medium::DensityGrid;
@@ -19,7 +19,7 @@ impl AssetDecoder for Decoder {
         bytes: &[u8],
         file: u32,
         name: &str,
-        quirks: CompatSet,
+        quirks: QuirkSet,
         diagnostics: &mut Diagnostics,
     ) -> Option<MeshData> {
         read_mesh_as(bytes, file, name, quirks, diagnostics)

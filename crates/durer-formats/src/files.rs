@@ -2,7 +2,7 @@
 
 use super::model::Input;
 use super::read_mesh;
-use super::said::Said;
+use super::shared_report::SharedReport;
 use crate::packed::read_unpacked;
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_scene::shape::MeshData;
@@ -10,7 +10,13 @@ use std::sync::Arc;
 
 /// Reads the bytes of a named file and registers it, for spans. `what` names the file's purpose in
 /// the error if that fails.
-pub(super) fn named_bytes(input: &Input, said: &Said, what: &str, name: &str, at: Span) -> Option<(Arc<[u8]>, u32)> {
+pub(super) fn named_bytes(
+    input: &Input,
+    report: &SharedReport,
+    what: &str,
+    name: &str,
+    at: Span,
+) -> Option<(Arc<[u8]>, u32)> {
     match read_unpacked(input.source, name) {
         Ok(bytes) => {
             let file = input.files.borrow_mut().add(name, bytes.clone());
@@ -19,23 +25,23 @@ pub(super) fn named_bytes(input: &Input, said: &Said, what: &str, name: &str, at
         Err(error) => {
             let help = error.help();
             let missing = Diagnostic::error(format!("{what} cannot be read: {error}")).code("missing-file").at(at);
-            said.push(Diagnostic { help, ..missing });
+            report.push(Diagnostic { help, ..missing });
             None
         }
     }
 }
 
 /// Reads a mesh file of any format, compressed or not, without changes.
-pub(super) fn mesh_file(input: &Input, said: &Said, name: &str, at: Span) -> Option<MeshData> {
-    let (bytes, file) = named_bytes(input, said, "the mesh", name, at)?;
+pub(super) fn mesh_file(input: &Input, report: &SharedReport, name: &str, at: Span) -> Option<MeshData> {
+    let (bytes, file) = named_bytes(input, report, "the mesh", name, at)?;
     let plain = name.strip_suffix(".gz").unwrap_or(name);
     let mut own = Diagnostics::default();
     let data = read_mesh(&bytes, file, plain, &mut own);
     if own.has_errors() {
         let message = format!("the mesh `{name}` cannot be used");
-        said.push(Diagnostic::error(message).code("bad-file").at(at).label("asked for here"));
+        report.push(Diagnostic::error(message).code("bad-file").at(at).label("asked for here"));
     }
-    said.extend(own);
+    report.extend(own);
     data
 }
 

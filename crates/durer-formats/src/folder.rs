@@ -23,7 +23,7 @@ pub struct FolderSource {
     /// Folders that are also searched for the bare file name.
     assets: Vec<PathBuf>,
     /// Files in memory, by name; they take precedence over folders.
-    given: BTreeMap<String, Arc<[u8]>>,
+    in_memory: BTreeMap<String, Arc<[u8]>>,
     record: ReadRecord,
     progress: Mutex<Progress>,
 }
@@ -43,7 +43,7 @@ impl Clone for FolderSource {
             search: self.search.clone(),
             allowed: self.allowed.clone(),
             assets: self.assets.clone(),
-            given: self.given.clone(),
+            in_memory: self.in_memory.clone(),
             record: self.record.clone(),
             progress: Mutex::new(self.progress().clone()),
         }
@@ -61,7 +61,7 @@ impl FolderSource {
             search: vec![folder.clone()],
             allowed: vec![folder],
             assets: Vec::new(),
-            given: BTreeMap::new(),
+            in_memory: BTreeMap::new(),
             record: ReadRecord::default(),
             progress: Mutex::new(Progress { left: FolderSource::DEFAULT_BUDGET, paths: Vec::new() }),
         }
@@ -93,7 +93,7 @@ impl FolderSource {
 
     /// Adds a file in memory; it replaces a file of this name on disk.
     pub fn give(mut self, name: impl Into<String>, bytes: Arc<[u8]>) -> Self {
-        self.given.insert(name.into(), bytes);
+        self.in_memory.insert(name.into(), bytes);
         self
     }
 
@@ -133,7 +133,7 @@ impl FolderSource {
         candidates.extend(bare.iter().flat_map(|bare| self.assets.iter().map(move |folder| folder.join(bare))));
         let mut outside = false;
         // If no candidate exists as written, try close variants of the name.
-        let others = || self.search.iter().filter_map(|folder| meant(folder, path));
+        let others = || self.search.iter().filter_map(|folder| similar_path(folder, path));
         let others: Vec<PathBuf> =
             if candidates.iter().any(|path| path.exists()) { Vec::new() } else { others().collect() };
         for candidate in candidates.iter().chain(&others) {
@@ -208,7 +208,7 @@ impl FolderSource {
 
 /// Returns the existing file that `path` most likely means, if it does not exist as written:
 /// percent escapes decoded, `folder/..` resolved, and letter case ignored, as on other systems.
-fn meant(folder: &Path, path: &Path) -> Option<PathBuf> {
+fn similar_path(folder: &Path, path: &Path) -> Option<PathBuf> {
     let mut names: Vec<&str> = Vec::new();
     for part in path.components() {
         match part {
@@ -243,7 +243,7 @@ fn same_name(folder: &Path, name: &str) -> Option<PathBuf> {
 
 impl AssetSource for FolderSource {
     fn read(&self, name: &str) -> Result<Arc<[u8]>, SourceError> {
-        if let Some(bytes) = self.given.get(name) {
+        if let Some(bytes) = self.in_memory.get(name) {
             self.record.add(name, bytes);
             return Ok(bytes.clone());
         }
@@ -271,7 +271,7 @@ impl AssetSource for FolderSource {
     }
 
     fn contains(&self, name: &str) -> bool {
-        self.given.contains_key(name) || self.find(name).is_ok()
+        self.in_memory.contains_key(name) || self.find(name).is_ok()
     }
 
     fn record(&self) -> &ReadRecord {
@@ -279,7 +279,7 @@ impl AssetSource for FolderSource {
     }
 
     fn stamp(&self, name: &str) -> Option<Stamp> {
-        if self.given.contains_key(name) {
+        if self.in_memory.contains_key(name) {
             return None;
         }
         stamp_of(&self.find(name).ok()?)

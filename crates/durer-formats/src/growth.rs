@@ -1,7 +1,7 @@
 //! Growth of a file: what a reader makes of it that may be far larger than it. Readers count objects
 //! and bytes here before they make them.
 
-use crate::said::Said;
+use crate::shared_report::SharedReport;
 use durer_diag::{Span, at_most};
 use std::cell::Cell;
 
@@ -86,19 +86,19 @@ impl Growth {
     }
 
     /// Counts objects; reports an error and returns false if they are too many.
-    pub fn has_objects(&self, more: usize, said: &Said, at: Span) -> bool {
-        report(self.objects(more), said, at)
+    pub fn has_objects(&self, more: usize, messages: &SharedReport, at: Span) -> bool {
+        report(self.objects(more), messages, at)
     }
 
     /// Counts bytes; reports an error and returns false if they are too many.
-    pub fn has_bytes(&self, count: usize, size: usize, said: &Said, at: Span) -> bool {
-        report(self.bytes(count, size), said, at)
+    pub fn has_bytes(&self, count: usize, size: usize, messages: &SharedReport, at: Span) -> bool {
+        report(self.bytes(count, size), messages, at)
     }
 }
 
-fn report(result: Result<(), TooMuch>, said: &Said, at: Span) -> bool {
+fn report(result: Result<(), TooMuch>, messages: &SharedReport, at: Span) -> bool {
     if let Err(TooMuch { message, is_first: true }) = &result {
-        said.bad(at, message);
+        messages.bad(at, message);
     }
     result.is_ok()
 }

@@ -8,7 +8,7 @@
 // Parts that several formats share are not all used if a format is left out.
 #![cfg_attr(not(feature = "all"), allow(dead_code))]
 
-pub mod beside;
+pub mod asset_export;
 mod bodies;
 pub mod course;
 pub mod curve;
@@ -21,7 +21,6 @@ pub mod folder;
 mod gltf;
 mod growth;
 pub mod json;
-mod lamps;
 mod medium;
 #[cfg(feature = "mitsuba")]
 mod mitsuba;
@@ -36,11 +35,12 @@ pub mod photometry;
 mod pictures;
 mod ply;
 mod polygon;
+mod profile_lights;
 #[cfg(feature = "radiance")]
 mod radiance;
 mod report;
-mod said;
 pub mod scene;
+mod shared_report;
 mod signature;
 mod smooth;
 mod sticks;
@@ -56,7 +56,7 @@ mod zip;
 
 pub use decoder::Decoder;
 use durer_diag::{Diagnostic, Diagnostics, did_you_mean};
-use durer_scene::dialect::CompatSet;
+use durer_scene::dialect::QuirkSet;
 use durer_scene::scene::Axis;
 use durer_scene::shape::mesh::MeshData;
 pub use model::SceneFormat;
@@ -76,7 +76,7 @@ pub struct MeshFormat {
     /// diagnostics.
     pub read: fn(&[u8], u32, &mut Diagnostics) -> Option<MeshData>,
     /// Returns the part of a file that programs with these quirks read, with all bytes in place.
-    pub known: fn(&[u8], CompatSet) -> Cow<'_, [u8]>,
+    pub known: fn(&[u8], QuirkSet) -> Cow<'_, [u8]>,
     /// Writes a mesh.
     pub write: fn(&MeshData) -> Vec<u8>,
     /// Up axis of most models of this format.
@@ -87,7 +87,7 @@ pub struct MeshFormat {
 pub const MESH_FORMATS: &[MeshFormat] = &[ply::FORMAT, obj::FORMAT, stl::FORMAT];
 
 /// Returns the bytes unchanged: no legacy program reads the format.
-fn as_it_is(bytes: &[u8], _: CompatSet) -> Cow<'_, [u8]> {
+fn as_it_is(bytes: &[u8], _: QuirkSet) -> Cow<'_, [u8]> {
     Cow::Borrowed(bytes)
 }
 
@@ -115,7 +115,7 @@ pub fn read_mesh_as(
     bytes: &[u8],
     file: u32,
     name: &str,
-    quirks: CompatSet,
+    quirks: QuirkSet,
     diagnostics: &mut Diagnostics,
 ) -> Option<MeshData> {
     if let Some(error) = too_large(bytes.len() as u64, name) {
@@ -156,11 +156,11 @@ fn find_format(bytes: &[u8], name: &str) -> Option<&'static MeshFormat> {
 fn unknown_format(name: &str) -> Diagnostic {
     let extension = extension(name);
     let all = MESH_FORMATS.iter().flat_map(|format| format.extensions.iter().copied());
-    let meant = did_you_mean(&extension, all).filter(|_| !extension.is_empty());
+    let suggestion = did_you_mean(&extension, all).filter(|_| !extension.is_empty());
     let known = MESH_FORMATS.iter().map(|f| format!("{} (.{})", f.name, f.extensions.join(", .")));
     let known = known.collect::<Vec<_>>().join(", ");
-    Diagnostic::error(format!("`{name}` is not a mesh file of a known format")).help(match meant {
-        Some(meant) => format!("did you mean `.{meant}`? Known are {known}"),
+    Diagnostic::error(format!("`{name}` is not a mesh file of a known format")).help(match suggestion {
+        Some(suggestion) => format!("did you mean `.{suggestion}`? Known are {known}"),
         None => format!("known are {known}"),
     })
 }

@@ -1,6 +1,6 @@
 //! Participating media of pbrt and Mitsuba, given by absorption and scattering coefficients.
 
-use super::said::Said;
+use super::shared_report::SharedReport;
 use durer_diag::Span;
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
@@ -56,18 +56,18 @@ impl Medium {
     }
 
     /// Fog for a medium around the camera; `None` if it is clear or cannot be represented.
-    pub(super) fn fog(&self, at: Span, said: &Said) -> Option<Spanned<Fog>> {
+    pub(super) fn fog(&self, at: Span, report: &SharedReport) -> Option<Spanned<Fog>> {
         let extinction = self.extinction();
         let most = extinction.max_element();
         if most <= 0.0 {
             return None;
         }
         if self.density.is_some() {
-            said.once(at, "a medium around the camera must be homogeneous: this one is left out");
+            report.once(at, "a medium around the camera must be homogeneous: this one is left out");
             return None;
         }
         if extinction.min_element() < 0.99 * most {
-            said.once(at, "a medium around the camera has one extinction for all colours: the largest is used");
+            report.once(at, "a medium around the camera has one extinction for all colours: the largest is used");
         }
         let (color, anisotropy) = (self.scattering / most, self.anisotropy);
         Some(Spanned { value: Fog { extinction: most, color, anisotropy, ..Fog::default() }, span: at })

@@ -2,7 +2,7 @@
 
 use durer_diag::{Diagnostics, Files};
 use durer_scene::dialect::MeshNormals;
-use durer_scene::scene::{Axis, Scene, Staging};
+use durer_scene::scene::{Axis, Scene, SceneDefaults};
 use durer_scene::source::AssetSource;
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -26,7 +26,7 @@ pub struct SceneFormat {
     pub whole: bool,
     /// The format's words for what could light a dark scene, for messages; `None`: the scene
     /// language's words.
-    pub shines: Option<&'static str>,
+    pub light_hint: Option<&'static str>,
 }
 
 /// Function that writes a scene.
@@ -57,7 +57,7 @@ pub struct Input<'a> {
     /// Source of the files that the scene names.
     pub source: &'a dyn AssetSource,
     /// Defaults for what the scene lacks.
-    pub staging: &'a Staging,
+    pub scene_defaults: &'a SceneDefaults,
     /// Memory limit in bytes for decoding one picture.
     pub memory: u64,
 }

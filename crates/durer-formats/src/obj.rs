@@ -7,12 +7,12 @@
 
 mod faces;
 mod materials;
+mod mtl;
 pub mod quirks;
 pub(super) mod scene;
 mod wires;
 mod words;
 mod write;
-mod written;
 
 use super::MeshFormat;
 use super::number::{NumberError, parse_f32, report_number};
@@ -183,10 +183,10 @@ fn read_vertices(bytes: &[u8], parts: &[Range<usize>], mesh: &mut MeshData, repo
     }
     if let Some((first, count)) = unknown {
         let word = &bytes[first.clone()];
-        let meant = did_you_mean(&shown(word).replace('`', ""), STATEMENTS.iter().map(|&(name, _)| name));
+        let suggestion = did_you_mean(&shown(word).replace('`', ""), STATEMENTS.iter().map(|&(name, _)| name));
         let statements = counted(count, "statement", "statements");
         let message = format!("{statements} not understood and left out; the first is {}", shown(word));
-        report.warning(first, message).help = meant.map(|name| format!("did you mean `{name}`?"));
+        report.warning(first, message).help = suggestion.map(|name| format!("did you mean `{name}`?"));
     }
     before
 }

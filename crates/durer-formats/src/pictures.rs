@@ -1,7 +1,7 @@
 //! Reading and conversion of the pictures that materials name, for readers of whole scenes.
 
 use super::model::Input;
-use super::said::Said;
+use super::shared_report::SharedReport;
 use durer_diag::{Diagnostic, Span};
 use durer_image::{self as image, Depth, Encoded, Image, ImageError, Layer, Transfer, WriteOptions};
 use durer_scene::describe::FileName;
@@ -18,14 +18,14 @@ pub(super) const CHANGING: usize = 2 * size_of::<Color>();
 #[derive(Clone, Copy)]
 pub(super) struct Pictures<'a> {
     pub input: &'a Input<'a>,
-    pub said: &'a Said,
+    pub report: &'a SharedReport,
 }
 
 impl Pictures<'_> {
     /// Reads the bytes of a file.
     pub fn bytes(&self, name: &str, at: Span) -> Option<Arc<[u8]>> {
         let bytes = self.input.source.read(name);
-        bytes.map_err(|error| self.said.push(Diagnostic::error(error.to_string()).code("missing-file").at(at))).ok()
+        bytes.map_err(|error| self.report.push(Diagnostic::error(error.to_string()).code("missing-file").at(at))).ok()
     }
 
     /// Reads a file as a picture, decoding 8-bit values as sRGB.
@@ -154,7 +154,7 @@ impl Pictures<'_> {
     }
 
     fn complain(&self, name: &str, at: Span, error: &ImageError) {
-        self.said.push(unusable(name, error).at(at));
+        self.report.push(unusable(name, error).at(at));
     }
 }
 

@@ -9,9 +9,9 @@ use super::{MeshFormat, extension, obj, panorama, ply, read_mesh, sticks, stl};
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_image::{self as image, Encoded, ImageError};
 use durer_scene::describe::FileName;
-use durer_scene::light::{Emitter as _, Light};
+use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::Vec3;
-use durer_scene::scene::staging::Sides;
+use durer_scene::scene::defaults::Sides;
 use durer_scene::scene::{Axis, Background, Group, Object, Picture, PictureBytes, Scene, Spanned};
 use durer_scene::source::SourceError;
 use durer_scene::texture::Mapping;
@@ -40,7 +40,7 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
 /// Scene format of files that contain one mesh.
 const fn alone(format: &MeshFormat) -> SceneFormat {
     let MeshFormat { name, extensions, recognise, up, .. } = *format;
-    SceneFormat { name, extensions, recognise, read: one_mesh, write: None, up, whole: false, shines: None }
+    SceneFormat { name, extensions, recognise, read: one_mesh, write: None, up, whole: false, light_hint: None }
 }
 
 /// Maximum height in pixels of an environment map that is resampled to another up axis.
@@ -67,19 +67,19 @@ pub fn other_format(bytes: &[u8], file: u32, name: &str, format: Option<&SceneFo
 /// Reads a model as a scene, and adds the camera, light and material that it lacks.
 pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let mut scene = (format.read)(input, diagnostics)?;
-    scene.up = Some(input.staging.up.unwrap_or(format.up));
-    if let Some(path) = &input.staging.view_file {
+    scene.up = Some(input.scene_defaults.up.unwrap_or(format.up));
+    if let Some(path) = &input.scene_defaults.view_file {
         let (name, bytes) = named(input, path, diagnostics)?;
         look(&mut scene, input, &name, &bytes, diagnostics)?;
     }
-    if let Some(path) = &input.staging.environment {
+    if let Some(path) = &input.scene_defaults.environment {
         let (name, bytes) = named(input, path, diagnostics)?;
-        let up = input.staging.up.unwrap_or(format.up);
+        let up = input.scene_defaults.up.unwrap_or(format.up);
         let surrounded = surround(&mut scene, &name, bytes, up, input.memory);
         surrounded.map_err(|error| diagnostics.push(unusable(&name, &error))).ok()?;
     }
-    if !input.staging.bare {
-        input.staging.complete(&mut scene, format.up, format.whole);
+    if !input.scene_defaults.bare {
+        input.scene_defaults.complete(&mut scene, format.up, format.whole);
     }
     Some(scene)
 }

@@ -75,22 +75,22 @@ mod tests {
 
     #[test]
     fn file_with_wrong_extension_is_an_error() {
-        let told = |bytes: &[u8], name: &str, extensions: &[&str]| {
+        let messages = |bytes: &[u8], name: &str, extensions: &[&str]| {
             mistaken(bytes, 0, name, extensions).map(|error| format!("{} ({})", error.message, error.help.unwrap()))
         };
         assert_eq!(
-            told(b"glTF\x02\0\0\0", "a/b.c.obj", &["obj"]).unwrap(),
+            messages(b"glTF\x02\0\0\0", "a/b.c.obj", &["obj"]).unwrap(),
             "`b.c.obj` is binary glTF, by its first bytes (rename it to `b.c.glb`)"
         );
-        assert!(told(b"ply\r\nformat", "b.stl", &["stl"]).unwrap().contains("`b.stl` is PLY"));
-        assert!(told(b"\x89PNG\r\n", "b", &[]).unwrap().contains("a picture is not a model"));
-        assert!(told(b"PXR-USDC", "b.obj", &["obj"]).unwrap().contains("convert it to glTF"));
-        assert!(told(b"OFF\n8 6 12", "b.off", &[]).unwrap().contains("`b.off` is OFF"));
-        assert!(told(b"IESNA:LM-63", "b.ies", &[]).unwrap().contains("it is used in a scene"));
-        assert!(told(b"%PDF-1.7", "b.txt", &[]).unwrap().contains("`b.txt` is a PDF"));
-        assert!(told(b"Rar!\x1a\x07", "b.obj", &[]).unwrap().contains("unpack it"));
-        assert_eq!(told(b"glTF", "b.gltf", &["gltf", "glb"]), None);
-        assert_eq!(told(b"ply\n", "b.ply", &["ply"]), None);
-        assert_eq!(told(b"plywood", "b.obj", &["obj"]), None);
+        assert!(messages(b"ply\r\nformat", "b.stl", &["stl"]).unwrap().contains("`b.stl` is PLY"));
+        assert!(messages(b"\x89PNG\r\n", "b", &[]).unwrap().contains("a picture is not a model"));
+        assert!(messages(b"PXR-USDC", "b.obj", &["obj"]).unwrap().contains("convert it to glTF"));
+        assert!(messages(b"OFF\n8 6 12", "b.off", &[]).unwrap().contains("`b.off` is OFF"));
+        assert!(messages(b"IESNA:LM-63", "b.ies", &[]).unwrap().contains("it is used in a scene"));
+        assert!(messages(b"%PDF-1.7", "b.txt", &[]).unwrap().contains("`b.txt` is a PDF"));
+        assert!(messages(b"Rar!\x1a\x07", "b.obj", &[]).unwrap().contains("unpack it"));
+        assert_eq!(messages(b"glTF", "b.gltf", &["gltf", "glb"]), None);
+        assert_eq!(messages(b"ply\n", "b.ply", &["ply"]), None);
+        assert_eq!(messages(b"plywood", "b.obj", &["obj"]), None);
     }
 }

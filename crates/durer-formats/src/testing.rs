@@ -4,7 +4,7 @@ use crate::folder::FolderSource;
 use crate::scene::{Input, find_scene_format, read_model};
 use durer::{LoadOptions, load_text};
 use durer_diag::{Diagnostic, Diagnostics, Files, Severity};
-use durer_scene::scene::{Scene, Staging};
+use durer_scene::scene::{Scene, SceneDefaults};
 use std::cell::RefCell;
 use std::path::Path;
 use std::sync::Arc;
@@ -27,9 +27,10 @@ pub(super) fn read_with_low_limits(name: &str, text: &str) -> (Option<Scene>, Ve
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let bytes: Arc<[u8]> = text.as_bytes().into();
     let file = files.add(name, bytes.clone());
-    let (files, source, staging) = (RefCell::new(files), FolderSource::new("."), Staging::default());
+    let (files, source, scene_defaults) = (RefCell::new(files), FolderSource::new("."), SceneDefaults::default());
     let memory = u64::MAX;
-    let input = Input { bytes: &bytes, file, files: &files, name, source: &source, staging: &staging, memory };
+    let input =
+        Input { bytes: &bytes, file, files: &files, name, source: &source, scene_defaults: &scene_defaults, memory };
     let scene = read_model(find_scene_format(&bytes, name).unwrap(), &input, &mut diagnostics);
     (scene, lines(&diagnostics, &files.borrow()))
 }

@@ -12,12 +12,12 @@ const HEADER: usize = 48;
 
 /// Reads densities that take at most `memory` bytes.
 pub fn read(bytes: &[u8], file: u32, memory: u64, diagnostics: &mut Diagnostics) -> Option<(Aabb, DensityGrid)> {
-    told(parse(bytes, memory), bytes, file, diagnostics)
+    with_diagnostics(parse(bytes, memory), bytes, file, diagnostics)
 }
 
 /// Returns the mean of a file's values, which have one or three channels.
 pub fn mean(bytes: &[u8], file: u32, memory: u64, diagnostics: &mut Diagnostics) -> Option<Vec3> {
-    let (_, _, channels, values) = told(values(bytes, &[1, 3], memory), bytes, file, diagnostics)?;
+    let (_, _, channels, values) = with_diagnostics(values(bytes, &[1, 3], memory), bytes, file, diagnostics)?;
     let mut sums = [0.0; 3];
     values.iter().zip((0..channels).cycle()).for_each(|(value, channel)| sums[channel] += f64::from(*value));
     let count = (values.len() / channels) as f64;
@@ -25,17 +25,22 @@ pub fn mean(bytes: &[u8], file: u32, memory: u64, diagnostics: &mut Diagnostics)
 }
 
 /// Byte offset and message of an error.
-type Wrong = (usize, String);
+type ParseError = (usize, String);
 
-fn told<T>(read: Result<T, Wrong>, bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<T> {
-    let tell = |(at, message): Wrong| {
+fn with_diagnostics<T>(
+    read: Result<T, ParseError>,
+    bytes: &[u8],
+    file: u32,
+    diagnostics: &mut Diagnostics,
+) -> Option<T> {
+    let report = |(at, message): ParseError| {
         let at = at.min(bytes.len()) as u32;
         diagnostics.push(Diagnostic::error(message).code("bad-file").at(Span { file, start: at, end: at }));
     };
-    read.map_err(tell).ok()
+    read.map_err(report).ok()
 }
 
-fn parse(bytes: &[u8], memory: u64) -> Result<(Aabb, DensityGrid), Wrong> {
+fn parse(bytes: &[u8], memory: u64) -> Result<(Aabb, DensityGrid), ParseError> {
     let (bounds, counts, _, values) = values(bytes, &[1], memory)?;
     let grid = DensityGrid::new(counts, values);
     grid.map(|grid| (bounds, grid)).ok_or((HEADER, "the densities cannot be used".into()))
@@ -43,11 +48,11 @@ fn parse(bytes: &[u8], memory: u64) -> Result<(Aabb, DensityGrid), Wrong> {
 
 /// Bounds, counts along the axes, channels and values of a file. `channels` lists the numbers of
 /// channels that the caller supports.
-fn values(bytes: &[u8], channels: &[usize], memory: u64) -> Result<(Aabb, [u32; 3], usize, Vec<f32>), Wrong> {
+fn values(bytes: &[u8], channels: &[usize], memory: u64) -> Result<(Aabb, [u32; 3], usize, Vec<f32>), ParseError> {
     if !bytes.starts_with(b"VOL") || bytes.get(3) != Some(&3) {
         return Err((0, "not a Mitsuba volume file: it must begin with `VOL` and version 3".into()));
     }
-    let word = |at: usize| -> Result<[u8; 4], Wrong> {
+    let word = |at: usize| -> Result<[u8; 4], ParseError> {
         let found = bytes.get(at..at + 4).and_then(|four| four.try_into().ok());
         found.ok_or_else(|| (at, format!("the file ends within its header of {HEADER} bytes")))
     };

@@ -238,7 +238,7 @@ mod tests {
 
     /// Returns the elements as `name@place[attribute=value@place]`, and the error that ends
     /// parsing.
-    fn told(text: &str) -> (Vec<String>, Option<(String, u32)>) {
+    fn diagnose(text: &str) -> (Vec<String>, Option<(String, u32)>) {
         let mut all = Vec::new();
         let mut xml = match Xml::new(text.as_bytes(), 0) {
             Ok(xml) => xml,
@@ -263,8 +263,9 @@ mod tests {
 
     #[test]
     fn elements_and_attributes_have_byte_offsets() {
-        let (all, error) =
-            told("\u{feff}<?xml version='1.0'?>\n<!-- a --><s:a x='1'>\n text <b m:y = \"&lt;2&#65;\" z=''/></s:a>\n");
+        let (all, error) = diagnose(
+            "\u{feff}<?xml version='1.0'?>\n<!-- a --><s:a x='1'>\n text <b m:y = \"&lt;2&#65;\" z=''/></s:a>\n",
+        );
         assert_eq!(error, None);
         assert_eq!(all, ["a@36 x=1@43", "b@54 y=<2A@63 z=@78", "/", "/"]);
     }
@@ -285,11 +286,11 @@ mod tests {
             ("<a", 0, "tag not closed"),
             ("<a><!-- </a>", 3, "comment"),
         ] {
-            let (_, error) = told(text);
+            let (_, error) = diagnose(text);
             let (message, at) = error.unwrap_or_else(|| panic!("{text}"));
             assert!(message.contains(words) && at == place, "{text}: {message} at {at}");
         }
-        assert!(told(&"<a>".repeat(1000)).1.unwrap().0.contains("nested"));
+        assert!(diagnose(&"<a>".repeat(1000)).1.unwrap().0.contains("nested"));
     }
 
     #[test]

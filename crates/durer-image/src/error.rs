@@ -7,12 +7,12 @@ use durer_diag::{at_least, at_most};
 #[non_exhaustive]
 pub enum ImageError {
     /// The extension of a file name is unknown.
-    #[error("`{path}` does not have the extension of a picture file; known extensions are {known}{}", suggestion(.meant))]
+    #[error("`{path}` does not have the extension of a picture file; known extensions are {known}{}", suggestion(.similar))]
     UnknownExtension {
         /// The file name.
         path: String,
         /// Suggested extension, without the dot.
-        meant: Option<&'static str>,
+        similar: Option<&'static str>,
         /// List of the usual extensions of all formats.
         known: String,
     },
@@ -96,8 +96,8 @@ pub enum ImageError {
     },
 }
 
-fn suggestion(meant: &Option<&'static str>) -> String {
-    meant.map(|meant| format!("; did you mean `.{meant}`?")).unwrap_or_default()
+fn suggestion(similar: &Option<&'static str>) -> String {
+    similar.map(|similar| format!("; did you mean `.{similar}`?")).unwrap_or_default()
 }
 
 impl ImageError {

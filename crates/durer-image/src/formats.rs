@@ -203,8 +203,8 @@ pub fn format_for(path: impl AsRef<Path>) -> Result<&'static Format, ImageError>
     let path = path.as_ref().to_string_lossy();
     FORMATS.iter().find(|format| format.has_extension(&path)).ok_or_else(|| {
         let all = FORMATS.iter().flat_map(|format| format.extensions.iter().copied());
-        let meant = extension(&path).and_then(|ending| diag::did_you_mean(&ending, all));
-        ImageError::UnknownExtension { path: path.into(), meant, known: known_extensions() }
+        let similar = extension(&path).and_then(|ending| diag::did_you_mean(&ending, all));
+        ImageError::UnknownExtension { path: path.into(), similar, known: known_extensions() }
     })
 }
 

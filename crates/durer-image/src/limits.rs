@@ -28,10 +28,10 @@ pub(super) fn declared_count(width: u64, height: u64, bytes: usize) -> Result<us
 }
 
 /// Allocates `count` copies of a value. Lack of memory is an error and does not end the program.
-pub(super) fn room_for<T: Clone>(count: usize, thing: T) -> Result<Vec<T>, ImageError> {
+pub(super) fn room_for<T: Clone>(count: usize, item: T) -> Result<Vec<T>, ImageError> {
     let mut all = Vec::new();
     all.try_reserve_exact(count).map_err(|_| ImageError::no_room(count, size_of::<T>()))?;
-    all.resize(count, thing);
+    all.resize(count, item);
     Ok(all)
 }
 

@@ -18,7 +18,7 @@ use std::time::Duration;
 /// Maximum number of open connections.
 const MAX_CONNECTIONS: usize = 48;
 /// Interval at which the server checks whether to stop.
-const LOOK: Duration = Duration::from_millis(50);
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// A listening server.
 #[derive(Debug)]
@@ -72,7 +72,7 @@ impl Server {
             match self.listener.accept() {
                 Ok((stream, _)) => {
                     let shared = self.shared.clone();
-                    let held = Held::new(&shared);
+                    let held = ConnectionSlot::new(&shared);
                     if held.is_none() {
                         connection::refuse(&stream);
                         continue;
@@ -85,7 +85,7 @@ impl Server {
                         });
                 }
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
-                    std::thread::sleep(LOOK.min(Duration::from_millis(5)))
+                    std::thread::sleep(POLL_INTERVAL.min(Duration::from_millis(5)))
                 }
                 // The client reset the connection before it was accepted.
                 Err(error) if error.kind() == io::ErrorKind::ConnectionAborted => {}
@@ -98,16 +98,16 @@ impl Server {
 }
 
 /// A slot among the open connections.
-struct Held(Arc<Shared>);
+struct ConnectionSlot(Arc<Shared>);
 
-impl Held {
-    fn new(shared: &Arc<Shared>) -> Option<Held> {
-        let held = Held(shared.clone());
+impl ConnectionSlot {
+    fn new(shared: &Arc<Shared>) -> Option<ConnectionSlot> {
+        let held = ConnectionSlot(shared.clone());
         (shared.open.fetch_add(1, Relaxed) < MAX_CONNECTIONS).then_some(held)
     }
 }
 
-impl Drop for Held {
+impl Drop for ConnectionSlot {
     fn drop(&mut self) {
         self.0.open.fetch_sub(1, Relaxed);
     }

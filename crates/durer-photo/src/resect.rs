@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 
 /// Known properties of the lens, and the criterion for outliers.
 #[derive(Debug, Clone)]
-pub struct Known {
+pub struct LensPriors {
     /// Width and height in pixels.
     pub size: [u32; 2],
     /// Focal length in pixels, if known.
@@ -48,7 +48,7 @@ const CONDITIONED: f64 = 1e-6;
 ///
 /// If the points do not determine a camera: too few points, points on a line, points in a plane
 /// without a known focal length, or points that do not agree on any camera.
-pub fn camera(pairs: &[Pair], known: &Known) -> Result<Resection, Error> {
+pub fn camera(pairs: &[Pair], known: &LensPriors) -> Result<Resection, Error> {
     let points: Vec<Vector3<f64>> = pairs.iter().map(|pair| pair.0).collect();
     let least = if known.focal.is_some() { 4 } else { 6 };
     if pairs.len() < least {
@@ -112,7 +112,7 @@ pub fn camera(pairs: &[Pair], known: &Known) -> Result<Resection, Error> {
 }
 
 /// Estimates the camera from an initial focal length.
-fn from_lens(pairs: &[Pair], lens: Lens, known: &Known, wide: f64) -> Option<Resection> {
+fn from_lens(pairs: &[Pair], lens: Lens, known: &LensPriors, wide: f64) -> Option<Resection> {
     let (pose, inliers) = pose_of(pairs, &lens, wide, 0).or_else(|| {
         // Exactly four points: RANSAC needs one more than its model.
         let all: Vec<usize> = (0..pairs.len()).collect();

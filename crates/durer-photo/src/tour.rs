@@ -7,7 +7,7 @@ use serde::Serialize;
 
 /// A photograph in space.
 #[derive(Debug, Clone, Serialize)]
-pub struct Shown {
+pub struct TourView {
     /// Number of the view.
     pub view: usize,
     /// File name.
@@ -29,7 +29,7 @@ pub struct Shown {
 
 /// Photographs with a known pose, each on the plane that fits its points or, if that plane is too
 /// oblique, on a plane perpendicular to the view.
-pub fn shown(all: &Reconstruction) -> Vec<Shown> {
+pub fn shown(all: &Reconstruction) -> Vec<TourView> {
     let mut seen = vec![Vec::new(); all.views.len()];
     for (i, point) in all.points.iter().enumerate() {
         point.track.iter().for_each(|observation| seen[observation.view].push(i));
@@ -59,7 +59,7 @@ pub fn shown(all: &Reconstruction) -> Vec<Shown> {
         };
         let corners = plane(&positions).and_then(on).or_else(|| on((across, forward))).unwrap_or([across; 4]);
         let row = |i: usize| [pose.rotation[(i, 0)], pose.rotation[(i, 1)], pose.rotation[(i, 2)]];
-        list.push(Shown {
+        list.push(TourView {
             view,
             name: all.views[view].name.clone(),
             size: lens.size,

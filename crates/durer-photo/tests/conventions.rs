@@ -126,7 +126,7 @@ fn put(folder: &Path, name: &str, bytes: &[u8]) {
     std::fs::write(path, bytes).unwrap();
 }
 
-fn told(path: &Path) -> Reconstruction {
+fn reread(path: &Path) -> Reconstruction {
     let mut all = read(path).unwrap();
     if !all.views.is_empty() {
         all.set_picture(0, "a.jpg", [640, 480]);
@@ -142,7 +142,7 @@ fn every_format_follows_the_table() {
     assert_eq!(rows.collect::<Vec<_>>(), cases.iter().map(|case| case.0).collect::<Vec<_>>());
     for (name, path, files) in cases {
         files.iter().for_each(|(file, bytes)| put(place.path(), file, bytes));
-        let all = told(&place.path().join(path));
+        let all = reread(&place.path().join(path));
         is_as_meant(&all, name);
         // Written files are read back as the same.
         let row = CONVENTIONS.iter().find(|row| row.name == name).unwrap();
@@ -152,7 +152,7 @@ fn every_format_follows_the_table() {
             for (file, bytes) in output.files(&again).iter().zip(output.write(&all).unwrap()) {
                 put(place.path(), file.strip_prefix(place.path()).unwrap().to_str().unwrap(), &bytes);
             }
-            is_as_meant(&told(&again), name);
+            is_as_meant(&reread(&again), name);
         }
     }
 }
@@ -162,7 +162,7 @@ fn written_files_follow_the_table() {
     let place = TempDir::new().unwrap();
     let (_, path, files) = files().remove(2);
     files.iter().for_each(|(file, bytes)| put(place.path(), file, bytes));
-    let all = told(&place.path().join(path));
+    let all = reread(&place.path().join(path));
     let gltf = Output::Gltf.write(&all).unwrap().remove(0);
     let gltf: serde_json::Value = serde_json::from_slice(&gltf).unwrap();
     let node = &gltf["nodes"][0];
@@ -245,7 +245,7 @@ fn clouds_are_read_in_every_encoding() {
 #[test]
 fn ply_and_gltf_errors_name_the_fault() {
     let place = TempDir::new().unwrap();
-    let told = |name: &str, text: &str| {
+    let reread = |name: &str, text: &str| {
         put(place.path(), name, text.as_bytes());
         let error = read(&place.path().join(name)).unwrap_err().to_string();
         error.strip_prefix(&*place.path().join(name).to_string_lossy()).unwrap().to_string()
@@ -265,7 +265,7 @@ fn ply_and_gltf_errors_name_the_fault() {
         ("1 2 3", "1 2 3 4", ":8:7: the row should end here: it is a point's"),
         ("property float x\nproperty float y\nproperty float z\n", "", ": the file has no points"),
     ] {
-        let error = told("c.ply", &cloud.replace(old, new));
+        let error = reread("c.ply", &cloud.replace(old, new));
         assert!(error.starts_with(wanted), "{new}: {error}");
     }
     let (_, _, files) = files().pop().unwrap();
@@ -292,11 +292,11 @@ fn ply_and_gltf_errors_name_the_fault() {
     ] {
         let text = gltf.replace(old, new);
         assert_ne!(text, gltf, "{old}");
-        let error = told("c.gltf", &text);
+        let error = reread("c.gltf", &text);
         assert!(error.starts_with(wanted), "{new}: {error}");
     }
-    assert!(told("c.gltf", &gltf.replace("\"nodes\": [", "\"nodes\": 3, [")).starts_with(":1:"));
-    assert!(told("m.json", &format!("{{\"format\": \"{FORMAT}\",")).starts_with(": these are matches"));
+    assert!(reread("c.gltf", &gltf.replace("\"nodes\": [", "\"nodes\": 3, [")).starts_with(":1:"));
+    assert!(reread("m.json", &format!("{{\"format\": \"{FORMAT}\",")).starts_with(": these are matches"));
 }
 
 #[test]
@@ -345,7 +345,7 @@ fn compressed_files_are_decompressed() {
     bz2.write_all(plain).unwrap();
     for (name, bytes) in [("p.txt.gz", gz.finish().unwrap()), ("p.txt.bz2", bz2.finish().unwrap())] {
         put(place.path(), name, &bytes);
-        is_as_meant(&told(&place.path().join(name)), "BAL");
+        is_as_meant(&reread(&place.path().join(name)), "BAL");
         put(place.path(), name, &bytes[..bytes.len() / 2]);
         let error = read(&place.path().join(name)).unwrap_err().to_string();
         assert!(error.contains(name) && error.contains("cannot decompress it"), "{error}");
@@ -354,7 +354,7 @@ fn compressed_files_are_decompressed() {
 
 #[test]
 fn row_errors_have_their_place() {
-    let told = |text: &str| read_control("c", text.as_bytes(), &["a.jpg", "b.jpg"]).err().unwrap().to_string();
+    let reread = |text: &str| read_control("c", text.as_bytes(), &["a.jpg", "b.jpg"]).err().unwrap().to_string();
     for (text, wanted) in [
         ("0 0 0 a.jpg 1 2\n0 0 nan b.jpg 1 2\n", "c:2:5: `nan` is not one of X Y Z"),
         ("0 0 0 a.jpg 1\n1 0 0 b.jpg 1 2\n", "c:1:14: the row ends where one of u v should follow"),
@@ -362,7 +362,7 @@ fn row_errors_have_their_place() {
         ("0 0 0 a.jpg 1 2 c.jpg 3 4\n", "c:1:17: unknown photograph `c.jpg`"),
         ("0 0 0 a.jpg 1 2 a.jpg 3 4\n", "c:1:17: this row names a photograph twice: `a.jpg`"),
     ] {
-        assert!(told(text).starts_with(wanted), "{text}: {}", told(text));
+        assert!(reread(text).starts_with(wanted), "{text}: {}", reread(text));
     }
     let read = read_control("c", b"# X Y Z\n1 2 3 b.jpg 4 5 a.jpg 6 7\r\n\n0 0 0\n", &["a.jpg", "b.jpg"]).unwrap();
     assert_eq!(read.iter().map(|point| point.1.len()).collect::<Vec<_>>(), [2, 0]);

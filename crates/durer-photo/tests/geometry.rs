@@ -8,7 +8,7 @@ use durer_photo::geometry::p3p::p3p;
 use durer_photo::geometry::ransac::{Search, ransac};
 use durer_photo::model::{axis_angle_of, rotation_of};
 use durer_photo::random::Random;
-use durer_photo::resect::{Axis, Known, Pair, VanishingLines, camera, from_vanishing_lines};
+use durer_photo::resect::{Axis, LensPriors, Pair, VanishingLines, camera, from_vanishing_lines};
 use durer_photo::{Lens, Pose, Reconstruction, View};
 use nalgebra::{Matrix3, Vector2, Vector3};
 
@@ -143,8 +143,8 @@ fn photographed(count: usize, flat: bool) -> (Lens, Pose, Vec<Pair>) {
     (lens, truth, pairs.collect())
 }
 
-fn known(focal: Option<f64>) -> Known {
-    Known { size: [800, 600], focal, distortion: true, threshold: 4.0 }
+fn known(focal: Option<f64>) -> LensPriors {
+    LensPriors { size: [800, 600], focal, distortion: true, threshold: 4.0 }
 }
 
 #[test]

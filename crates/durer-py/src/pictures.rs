@@ -22,14 +22,14 @@ fn image(array: &PyReadonlyArray3<f32>) -> PyResult<Image> {
 }
 
 /// A picture, and true if it has display values instead of linear light.
-type Scaled<'py> = (PyReadonlyArray3<'py, f32>, bool);
+type ScaledPicture<'py> = (PyReadonlyArray3<'py, f32>, bool);
 
 /// Compares a picture with a reference; returns JSON, and the FLIP error of each pixel.
 #[pyfunction]
 pub fn compare<'py>(
     py: Python<'py>,
-    reference: Scaled<'py>,
-    picture: Scaled<'py>,
+    reference: ScaledPicture<'py>,
+    picture: ScaledPicture<'py>,
     tolerance: f32,
     allowed: f64,
 ) -> PyResult<(String, Bound<'py, PyArray1<f32>>)> {
@@ -42,14 +42,14 @@ pub fn compare<'py>(
 }
 
 /// A picture with its name, its coverage, and true if it is light.
-type Named<'py> = (String, PyReadonlyArray3<'py, f32>, Option<Vec<f32>>, bool);
+type NamedPicture<'py> = (String, PyReadonlyArray3<'py, f32>, Option<Vec<f32>>, bool);
 
 /// Encodes a picture file, by the extension of a name.
 #[pyfunction]
 pub fn encode<'py>(
     py: Python<'py>,
     name: &str,
-    layers: Vec<Named<'py>>,
+    layers: Vec<NamedPicture<'py>>,
     transfer: &str,
 ) -> PyResult<Bound<'py, PyBytes>> {
     let format = format_for(std::path::Path::new(name)).map_err(wrong)?;

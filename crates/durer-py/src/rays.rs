@@ -18,7 +18,7 @@ pub enum Array<'py> {
 
 /// Number of rays, origins, directions, `t_min` and `t_max`; each array has a row for each ray, or
 /// one for all.
-pub type Asked<'py> =
+pub type RayArrays<'py> =
     (usize, Array<'py>, PyReadonlyArray2<'py, f32>, PyReadonlyArray1<'py, f32>, PyReadonlyArray1<'py, f32>);
 
 /// Contiguous points: a row for each element, or one for all.
@@ -82,7 +82,7 @@ pub fn points<'a>(array: &'a PyReadonlyArray2<'_, f32>) -> PyResult<&'a [f32]> {
 
 impl<'a> Rays<'a> {
     /// Borrows the rays of arrays after checking their lengths.
-    pub fn new((count, origins, directions, t_min, t_max): &'a Asked) -> PyResult<Self> {
+    pub fn new((count, origins, directions, t_min, t_max): &'a RayArrays) -> PyResult<Self> {
         let wrong = || PyValueError::new_err("rays are numbers, one after the other, one for all or one for each");
         let count = *count;
         let (origins, directions) = (Points::new(origins)?, points(directions)?);

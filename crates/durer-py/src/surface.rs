@@ -10,7 +10,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// Hits: objects, if there are several, triangles, and u and v.
-pub type Met<'py> = (Option<PyReadonlyArray1<'py, i32>>, PyReadonlyArray1<'py, i32>, PyReadonlyArray2<'py, f32>);
+pub type HitInput<'py> = (Option<PyReadonlyArray1<'py, i32>>, PyReadonlyArray1<'py, i32>, PyReadonlyArray2<'py, f32>);
 
 struct Hits<'a> {
     tree: &'a Tree,
@@ -27,7 +27,7 @@ struct Face<'a> {
 }
 
 impl<'a> Hits<'a> {
-    fn new(tree: &'a Tree, (objects, triangles, uv): &'a Met) -> PyResult<Self> {
+    fn new(tree: &'a Tree, (objects, triangles, uv): &'a HitInput) -> PyResult<Self> {
         let objects = objects.as_ref().map(|objects| objects.as_slice()).transpose()?;
         let (triangles, uv) = (triangles.as_slice()?, uv.as_slice()?.as_chunks().0);
         let count = triangles.len();
@@ -160,7 +160,7 @@ fn rows<T: numpy::Element + Copy + Default + Send + Sync>(
 pub fn met_points<'py>(
     py: Python<'py>,
     tree: PyRef<'py, Tree>,
-    met: Met<'py>,
+    met: HitInput<'py>,
     double: bool,
     threads: Option<usize>,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -181,7 +181,7 @@ pub fn met_points<'py>(
 pub fn met_normals<'py>(
     py: Python<'py>,
     tree: PyRef<'py, Tree>,
-    met: Met<'py>,
+    met: HitInput<'py>,
     threads: Option<usize>,
 ) -> PyResult<Bound<'py, PyArray1<f32>>> {
     let hits = Hits::new(&tree, &met)?;
@@ -197,7 +197,7 @@ pub fn met_normals<'py>(
 pub fn met_leave<'py>(
     py: Python<'py>,
     tree: PyRef<'py, Tree>,
-    met: Met<'py>,
+    met: HitInput<'py>,
     directions: PyReadonlyArray2<'py, f32>,
     threads: Option<usize>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {

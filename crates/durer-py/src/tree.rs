@@ -1,6 +1,6 @@
 //! Trees of triangles, and queries on them.
 
-use crate::rays::{Array, Asked, JOB, Points, Rays, points};
+use crate::rays::{Array, RayArrays, JOB, Points, Rays, points};
 use crate::work::{Pace, each, install};
 use durer::bvh::{BuildQuality, Instance, InstanceBvh, InstanceHit, TriangleBvh, TriangleHit};
 use durer::math::{Affine, Ray, Ray64, Vec3};
@@ -210,7 +210,7 @@ impl Tree {
     fn closest<'py>(
         &self,
         py: Python<'py>,
-        asked: Asked<'py>,
+        asked: RayArrays<'py>,
         threads: Option<usize>,
         watch: Option<Py<PyAny>>,
     ) -> PyResult<ClosestArrays<'py>> {
@@ -237,7 +237,7 @@ impl Tree {
     fn occluded<'py>(
         &self,
         py: Python<'py>,
-        asked: Asked<'py>,
+        asked: RayArrays<'py>,
         threads: Option<usize>,
         watch: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
@@ -253,7 +253,7 @@ impl Tree {
     fn count<'py>(
         &self,
         py: Python<'py>,
-        asked: Asked<'py>,
+        asked: RayArrays<'py>,
         threads: Option<usize>,
         watch: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<i32>>> {
@@ -271,7 +271,7 @@ impl Tree {
     fn all_hits<'py>(
         &self,
         py: Python<'py>,
-        asked: Asked<'py>,
+        asked: RayArrays<'py>,
         threads: Option<usize>,
         watch: Option<Py<PyAny>>,
     ) -> PyResult<(Bound<'py, PyArray1<i64>>, HitArrays<'py>)> {

@@ -19,10 +19,10 @@ use std::time::{Duration, Instant};
 pub const LOOK: Duration = Duration::from_millis(50);
 
 /// A process, its requested number of threads, and the pool.
-type Known = (u32, Option<usize>, Option<Arc<ThreadPool>>);
+type KnownPool = (u32, Option<usize>, Option<Arc<ThreadPool>>);
 
 /// Cached pools. They belong to a process: after a fork the threads are gone.
-static POOLS: Mutex<Vec<Known>> = Mutex::new(Vec::new());
+static POOLS: Mutex<Vec<KnownPool>> = Mutex::new(Vec::new());
 
 /// Returns the shared pool of this process with the requested number of threads; `None` if threads
 /// are not available.

@@ -11,8 +11,8 @@ use durer::render::explain::Names;
 use durer::render::{self, RenderOutcome};
 use durer::report;
 use durer::source::SourceError;
-use durer::world::Interaction;
-use durer::{Loaded, load, load_text};
+use durer::world::SurfaceInteraction;
+use durer::{LoadedScene, load, load_text};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyKeyboardInterrupt, PyOSError, PyValueError};
@@ -32,7 +32,7 @@ fn failed(error: impl ToString) -> PyErr {
 /// A compiled scene.
 #[pyclass(frozen, module = "durer._durer")]
 pub struct World {
-    loaded: Loaded,
+    loaded: LoadedScene,
     world: durer::world::World,
     files: Files,
     read: Diagnostics,
@@ -43,7 +43,7 @@ const NUMBERS: usize = 3;
 const VALUES: usize = 10;
 /// Number of doubles of a hit: the point, and the offset at which a secondary ray starts.
 const PLACES: usize = 4;
-type Found<'py> = (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<f64>>);
+type NearestArrays<'py> = (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<f64>>);
 
 /// The outputs of some rays.
 type Row<'a> = ((&'a mut [i32], &'a mut [f32]), &'a mut [f64]);
@@ -197,10 +197,10 @@ impl World {
     fn closest<'py>(
         &self,
         py: Python<'py>,
-        asked: rays::Asked<'py>,
+        asked: rays::RayArrays<'py>,
         threads: Option<usize>,
         watch: Option<Py<PyAny>>,
-    ) -> PyResult<Found<'py>> {
+    ) -> PyResult<NearestArrays<'py>> {
         let rays = Rays::new(&asked)?;
         let count = rays.count;
         let (mut ids, mut values) = (vec![-1; NUMBERS * count], vec![f32::NAN; VALUES * count]);
@@ -214,7 +214,7 @@ impl World {
                 rays.exact_job(JOB * job).iter().zip(rows).take_while(|_| pace.goes_on())
             {
                 values[0] = f32::INFINITY;
-                let Some(Interaction { hit, surface, material, .. }) = self.world.intersect(ray, &mut ()) else {
+                let Some(SurfaceInteraction { hit, surface, material, .. }) = self.world.intersect(ray, &mut ()) else {
                     continue;
                 };
                 *ids = [hit.object, self.world.triangle(&hit), material].map(|id| id as i32);
@@ -235,7 +235,7 @@ impl World {
     fn occluded<'py>(
         &self,
         py: Python<'py>,
-        asked: rays::Asked<'py>,
+        asked: rays::RayArrays<'py>,
         threads: Option<usize>,
         watch: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {

@@ -10,20 +10,20 @@ pub const MOST: usize = 1024;
 
 /// Returns the wanted number of threads: as requested, else `RAYON_NUM_THREADS`, else the number of
 /// processors.
-fn wanted(asked: Option<usize>) -> usize {
+fn wanted(requested: Option<usize>) -> usize {
     let environment = || std::env::var("RAYON_NUM_THREADS").ok()?.parse().ok().filter(|&count: &usize| count > 0);
     let machine = || std::thread::available_parallelism().map_or(1, usize::from);
-    asked.or_else(environment).unwrap_or_else(machine).clamp(1, MOST)
+    requested.or_else(environment).unwrap_or_else(machine).clamp(1, MOST)
 }
 
 /// Starts the wanted threads, as far as the system allows. Each waits to be assigned to a pool.
-fn started(asked: Option<usize>) -> Vec<mpsc::Sender<ThreadBuilder>> {
+fn started(requested: Option<usize>) -> Vec<mpsc::Sender<ThreadBuilder>> {
     let start = |_| {
         let (sender, receiver) = mpsc::channel::<ThreadBuilder>();
         let run = move || receiver.recv().into_iter().for_each(ThreadBuilder::run);
         std::thread::Builder::new().spawn(run).ok().map(|_| sender)
     };
-    (0..wanted(asked)).map_while(start).collect()
+    (0..wanted(requested)).map_while(start).collect()
 }
 
 /// Returns a spawn handler that assigns running threads to a pool, which cannot fail half-way as
@@ -36,8 +36,8 @@ fn giving(mut started: Vec<mpsc::Sender<ThreadBuilder>>) -> impl FnMut(ThreadBui
 }
 
 /// Returns a private pool; `None` if the system allows no threads.
-pub fn pool(asked: Option<usize>) -> Option<ThreadPool> {
-    let started = started(asked);
+pub fn pool(requested: Option<usize>) -> Option<ThreadPool> {
+    let started = started(requested);
     if started.is_empty() {
         prepare();
         return None;
@@ -46,8 +46,8 @@ pub fn pool(asked: Option<usize>) -> Option<ThreadPool> {
 }
 
 /// Runs work in a private pool, or in the calling thread without one.
-pub fn install<R: Send>(asked: Option<usize>, work: impl FnOnce() -> R + Send) -> R {
-    match pool(asked) {
+pub fn install<R: Send>(requested: Option<usize>, work: impl FnOnce() -> R + Send) -> R {
+    match pool(requested) {
         Some(pool) => pool.install(work),
         None => work(),
     }

@@ -1,6 +1,6 @@
 //! Decoding of the files that a scene names.
 
-use crate::dialect::CompatSet;
+use crate::dialect::QuirkSet;
 use crate::light::Profile;
 use crate::math::Aabb;
 use crate::medium::DensityGrid;
@@ -18,7 +18,7 @@ pub trait AssetDecoder: Sync {
         bytes: &[u8],
         file: u32,
         name: &str,
-        quirks: CompatSet,
+        quirks: QuirkSet,
         diagnostics: &mut Diagnostics,
     ) -> Option<MeshData>;
 

@@ -68,7 +68,7 @@ impl Value {
 
 /// Constraint on a value, beyond being finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Rule {
+pub enum Constraint {
     /// No constraint.
     Any,
     /// Greater than 0.
@@ -95,7 +95,7 @@ pub enum Rule {
     Counts(u32),
 }
 
-impl Rule {
+impl Constraint {
     /// Checks a value: every number must be finite and satisfy this rule.
     ///
     /// # Errors
@@ -107,30 +107,32 @@ impl Rule {
             return Err("must be finite".into());
         }
         match (self, value) {
-            (Rule::Positive, Value::Float(x)) if *x <= 0.0 => Err("must be more than 0".into()),
-            (Rule::NonNegative, Value::Float(x)) if *x < 0.0 => Err("must not be less than 0".into()),
-            (Rule::NonZero, Value::Vec3(v)) if *v == Vec3::ZERO => Err("must not be 0 0 0".into()),
-            (Rule::NonZero, Value::Vec3(v)) if !v.length_squared().is_normal() => {
+            (Constraint::Positive, Value::Float(x)) if *x <= 0.0 => Err("must be more than 0".into()),
+            (Constraint::NonNegative, Value::Float(x)) if *x < 0.0 => Err("must not be less than 0".into()),
+            (Constraint::NonZero, Value::Vec3(v)) if *v == Vec3::ZERO => Err("must not be 0 0 0".into()),
+            (Constraint::NonZero, Value::Vec3(v)) if !v.length_squared().is_normal() => {
                 Err("is too long or too short for a direction".into())
             }
-            (Rule::Between(low, high), Value::Float(x)) if *x <= low || *x >= high => {
+            (Constraint::Between(low, high), Value::Float(x)) if *x <= low || *x >= high => {
                 Err(format!("must be more than {low} and less than {high}"))
             }
-            (Rule::From(low, high), Value::Float(x)) if *x < low || *x > high => {
+            (Constraint::From(low, high), Value::Float(x)) if *x < low || *x > high => {
                 Err(format!("must be from {low} to {high}"))
             }
-            (Rule::UpTo(high), Value::Float(x)) if *x <= 0.0 || *x > high => {
+            (Constraint::UpTo(high), Value::Float(x)) if *x <= 0.0 || *x > high => {
                 Err(format!("must be more than 0 and at most {high}"))
             }
-            (Rule::Share, Value::Float(x)) if *x < 0.0 || *x > 1.0 => Err("must be from 0 to 1".into()),
-            (Rule::Counts(most), Value::Vec3(v))
+            (Constraint::Share, Value::Float(x)) if *x < 0.0 || *x > 1.0 => Err("must be from 0 to 1".into()),
+            (Constraint::Counts(most), Value::Vec3(v))
                 if v.to_array().iter().any(|&n| n.fract() != 0.0 || n < 1.0 || n > most as f32) =>
             {
                 Err(format!("must be whole numbers from 1 to {most}"))
             }
-            (Rule::Numbered(last), Value::Int(i)) if *i < 1 || *i > last => Err(format!("must be from 1 to {last}")),
-            (Rule::AtMost(most), Value::Int(i)) if *i > most => Err(format!("must be at most {most}")),
-            (Rule::Rows(least, most), Value::Rows(rows)) if rows.len() < least || rows.len() > most => {
+            (Constraint::Numbered(last), Value::Int(i)) if *i < 1 || *i > last => {
+                Err(format!("must be from 1 to {last}"))
+            }
+            (Constraint::AtMost(most), Value::Int(i)) if *i > most => Err(format!("must be at most {most}")),
+            (Constraint::Rows(least, most), Value::Rows(rows)) if rows.len() < least || rows.len() > most => {
                 let wanted = if least == most { least.to_string() } else { format!("{least} to {most}") };
                 Err(format!("must have {wanted} rows, but has {}", rows.len()))
             }
@@ -149,7 +151,7 @@ pub struct Field {
     /// True if a scene must set the field.
     pub required: bool,
     /// Constraint on the value.
-    pub rule: Rule,
+    pub rule: Constraint,
     /// Keyword in each dialect.
     pub spellings: &'static [(&'static str, DialectSet)],
     /// Meaning and unit.
@@ -163,9 +165,9 @@ impl Field {
     }
 
     /// Returns the value that official programs use if the written one breaks the rule, for an
-    /// object's keyword: see [`Compat::AnyValues`]. `None` if they draw nothing sensible with it.
+    /// object's keyword: see [`Quirk::AnyValues`]. `None` if they draw nothing sensible with it.
     ///
-    /// [`Compat::AnyValues`]: crate::dialect::Compat::AnyValues
+    /// [`Quirk::AnyValues`]: crate::dialect::Compat::AnyValues
     pub fn drawn_anyway(&self, keyword: &str, value: &Value) -> Option<Value> {
         match (keyword, self.name, value) {
             // The program squares the radius; no usable radius is smaller than this.

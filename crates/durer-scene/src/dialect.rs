@@ -1,13 +1,13 @@
 //! Dialects of the scene language, as one table of differences.
 //!
 //! A [`Dialect`] is the language of a year; its [`Rules`] define the meaning of its words; its
-//! [`Compat`]s are the known bugs of that year's official program, active only if the user selects
+//! [`Quirk`]s are the known bugs of that year's official program, active only if the user selects
 //! the dialect.
 
-mod compat;
+mod quirk;
 
-use compat::bits;
-pub use compat::{Compat, CompatSet};
+use quirk::bits;
+pub use quirk::{Quirk, QuirkSet};
 use serde::{Deserialize, Serialize};
 
 /// Scene language of a year. The discriminants are bits of a [`DialectSet`].
@@ -231,25 +231,25 @@ pub struct Rules {
     /// True if coloured, transparent objects cast coloured shadows.
     pub transparent_shadows: bool,
     /// Bugs of the official program.
-    pub compat: CompatSet,
+    pub compat: QuirkSet,
 }
 
 impl Rules {
     /// True if a compatibility is on.
-    pub fn has(&self, compat: Compat) -> bool {
+    pub fn has(&self, compat: Quirk) -> bool {
         self.compat & compat.bit() != 0
     }
 
     /// True if the picture must equal an official program's: the rules have an epsilon, and hit
     /// points are points of the ray, rounding included.
-    pub fn is_official(&self) -> bool {
+    pub fn is_bit_compatible(&self) -> bool {
         self.epsilon.is_some()
     }
 
     /// Returns these rules without the old program's bugs and with good defaults.
     ///
     /// A file gets these rules if the user did not select a dialect.
-    pub fn sane(&self) -> Rules {
+    pub fn without_quirks(&self) -> Rules {
         let ours = Dialect::Durer.rules();
         Rules {
             size: ours.size,
@@ -268,7 +268,7 @@ impl Rules {
     }
 }
 
-use Compat::*;
+use Quirk::*;
 
 const F03: Rules = Rules { name: "f03", title: "6.837 of 2003", ..F04 };
 

@@ -1,7 +1,7 @@
 //! Intersection tests of a ray with each object, and the reason why an object is not the closest
 //! hit.
 
-use crate::document::Compiled;
+use crate::document::CompiledDocument;
 use crate::protocol::{CastAccount, HitAccount, ObjectTest, Row, Verdict};
 use crate::rows::{factor, number, row, vector, vector_row};
 use durer::math::{Line, Ray, Ray64, Vec2, Vec3};
@@ -13,7 +13,7 @@ use glam::DVec3;
 const MAX_TESTS: usize = 200;
 
 /// Intersects a ray (world space) with every object and reports each result.
-pub(crate) fn cast(compiled: &Compiled, ray: &Ray) -> CastAccount {
+pub(crate) fn cast(compiled: &CompiledDocument, ray: &Ray) -> CastAccount {
     let world = &compiled.world;
     let ray64 = Ray64::from(*ray);
     let first = world.closest(&ray64, &mut ());
@@ -44,7 +44,7 @@ pub(crate) fn cast(compiled: &Compiled, ray: &Ray) -> CastAccount {
     CastAccount { origin: ray.origin.into(), direction: ray.dir.into(), tests, left_out, hit }
 }
 
-fn test(compiled: &Compiled, number: u32, object: &Object, ray: &Ray64, first: Option<&Hit>) -> ObjectTest {
+fn test(compiled: &CompiledDocument, number: u32, object: &Object, ray: &Ray64, first: Option<&Hit>) -> ObjectTest {
     let world = &compiled.world;
     let own = world.hit_of(number, ray);
     let whole = Ray64 { rounded: Ray { t_min: f32::NEG_INFINITY, t_max: f32::INFINITY, ..ray.rounded }, ..*ray };
@@ -65,7 +65,7 @@ fn test(compiled: &Compiled, number: u32, object: &Object, ray: &Ray64, first: O
         }
         (None, None, _) => (Verdict::Missed, "the line misses it".into()),
     };
-    let mut told = ObjectTest {
+    let mut account = ObjectTest {
         object: number,
         name: compiled.names().short_object(number),
         place: compiled.place(object.span),
@@ -75,18 +75,23 @@ fn test(compiled: &Compiled, number: u32, object: &Object, ray: &Ray64, first: O
         rows: Vec::new(),
     };
     if let Some(local) = object.own_ray(ray) {
-        told.rows.push(vector_row("o", "M⁻¹ o", vector(ray.rounded.origin), local.origin));
-        told.rows.push(vector_row("d", "M⁻¹ d, not normalised, so t is unchanged", vector(ray.rounded.dir), local.dir));
-        told.rows.extend(formulas(object, &local, anywhere.as_ref()));
+        account.rows.push(vector_row("o", "M⁻¹ o", vector(ray.rounded.origin), local.origin));
+        account.rows.push(vector_row(
+            "d",
+            "M⁻¹ d, not normalised, so t is unchanged",
+            vector(ray.rounded.dir),
+            local.dir,
+        ));
+        account.rows.extend(formulas(object, &local, anywhere.as_ref()));
     } else {
-        told.rows.extend(formulas(object, &ray.rounded, anywhere.as_ref()));
+        account.rows.extend(formulas(object, &ray.rounded, anywhere.as_ref()));
     }
-    if told.verdict == Verdict::Missed
-        && let Some(reason) = told.rows.last().filter(|row| row.name == "so")
+    if account.verdict == Verdict::Missed
+        && let Some(reason) = account.rows.last().filter(|row| row.name == "so")
     {
-        told.why.clone_from(&reason.result);
+        account.why.clone_from(&reason.result);
     }
-    told
+    account
 }
 
 fn text(t: f32) -> String {

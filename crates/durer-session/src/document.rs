@@ -3,11 +3,11 @@
 use crate::protocol::{Change, Finding, Place, Severity};
 use durer::camera::Camera;
 use durer::check::{Subject, check};
-use durer::compile::Kept;
+use durer::compile::AssetCache;
 use durer::describe::DescribedList;
 use durer::diag::{self, Diagnostic, Diagnostics, Files, Span};
 use durer::dialect::Dialect;
-use durer::format::beside::{Beside, plain};
+use durer::format::asset_export::{AssetFile, plain};
 use durer::format::course::write;
 use durer::format::scene::find_scene_format;
 use durer::format::{SceneFormat, mesh_format_for};
@@ -16,7 +16,7 @@ use durer::render::Job;
 use durer::render::explain::Names;
 use durer::scene::Scene;
 use durer::world::World;
-use durer::{LoadOptions, Loaded, load_text};
+use durer::{LoadOptions, LoadedScene, load_text};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -29,12 +29,12 @@ pub(crate) struct Document {
     pub bytes: Arc<[u8]>,
     pub options: LoadOptions,
     /// Compiled form of the last text without errors.
-    pub compiled: Option<Compiled>,
+    pub compiled: Option<CompiledDocument>,
 }
 
 /// A text without errors, and its compiled world.
-pub(crate) struct Compiled {
-    loaded: Loaded,
+pub(crate) struct CompiledDocument {
+    loaded: LoadedScene,
     pub world: World,
     /// The camera as written in the text.
     pub written: Camera,
@@ -44,7 +44,7 @@ pub(crate) struct Compiled {
 
 impl Document {
     pub fn new(path: PathBuf, bytes: Arc<[u8]>) -> Self {
-        let options = LoadOptions { kept: Some(Arc::new(Kept::default())), ..LoadOptions::default() };
+        let options = LoadOptions { cache: Some(Arc::new(AssetCache::default())), ..LoadOptions::default() };
         Document { path, bytes, options, compiled: None }
     }
 
@@ -62,7 +62,7 @@ impl Document {
         let findings = diagnostics.iter().map(|diagnostic| finding(diagnostic, &files)).collect();
         let Some((loaded, world)) = loaded.zip(world) else { return (false, findings) };
         let written = world.camera().clone();
-        self.compiled = Some(Compiled { loaded, world, written, files, diagnostics });
+        self.compiled = Some(CompiledDocument { loaded, world, written, files, diagnostics });
         (true, findings)
     }
 
@@ -101,10 +101,10 @@ impl Document {
 
     /// The scene as a text of the language, and the files that the text names. The camera is that of
     /// the picture.
-    pub fn as_text(&self) -> Result<(String, Vec<Beside>), String> {
+    pub fn as_text(&self) -> Result<(String, Vec<AssetFile>), String> {
         let compiled = self.compiled.as_ref().ok_or("the scene has errors")?;
         let stem = plain(&self.path.file_stem().unwrap_or_default().to_string_lossy());
-        let (mut scene, files) = compiled.loaded.put_beside(&stem);
+        let (mut scene, files) = compiled.loaded.export_assets(&stem);
         scene.camera = Some(compiled.world.camera().clone());
         Ok((write(&scene, Dialect::Durer), files))
     }
@@ -135,7 +135,7 @@ impl Document {
     }
 }
 
-impl Compiled {
+impl CompiledDocument {
     pub fn scene(&self) -> &Scene {
         &self.loaded.scene
     }

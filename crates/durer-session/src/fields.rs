@@ -1,7 +1,7 @@
 //! Fields of cameras and materials, for sliders.
 
 use crate::protocol::FieldState;
-use durer::describe::{DescribedList, Field, Rule, Value};
+use durer::describe::{Constraint, DescribedList, Field, Value};
 use durer::dialect::Dialect;
 use durer::math::Vec3;
 
@@ -31,10 +31,10 @@ fn spelled(field: &Field) -> &'static str {
 
 fn state(field: &Field, value: Option<Value>) -> FieldState {
     let (least, most) = match field.rule {
-        Rule::Between(low, high) | Rule::From(low, high) => (Some(low), Some(high)),
-        Rule::Positive | Rule::NonNegative => (Some(0.0), None),
-        Rule::Share => (Some(0.0), Some(1.0)),
-        Rule::UpTo(most) => (Some(0.0), Some(most)),
+        Constraint::Between(low, high) | Constraint::From(low, high) => (Some(low), Some(high)),
+        Constraint::Positive | Constraint::NonNegative => (Some(0.0), None),
+        Constraint::Share => (Some(0.0), Some(1.0)),
+        Constraint::UpTo(most) => (Some(0.0), Some(most)),
         _ => (None, None),
     };
     let values = match &value {

@@ -1,7 +1,7 @@
 //! What a scene consists of: groups, objects and materials. Models have no text, so their materials
 //! are changed here.
 
-use crate::document::Compiled;
+use crate::document::CompiledDocument;
 use crate::fields::{field_states, set_numbers};
 use crate::protocol::{FieldState, MaterialState, TreeNode};
 use durer::describe::DescribedList;
@@ -12,14 +12,14 @@ use durer::scene::{Material, Node, Object, Scene};
 const MAX_NODES: usize = 2000;
 
 /// Returns the objects of a scene, as they are grouped.
-pub(crate) fn nodes(compiled: &Compiled) -> Vec<TreeNode> {
+pub(crate) fn nodes(compiled: &CompiledDocument) -> Vec<TreeNode> {
     let mut left = MAX_NODES;
     let root = compiled.scene().root.iter().flat_map(|group| &group.objects);
     root.map_while(|object| node(compiled, object, &mut left)).collect()
 }
 
 /// Returns an object with those below it; `None` beyond the maximum.
-fn node(compiled: &Compiled, object: &Object, left: &mut usize) -> Option<TreeNode> {
+fn node(compiled: &CompiledDocument, object: &Object, left: &mut usize) -> Option<TreeNode> {
     *left = left.checked_sub(1)?;
     let below: &[Object] = match &object.node {
         Node::Group(group) => &group.objects,
@@ -45,7 +45,7 @@ fn node(compiled: &Compiled, object: &Object, left: &mut usize) -> Option<TreeNo
 }
 
 /// Returns the materials with their fields.
-pub(crate) fn materials(compiled: &Compiled) -> Vec<MaterialState> {
+pub(crate) fn materials(compiled: &CompiledDocument) -> Vec<MaterialState> {
     let all = compiled.scene().materials.iter().take(MAX_NODES);
     all.map(|material| {
         let (name, fields) = described(&material.value);

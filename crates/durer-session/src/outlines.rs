@@ -1,6 +1,6 @@
 //! Line drawings of a scene, for the page's 3D view.
 
-use crate::document::Compiled;
+use crate::document::CompiledDocument;
 use crate::protocol::{Lamp, Outline};
 use durer::math::Vec3;
 use durer::render::explain::Names;
@@ -18,7 +18,7 @@ pub(crate) fn outlines(names: &Names) -> Vec<Outline> {
 }
 
 /// Returns the marks of the lights with their names.
-pub(crate) fn lamps(compiled: &Compiled) -> Vec<Lamp> {
+pub(crate) fn lamps(compiled: &CompiledDocument) -> Vec<Lamp> {
     let marks = light_marks(&compiled.world).take(MAX_LIGHTS).enumerate();
     marks.map(|(i, LightMark { at, is_far })| Lamp { at: at.into(), far: is_far, name: compiled.light(i) }).collect()
 }

@@ -2,17 +2,17 @@
 
 mod disk;
 
-use crate::document::{Compiled, Document};
+use crate::document::{CompiledDocument, Document};
 use crate::motion::{distance, moved, set_field, state};
 use crate::outlines::{lamps, outlines};
 use crate::protocol::{CameraState, Choice, Contents, Event, Finding, JobState, Motion, Request, Structure, Thing};
-use crate::viewer::{Shown, Viewer};
+use crate::viewer::{PictureMessage, Viewer};
 use crate::{candidates, language, model, terms, walk};
 use durer::camera::{Camera, PerspectiveCamera, Projection};
 use durer::describe::DescribedList;
 use durer::film::aov::AOVS;
 use durer::image::Tone;
-use durer::integrator::Method;
+use durer::integrator::IntegratorKind;
 use durer::math::{Ray, Vec3};
 use durer::render::explain::explain_of;
 use durer::world::{Epsilon, Geometry};
@@ -57,7 +57,7 @@ pub struct Session {
     stamp: Option<durer::source::Stamp>,
     /// Stamp of the file when the page was last notified.
     #[cfg(feature = "fs")]
-    told: Option<durer::source::Stamp>,
+    reported: Option<durer::source::Stamp>,
     /// True if the document is the server's file.
     on_disk: bool,
 }
@@ -77,7 +77,7 @@ impl Session {
             #[cfg(feature = "fs")]
             stamp: None,
             #[cfg(feature = "fs")]
-            told: None,
+            reported: None,
             on_disk: false,
         }
     }
@@ -100,11 +100,11 @@ impl Session {
     }
 
     fn answer(&mut self, request: Request, say: &mut dyn FnMut(Message)) -> Result<(), String> {
-        let mut tell = |event| say((event, Vec::new()));
+        let mut send = |event| say((event, Vec::new()));
         match request {
-            Request::Open { name, text } => self.open(name, text, &mut tell)?,
-            Request::Give { name, base64, opens } => self.give(name, &base64, opens, &mut tell)?,
-            Request::Edit { text } => self.edit(text, &mut tell)?,
+            Request::Open { name, text } => self.open(name, text, &mut send)?,
+            Request::Give { name, base64, opens } => self.give(name, &base64, opens, &mut send)?,
+            Request::Edit { text } => self.edit(text, &mut send)?,
             Request::Size { width, height } => {
                 self.viewer.set_size(width, height);
                 self.restart();
@@ -134,42 +134,42 @@ impl Session {
                 if matches!(motion, Motion::Home) {
                     self.distance = distance(&self.compiled()?.world);
                 }
-                tell(self.looked(moving)?);
+                send(self.looked(moving)?);
             }
             Request::Field { name, values, moving } => {
                 let world = &mut self.compiled()?.world;
                 let mut camera = world.camera().clone();
                 set_field(&mut camera, &name, &values)?;
                 world.look_through(camera);
-                tell(self.looked(moving)?);
+                send(self.looked(moving)?);
             }
             Request::Look { center, direction, up, angle, moving } => {
                 let [center, direction, up] = [center, direction, up].map(Vec3::from);
                 let camera = Camera::from(PerspectiveCamera { center, direction, up, angle });
                 self.place(camera)?;
-                tell(self.looked(moving)?);
+                send(self.looked(moving)?);
             }
             Request::WriteCamera => {
                 let text = self.write_camera()?;
-                tell(Event::Text { text: text.clone(), from_disk: false });
-                self.edit(text, &mut tell)?;
+                send(Event::Text { text: text.clone(), from_disk: false });
+                self.edit(text, &mut send)?;
             }
             Request::Explain { x, y, sample } => {
                 let explained = self.explain(x, y, sample)?;
-                tell(explained);
+                send(explained);
             }
             Request::Rays { columns, rows, row } => {
                 let rays = walk::rays(&self.compiled()?.world, [columns, rows], row)?;
-                tell(Event::Rays { rays });
+                send(Event::Rays { rays });
             }
             Request::Walk { structure, origin, direction } => {
                 let walk = self.walk(structure, origin, direction)?;
-                tell(walk);
+                send(walk);
             }
-            Request::Boxes => tell(Event::Boxes { boxes: walk::boxes(&self.compiled()?.world) }),
+            Request::Boxes => send(Event::Boxes { boxes: walk::boxes(&self.compiled()?.world) }),
             Request::Values { left, top, width, height } => {
                 let values = self.viewer.values([left, top, width, height])?;
-                tell(Event::Values { left, top, width, height, values });
+                send(Event::Values { left, top, width, height, values });
             }
             Request::Crop { crop } => {
                 self.viewer.crop = crop;
@@ -184,11 +184,11 @@ impl Session {
                     return Err("epsilon is a number from 0".into());
                 }
                 self.epsilon = epsilon;
-                self.read(false, &mut tell)?;
+                self.read(false, &mut send)?;
             }
             Request::Tree => {
                 let compiled = self.compiled()?;
-                tell(Event::Tree { nodes: model::nodes(compiled), materials: model::materials(compiled) });
+                send(Event::Tree { nodes: model::nodes(compiled), materials: model::materials(compiled) });
             }
             Request::Material { number, name, values } => {
                 let document = self.document.as_mut().filter(|document| document.is_model());
@@ -196,9 +196,9 @@ impl Session {
                 document.change(|scene| model::set_material(scene, number, &name, &values))?;
                 self.restart();
                 let contents = Some(self.contents()?);
-                tell(Event::Scene { findings: Vec::new(), contents, ms: 0.0 });
+                send(Event::Scene { findings: Vec::new(), contents, ms: 0.0 });
             }
-            Request::AsText => self.become_text(&mut tell)?,
+            Request::AsText => self.become_text(&mut send)?,
             Request::Pack => {
                 let (names, files) = self.pack()?;
                 let sizes = files.iter().map(|bytes| bytes.len() as u32).collect();
@@ -207,25 +207,25 @@ impl Session {
             Request::Lesson => {
                 let text = self.start.lesson.as_deref().map(read).transpose()?;
                 let text = text.map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
-                tell(Event::Lesson { text });
+                send(Event::Lesson { text });
             }
             Request::Cast { origin, direction, t_max } => {
                 let ray = Ray { t_max: t_max.unwrap_or(f32::INFINITY), ..ray_of(origin, direction)? };
                 let cast = candidates::cast(self.compiled()?, &ray);
-                tell(Event::Cast { cast });
+                send(Event::Cast { cast });
             }
             Request::Outlines => {
                 let compiled = self.compiled()?;
-                tell(Event::Outlines { outlines: outlines(&compiled.names()), lamps: lamps(compiled) });
+                send(Event::Outlines { outlines: outlines(&compiled.names()), lamps: lamps(compiled) });
             }
-            Request::Language => tell(Event::Language { words: language::words() }),
+            Request::Language => send(Event::Language { words: language::words() }),
             Request::Export { name } => {
                 let bytes = self.viewer.export(&name)?;
                 say((Event::Exported { name }, bytes));
             }
             Request::Save { force } => {
                 let saved = self.save(force)?;
-                tell(saved);
+                send(saved);
             }
             Request::Pause { pause } => self.paused = pause,
             Request::Close => self.document = None,
@@ -233,12 +233,12 @@ impl Session {
         Ok(())
     }
 
-    fn compiled(&mut self) -> Result<&mut Compiled, String> {
+    fn compiled(&mut self) -> Result<&mut CompiledDocument, String> {
         let compiled = self.document.as_mut().and_then(|document| document.compiled.as_mut());
         compiled.ok_or_else(|| "the scene has errors".into())
     }
 
-    fn open(&mut self, name: String, text: Option<String>, tell: &mut dyn FnMut(Event)) -> Result<(), String> {
+    fn open(&mut self, name: String, text: Option<String>, send: &mut dyn FnMut(Event)) -> Result<(), String> {
         let (path, bytes) = match (text, &self.start.file) {
             (Some(text), _) => {
                 self.on_disk = false;
@@ -262,7 +262,7 @@ impl Session {
             }
             (None, None) => return Err("the server has no file to open".into()),
         };
-        self.begin(path, bytes, tell)
+        self.begin(path, bytes, send)
     }
 
     /// Path of a scene from a page. It always lies in the folder of the server's file, so the scene
@@ -274,14 +274,14 @@ impl Session {
         folder.join(name.unwrap_or("scene.txt"))
     }
 
-    fn begin(&mut self, path: PathBuf, bytes: Arc<[u8]>, tell: &mut dyn FnMut(Event)) -> Result<(), String> {
-        let given = self.document.take().map(|document| document.options.given).unwrap_or_default();
+    fn begin(&mut self, path: PathBuf, bytes: Arc<[u8]>, send: &mut dyn FnMut(Event)) -> Result<(), String> {
+        let in_memory = self.document.take().map(|document| document.options.in_memory).unwrap_or_default();
         let mut document = Document::new(path, bytes);
-        document.options.given = given;
+        document.options.in_memory = in_memory;
         self.viewer.forget();
         let choice = |(name, doc): (&str, &str)| Choice { name: name.into(), doc: doc.into() };
         let name = document.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        tell(Event::Opened {
+        send(Event::Opened {
             version: env!("CARGO_PKG_VERSION").into(),
             name,
             text: document.text().map(Into::into),
@@ -291,13 +291,13 @@ impl Session {
                 .map(choice)
                 .collect(),
             tones: Tone::ALL.iter().map(|(name, _)| (*name).into()).collect(),
-            integrators: Method::kinds().iter().map(|kind| choice((kind.own_keyword(), kind.doc()))).collect(),
+            integrators: IntegratorKind::kinds().iter().map(|kind| choice((kind.own_keyword(), kind.doc()))).collect(),
         });
         self.document = Some(document);
-        self.read(true, tell)
+        self.read(true, send)
     }
 
-    fn give(&mut self, name: String, base64: &str, opens: bool, tell: &mut dyn FnMut(Event)) -> Result<(), String> {
+    fn give(&mut self, name: String, base64: &str, opens: bool, send: &mut dyn FnMut(Event)) -> Result<(), String> {
         if base64.len() > MAX_BYTES {
             return Err(format!("`{name}` is too large"));
         }
@@ -305,25 +305,25 @@ impl Session {
         if opens {
             self.on_disk = false;
             let path = self.beside(&name);
-            return self.begin(path, bytes, tell);
+            return self.begin(path, bytes, send);
         }
         let document = self.document.get_or_insert_with(|| Document::new("scene.txt".into(), Arc::from([])));
-        document.options.given.retain(|known| known.0 != name);
-        document.options.given.push((name, bytes));
-        if document.bytes.is_empty() { Ok(()) } else { self.read(false, tell) }
+        document.options.in_memory.retain(|known| known.0 != name);
+        document.options.in_memory.push((name, bytes));
+        if document.bytes.is_empty() { Ok(()) } else { self.read(false, send) }
     }
 
-    fn edit(&mut self, text: String, tell: &mut dyn FnMut(Event)) -> Result<(), String> {
+    fn edit(&mut self, text: String, send: &mut dyn FnMut(Event)) -> Result<(), String> {
         if text.len() > MAX_BYTES {
             return Err("the text is too long".into());
         }
         self.document.as_mut().ok_or("no scene is open")?.bytes = text.into_bytes().into();
-        self.read(false, tell)
+        self.read(false, send)
     }
 
     /// Reads and compiles the text. A moved camera keeps its position unless the text changed the
     /// camera.
-    fn read(&mut self, anew: bool, tell: &mut dyn FnMut(Event)) -> Result<(), String> {
+    fn read(&mut self, anew: bool, send: &mut dyn FnMut(Event)) -> Result<(), String> {
         let start = (self.clock)();
         let document = self.document.as_mut().ok_or("no scene is open")?;
         let before = document.compiled.as_ref().filter(|_| !anew);
@@ -331,7 +331,7 @@ impl Session {
         let (ok, findings) = document.compile();
         let ms = (self.clock)() - start;
         if !ok {
-            tell(Event::Scene { findings, contents: None, ms });
+            send(Event::Scene { findings, contents: None, ms });
             return Ok(());
         }
         if let (Some((written, now)), Some(compiled)) = (held, &mut document.compiled) {
@@ -350,7 +350,7 @@ impl Session {
         self.restart();
         self.unchecked = true;
         let contents = Some(self.contents()?);
-        tell(Event::Scene { findings, contents, ms });
+        send(Event::Scene { findings, contents, ms });
         Ok(())
     }
 
@@ -436,15 +436,15 @@ impl Session {
     }
 
     /// Makes a model a text with files, which is then edited.
-    fn become_text(&mut self, tell: &mut dyn FnMut(Event)) -> Result<(), String> {
+    fn become_text(&mut self, send: &mut dyn FnMut(Event)) -> Result<(), String> {
         let document = self.document.as_mut().ok_or("no scene is open")?;
         let (text, files) = document.as_text()?;
-        let given = &mut document.options.given;
-        given.retain(|(name, _)| !files.iter().any(|(known, _)| known == name));
-        given.extend(files.into_iter().map(|(name, bytes)| (name, bytes.into())));
+        let in_memory = &mut document.options.in_memory;
+        in_memory.retain(|(name, _)| !files.iter().any(|(known, _)| known == name));
+        in_memory.extend(files.into_iter().map(|(name, bytes)| (name, bytes.into())));
         let path = document.path.with_extension("txt");
         self.on_disk = false;
-        self.begin(path, text.into_bytes().into(), tell)
+        self.begin(path, text.into_bytes().into(), send)
     }
 
     /// The text and its files, with their names.
@@ -456,7 +456,7 @@ impl Session {
                 let (text, files) = document.as_text()?;
                 (text.into_bytes().into(), files.into_iter().map(|(name, bytes)| (name, bytes.into())).collect())
             }
-            false => (document.bytes.clone(), document.options.given.clone()),
+            false => (document.bytes.clone(), document.options.in_memory.clone()),
         };
         Ok(std::iter::once((own, text)).chain(files).unzip())
     }
@@ -502,7 +502,7 @@ impl Session {
     }
 }
 
-fn picture((head, bytes): Shown) -> Message {
+fn picture((head, bytes): PictureMessage) -> Message {
     (Event::Picture { head }, bytes)
 }
 

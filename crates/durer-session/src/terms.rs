@@ -1,6 +1,6 @@
 //! Tree of terms of a pixel's radiance, each with its formula and numbers.
 
-use crate::document::Compiled;
+use crate::document::CompiledDocument;
 use crate::protocol::{PixelAccount, Role, Row, Segment, Term};
 use crate::rows::{factor, number, row, vector, vector_row};
 use durer::diag::Span;
@@ -13,7 +13,12 @@ use durer::render::explain::{Explanation, Names};
 use durer::world::emitters::LightId;
 
 /// Explains a pixel by one of its samples; `None` selects the sample with the largest contribution.
-pub(crate) fn account(compiled: &Compiled, job: &Job, explanation: &Explanation, sample: Option<u32>) -> PixelAccount {
+pub(crate) fn account(
+    compiled: &CompiledDocument,
+    job: &Job,
+    explanation: &Explanation,
+    sample: Option<u32>,
+) -> PixelAccount {
     let chosen = sample.map_or(explanation.heaviest(), |sample| sample as usize);
     let chosen = chosen.min(explanation.samples.len().saturating_sub(1));
     let weights: f32 = explanation.samples.iter().map(|sample| sample.weight).sum();
@@ -21,9 +26,10 @@ pub(crate) fn account(compiled: &Compiled, job: &Job, explanation: &Explanation,
     let light = sample.and_then(|sample| sample.light.as_ref());
     let at = sample.map_or(Vec2::ZERO, |sample| sample.place);
     let tree = light.map(|light| {
-        let teller = Teller { compiled, names: compiled.names(), tree: light, whole: light.sum().dot(LUMINANCE) };
+        let formatter =
+            TermFormatter { compiled, names: compiled.names(), tree: light, whole: light.sum().dot(LUMINANCE) };
         let one = TermValue::Color(Color::ONE);
-        let mut term = teller.term(&light.root, one, &Around::default());
+        let mut term = formatter.term(&light.root, one, &TermContext::default());
         let mut rows = camera_rows(compiled, job, at);
         rows.append(&mut term.rows);
         term.rows = rows;
@@ -43,7 +49,7 @@ pub(crate) fn account(compiled: &Compiled, job: &Job, explanation: &Explanation,
 }
 
 /// Formulas of the camera ray through a position in the picture.
-fn camera_rows(compiled: &Compiled, job: &Job, place: Vec2) -> Vec<Row> {
+fn camera_rows(compiled: &CompiledDocument, job: &Job, place: Vec2) -> Vec<Row> {
     let world = &compiled.world;
     let raster = durer::render::raster(world, job.width, job.height);
     let (point, frame) = (raster.point(place), world.camera_frame());
@@ -68,22 +74,22 @@ fn camera_rows(compiled: &Compiled, job: &Job, place: Vec2) -> Vec<Row> {
 
 /// Vectors of the enclosing terms.
 #[derive(Clone, Default)]
-struct Around {
+struct TermContext {
     dir: Vec3,
     n: Vec3,
     to_light: Vec3,
 }
 
-struct Teller<'a> {
-    compiled: &'a Compiled,
+struct TermFormatter<'a> {
+    compiled: &'a CompiledDocument,
     names: Names<'a>,
     tree: &'a Tree,
     /// Luminance of the whole pixel.
     whole: f32,
 }
 
-impl Teller<'_> {
-    fn term(&self, node: &TraceNode, gain: TermValue, around: &Around) -> Term {
+impl TermFormatter<'_> {
+    fn term(&self, node: &TraceNode, gain: TermValue, around: &TermContext) -> Term {
         let inside = self.around(node, around);
         let here = gain * node.factor;
         let below = here * node.scale;
@@ -113,12 +119,12 @@ impl Teller<'_> {
         }
     }
 
-    fn around(&self, node: &TraceNode, outer: &Around) -> Around {
+    fn around(&self, node: &TraceNode, outer: &TermContext) -> TermContext {
         match &node.what {
             TermKind::Ray { ray, hit, .. } => {
-                Around { dir: ray.dir, n: hit.as_ref().map_or(Vec3::ZERO, |hit| hit.n), ..Around::default() }
+                TermContext { dir: ray.dir, n: hit.as_ref().map_or(Vec3::ZERO, |hit| hit.n), ..TermContext::default() }
             }
-            TermKind::Light { to_light, .. } => Around { to_light: *to_light, ..outer.clone() },
+            TermKind::Light { to_light, .. } => TermContext { to_light: *to_light, ..outer.clone() },
             _ => outer.clone(),
         }
     }
@@ -206,7 +212,7 @@ impl Teller<'_> {
         }
     }
 
-    fn rows(&self, node: &TraceNode, around: &Around) -> Vec<Row> {
+    fn rows(&self, node: &TraceNode, around: &TermContext) -> Vec<Row> {
         let color = |value: TermValue| vector(self.tree.color(value));
         let mut rows = Vec::new();
         match &node.what {

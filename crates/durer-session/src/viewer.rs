@@ -1,7 +1,7 @@
 //! Progressive rendering from coarse to fine, in steps of some milliseconds.
 
 use crate::display::{display, pixels};
-use crate::document::Compiled;
+use crate::document::CompiledDocument;
 use crate::export::export;
 use crate::protocol::{PictureHead, Setting};
 use durer::RenderJob;
@@ -41,7 +41,7 @@ pub(crate) struct Viewer {
     cost: Option<f64>,
     tiles: u64,
     changed: f64,
-    told: f64,
+    reported: f64,
     /// Last finished picture, to show it with other display settings or to export it.
     shown: Option<ProgressiveRender>,
     /// The same picture denoised, once it was wanted.
@@ -62,7 +62,7 @@ enum Stage {
 }
 
 /// A picture for the page: its description and its pixels.
-pub(crate) type Shown = (PictureHead, Vec<u8>);
+pub(crate) type PictureMessage = (PictureHead, Vec<u8>);
 
 impl Viewer {
     pub fn new() -> Self {
@@ -80,7 +80,7 @@ impl Viewer {
             cost: None,
             tiles: 4,
             changed: 0.0,
-            told: 0.0,
+            reported: 0.0,
             shown: None,
             clean: None,
             rays: 0,
@@ -127,7 +127,7 @@ impl Viewer {
     }
 
     /// Returns the job of the picture that is shown.
-    pub fn job(&self, compiled: &Compiled) -> Result<Job, String> {
+    pub fn job(&self, compiled: &CompiledDocument) -> Result<Job, String> {
         let job = self.job_of(compiled, &self.picture)?;
         let whole = Crop { left: 0, top: 0, width: job.width, height: job.height };
         let crop = self.crop.map(|[left, top, width, height]| within(Crop { left, top, width, height }, whole));
@@ -135,18 +135,22 @@ impl Viewer {
     }
 
     /// The job of a whole picture.
-    pub fn job_of(&self, compiled: &Compiled, picture: &str) -> Result<Job, String> {
+    pub fn job_of(&self, compiled: &CompiledDocument, picture: &str) -> Result<Job, String> {
         let options = self.options.clone().size((self.width, self.height));
         options.resolve(&compiled.job_context(), Some(&View { crop: None, show: vec![picture.into()] }))
     }
 
     /// Returns the options that differ from the scene's defaults.
-    pub fn spelled(&self, compiled: &Compiled, job: &Job) -> Vec<String> {
+    pub fn spelled(&self, compiled: &CompiledDocument, job: &Job) -> Vec<String> {
         RenderJob::of(job, &compiled.job_context()).spelled()
     }
 
     /// Works for about one [`STEP`].
-    pub fn step(&mut self, compiled: &Compiled, clock: &dyn Fn() -> f64) -> Result<Option<Shown>, String> {
+    pub fn step(
+        &mut self,
+        compiled: &CompiledDocument,
+        clock: &dyn Fn() -> f64,
+    ) -> Result<Option<PictureMessage>, String> {
         match std::mem::replace(&mut self.stage, Stage::Rest) {
             Stage::Rest => Ok(None),
             Stage::Coarse => self.coarse(compiled, clock),
@@ -154,7 +158,11 @@ impl Viewer {
         }
     }
 
-    fn coarse(&mut self, compiled: &Compiled, clock: &dyn Fn() -> f64) -> Result<Option<Shown>, String> {
+    fn coarse(
+        &mut self,
+        compiled: &CompiledDocument,
+        clock: &dyn Fn() -> f64,
+    ) -> Result<Option<PictureMessage>, String> {
         let job = self.job(compiled)?;
         let pixels = job.window().pixels() as f64;
         let budget = if self.moving { MOVING } else { RESTING };
@@ -195,17 +203,17 @@ impl Viewer {
             self.stage = Stage::Fine(Box::new(render), None);
             self.began = clock();
         }
-        self.told = clock();
+        self.reported = clock();
         Ok(Some(self.head(shown, None, clock)))
     }
 
     fn fine(
         &mut self,
-        compiled: &Compiled,
+        compiled: &CompiledDocument,
         mut render: Box<ProgressiveRender>,
         seen: Option<u32>,
         clock: &dyn Fn() -> f64,
-    ) -> Result<Option<Shown>, String> {
+    ) -> Result<Option<PictureMessage>, String> {
         let control = Control { most_tiles: Some(self.tiles), ..Control::default() };
         let start = clock();
         let passed = render.next_pass(&compiled.world, &control);
@@ -221,7 +229,7 @@ impl Viewer {
             Err(RenderError::Cancelled) => (seen, false),
             Err(error) => return Err(wrong(error)),
         };
-        let due = samples.is_some() && (samples != seen && seen.is_none() || clock() - self.told > BETWEEN);
+        let due = samples.is_some() && (samples != seen && seen.is_none() || clock() - self.reported > BETWEEN);
         let mut shown = None;
         if due || finished {
             let hash = finished.then(|| render.part().hash().to_string());
@@ -231,7 +239,7 @@ impl Viewer {
             let elapsed = clock() - self.began;
             head.noise = render.part().noise();
             head.left_ms = (done > 0 && !finished).then(|| elapsed * (all - done) as f64 / done as f64);
-            self.told = clock();
+            self.reported = clock();
             shown = Some(self.head((head, bytes), Some(render.part().job()), clock));
         }
         match finished {
@@ -242,7 +250,7 @@ impl Viewer {
     }
 
     /// Encodes the finished picture again with the current display settings.
-    pub fn again(&mut self, compiled: &Compiled, clock: &dyn Fn() -> f64) -> Option<Shown> {
+    pub fn again(&mut self, compiled: &CompiledDocument, clock: &dyn Fn() -> f64) -> Option<PictureMessage> {
         let render = self.shown.take_if(|_| !matches!(self.stage, Stage::Coarse | Stage::Fine(..)))?;
         let shown = self.encode(&render, compiled);
         let shown = shown.ok().map(|shown| self.head(shown, Some(render.part().job()), clock));
@@ -250,7 +258,7 @@ impl Viewer {
         shown
     }
 
-    fn encode(&mut self, render: &ProgressiveRender, compiled: &Compiled) -> Result<Shown, String> {
+    fn encode(&mut self, render: &ProgressiveRender, compiled: &CompiledDocument) -> Result<PictureMessage, String> {
         if self.clean.is_none() {
             self.clean = self.denoised(render, compiled)?;
         }
@@ -261,7 +269,7 @@ impl Viewer {
     }
 
     /// The denoised picture, where it is wanted.
-    fn denoised(&self, render: &ProgressiveRender, compiled: &Compiled) -> Result<Option<Layer>, String> {
+    fn denoised(&self, render: &ProgressiveRender, compiled: &CompiledDocument) -> Result<Option<Layer>, String> {
         if !self.denoises || self.picture != "color" {
             return Ok(None);
         }
@@ -303,7 +311,7 @@ impl Viewer {
         divisor: u32,
         samples: u32,
         hash: Option<String>,
-    ) -> Result<Shown, String> {
+    ) -> Result<PictureMessage, String> {
         let rendered = render.part().pictures().map_err(wrong)?;
         let color = self.picture == "color";
         let clean = self.clean.as_ref().filter(|_| self.denoises && hash.is_some());
@@ -329,7 +337,7 @@ impl Viewer {
         Ok((head, pixels(layer, &how)))
     }
 
-    fn head(&self, (head, bytes): Shown, job: Option<&Job>, clock: &dyn Fn() -> f64) -> Shown {
+    fn head(&self, (head, bytes): PictureMessage, job: Option<&Job>, clock: &dyn Fn() -> f64) -> PictureMessage {
         let all_samples = job.map_or(head.all_samples, |job| job.sampling.samples());
         (PictureHead { all_samples, ms: clock() - self.changed, ..head }, bytes)
     }

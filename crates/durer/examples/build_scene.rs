@@ -14,7 +14,7 @@ pub(crate) fn main() -> Result<(), Error> {
         ..Default::default()
     });
     // A surface emits light through its material, in cd/m^2.
-    let lamp = scene.material(PrincipledMaterial { emission_luminance: 40.0, ..Default::default() });
+    let light = scene.material(PrincipledMaterial { emission_luminance: 40.0, ..Default::default() });
 
     // A pyramid: five corners; sides counter-clockwise seen from outside.
     let corners = [[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0], [0.0, 1.5, 0.0_f32]];
@@ -23,7 +23,7 @@ pub(crate) fn main() -> Result<(), Error> {
     scene.add(pyramid).material(gold).translate(vec3(-1.2, 0.0, 0.0));
     scene.add(pyramid).material(white).scale(0.5).rotate(Vec3::Y, 45.0).translate(vec3(1.2, 0.0, 0.5));
     scene.add(Plane { normal: Vec3::Y, ..Default::default() }).material(white);
-    scene.add(Disc { center: vec3(0.0, 5.0, 2.0), normal: Vec3::NEG_Y, ..Default::default() }).material(lamp);
+    scene.add(Disc { center: vec3(0.0, 5.0, 2.0), normal: Vec3::NEG_Y, ..Default::default() }).material(light);
 
     let world = scene.build()?.compile()?;
     let options = RenderJob::for_scene(&world).size((64, 48)).samples(4_u32);

@@ -13,11 +13,11 @@ use durer_formats::scene::{Input, find_scene_format, read_model};
 use durer_formats::{curve, photometry, read_mesh};
 use durer_image::{Encoded, ImageError, decode_linear};
 use durer_render::compile::AccelKind;
-use durer_render::integrator::{Method, Settings};
+use durer_render::integrator::{IntegratorKind, WhittedOptions};
 use durer_render::render::{Control, Job, PartError, PartialRender, RenderOutcome, Shard};
 use durer_scene::dialect::Dialect;
 use durer_scene::math::Vec3;
-use durer_scene::scene::Staging;
+use durer_scene::scene::SceneDefaults;
 use durer_scene::source::Digest;
 use durer_scene::spectrum::Curve;
 use std::cell::RefCell;
@@ -103,8 +103,8 @@ pub fn curve(data: &[u8]) {
         return assert!(diagnostics.has_errors());
     };
     assert!(rows.len() > 1 && rows.is_sorted_by(|a, b| a[0] < b[0]));
-    if let Some(lamp) = Curve::light(rows) {
-        assert!(lamp.color().is_finite() && !lamp.at(550.0).is_nan());
+    if let Some(emitter) = Curve::light(rows) {
+        assert!(emitter.color().is_finite() && !emitter.at(550.0).is_nan());
     }
 }
 
@@ -115,9 +115,16 @@ pub fn model(data: &[u8], name: &str) {
     let file = files.add(name, Arc::clone(&bytes));
     let files = RefCell::new(files);
     let source = FolderSource::new(folder());
-    for staging in [Staging::default(), Staging { at: Some(0.5), ..Staging::default() }] {
-        let input =
-            Input { bytes: &bytes, file, files: &files, name, source: &source, staging: &staging, memory: MEMORY };
+    for scene_defaults in [SceneDefaults::default(), SceneDefaults { at: Some(0.5), ..SceneDefaults::default() }] {
+        let input = Input {
+            bytes: &bytes,
+            file,
+            files: &files,
+            name,
+            source: &source,
+            scene_defaults: &scene_defaults,
+            memory: MEMORY,
+        };
         let Some(format) = find_scene_format(data, name) else { return };
         let Some(scene) = read_model(format, &input, &mut diagnostics) else { continue };
         assert!(scene.camera.is_some());
@@ -200,9 +207,9 @@ pub fn ways(data: &[u8]) {
     let scene = Random::tame(data).scene(Dialect::Durer);
     let text = random_scene(data);
     let path = folder().join("scene.txt");
-    let settings = Settings { bounces: 2, ..Job::default().settings };
+    let settings = WhittedOptions { bounces: 2, ..Job::default().settings };
     // Use path tracing for physical scenes.
-    let method = if scene.is_physical() { Method::PATH } else { Method::WHITTED };
+    let method = if scene.is_physical() { IntegratorKind::PATH } else { IntegratorKind::WHITTED };
     let job = Job { width: 12, height: 9, settings, method, ..Job::default() };
     let hash = |accel| {
         let options = LoadOptions {

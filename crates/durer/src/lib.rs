@@ -68,5 +68,5 @@ pub use durer_teach::{check, lesson, mistakes};
 pub use error::{Error, SceneError};
 pub use job::RenderJob;
 #[cfg(feature = "load")]
-pub use load::{LoadOptions, Loaded, load, load_text};
+pub use load::{LoadOptions, LoadedScene, load, load_text};
 pub use renderer::{Canceller, Picture, Renderer};

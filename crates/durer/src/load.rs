@@ -3,17 +3,17 @@
 use crate::job::JobContext;
 use durer_diag::{Diagnostic, Diagnostics, Files, Severity};
 use durer_formats::Decoder;
-use durer_formats::beside::{Beside, put_beside};
+use durer_formats::asset_export::{AssetFile, export_assets};
 use durer_formats::course::{self, Guess, Hint, ReadOptions};
 use durer_formats::folder::FolderSource;
 use durer_formats::json;
 use durer_formats::packed::{is_packed, unpacked};
 use durer_formats::scene::{Input, Output, find_scene_format, other_format, read_model, scene_format_for};
-use durer_render::compile::{AccelKind, Kept, Resources, compile};
+use durer_render::compile::{AccelKind, AssetCache, Resources, compile};
 use durer_render::threads;
 use durer_render::world::World;
-use durer_scene::dialect::{Compat, Dialect, PathBase, Rules};
-use durer_scene::scene::{Scene, Staging};
+use durer_scene::dialect::{Dialect, PathBase, Quirk, Rules};
+use durer_scene::scene::{Scene, SceneDefaults};
 use durer_scene::source::{AssetSource, SourceError};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -31,7 +31,7 @@ pub struct LoadOptions {
     /// Other hints for detecting the dialect.
     pub hints: Vec<Hint>,
     /// Quirks to turn on or off.
-    pub compat: Vec<(Compat, bool)>,
+    pub compat: Vec<(Quirk, bool)>,
     /// Reject words of other dialects.
     pub strict: bool,
     /// Allow files outside the scene's folder.
@@ -39,9 +39,9 @@ pub struct LoadOptions {
     /// Folders to search for missing files.
     pub assets: Vec<PathBuf>,
     /// Contents of files by the names that the scene uses.
-    pub given: Vec<(String, Arc<[u8]>)>,
+    pub in_memory: Vec<(String, Arc<[u8]>)>,
     /// Camera, light and ground for a model that has none.
-    pub staging: Staging,
+    pub scene_defaults: SceneDefaults,
     /// Acceleration structure over the objects.
     pub accel: AccelKind,
     /// Number of threads that build the world; `None`: one for each processor.
@@ -52,12 +52,12 @@ pub struct LoadOptions {
     pub rays: Option<u64>,
     /// Meshes and pictures of the previous version of the scene. Unchanged ones are not read or
     /// built again.
-    pub kept: Option<Arc<Kept>>,
+    pub cache: Option<Arc<AssetCache>>,
 }
 
 /// A scene that was read.
 #[derive(Debug)]
-pub struct Loaded {
+pub struct LoadedScene {
     /// The scene's description.
     pub scene: Scene,
     /// Rules of the dialect.
@@ -82,7 +82,7 @@ pub fn load(
     options: &LoadOptions,
     files: &mut Files,
     diagnostics: &mut Diagnostics,
-) -> Result<Option<Loaded>, SourceError> {
+) -> Result<Option<LoadedScene>, SourceError> {
     let name = path.display().to_string();
     let bytes = FolderSource::new(folder_of(path)).allow_outside().read_path(path, &name)?;
     Ok(load_text(path, bytes, options, files, diagnostics))
@@ -103,7 +103,7 @@ pub fn load_text(
     options: &LoadOptions,
     files: &mut Files,
     diagnostics: &mut Diagnostics,
-) -> Option<Loaded> {
+) -> Option<LoadedScene> {
     let mut source = FolderSource::new(folder_of(path));
     if options.allow_outside {
         source = source.allow_outside();
@@ -111,7 +111,7 @@ pub fn load_text(
     for assets in &options.assets {
         source = source.assets(assets);
     }
-    for (name, bytes) in &options.given {
+    for (name, bytes) in &options.in_memory {
         source = source.give(name, bytes.clone());
     }
     // The scene's digest does not depend on its path.
@@ -136,14 +136,14 @@ pub fn load_text(
         let dialect = Dialect::Durer;
         let source = source.budget(budget(options));
         let known = RefCell::new(std::mem::take(files));
-        let staging = &options.staging;
-        let input = Input { bytes: &bytes, file, files: &known, name: &name, source: &source, staging, memory };
+        let scene_defaults = &options.scene_defaults;
+        let input = Input { bytes: &bytes, file, files: &known, name: &name, source: &source, scene_defaults, memory };
         let scene = read_model(format, &input, diagnostics);
         *files = known.into_inner();
         let scene = scene?;
-        return Some(Loaded { scene, rules: dialect.rules().clone(), dialect, guess: None, source, memory });
+        return Some(LoadedScene { scene, rules: dialect.rules().clone(), dialect, guess: None, source, memory });
     }
-    if options.staging.turned.is_some() {
+    if options.scene_defaults.turned.is_some() {
         let error = Diagnostic::error("`--turntable` cannot rotate around this scene, because it has its own camera");
         let help = "convert it with `durer convert` to a glTF file, a model that `--turntable` rotates around";
         diagnostics.push(error.help(help));
@@ -160,11 +160,11 @@ pub fn load_text(
     });
     let mut rules = dialect.rules().clone();
     if options.dialect.is_none() && !options.course {
-        rules = rules.sane();
+        rules = rules.without_quirks();
     }
     // No version of the program has both quirks.
-    if options.compat.contains(&(Compat::ExitR0, true)) {
-        rules.compat &= !Compat::ShadowFronts.bit();
+    if options.compat.contains(&(Quirk::ExitR0, true)) {
+        rules.compat &= !Quirk::ShadowFronts.bit();
     }
     for (compat, on) in &options.compat {
         rules.compat = if *on { rules.compat | compat.bit() } else { rules.compat & !compat.bit() };
@@ -180,7 +180,7 @@ pub fn load_text(
     source = source.budget(budget(options));
     let read = ReadOptions { dialect, strict: options.strict, compat: rules.compat };
     if let Some(json) = json {
-        return json.scene(diagnostics).map(|scene| Loaded { scene, rules, dialect, guess, source, memory });
+        return json.scene(diagnostics).map(|scene| LoadedScene { scene, rules, dialect, guess, source, memory });
     }
     let known = RefCell::new(std::mem::take(files));
     let scene = course::read_with(&bytes, file, read, &course::below(&source, &known), diagnostics);
@@ -192,7 +192,7 @@ pub fn load_text(
         // An error in one dialect may be valid in another.
         diagnostics.push(guess.note());
     }
-    scene.map(|scene| Loaded { scene, rules, dialect, guess, source, memory })
+    scene.map(|scene| LoadedScene { scene, rules, dialect, guess, source, memory })
 }
 
 /// Returns the number of bytes that may be read.
@@ -202,13 +202,13 @@ fn budget(options: &LoadOptions) -> u64 {
 
 /// Returns a note about the first construct that the year's own program would reject, unless it was
 /// already reported.
-fn portability(bytes: &[u8], file: u32, dialect: Dialect, said: &Diagnostics) -> Diagnostics {
+fn portability(bytes: &[u8], file: u32, dialect: Dialect, messages: &Diagnostics) -> Diagnostics {
     let (mut strict, mut notes) = (Diagnostics::default(), Diagnostics::default());
     if dialect != Dialect::Durer {
         course::read(bytes, file, ReadOptions { dialect, strict: true, compat: dialect.rules().compat }, &mut strict);
     }
     let first = strict.iter().find(|d| d.severity == Severity::Error);
-    if let Some(first) = first.filter(|first| !said.iter().any(|known| known.span == first.span)) {
+    if let Some(first) = first.filter(|first| !messages.iter().any(|known| known.span == first.span)) {
         let message = format!("the program of {} would refuse this file: {}", dialect.name(), first.message);
         let note = Diagnostic::note(message).code("portability").help("it is read anyway; `--strict` refuses it too");
         notes.push(Diagnostic { span: first.span, ..note });
@@ -216,7 +216,7 @@ fn portability(bytes: &[u8], file: u32, dialect: Dialect, said: &Diagnostics) ->
     notes
 }
 
-impl Loaded {
+impl LoadedScene {
     /// Returns the context of a job's defaults. `timed`: a time limit ends the sampling.
     pub fn job_context(&self, timed: bool) -> JobContext<'_> {
         // Dürer's own dialect emulates no program.
@@ -251,8 +251,8 @@ impl Loaded {
     }
 
     /// Returns a copy of the scene in which embedded data are files of a folder beside it.
-    pub fn put_beside(&self, folder: &str) -> (Scene, Vec<Beside>) {
-        put_beside(&self.scene, folder, &self.source)
+    pub fn export_assets(&self, folder: &str) -> (Scene, Vec<AssetFile>) {
+        export_assets(&self.scene, folder, &self.source)
     }
 
     /// Compiles the scene. Returns `None` after errors, which are in `diagnostics`.
@@ -265,7 +265,7 @@ impl Loaded {
             sky_optional: options.course,
             memory,
             rays: options.rays.unwrap_or(u64::MAX),
-            kept: options.kept.as_deref(),
+            cache: options.cache.as_deref(),
         };
         let work = || compile(&self.scene, &self.rules, options.accel, resources, diagnostics);
         match options.threads {
@@ -276,7 +276,7 @@ impl Loaded {
 }
 
 #[cfg(test)]
-mod kept_tests;
+mod cache_tests;
 #[cfg(test)]
 mod model_tests;
 #[cfg(test)]

@@ -5,8 +5,8 @@
 
 use durer::camera::{CameraSample, Projection};
 use durer::diag::{Diagnostics, Files};
-use durer::dialect::{Compat, Dialect};
-use durer::integrator::{Settings, Whitted};
+use durer::dialect::{Dialect, Quirk};
+use durer::integrator::{Whitted, WhittedOptions};
 use durer::math::{Color, Ray, Ray64, Vec2, Vec3};
 use durer::world::{Hit, World};
 use durer::{LoadOptions, load_text};
@@ -14,7 +14,7 @@ use std::path::Path;
 
 /// Compiles a world of a dialect with its quirks, except those in `off`. Files are read from
 /// `folder`.
-fn world_in(folder: &Path, text: &str, dialect: Dialect, off: &[Compat]) -> (World, Diagnostics) {
+fn world_in(folder: &Path, text: &str, dialect: Dialect, off: &[Quirk]) -> (World, Diagnostics) {
     let compat = off.iter().map(|&compat| (compat, false)).collect();
     let options = LoadOptions { dialect: Some(dialect), compat, course: true, ..LoadOptions::default() };
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
@@ -37,7 +37,7 @@ fn hit(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Option<Hit> {
 }
 
 fn seen(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Color {
-    let settings = Settings {
+    let settings = WhittedOptions {
         bounces: 2,
         shadows: true,
         shade_back: false,
@@ -82,19 +82,19 @@ const SUN: &str = "DirectionalLight { direction 0 -1 0 color 1 1 1 }";
 fn secondary_rays_of_2016_start_farther_along_and_those_of_2012_have_a_minimum_t() {
     // A light 0.005 in front of the right wall illuminates the left wall at a distance of 1.995.
     // The ray hits the right wall at t = 1.99, because it starts 0.01 along its direction.
-    let lamp = "PointLight { position 0.995 1 0 color 1 1 1 falloff 0.25 }";
-    let scene = classic(lamp, &["Plane { normal 1 0 0 offset -1 }", "Plane { normal -1 0 0 offset -1 }"]);
+    let light = "PointLight { position 0.995 1 0 color 1 1 1 falloff 0.25 }";
+    let scene = classic(light, &["Plane { normal 1 0 0 offset -1 }", "Plane { normal -1 0 0 offset -1 }"]);
     let left = |world: &World| seen(world, [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]);
     assert_eq!(left(&world(&scene, Dialect::F16)), Color::ZERO);
-    assert!(left(&world_in(Path::new("."), &scene, Dialect::F16, &[Compat::MovedStarts]).0).x > 0.9);
+    assert!(left(&world_in(Path::new("."), &scene, Dialect::F16, &[Quirk::MovedStarts]).0).x > 0.9);
     assert!(left(&world(&scene, Dialect::F12a5)).x > 0.4);
     let scene = nodes(&[
         "Component<Object> { type plane normal 1 0 0 offset -1 }",
         "Component<Object> { type plane normal -1 0 0 offset -1 }",
     ]);
-    let lamp =
+    let light =
         "Node { Transform { translate 0.995 1 0 } Component<Light> { type point color 1 1 1 attenuation 0.25 } } }";
-    let scene = scene.trim_end().trim_end_matches('}').to_string() + lamp;
+    let scene = scene.trim_end().trim_end_matches('}').to_string() + light;
     let scene = scene.replace("ambient_light 1 1 1", "ambient_light 0 0 0");
     assert_eq!(left(&world(&scene, Dialect::F23)), Color::ZERO);
 }
@@ -215,7 +215,7 @@ fn axis_parallel_ray_misses_half_of_a_mesh() {
         assert_eq!(down(-0.35, -0.3).is_none(), holes, "{dialect:?}");
         let inclined = hit(&world, [0.35, 0.3, 5.0], [1e-7, 1e-7, -1.0]).unwrap();
         assert!((inclined.t - 4.65).abs() < 1e-5, "{dialect:?} {inclined:?}");
-        let (mended, _) = world_in(folder.path(), text, dialect, &[Compat::OctreeHoles]);
+        let (mended, _) = world_in(folder.path(), text, dialect, &[Quirk::OctreeHoles]);
         assert!(hit(&mended, [0.35, 0.3, 5.0], [0.0, 0.0, -1.0]).is_some(), "{dialect:?}");
     }
 }
@@ -278,7 +278,7 @@ fn glass_of_2012_uses_plane_normals_as_written() {
         )
     };
     // Seen at normal incidence through the pane, the ball has 1 - R of its light.
-    let share = |text: &str, off: &[Compat]| {
+    let share = |text: &str, off: &[Quirk]| {
         seen(&world_in(Path::new("."), text, Dialect::F12a5, off).0, [0.0, 5.0, 0.0], [0.0, -1.0, 0.0]).x
     };
     let unit = share(&pane("0 1 0", 0.0), &[]);
@@ -286,7 +286,7 @@ fn glass_of_2012_uses_plane_normals_as_written() {
     // With a normal of length 2, c = |d·N| is 2: R = R0 + (1 - R0) (1 - 2)^5 = 0.04 - 0.96.
     let long = share(&pane("0 2 0", 0.0), &[]);
     assert!((long - 1.92).abs() < 1e-5, "{long}");
-    assert!((share(&pane("0 2 0", 0.0), &[Compat::RawRefraction]) - 0.96).abs() < 1e-5);
+    assert!((share(&pane("0 2 0", 0.0), &[Quirk::RawRefraction]) - 0.96).abs() < 1e-5);
 }
 
 #[test]

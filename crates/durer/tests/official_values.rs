@@ -2,9 +2,9 @@
 //! Dürer's behaviour without their quirks.
 
 use durer::diag::{Diagnostics, Files, Severity};
-use durer::dialect::{Compat, Dialect};
+use durer::dialect::{Dialect, Quirk};
 use durer::film::aov::Aov;
-use durer::integrator::{Settings, Whitted};
+use durer::integrator::{Whitted, WhittedOptions};
 use durer::light::Light;
 use durer::math::{Color, Ray, Vec3};
 use durer::render::{Control, Job, render};
@@ -15,7 +15,7 @@ use std::path::Path;
 /// Loads a world of a dialect, with its quirks if `official`, and returns the diagnostics; the
 /// world is `None` after errors.
 fn load(folder: &Path, text: &str, dialect: Dialect, official: bool) -> (Option<World>, Diagnostics) {
-    let all = Compat::ALL.iter().map(|row| (row.0, false));
+    let all = Quirk::ALL.iter().map(|row| (row.0, false));
     let compat = if official { Vec::new() } else { all.collect() };
     let options = LoadOptions { dialect: Some(dialect), compat, course: true, ..LoadOptions::default() };
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
@@ -31,7 +31,7 @@ fn official(text: &str, dialect: Dialect) -> World {
 }
 
 fn seen(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Color {
-    let settings = Settings {
+    let settings = WhittedOptions {
         bounces: 1,
         shadows: false,
         shade_back: false,
@@ -164,7 +164,7 @@ fn flat_scales_are_rendered_before_2020_and_ignored_since() {
 
 #[test]
 fn light_divided_by_zero_is_not_finite() {
-    let lamp = |attenuation: &str| {
+    let emitter = |attenuation: &str| {
         let light = format!(
             "Node {{ Transform {{ translate 0 9 0 }} Component<Light> {{ type point color 1 1 1 {attenuation} }} }}"
         );
@@ -172,8 +172,8 @@ fn light_divided_by_zero_is_not_finite() {
         official(&text, Dialect::F23)
     };
     let bright = |world: &World| seen(world, [0.0, 5.0, 0.0], DOWN);
-    assert!(!bright(&lamp("attenuation 0")).is_finite());
-    assert!(bright(&lamp("")).is_finite() && bright(&lamp("attenuation 1")).is_finite());
+    assert!(!bright(&emitter("attenuation 0")).is_finite());
+    assert!(bright(&emitter("")).is_finite() && bright(&emitter("attenuation 1")).is_finite());
     for dialect in [Dialect::F12a4, Dialect::F16] {
         let text = classic(&LIT.replace("direction 0 -1 0", "direction 0 0 0"), "40", "10", BALL);
         assert!(!bright(&official(&text, dialect)).is_finite());

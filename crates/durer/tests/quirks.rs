@@ -1,8 +1,8 @@
 //! Quirks of the course's programs, one test each: behaviour with the quirk, and without it.
 
 use durer::diag::{Diagnostics, Files};
-use durer::dialect::{Compat, Dialect};
-use durer::integrator::{Settings, Whitted};
+use durer::dialect::{Dialect, Quirk};
+use durer::integrator::{Whitted, WhittedOptions};
 use durer::math::{Color, Ray, Vec3};
 use durer::world::World;
 use durer::{LoadOptions, load_text};
@@ -15,22 +15,22 @@ fn world_in(folder: &Path, text: &str, dialect: Dialect, official: bool) -> Worl
 }
 
 /// Compiles a world with some quirks turned on or off by name.
-fn world_with(folder: &Path, text: &str, dialect: Dialect, compat: Vec<(Compat, bool)>, official: bool) -> World {
+fn world_with(folder: &Path, text: &str, dialect: Dialect, compat: Vec<(Quirk, bool)>, official: bool) -> World {
     let options = LoadOptions { dialect: Some(dialect), compat, ..LoadOptions::default() };
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let path = folder.join("scene.txt");
     let mut loaded = load_text(&path, text.as_bytes().into(), &options, &mut files, &mut diagnostics)
         .unwrap_or_else(|| panic!("{diagnostics:?}"));
     if !official {
-        loaded.rules = dialect.rules().sane();
+        loaded.rules = dialect.rules().without_quirks();
     }
     let world = loaded.compile(&options, &mut files, &mut diagnostics);
     world.unwrap_or_else(|| panic!("{diagnostics:?}"))
 }
 
 /// Returns all quirks of the rules, turned off.
-fn off(rules: &durer::dialect::Rules) -> Vec<(Compat, bool)> {
-    Compat::ALL.iter().filter(|row| rules.has(row.0)).map(|row| (row.0, false)).collect()
+fn off(rules: &durer::dialect::Rules) -> Vec<(Quirk, bool)> {
+    Quirk::ALL.iter().filter(|row| rules.has(row.0)).map(|row| (row.0, false)).collect()
 }
 
 fn world(text: &str, dialect: Dialect, official: bool) -> World {
@@ -39,7 +39,7 @@ fn world(text: &str, dialect: Dialect, official: bool) -> World {
 
 fn seen(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Color {
     let rules = world.rules();
-    let settings = Settings {
+    let settings = WhittedOptions {
         bounces: 4,
         shadows: false,
         shade_back: rules.shade_back,
@@ -69,7 +69,7 @@ fn transform_of_2023_drops_shear_and_nested_transforms_keep_it() {
         )
     };
     let ball = "Component<Material> { index 0 } Component<Object> { type sphere radius 1 }";
-    let lamp = "Node { Transform { translate 0 1 0 } Component<Light> { type point color 1 1 1 } }";
+    let emitter = "Node { Transform { translate 0 1 0 } Component<Light> { type point color 1 1 1 } }";
     let sheared = "Transform { scale 2 1 1 z_rotate 45 }";
     let bounds = |text: &str, official| world(text, Dialect::F23, official).bounds().max;
     let root = |x: f32| x.sqrt();
@@ -89,7 +89,7 @@ fn transform_of_2023_drops_shear_and_nested_transforms_keep_it() {
     let mirrored = node("Transform { translate 1 2 3 scale -2 1 3 }", ball);
     assert_eq!(bounds(&mirrored, true), bounds(&mirrored, false));
     // Lights move with their nodes.
-    let place = |official| match &world(&node(sheared, lamp), Dialect::F23, official).lights()[0] {
+    let place = |official| match &world(&node(sheared, emitter), Dialect::F23, official).lights()[0] {
         durer::light::Light::Point(light) => light.position,
         light => panic!("{light:?}"),
     };
@@ -213,7 +213,7 @@ fn r0_is_zero_for_rays_that_leave_glass() {
         // Straight through the centre, with a black background for reflected rays: a white
         // background is attenuated by two passages.
         let mut world = world(&text, Dialect::F12a5, true);
-        let settings = Settings {
+        let settings = WhittedOptions {
             bounces: 4,
             shadows: false,
             shade_back: false,

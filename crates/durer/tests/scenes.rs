@@ -5,11 +5,11 @@ use durer::compile::AccelKind;
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::Dialect;
 use durer::format::{course, json};
-use durer::integrator::{Method, Settings};
+use durer::integrator::{IntegratorKind, WhittedOptions};
 use durer::math::Vec3;
 use durer::render::{Control, Job, PartialRender, Shard, render};
 use durer::world::World;
-use durer::{LoadOptions, Loaded, load, load_text};
+use durer::{LoadOptions, LoadedScene, load, load_text};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -33,7 +33,7 @@ fn scenes() -> Vec<String> {
 }
 
 /// Reads and compiles a scene; fails on any diagnostic.
-fn opened(name: &str, accel: AccelKind) -> (Loaded, World) {
+fn opened(name: &str, accel: AccelKind) -> (LoadedScene, World) {
     let options = LoadOptions { accel, ..LoadOptions::default() };
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let path = root().join(format!("scenes/{name}.txt"));
@@ -45,8 +45,8 @@ fn opened(name: &str, accel: AccelKind) -> (Loaded, World) {
 }
 
 /// Returns the integrator of a scene.
-fn method(loaded: &Loaded) -> Method {
-    if loaded.scene.is_physical() { Method::PATH } else { Method::WHITTED }
+fn method(loaded: &LoadedScene) -> IntegratorKind {
+    if loaded.scene.is_physical() { IntegratorKind::PATH } else { IntegratorKind::WHITTED }
 }
 
 /// Renders a small picture with one ray through each pixel's centre.
@@ -55,7 +55,7 @@ fn pixels(name: &str, accel: AccelKind, threads: usize) -> Vec<Vec3> {
     let job = Job {
         width: 64,
         height: 64,
-        settings: Settings {
+        settings: WhittedOptions {
             bounces: loaded.rules.bounces,
             shadows: loaded.rules.shadows,
             shade_back: loaded.rules.shade_back,
@@ -126,10 +126,10 @@ fn scenes_are_equal_after_conversion_to_json_and_back() {
         let (path, bytes) = (root().join("scenes/scene.json"), text.as_bytes().into());
         let again = load_text(&path, bytes, &LoadOptions::default(), &mut files, &mut found).unwrap();
         // Compare bits: `==` treats 0 and -0 as equal.
-        let bits = |loaded: &Loaded| serde_json::to_string(&loaded.scene).unwrap();
+        let bits = |loaded: &LoadedScene| serde_json::to_string(&loaded.scene).unwrap();
         assert!(again.scene == loaded.scene && bits(&again) == bits(&loaded), "{name}");
         assert!(again.rules == loaded.rules && found.iter().count() == 0, "{name}");
-        let words = |loaded: &Loaded| course::write(&loaded.scene, loaded.dialect);
+        let words = |loaded: &LoadedScene| course::write(&loaded.scene, loaded.dialect);
         assert_eq!(words(&again), words(&loaded), "{name}");
         let again = again.compile(&LoadOptions::default(), &mut files, &mut found).unwrap();
         let job = Job { width: 8, height: 6, method: method(&loaded), ..Job::default() };

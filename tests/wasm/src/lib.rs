@@ -411,24 +411,24 @@ fn spheres() -> Vec<(Vec3, f32)> {
 /// levels; the closest sphere may not.
 fn boxes() -> u64 {
     let (mut hash, mut hits) = (Hash::new(), 0);
-    let things = spheres();
-    let boxes: Vec<Aabb> = things.iter().map(|&(c, r)| Aabb { min: c - 1.001 * r, max: c + 1.001 * r }).collect();
+    let objects = spheres();
+    let boxes: Vec<Aabb> = objects.iter().map(|&(c, r)| Aabb { min: c - 1.001 * r, max: c + 1.001 * r }).collect();
     let tree = Bvh::build(&boxes);
     let grid = Grid::build(tree.bounds(), Grid::suitable(tree.bounds(), boxes.len()), &boxes, |_, _| true);
     let grid = grid.expect("few cells");
     for ray in rays(&planet(8), 15) {
         let mut found = [None; 2];
-        let closer = |found: &mut Option<(f32, usize)>, thing: usize, t_max: f32| {
-            let (center, radius) = things[thing];
+        let closer = |found: &mut Option<(f32, usize)>, item: usize, t_max: f32| {
+            let (center, radius) = objects[item];
             let Some(t) = sphere(&ray, center, radius).filter(|t| *t <= t_max) else { return t_max };
-            *found = Some(found.map_or((t, thing), |old| if (t, thing) < old { (t, thing) } else { old }));
+            *found = Some(found.map_or((t, item), |old| if (t, item) < old { (t, item) } else { old }));
             t
         };
         let order = tree.primitive_indices();
         tree.traverse(&ray, &mut (), |i, t_max, _| closer(&mut found[0], order[i] as usize, t_max));
-        grid.traverse(&ray, &mut (), |thing, t_max, _| closer(&mut found[1], thing, t_max));
+        grid.traverse(&ray, &mut (), |item, t_max, _| closer(&mut found[1], item, t_max));
         for found in found {
-            let word = |(t, thing): (f32, usize)| u64::from(t.to_bits()) << 32 | thing as u64;
+            let word = |(t, item): (f32, usize)| u64::from(t.to_bits()) << 32 | item as u64;
             hash.add(found.map_or(u64::MAX, word));
             hits += usize::from(found.is_some());
         }

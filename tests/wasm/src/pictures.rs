@@ -21,8 +21,8 @@ fn room() -> CompiledScene {
     scene.add(Plane { normal: Vec3::Z, offset: -2.0 }).material(red);
     scene.add(Sphere { center: vec3(-0.8, -0.4, -0.3), radius: 0.6 }).material(metal);
     scene.add(Sphere { center: vec3(0.8, -0.5, 0.3), radius: 0.5 }).material(glass);
-    let lamp = Rectangle { corner: vec3(-0.5, 1.5, -0.5), edge0: Vec3::X, edge1: Vec3::Z };
-    scene.add(lamp).material(light);
+    let emitter = Rectangle { corner: vec3(-0.5, 1.5, -0.5), edge0: Vec3::X, edge1: Vec3::Z };
+    scene.add(emitter).material(light);
     scene.light(PointLight { position: vec3(1.0, 1.4, 1.0), color: rgb(2.0, 2.0, 2.0), ..Default::default() });
     scene.build().expect("the room is valid").compile().expect("the room compiles")
 }

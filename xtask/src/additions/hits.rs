@@ -1,7 +1,7 @@
 //! White for hits within a distance, black elsewhere.
 
-use super::{Integrate, Parameters, Setup, TraceListener};
-use durer_scene::describe::{Rule, described};
+use super::{Integrate, Parameters, IntegratorContext, TraceListener};
+use durer_scene::describe::{Constraint, described};
 use durer_scene::dialect::set;
 use durer_scene::math::{Color, Ray, Ray64};
 use durer_scene::sampler::SampleId;
@@ -11,7 +11,7 @@ described! {
     /// white for hits within a distance, black elsewhere
     HitsParameters ["hits" in set::DURER] {
         /// Maximum distance of hits, in world units [default: unlimited]
-        depth: Option<f32> = None, optional, Rule::Positive, ["hits-depth" in set::DURER];
+        depth: Option<f32> = None, optional, Constraint::Positive, ["hits-depth" in set::DURER];
     }
 }
 
@@ -22,7 +22,7 @@ impl Parameters for HitsParameters {
 
     const IS_RANDOM: bool = false;
 
-    fn over(self, setup: Setup<'_>) -> Hits<'_> {
+    fn over(self, setup: IntegratorContext<'_>) -> Hits<'_> {
         Hits { world: setup.world, depth: self.depth.unwrap_or(f32::INFINITY) }
     }
 }

@@ -2,7 +2,7 @@
 //! projection.
 
 use super::{CameraSample, CameraBasis, Projection, Pose};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::DVec2;
@@ -11,15 +11,15 @@ described! {
     /// Camera with parallel rays that are oblique to the picture.
     ObliqueCamera ["ObliqueCamera" in set::DURER] {
         /// Centre of the picture.
-        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        center: Vec3 = Vec3::ZERO, required, Constraint::Any, ["center" in set::DURER];
         /// View direction, of any length.
-        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
+        direction: Vec3 = Vec3::NEG_Z, required, Constraint::NonZero, ["direction" in set::DURER];
         /// Up direction of the picture.
-        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        up: Vec3 = Vec3::Y, required, Constraint::NonZero, ["up" in set::DURER];
         /// Length of the picture's larger side.
-        size: f32 = 2.0, required, Rule::Positive, ["size" in set::DURER];
+        size: f32 = 2.0, required, Constraint::Positive, ["size" in set::DURER];
         /// Offset of rays to the left and down per unit of depth.
-        slant: f32 = 0.5, optional, Rule::Any, ["slant" in set::DURER];
+        slant: f32 = 0.5, optional, Constraint::Any, ["slant" in set::DURER];
     }
 }
 

@@ -1,7 +1,7 @@
 //! The regular octahedron: |x| + |y| + |z| <= radius, seen from its centre.
 
 use super::{ShapeHit, Shape, Surface, padded};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3};
 use glam::DVec3;
@@ -10,9 +10,9 @@ described! {
     /// A regular octahedron.
     Octahedron ["Octahedron" in set::DURER] {
         /// Centre.
-        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        center: Vec3 = Vec3::ZERO, required, Constraint::Any, ["center" in set::DURER];
         /// Distance from the centre to the vertices, which lie on the axes.
-        radius: f32 = 1.0, required, Rule::Positive, ["radius" in set::DURER];
+        radius: f32 = 1.0, required, Constraint::Positive, ["radius" in set::DURER];
     }
 }
 

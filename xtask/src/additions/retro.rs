@@ -1,6 +1,6 @@
 //! Retroreflection, as from a cat's eye.
 
-use super::{LobeKind, Scatter, Scattered};
+use super::{LobeKind, Scatter, LobeSample};
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
@@ -13,8 +13,8 @@ impl Scatter for Retro {
         (Spectrum::ZERO, 0.0)
     }
 
-    fn sample(&self, wo: Vec3, _: f32, _: Vec2) -> Option<Scattered> {
-        Some(Scattered { wi: wo, value: Spectrum::ONE })
+    fn sample(&self, wo: Vec3, _: f32, _: Vec2) -> Option<LobeSample> {
+        Some(LobeSample { wi: wo, value: Spectrum::ONE })
     }
 
     fn kind(&self) -> LobeKind {

@@ -1,7 +1,7 @@
 //! Alternating stripes of two materials.
 
 use super::Pattern;
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::Vec3;
 
@@ -9,11 +9,11 @@ described! {
     /// Alternating layers of two materials, perpendicular to the y axis.
     Stripes ["Stripes" in set::DURER] {
         /// Index of the material of even layers.
-        material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::DURER];
+        material1: u32 = 0, required, Constraint::Any, ["materialIndex" in set::DURER];
         /// Index of the material of odd layers.
-        material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::DURER];
+        material2: u32 = 0, required, Constraint::Any, ["materialIndex" in set::DURER];
         /// Height of a layer, in object units.
-        height: f32 = 1.0, optional, Rule::Positive, ["height" in set::DURER];
+        height: f32 = 1.0, optional, Constraint::Positive, ["height" in set::DURER];
     }
 }
 

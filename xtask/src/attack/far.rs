@@ -48,7 +48,7 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
             width: SIDE,
             height: SIDE,
             sampling: Sampling::Center,
-            settings: durer::integrator::Settings { shadows: true, ..usual.settings },
+            settings: durer::integrator::WhittedOptions { shadows: true, ..usual.settings },
             ..usual
         };
         let rendered = render(&world, &job, &Arc::new(Control::default()))?;

@@ -163,8 +163,8 @@ fn start(attack: &Attack, first: u64, end: u64) -> Result<(Child, Receiver<Strin
     command.args([attack.seed, first, end].map(|number| number.to_string())).arg(&attack.only);
     let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn()?;
     let lines = BufReader::new(child.stdout.take().context("its output")?).lines();
-    let (told, heard) = channel();
-    std::thread::spawn(move || lines.map_while(Result::ok).try_for_each(|line| told.send(line)));
+    let (outcome, heard) = channel();
+    std::thread::spawn(move || lines.map_while(Result::ok).try_for_each(|line| outcome.send(line)));
     Ok((child, heard))
 }
 

@@ -107,10 +107,10 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
             _ => vec!["render", &path, "--size", "8x8", "--samples", "1", "-q", "--restart", "-o", "o.png"],
         };
         let output = attack.limited(&arguments, 4_000_000, 20)?;
-        let said = String::from_utf8_lossy(&output.stderr);
+        let messages = String::from_utf8_lossy(&output.stderr);
         // A file that cannot be had is a warning in some formats; quiet runs print errors only.
-        let told = output.status.code() == Some(2) || file == "a.obj" && said.is_empty();
-        if let Some(why) = broken(&output).or_else(|| (!told).then(|| "it was read".into())) {
+        let outcome = output.status.code() == Some(2) || file == "a.obj" && messages.is_empty();
+        if let Some(why) = broken(&output).or_else(|| (!outcome).then(|| "it was read".into())) {
             fallen.push(format!("{file} names {name:?}: {why}"));
         }
     }

@@ -82,7 +82,7 @@ pub fn run(durer: &Path, folder: &Path, meshes: &Path, out: &Path, only: Option<
             .stdin(Stdio::null())
             .output()
             .context("cannot start the program")?;
-        let mut said = Vec::new();
+        let mut messages = Vec::new();
         let mut agrees = output.status.success();
         if agrees {
             for (ending, made) in [("official", &ours), ("officiald", &depth)] {
@@ -90,21 +90,21 @@ pub fn run(durer: &Path, folder: &Path, meshes: &Path, out: &Path, only: Option<
                 if official.exists() {
                     let (share, largest) = difference(&read(made)?, &read(&official)?);
                     agrees &= share <= MOST;
-                    said.push(format!("{share:.3} % of the pixels differ, by {largest} at most"));
+                    messages.push(format!("{share:.3} % of the pixels differ, by {largest} at most"));
                 }
             }
             for (_, [x, y], official) in PIXELS.iter().filter(|(of, ..)| of == name) {
                 let picture = read(&ours)?;
                 let own = picture.pixels[y * picture.width as usize + x];
                 agrees &= own.iter().zip(official).all(|(a, b)| a.abs_diff(*b) <= ROUNDING);
-                said.push(format!("pixel {x},{y} is {own:?}, officially {official:?}"));
+                messages.push(format!("pixel {x},{y} is {own:?}, officially {official:?}"));
             }
         } else {
-            said.push(String::from_utf8_lossy(&output.stderr).lines().next().unwrap_or("refused").into());
+            messages.push(String::from_utf8_lossy(&output.stderr).lines().next().unwrap_or("refused").into());
         }
         // Undefined: one pixel has no position between the first and the last; or a mesh is
         // missing.
-        let undefined = name.starts_with("size1x1") || said.iter().any(|line| line.contains("missing-file"));
+        let undefined = name.starts_with("size1x1") || messages.iter().any(|line| line.contains("missing-file"));
         wrong += usize::from(!agrees && !undefined);
         let verdict = if agrees {
             "pass"
@@ -113,7 +113,7 @@ pub fn run(durer: &Path, folder: &Path, meshes: &Path, out: &Path, only: Option<
         } else {
             "FAIL"
         };
-        println!("{verdict:<5}{name:<28} {}", if said.is_empty() { "drawn".into() } else { said.join("; ") });
+        println!("{verdict:<5}{name:<28} {}", if messages.is_empty() { "drawn".into() } else { messages.join("; ") });
     }
     Ok(wrong)
 }

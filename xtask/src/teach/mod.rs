@@ -16,7 +16,7 @@ use tracer::{Picture, Tracer};
 
 /// Outcome of a wrong picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Told {
+enum Outcome {
     /// Named correctly, alone or with others that make the same picture.
     Right,
     /// Reported as unknown.
@@ -74,7 +74,7 @@ fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resul
     let cases: Vec<wrong::Case> = wrong::cases();
     let cases: Vec<&wrong::Case> =
         cases.iter().filter(|case| wanted(&format!("{} {}", scenes[case.scene].name, case.made.join(" ")))).collect();
-    let results: Vec<Result<(String, Told)>> = cases
+    let results: Vec<Result<(String, Outcome)>> = cases
         .iter()
         .map(|case| {
             let scene = &scenes[case.scene];
@@ -89,15 +89,17 @@ fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resul
             let started = std::time::Instant::now();
             let text = output(&mut compare)?;
             let seconds = started.elapsed().as_secs_f64();
-            let (told, words) = if unseen { (Told::Unseen, String::new()) } else { judged(&text, &case.made) };
-            let line = format!("{told:<8?} {seconds:5.1} s  {:<13} {:<38} {words}", scene.name, case.made.join(" + "));
+            let (outcome, words) = if unseen { (Outcome::Unseen, String::new()) } else { judged(&text, &case.made) };
+            let line =
+                format!("{outcome:<8?} {seconds:5.1} s  {:<13} {:<38} {words}", scene.name, case.made.join(" + "));
             println!("{line}");
-            Ok((line, told))
+            Ok((line, outcome))
         })
         .collect();
-    let results: Vec<(String, Told)> = results.into_iter().collect::<Result<_>>()?;
-    let count = |told| results.iter().filter(|r| r.1 == told).count();
-    let [right, not_told, wrong, unseen] = [Told::Right, Told::Nothing, Told::Wrong, Told::Unseen].map(count);
+    let results: Vec<(String, Outcome)> = results.into_iter().collect::<Result<_>>()?;
+    let count = |outcome| results.iter().filter(|r| r.1 == outcome).count();
+    let [right, not_told, wrong, unseen] =
+        [Outcome::Right, Outcome::Nothing, Outcome::Wrong, Outcome::Unseen].map(count);
     let seen = results.len() - unseen;
     println!(
         "\n| | identified | not identified | **misidentified** | invisible in this scene |\n| --- | --- | --- | --- | --- |"
@@ -108,10 +110,10 @@ fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resul
 }
 
 /// Judges the program's JSON against the actual mistakes. Reads only the names.
-fn judged(json: &str, made: &[&str]) -> (Told, String) {
+fn judged(json: &str, made: &[&str]) -> (Outcome, String) {
     let verdict = |name: &str| json.contains(&format!("\"verdict\": \"{name}\""));
     if verdict("identical") || verdict("same") {
-        return (Told::Unseen, String::new());
+        return (Outcome::Unseen, String::new());
     }
     let named = match json.split("\"named\": [").nth(1) {
         Some(rest) => rest.split("\"reference_off\"").next().unwrap_or(""),
@@ -125,15 +127,15 @@ fn judged(json: &str, made: &[&str]) -> (Told, String) {
         .collect();
     // A mistake outside the table cannot be named.
     if made.iter().any(|made| made.starts_with("x-")) && sets.is_empty() {
-        return (Told::Right, "not identified".into());
+        return (Outcome::Right, "not identified".into());
     }
     if sets.is_empty() {
-        return (Told::Nothing, String::new());
+        return (Outcome::Nothing, String::new());
     }
-    let wanted: Vec<&str> = made.iter().map(|made| wrong::told(made)).collect();
+    let wanted: Vec<&str> = made.iter().map(|made| wrong::description(made)).collect();
     let right = sets.iter().any(|set| set.len() == wanted.len() && wanted.iter().all(|name| set.contains(name)));
     let words = sets.iter().map(|set| set.join(" + ")).collect::<Vec<_>>().join(" = ");
-    (if right { Told::Right } else { Told::Wrong }, words)
+    (if right { Outcome::Right } else { Outcome::Wrong }, words)
 }
 
 fn ppm((width, height): (usize, usize), picture: &Picture) -> Vec<u8> {

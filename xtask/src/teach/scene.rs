@@ -31,24 +31,24 @@ pub enum Shape {
 }
 
 #[derive(Clone, Debug)]
-pub struct Thing {
+pub struct Object {
     pub shape: Shape,
     pub ops: Vec<Op>,
     pub material: usize,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Stuff {
+pub struct Material {
     pub kd: V,
     pub ks: V,
-    pub shine: f64,
+    pub shininess: f64,
     pub kr: V,
     pub kt: V,
     pub index: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub enum Lamp {
+pub enum Light {
     Sun(V, V),
     /// Position, colour, attenuation a0 a1 a2.
     Bulb(V, V, V),
@@ -68,9 +68,9 @@ pub struct Scene {
     pub angle: f64,
     pub background: V,
     pub ambient: V,
-    pub lamps: Vec<Lamp>,
-    pub stuff: Vec<Stuff>,
-    pub things: Vec<Thing>,
+    pub lights: Vec<Light>,
+    pub stuff: Vec<Material>,
+    pub objects: Vec<Object>,
 }
 
 impl Op {
@@ -103,11 +103,11 @@ impl Scene {
         let lens = if self.angle > 0.0 { format!("angle {}", self.angle) } else { format!("size {}", -self.angle) };
         let (eye, look, up) = (v(self.eye), v(self.look), v(self.up));
         let _ = writeln!(t, "{camera} {{\n  center {eye}\n  direction {look}\n  up {up}\n  {lens}\n}}");
-        let _ = writeln!(t, "Lights {{\n  numLights {}", self.lamps.len());
-        for lamp in &self.lamps {
-            let _ = match *lamp {
-                Lamp::Sun(d, c) => writeln!(t, "  DirectionalLight {{ direction {} color {} }}", v(d), v(c)),
-                Lamp::Bulb(p, c, a) => {
+        let _ = writeln!(t, "Lights {{\n  numLights {}", self.lights.len());
+        for light in &self.lights {
+            let _ = match *light {
+                Light::Sun(d, c) => writeln!(t, "  DirectionalLight {{ direction {} color {} }}", v(d), v(c)),
+                Light::Bulb(p, c, a) => {
                     let fade = match self.year {
                         Year::F04 | Year::Durer => format!(" attenuation {}", v(a)),
                         Year::F12a4 => String::new(),
@@ -125,19 +125,19 @@ impl Scene {
                 Year::F04 | Year::Durer => write!(
                     t,
                     " exponent {} reflectiveColor {} transparentColor {} indexOfRefraction {}",
-                    m.shine,
+                    m.shininess,
                     v(m.kr),
                     v(m.kt),
                     if m.index > 0.0 { m.index } else { 1.0 }
                 ),
-                Year::F12a5 if m.index > 0.0 => write!(t, " shininess {} refractionIndex {}", m.shine, m.index),
-                _ => write!(t, " shininess {}", m.shine),
+                Year::F12a5 if m.index > 0.0 => write!(t, " shininess {} refractionIndex {}", m.shininess, m.index),
+                _ => write!(t, " shininess {}", m.shininess),
             };
             let _ = writeln!(t, " }}");
         }
-        let _ = writeln!(t, "}}\nGroup {{\n  numObjects {}", self.things.len());
-        for thing in &self.things {
-            let shape = match &thing.shape {
+        let _ = writeln!(t, "}}\nGroup {{\n  numObjects {}", self.objects.len());
+        for object in &self.objects {
+            let shape = match &object.shape {
                 Shape::Sphere(c, r) => format!("Sphere {{ center {} radius {r} }}", v(*c)),
                 Shape::Plane(n, d) => format!("Plane {{ normal {} offset {d} }}", v(*n)),
                 Shape::Triangle([a, b, c]) => {
@@ -145,7 +145,7 @@ impl Scene {
                 }
                 Shape::Mesh(file, ..) => format!("TriangleMesh {{ obj_file {file} }}"),
             };
-            let ops: Vec<String> = thing
+            let ops: Vec<String> = object
                 .ops
                 .iter()
                 .map(|op| match op {
@@ -157,9 +157,9 @@ impl Scene {
                 })
                 .collect();
             let _ = match ops.is_empty() {
-                true => writeln!(t, "  MaterialIndex {}\n  {shape}", thing.material),
+                true => writeln!(t, "  MaterialIndex {}\n  {shape}", object.material),
                 false => {
-                    writeln!(t, "  MaterialIndex {}\n  Transform {{ {}\n    {shape} }}", thing.material, ops.join(" "))
+                    writeln!(t, "  MaterialIndex {}\n  Transform {{ {}\n    {shape} }}", object.material, ops.join(" "))
                 }
             };
         }
@@ -169,8 +169,8 @@ impl Scene {
     /// Returns the mesh files that the scene refers to.
     pub fn files(&self) -> Vec<(&'static str, String)> {
         let mut files = Vec::new();
-        for thing in &self.things {
-            if let Shape::Mesh(name, corners, faces) = &thing.shape {
+        for object in &self.objects {
+            if let Shape::Mesh(name, corners, faces) = &object.shape {
                 let mut text = String::new();
                 text.extend(corners.iter().map(|p| format!("v {}\n", v(*p))));
                 text.extend(faces.iter().map(|f| format!("f {} {} {}\n", f[0] + 1, f[1] + 1, f[2] + 1)));

@@ -1,6 +1,6 @@
 //! The judge's own tracer. It is independent of the library, and can make common mistakes by name.
 
-use super::scene::{Lamp, Op, Scene, Shape, Stuff, Thing, Year};
+use super::scene::{Light, Material, Object, Op, Scene, Shape, Year};
 use super::vector::{Matrix, V};
 
 /// A picture: eight bits a channel, the top row first.
@@ -18,13 +18,13 @@ struct Hit {
     /// Shading normal in world space.
     n: V,
     geo: V,
-    thing: usize,
+    object: usize,
 }
 
 impl<'s> Tracer<'s> {
     pub fn new(scene: &'s Scene, mistakes: &'s [&'static str]) -> Self {
         let mut tracer = Tracer { scene, mistakes, places: Vec::new() };
-        tracer.places = scene.things.iter().map(|thing| tracer.place(thing)).collect();
+        tracer.places = scene.objects.iter().map(|object| tracer.place(object)).collect();
         tracer
     }
 
@@ -32,14 +32,14 @@ impl<'s> Tracer<'s> {
         self.mistakes.contains(&name)
     }
 
-    fn place(&self, thing: &Thing) -> (Matrix, Matrix) {
+    fn place(&self, object: &Object) -> (Matrix, Matrix) {
         let degrees = |angle: f64| match () {
             () if self.is("rotation-radians") => angle,
             () if self.is("rotation-negated") => -angle.to_radians(),
             () => angle.to_radians(),
         };
         let mut m = Matrix::ONE;
-        for op in &thing.ops {
+        for op in &object.ops {
             let one = match *op {
                 Op::Translate(by) if self.is("translation-negated") => Op::Translate(-by),
                 Op::Scale(V(x, y, z)) if self.is("scale-inverted") => Op::Scale(V(1.0 / x, 1.0 / y, 1.0 / z)),
@@ -57,7 +57,7 @@ impl<'s> Tracer<'s> {
     }
 
     /// Returns all roots of an object along a ray in object space, each with its normals.
-    fn roots(&self, thing: &Thing, o: V, d: V) -> Vec<(f64, V, V)> {
+    fn roots(&self, object: &Object, o: V, d: V) -> Vec<(f64, V, V)> {
         let triangle = |p: [V; 3]| {
             let n = (p[1] - p[0]).cross(p[2] - p[0]);
             let t = (p[0] - o).dot(n) / d.dot(n);
@@ -68,7 +68,7 @@ impl<'s> Tracer<'s> {
             let tested = |(i, w): (usize, &f64)| *w >= 0.0 || self.is("triangle-test") && i == 1;
             (w.iter().enumerate().all(tested) && t.is_finite()).then_some((t, n.unit(), w))
         };
-        match &thing.shape {
+        match &object.shape {
             Shape::Sphere(c, r) => {
                 let r = if self.is("radius-not-squared") { r.sqrt() } else { *r };
                 let c = if self.is("center-ignored") { V::ZERO } else { *c };
@@ -122,7 +122,7 @@ impl<'s> Tracer<'s> {
 
     fn hit(&self, o: V, d: V, least: f64, most: f64) -> Option<Hit> {
         let mut best: Option<Hit> = None;
-        for (number, thing) in self.scene.things.iter().enumerate() {
+        for (number, object) in self.scene.objects.iter().enumerate() {
             let (to_world, back) = &self.places[number];
             let (lo, mut ld) = (back.point(o), back.vector(d));
             if self.is("direction-moved") {
@@ -132,15 +132,15 @@ impl<'s> Tracer<'s> {
                 ld = ld.unit();
             }
             let mut own: Option<(f64, V, V)> = None;
-            for (t, n, geo) in self.roots(thing, lo, ld) {
+            for (t, n, geo) in self.roots(object, lo, ld) {
                 let least = if self.is("hits-behind") { f64::NEG_INFINITY } else { least };
-                let mesh = matches!(thing.shape, Shape::Mesh(..));
+                let mesh = matches!(object.shape, Shape::Mesh(..));
                 let better = own.as_ref().is_none_or(|b| match () {
                     () if self.is("last-hit") => t > b.0,
                     () if self.is("mesh-first") && mesh => false,
                     () => t < b.0,
                 });
-                let flat = matches!(thing.shape, Shape::Mesh(..) | Shape::Triangle(_));
+                let flat = matches!(object.shape, Shape::Mesh(..) | Shape::Triangle(_));
                 if self.is("backs-culled") && flat && geo.dot(ld) > 0.0 {
                     continue;
                 }
@@ -163,7 +163,7 @@ impl<'s> Tracer<'s> {
                 () => t < b.t,
             });
             if better {
-                best = Some(Hit { t, n: normal(n), geo: back.transposed().vector(geo).unit(), thing: number });
+                best = Some(Hit { t, n: normal(n), geo: back.transposed().vector(geo).unit(), object: number });
             }
         }
         best
@@ -210,12 +210,12 @@ impl<'s> Tracer<'s> {
 
     fn shade(&self, o: V, d: V, hit: &Hit, bounces: u32, index: f64) -> V {
         let scene = self.scene;
-        let mut stuff: Stuff = scene.stuff[scene.things[hit.thing].material];
+        let mut stuff: Material = scene.stuff[scene.objects[hit.object].material];
         if self.is("x-kd-squared") {
             stuff.kd = stuff.kd * stuff.kd;
         }
         if self.is("x-materials-swapped") {
-            stuff = scene.stuff[(scene.things[hit.thing].material + 1) % scene.stuff.len()];
+            stuff = scene.stuff[(scene.objects[hit.object].material + 1) % scene.stuff.len()];
         }
         let p = o + d * hit.t;
         let side = if matches!(scene.year, Year::Durer) { hit.geo } else { hit.n };
@@ -230,23 +230,23 @@ impl<'s> Tracer<'s> {
             () if self.is("no-ambient") => V::ZERO,
             () if self.is("ambient-bare") => scene.ambient,
             () if self.is("x-ambient-brighter") => scene.ambient * stuff.kd * 1.6,
-            () if self.is("ambient-each-light") => scene.ambient * stuff.kd * scene.lamps.len() as f64,
+            () if self.is("ambient-each-light") => scene.ambient * stuff.kd * scene.lights.len() as f64,
             () => scene.ambient * stuff.kd,
         };
         if !(scene.year == Year::F04 && back && !faced) {
             color = ambient;
-            let mut free = scene.lamps.is_empty();
+            let mut free = scene.lights.is_empty();
             let mut greatest = V::ZERO;
-            for (number, lamp) in scene.lamps.iter().enumerate() {
+            for (number, emitter) in scene.lights.iter().enumerate() {
                 if self.is("light-missing") && number == 0 {
                     continue;
                 }
-                let (mut l, distance, mut light) = match *lamp {
-                    Lamp::Sun(along, c) => {
+                let (mut l, distance, mut light) = match *emitter {
+                    Light::Sun(along, c) => {
                         let l = if self.is("light-negated") { along } else { -along };
                         (if self.is("light-long") { l } else { l.unit() }, f64::INFINITY, c)
                     }
-                    Lamp::Bulb(at, c, a) => {
+                    Light::Bulb(at, c, a) => {
                         let at = if self.is("x-light-turned") { V(at.0, at.2, at.1) } else { at };
                         let distance = (at - p).length();
                         let p = if self.is("point-light-from-eye") { scene.eye } else { p };
@@ -254,13 +254,13 @@ impl<'s> Tracer<'s> {
                     }
                 };
                 let toward = l.unit();
-                if matches!(lamp, Lamp::Bulb(..)) && !self.is("point-light-long") {
+                if matches!(emitter, Light::Bulb(..)) && !self.is("point-light-long") {
                     l = toward;
                 }
                 if self.is("white-lights") {
-                    light = match *lamp {
-                        Lamp::Sun(..) => V::ONE,
-                        Lamp::Bulb(_, _, a) => V::ONE * self.fading(a, distance),
+                    light = match *emitter {
+                        Light::Sun(..) => V::ONE,
+                        Light::Bulb(_, _, a) => V::ONE * self.fading(a, distance),
                     };
                 }
                 if self.blocked(p, toward, distance) && !(self.is("x-second-light-unshadowed") && number == 1) {
@@ -313,7 +313,7 @@ impl<'s> Tracer<'s> {
         }
     }
 
-    fn direct(&self, stuff: &Stuff, n: V, d: V, l: V) -> V {
+    fn direct(&self, stuff: &Material, n: V, d: V, l: V) -> V {
         let cosine = n.dot(l);
         let diffuse = match () {
             () if self.is("no-diffuse") => 0.0,
@@ -329,7 +329,7 @@ impl<'s> Tracer<'s> {
         if none {
             return color;
         }
-        let exponent = stuff.shine
+        let exponent = stuff.shininess
             * match () {
                 () if self.is("exponent-doubled") => 2.0,
                 () if self.is("exponent-halved") => 0.5,
@@ -371,7 +371,7 @@ impl<'s> Tracer<'s> {
     }
 
     #[allow(clippy::too_many_arguments, reason = "the judge's tracer is one function a step")]
-    fn secondary(&self, p: V, d: V, hit: &Hit, back: bool, stuff: &Stuff, bounces: u32, index: f64) -> V {
+    fn secondary(&self, p: V, d: V, hit: &Hit, back: bool, stuff: &Material, bounces: u32, index: f64) -> V {
         let n = if back { -hit.n } else { hit.n };
         let glassy = stuff.index > 0.0 && matches!(self.scene.year, Year::F12a5);
         let (mut kr, mut kt) = match self.scene.year {
@@ -417,7 +417,7 @@ impl<'s> Tracer<'s> {
             (kr, kt) = (kr * r, kt * (1.0 - r));
         }
         let mut color = V::ZERO;
-        let times = if self.is("secondary-each-light") { self.scene.lamps.len() } else { 1 };
+        let times = if self.is("secondary-each-light") { self.scene.lights.len() } else { 1 };
         for _ in 0..times {
             if kr.most() > 0.0 && !self.is("no-reflection") {
                 let weight = if self.is("mirror-in-full") { V::ONE } else { kr };

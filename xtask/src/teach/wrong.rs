@@ -1,6 +1,6 @@
 //! Wrong pictures: scenes of the judge, rendered with mistakes by its own tracer.
 
-use super::scene::{Lamp, Op, Scene, Shape, Stuff, Thing, Year};
+use super::scene::{Light, Material, Object, Op, Scene, Shape, Year};
 use super::vector::V;
 
 /// A wrong picture: index of the scene, and mistakes.
@@ -9,30 +9,30 @@ pub struct Case {
     pub made: Vec<&'static str>,
 }
 
-const SUN: Lamp = Lamp::Sun(V(-1.0, -2.0, -1.5), V(0.7, 0.7, 0.6));
+const SUN: Light = Light::Sun(V(-1.0, -2.0, -1.5), V(0.7, 0.7, 0.6));
 
-fn bulb(at: V, color: V, fade: V) -> Lamp {
-    Lamp::Bulb(at, color, fade)
+fn bulb(at: V, color: V, fade: V) -> Light {
+    Light::Bulb(at, color, fade)
 }
 
-fn matt(kd: V) -> Stuff {
-    Stuff { kd, shine: 10.0, index: 0.0, ..Stuff::default() }
+fn matt(kd: V) -> Material {
+    Material { kd, shininess: 10.0, index: 0.0, ..Material::default() }
 }
 
-fn glossy(kd: V, ks: V, shine: f64) -> Stuff {
-    Stuff { ks, shine, ..matt(kd) }
+fn glossy(kd: V, ks: V, shininess: f64) -> Material {
+    Material { ks, shininess, ..matt(kd) }
 }
 
-fn sphere(c: V, r: f64, material: usize) -> Thing {
-    Thing { shape: Shape::Sphere(c, r), ops: Vec::new(), material }
+fn sphere(c: V, r: f64, material: usize) -> Object {
+    Object { shape: Shape::Sphere(c, r), ops: Vec::new(), material }
 }
 
-fn floor(offset: f64, material: usize) -> Thing {
-    Thing { shape: Shape::Plane(V(0.0, 1.0, 0.0), offset), ops: Vec::new(), material }
+fn floor(offset: f64, material: usize) -> Object {
+    Object { shape: Shape::Plane(V(0.0, 1.0, 0.0), offset), ops: Vec::new(), material }
 }
 
-fn moved(thing: Thing, ops: Vec<Op>) -> Thing {
-    Thing { ops, ..thing }
+fn moved(object: Object, ops: Vec<Op>) -> Object {
+    Object { ops, ..object }
 }
 
 /// Returns eight triangles with corners on the axes.
@@ -43,9 +43,9 @@ fn octahedron(name: &'static str, r: f64) -> Shape {
 }
 
 /// Returns a rotated and stretched mesh, beside a sphere on a floor.
-fn beside_a_ball(mesh: Shape) -> Vec<Thing> {
+fn beside_a_ball(mesh: Shape) -> Vec<Object> {
     let ops = vec![Op::Translate(V(1.2, 0.5, 0.5)), Op::Y(30.0), Op::Scale(V(1.0, 1.5, 1.0))];
-    vec![sphere(V(-1.4, 0.6, 0.0), 1.0, 0), Thing { shape: mesh, ops, material: 1 }, floor(-0.8, 2)]
+    vec![sphere(V(-1.4, 0.6, 0.0), 1.0, 0), Object { shape: mesh, ops, material: 1 }, floor(-0.8, 2)]
 }
 
 /// Returns the scenes, in the course's style: small, with few objects, for every year with the old
@@ -63,21 +63,21 @@ pub fn scenes() -> Vec<Scene> {
         angle: 36.0,
         background: V(0.2, 0.1, 0.6),
         ambient: V(0.15, 0.15, 0.2),
-        lamps: vec![SUN, bulb(V(3.0, 4.0, 3.0), V(1.0, 0.9, 0.5), V(1.0, 0.05, 0.03))],
+        lights: vec![SUN, bulb(V(3.0, 4.0, 3.0), V(1.0, 0.9, 0.5), V(1.0, 0.05, 0.03))],
         stuff: vec![
             glossy(V(0.8, 0.3, 0.2), V(0.6, 0.6, 0.6), 16.0),
             glossy(V(0.2, 0.5, 0.8), V(0.9, 0.9, 0.5), 40.0),
             matt(V(0.5, 0.6, 0.4)),
         ],
-        things: vec![sphere(V(-1.1, 0.3, 0.0), 1.0, 0), sphere(V(1.2, 0.0, 0.8), 0.8, 1), floor(-0.8, 2)],
+        objects: vec![sphere(V(-1.1, 0.3, 0.0), 1.0, 0), sphere(V(1.2, 0.0, 0.8), 0.8, 1), floor(-0.8, 2)],
     };
     let mirrors = Scene {
         name: "mirrors",
         bounces: 2,
         stuff: vec![
-            Stuff { kr: V(0.5, 0.5, 0.6), ..glossy(V(0.4, 0.2, 0.2), V(0.5, 0.5, 0.5), 20.0) },
-            Stuff { kr: V(0.7, 0.6, 0.5), ..matt(V(0.2, 0.2, 0.2)) },
-            Stuff { kr: V(0.3, 0.3, 0.3), ..matt(V(0.5, 0.6, 0.4)) },
+            Material { kr: V(0.5, 0.5, 0.6), ..glossy(V(0.4, 0.2, 0.2), V(0.5, 0.5, 0.5), 20.0) },
+            Material { kr: V(0.7, 0.6, 0.5), ..matt(V(0.2, 0.2, 0.2)) },
+            Material { kr: V(0.3, 0.3, 0.3), ..matt(V(0.5, 0.6, 0.4)) },
         ],
         ..old.clone()
     };
@@ -86,7 +86,7 @@ pub fn scenes() -> Vec<Scene> {
         bounces: 4,
         shadows: false,
         stuff: vec![
-            Stuff {
+            Material {
                 kr: V(0.1, 0.1, 0.1),
                 kt: V(0.8, 0.9, 0.8),
                 index: 1.5,
@@ -96,7 +96,7 @@ pub fn scenes() -> Vec<Scene> {
             matt(V(0.4, 0.5, 0.6)),
             matt(V(0.2, 0.7, 0.3)),
         ],
-        things: vec![
+        objects: vec![
             sphere(V(-0.4, 0.4, 1.5), 1.0, 0),
             sphere(V(1.4, 0.0, -1.0), 0.8, 1),
             sphere(V(-1.8, 0.2, -2.0), 1.0, 3),
@@ -109,7 +109,7 @@ pub fn scenes() -> Vec<Scene> {
         shadows: false,
         eye: V(0.0, 0.5, 10.0),
         look: V(0.0, 0.0, -2.0),
-        things: vec![
+        objects: vec![
             moved(
                 sphere(V::ZERO, 1.0, 0),
                 vec![Op::Translate(V(-1.3, 0.6, 0.0)), Op::Z(40.0), Op::Scale(V(1.6, 0.6, 1.0))],
@@ -118,7 +118,7 @@ pub fn scenes() -> Vec<Scene> {
                 sphere(V(0.2, 0.0, 0.0), 0.9, 1),
                 vec![Op::Translate(V(1.5, -0.4, 0.0)), Op::Y(25.0), Op::X(-35.0), Op::Scale(V(0.5, 1.7, 0.8))],
             ),
-            Thing {
+            Object {
                 shape: Shape::Triangle([V(-1.0, -1.0, 0.0), V(1.0, -1.0, 0.0), V(0.0, 0.8, 0.5)]),
                 ops: vec![Op::Translate(V(0.0, 0.6, -2.0)), Op::Z(20.0), Op::Scale(V(1.8, 1.2, 1.0))],
                 material: 2,
@@ -132,25 +132,28 @@ pub fn scenes() -> Vec<Scene> {
         eye: V(0.5, 2.0, 6.0),
         look: V(-0.3, -0.8, -2.0),
         shadows: false,
-        lamps: vec![Lamp::Sun(V(-0.5, -1.0, -0.7), V(0.8, 0.8, 0.8)), Lamp::Sun(V(1.0, -0.3, -0.4), V(0.2, 0.3, 0.4))],
+        lights: vec![
+            Light::Sun(V(-0.5, -1.0, -0.7), V(0.8, 0.8, 0.8)),
+            Light::Sun(V(1.0, -0.3, -0.4), V(0.2, 0.3, 0.4)),
+        ],
         ..old.clone()
     };
     let phong = Scene {
         name: "phong",
         year: Year::F12a4,
         shadows: false,
-        lamps: vec![
+        lights: vec![
             bulb(V(3.0, 4.0, 5.0), V(0.7, 0.6, 0.6), V(1.0, 0.0, 0.0)),
-            Lamp::Sun(V(1.0, -0.5, -0.8), V(0.3, 0.4, 0.3)),
+            Light::Sun(V(1.0, -0.5, -0.8), V(0.3, 0.4, 0.3)),
         ],
-        things: beside_a_ball(octahedron("octahedron.obj", 1.0)),
+        objects: beside_a_ball(octahedron("octahedron.obj", 1.0)),
         ..old.clone()
     };
     let falling = Scene {
         name: "falloff",
         year: Year::F16,
         bounces: 2,
-        lamps: vec![
+        lights: vec![
             bulb(V(2.0, 4.0, 3.0), V(1.0, 1.0, 0.9), V(0.0, 0.0, 0.06)),
             bulb(V(-4.0, 3.0, 4.0), V(0.4, 0.5, 0.7), V(0.0, 0.0, 0.04)),
         ],
@@ -161,10 +164,10 @@ pub fn scenes() -> Vec<Scene> {
         name: "fresnel",
         year: Year::F12a5,
         bounces: 4,
-        lamps: vec![bulb(V(3.0, 5.0, 4.0), V(1.5, 1.4, 1.2), V(1.0, 0.0, 0.02))],
+        lights: vec![bulb(V(3.0, 5.0, 4.0), V(1.5, 1.4, 1.2), V(1.0, 0.0, 0.02))],
         stuff: vec![
-            Stuff { ks: V(0.9, 0.9, 0.9), index: 1.5, ..matt(V(0.05, 0.05, 0.1)) },
-            Stuff { ks: V(0.4, 0.4, 0.4), ..matt(V(0.6, 0.3, 0.2)) },
+            Material { ks: V(0.9, 0.9, 0.9), index: 1.5, ..matt(V(0.05, 0.05, 0.1)) },
+            Material { ks: V(0.4, 0.4, 0.4), ..matt(V(0.6, 0.3, 0.2)) },
             matt(V(0.5, 0.6, 0.4)),
         ],
         ..old.clone()
@@ -172,7 +175,7 @@ pub fn scenes() -> Vec<Scene> {
     let ours = Scene { name: "ours", year: Year::Durer, bounces: 3, ..mirrors.clone() };
     let wide = Scene { name: "wide", size: (160, 100), look: V(0.3, -0.2, -1.3), up: V(0.3, 1.0, 0.1), ..old.clone() };
     let facets =
-        Scene { name: "facets", shadows: false, things: beside_a_ball(octahedron("facets.obj", 1.0)), ..old.clone() };
+        Scene { name: "facets", shadows: false, objects: beside_a_ball(octahedron("facets.obj", 1.0)), ..old.clone() };
     let cubes = Scene { name: "cubes", year: Year::F12a5, bounces: 1, ..facets.clone() };
     vec![old, mirrors, glass, turned, flat, phong, falling, fresnel, ours, wide, facets, cubes]
 }
@@ -441,7 +444,7 @@ pub fn cases() -> Vec<Case> {
 }
 
 /// Returns the table's name for a mistake of the judge's tracer.
-pub fn told(made: &str) -> &str {
+pub fn description(made: &str) -> &str {
     match made {
         "exponent-doubled" | "exponent-halved" | "exponent-3" => "exponent",
         "size-doubled" => "size",

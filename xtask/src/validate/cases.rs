@@ -40,7 +40,7 @@ impl What {
 
 const MATTE: &str = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 }";
 const BLACK: &str = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 }";
-const LAMP: &str = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1000 }";
+const LIGHT: &str = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1000 }";
 const GLASS: &str = "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 }";
 /// A light's colour is illuminance over pi.
 const CANDELAS_100: &str = "color 31.830989 31.830989 31.830989 attenuation 0 0 1";
@@ -153,16 +153,16 @@ fn inside_of_cube() -> Vec<[Vec3; 3]> {
 }
 
 pub fn cases() -> Vec<Case> {
-    let mut all = lamps();
+    let mut all = area_lights();
     all.extend(skies());
     all.extend(reflections());
     all.extend(panes());
     all
 }
 
-fn lamps() -> Vec<Case> {
-    let lamp = |name, formula, form: &str, answer| Case {
-        materials: LAMP.into(),
+fn area_lights() -> Vec<Case> {
+    let light = |name, formula, form: &str, answer| Case {
+        materials: LIGHT.into(),
         group: format!("MaterialIndex 0 {form}"),
         ..case(name, formula, floor(), answer)
     };
@@ -176,25 +176,25 @@ fn lamps() -> Vec<Case> {
                 100.0 * cos3(2.0, 1.5),
             )
         },
-        lamp(
+        light(
             "[5.3] Disc of 1000 cd/m², radius 1.5 m, 2 m overhead",
             "E = π L r² / (r² + d²)",
             "Disc { center 0 2 0 normal 0 -1 0 radius 1.5 }",
             PI * 1000.0 * 2.25 / 6.25,
         ),
-        lamp(
+        light(
             "Sphere of 1000 cd/m², radius 0.5 m, 3 m overhead",
             "E = π L (r / d)²",
             "Sphere { center 0 3 0 radius 0.5 }",
             PI * 1000.0 / 36.0,
         ),
-        lamp(
+        light(
             "[5.3] Panel of 1000 cd/m², 3 m x 1 m, 2 m overhead, corner over the point",
             "Howell C-11",
             "Rectangle { corner 0 2 0 edge0 3 0 0 edge1 0 0 1 }",
             PI * 1000.0 * parallel(1.5, 0.5),
         ),
-        lamp(
+        light(
             "The same panel as two triangles",
             "Lambert 1760: any polygon",
             "Triangle { vertex0 0 2 0 vertex1 3 2 0 vertex2 3 2 1 } Triangle { vertex0 0 2 0 vertex1 3 2 1 vertex2 0 2 1 }",
@@ -202,7 +202,7 @@ fn lamps() -> Vec<Case> {
         ),
         Case {
             what: What::Illuminance(Vec3::new(0.0, 0.7, 0.0), Vec3::X),
-            ..lamp(
+            ..light(
                 "[5.3] Panel of 1000 cd/m², 2 m x 1.5 m, on the floor next to a wall, point on the wall 0.7 m above its corner",
                 "Howell C-12",
                 "Rectangle { corner 0 0 0 edge0 0 0 1.5 edge1 2 0 0 }",
@@ -319,7 +319,7 @@ fn reflections() -> Vec<Case> {
         bounces,
         ..case(name, formula, what, answer)
     };
-    let lamp = |position: &str| format!("PointLight {{ position {position} {CANDELAS_100} }}");
+    let light = |position: &str| format!("PointLight {{ position {position} {CANDELAS_100} }}");
     let patch = "Rectangle { corner 0 0 0 edge0 0 0 1.5 edge1 2 0 0 }";
     let flux = 400.0 * PI;
     // A black box with an opening in its ceiling: all flux that enters arrives.
@@ -378,7 +378,7 @@ fn reflections() -> Vec<Case> {
         ),
         matte(
             What::Illuminance(Vec3::new(0.0, 0.0, -1.999), Vec3::Z),
-            &lamp("0 0 0"),
+            &light("0 0 0"),
             "Sphere { center 0 0 0 radius 2 }",
             60,
             "[5.8] Integrating sphere, radius 2 m, ρ 0.5, point source of 100 cd at the centre",
@@ -387,7 +387,7 @@ fn reflections() -> Vec<Case> {
         ),
         matte(
             What::Flux(inside_of_cube()),
-            &lamp("0.3 0.5 -0.4"),
+            &light("0.3 0.5 -0.4"),
             "Box { min -2 -2 -2 max 2 2 2 }",
             60,
             "[5.8] Flux inside a cube of 4 m, ρ 0.5, point source of 100 cd",
@@ -412,7 +412,7 @@ fn panes() -> Vec<Case> {
         )
     }];
     // An area light far behind a pane, black elsewhere.
-    let lamp = |sine: f64, cosine: f64, pane: &str| {
+    let light = |sine: f64, cosine: f64, pane: &str| {
         let (x, y) = (20.0 * sine, 20.0 * cosine);
         let (nx, ny) = (-sine, -cosine);
         format!("MaterialIndex 1 Disc {{ center {x} {y} 0 normal {nx} {ny} 0 radius 3 }} MaterialIndex 0 {pane}")
@@ -434,8 +434,8 @@ fn panes() -> Vec<Case> {
             false => ("", 1.0),
         };
         all.push(Case {
-            materials: format!("PrincipledMaterial {{ transmissionWeight 1 specularRoughness 0 {tint} }} {LAMP}"),
-            group: lamp(sine, cosine, "Box { min -99 1 -99 max 99 1.006 99 }"),
+            materials: format!("PrincipledMaterial {{ transmissionWeight 1 specularRoughness 0 {tint} }} {LIGHT}"),
+            group: light(sine, cosine, "Box { min -99 1 -99 max 99 1.006 99 }"),
             bounces: 60,
             ..case(
                 name,
@@ -453,9 +453,9 @@ fn panes() -> Vec<Case> {
         let tint = if absorbed { tint } else { "transmissionDepth 0.006" };
         all.push(Case {
             materials: format!(
-                "PrincipledMaterial {{ transmissionWeight 1 specularRoughness 0 walls thin {tint} }} {LAMP}"
+                "PrincipledMaterial {{ transmissionWeight 1 specularRoughness 0 walls thin {tint} }} {LIGHT}"
             ),
-            group: lamp(sine, cosine, "Rectangle { corner -99 1 -99 edge0 198 0 0 edge1 0 0 198 }"),
+            group: light(sine, cosine, "Rectangle { corner -99 1 -99 edge0 198 0 0 edge1 0 0 198 }"),
             ..case(
                 name,
                 "mean of T for both polarisations: light keeps its polarisation inside the sheet",

@@ -3,7 +3,7 @@
 use super::Table;
 use super::measure::world;
 use anyhow::Result;
-use durer::bsdf::proof::{self, Cells, Furnace, Seen, Verdict};
+use durer::bsdf::proof::{self, Cells, Furnace, FurnaceView, Verdict};
 use durer::bsdf::warp;
 use durer::math::{Ray64, Vec2, Vec3, fp};
 use durer::medium::HenyeyGreenstein;
@@ -49,7 +49,7 @@ fn brushed(table: &mut Table) {
         let seen = seen.flat_map(|seen| [0.3, 0.6, 0.9, 1.0].map(|anisotropy| (seen, anisotropy)));
         for ((roughness, cosine), anisotropy) in seen {
             for (&inside, turn) in sides.iter().flat_map(|side| [0.0, 0.07, 0.2, 0.25].map(|turn| (side, turn))) {
-                let from = Seen { roughness, anisotropy, cosine, turn, inside, eta: None };
+                let from = FurnaceView { roughness, anisotropy, cosine, turn, inside, eta: None };
                 let (mean, error) = furnace.gives_to(from, 1 << 14);
                 (least, most) = (least.min(mean), most.max(mean));
                 if (mean - 1.0).abs() > 0.002 + 3.0 * error {
@@ -65,7 +65,7 @@ fn brushed(table: &mut Table) {
 /// Area lights seen from the origin. Cylinders are excluded: their density is unbounded at the
 /// silhouette, so the sums over cells are too inaccurate; unit tests compare them with random
 /// sampling.
-const LAMPS: [(&str, &str); 6] = [
+const LIGHTS: [(&str, &str); 6] = [
     ("sphere", "Sphere { center 0.5 2 1 radius 0.7 }"),
     ("disc", "Disc { center 0 2 0.5 normal 0.3 -1 0 radius 1.5 }"),
     ("rectangle", "Rectangle { corner -1 2 0 edge0 3 0 0 edge1 0 0 1 }"),
@@ -92,15 +92,15 @@ pub fn densities(table: &mut Table) -> Result<()> {
         let verdict = CELLS.compare(12, |_, u| Some(phase.sample(before, u)), |wi| phase.value(before, wi));
         rows.push((format!("Henyey-Greenstein, mean cosine {anisotropy}"), verdict));
     }
-    let lamp = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1 walls thin }";
+    let light = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1 walls thin }";
     // The density of an area light ends at its edge; integrate cells there more finely.
     let finely = Cells { fine: 40, ..CELLS };
-    for (name, group) in LAMPS {
-        let world = world(name, "", lamp, "", &format!("MaterialIndex 0 {group}"))?;
+    for (name, group) in LIGHTS {
+        let world = world(name, "", light, "", &format!("MaterialIndex 0 {group}"))?;
         rows.push((format!("light: {name}"), of_lights(&world, finely)));
     }
     for (name, background) in [("clear sky", "sun 1 1 0.3"), ("overcast sky", "cieSky 16")] {
-        let world = world(name, background, lamp, "", "MaterialIndex 0 Sphere { center 0 -50 0 radius 0.001 }")?;
+        let world = world(name, background, light, "", "MaterialIndex 0 Sphere { center 0 -50 0 radius 0.001 }")?;
         if let Some(environment) = world.environment() {
             let sample = |_, u| environment.sample(u).map(|(wi, ..)| turned(wi));
             rows.push((name.into(), finely.compare(14, sample, |wi| environment.pdf(back(wi)))));

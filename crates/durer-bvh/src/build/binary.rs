@@ -213,7 +213,7 @@ mod tests {
     /// number of unused nodes.
     fn check(tree: &Tree, references: &[Reference], triangles: usize, room: usize) -> usize {
         let (mut is_node, mut is_taken) = (vec![false; tree.nodes.len()], vec![false; room]);
-        let (mut is_met, mut stack) = (vec![false; triangles], vec![0]);
+        let (mut is_visited, mut stack) = (vec![false; triangles], vec![0]);
         while let Some(i) = stack.pop() {
             let node = tree.nodes[i];
             assert!(node.is_there() && !std::mem::replace(&mut is_node[i], true));
@@ -230,12 +230,12 @@ mod tests {
             let places = node.first()..node.first() + node.count();
             for (is_taken, r) in is_taken[places.clone()].iter_mut().zip(&references[places]) {
                 assert!(!std::mem::replace(is_taken, true));
-                is_met[r.number() as usize] = true;
+                is_visited[r.number() as usize] = true;
                 bounds = bounds.union(r.bounds());
             }
             assert_eq!(bounds, node.bounds());
         }
-        assert!(is_met.iter().all(|met| *met));
+        assert!(is_visited.iter().all(|hits| *hits));
         let taken = is_taken.iter().filter(|taken| **taken).count();
         assert_eq!(taken, tree.nodes[0].count());
         assert_eq!(tree.is_cut, taken > triangles);

@@ -20,18 +20,18 @@ pub fn listed<T: Send>(count: usize, more: usize, of: impl Fn(usize) -> T + Sync
 
 /// Prefetches a value into the cache, if the processor can do so without waiting.
 #[inline]
-pub fn bring_near<T>(thing: &T) {
+pub fn bring_near<T>(value: &T) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         // The value may begin in the middle of a cache line.
         for byte in (0..size_of::<T>()).step_by(64).chain([size_of::<T>().saturating_sub(1)]) {
             // SAFETY: the instruction accepts any address, and every x86-64 processor has it.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(thing).cast::<i8>().wrapping_add(byte)) };
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(value).cast::<i8>().wrapping_add(byte)) };
         }
     }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = thing;
+    let _ = value;
 }
 
 /// Asks the system to place uninitialised memory for `count` items on large pages, if it is large

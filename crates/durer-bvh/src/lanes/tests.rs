@@ -63,13 +63,13 @@ impl Input {
 
 /// Results of all lane operations except [`Numbers::mul_add`], as bits. Every NaN has the same
 /// bits.
-struct Everything<'a>(&'a Input);
+struct AllOperations<'a>(&'a Input);
 
 /// Number of vectors computed for each input: arithmetic, double precision, two joined halves,
 /// comparisons, a stack before and after, nine rows, columns, and wide vectors.
 const OPERATIONS: usize = 12 + 3 * 9 + 2 + 9 + 5 + 2 + 9 + WIDTH + 2 * 11;
 
-impl Kernel for Everything<'_> {
+impl Kernel for AllOperations<'_> {
     type Output = Vec<u32>;
 
     #[inline(always)]
@@ -79,7 +79,7 @@ impl Kernel for Everything<'_> {
         let mut found = Vec::with_capacity(WIDTH * OPERATIONS + 16);
         let number = |x: f32| if x.is_nan() { f32::NAN.to_bits() } else { x.to_bits() };
         // Vectors are read through the stack.
-        let mut tell = |v: L::Floats, count: usize| {
+        let mut record = |v: L::Floats, count: usize| {
             let mut room = StackStorage::new();
             let mut stack = Stack::new(&mut room);
             lanes.push(&mut stack, &[7; WIDTH], v, &[0, 1, 2, 3, 4, 5, 6, 7], count as u32);
@@ -87,21 +87,21 @@ impl Kernel for Everything<'_> {
             // SAFETY: everything below the height was written.
             (0..height).for_each(|i| found.push(number(unsafe { *near.add(i) })));
         };
-        tell(lanes.add(a, b), WIDTH);
-        tell(lanes.sub(a, b), WIDTH);
-        tell(lanes.mul(a, b), WIDTH);
-        tell(lanes.div(a, b), WIDTH);
-        tell(lanes.abs(a), WIDTH);
-        tell(lanes.min(a, c), WIDTH);
-        tell(lanes.max(a, c), WIDTH);
-        tell(lanes.sooner(a, c), WIDTH);
-        tell(lanes.later(a, c), WIDTH);
-        lanes.interval([[a, c], [b, a], [c, b]], [b, c]).into_iter().for_each(|end| tell(end, WIDTH));
+        record(lanes.add(a, b), WIDTH);
+        record(lanes.sub(a, b), WIDTH);
+        record(lanes.mul(a, b), WIDTH);
+        record(lanes.div(a, b), WIDTH);
+        record(lanes.abs(a), WIDTH);
+        record(lanes.min(a, c), WIDTH);
+        record(lanes.max(a, c), WIDTH);
+        record(lanes.sooner(a, c), WIDTH);
+        record(lanes.later(a, c), WIDTH);
+        lanes.interval([[a, c], [b, a], [c, b]], [b, c]).into_iter().for_each(|end| record(end, WIDTH));
         for corner in lanes.corners(rows, Columns::new(turn, *stride)) {
-            corner.into_iter().for_each(|row| tell(row, *stride));
+            corner.into_iter().for_each(|row| record(row, *stride));
         }
-        tell(lanes.select(*mask, a, b), WIDTH);
-        lanes.transpose([a, b, c, b, a, c, a, b]).into_iter().for_each(|row| tell(row, WIDTH));
+        record(lanes.select(*mask, a, b), WIDTH);
+        lanes.transpose([a, b, c, b, a, c, a, b]).into_iter().for_each(|row| record(row, WIDTH));
         found.extend(lanes.store(a).map(number));
         found.extend(wide(lanes.wide(), floats, *mask).map(number));
         let (p, q) = (lanes.doubles(a), lanes.doubles(c).mul(lanes.splat_double(0.1)));
@@ -129,8 +129,8 @@ impl Kernel for Everything<'_> {
         // The lane is arbitrary if none is hit.
         let (enter, leave) = (lanes.later(a, lanes.splat(0.0)), b);
         let before = lanes.before(enter, leave);
-        let (met, nearest) = (lanes.signs(before), lanes.nearest(enter, before, &[10, 250, 12, 30, 14, 15, 201, 17]));
-        found.extend(if met == 0 { [0; 2] } else { [met, nearest] });
+        let (hits, nearest) = (lanes.signs(before), lanes.nearest(enter, before, &[10, 250, 12, 30, 14, 15, 201, 17]));
+        found.extend(if hits == 0 { [0; 2] } else { [hits, nearest] });
         found.push(lanes.signs(a));
         let mut room = StackStorage::new();
         let mut stack = Stack::new(&mut room);
@@ -177,9 +177,9 @@ fn every_level_gives_the_same_bits() {
     let inputs = rounds(1_000_000 / (WIDTH * OPERATIONS));
     for round in 0..inputs {
         let input = Input::random(&mut random);
-        let expected = Everything(&input).run(scalar::Scalar);
+        let expected = AllOperations(&input).run(scalar::Scalar);
         for level in SimdLevel::available() {
-            assert_eq!(Available::or_scalar(level).run(Everything(&input)), expected, "{round} {level:?}");
+            assert_eq!(Available::or_scalar(level).run(AllOperations(&input)), expected, "{round} {level:?}");
         }
     }
     println!("{} lanes at {} levels", inputs * WIDTH * OPERATIONS, SimdLevel::available().count());

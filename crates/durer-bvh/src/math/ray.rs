@@ -71,14 +71,14 @@ impl Side {
     /// Inside or outside of a primitive, numbered by the caller. Numbers above 2^31 - 2 give
     /// [`Side::ANY`].
     #[inline]
-    pub fn of(thing: u32, inside: bool) -> Side {
-        if thing < (1 << 31) - 1 { Side(2 * thing + 1 + u32::from(inside)) } else { Side::ANY }
+    pub fn of(primitive: u32, inside: bool) -> Side {
+        if primitive < (1 << 31) - 1 { Side(2 * primitive + 1 + u32::from(inside)) } else { Side::ANY }
     }
 
     /// Returns true if the ray starts inside the primitive; `None` if it leaves a different one.
     #[inline]
-    pub fn inside(self, thing: u32) -> Option<bool> {
-        (self != Side::ANY && (self.0 - 1) / 2 == thing).then_some(self.0.is_multiple_of(2))
+    pub fn inside(self, primitive: u32) -> Option<bool> {
+        (self != Side::ANY && (self.0 - 1) / 2 == primitive).then_some(self.0.is_multiple_of(2))
     }
 }
 

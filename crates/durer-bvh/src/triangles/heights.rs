@@ -53,8 +53,8 @@ impl TriangleBvh {
     fn built_over_heights(grid: Arc<HeightGrid>, others: &[[Vec3; 3]], quality: BuildQuality) -> Self {
         let blocks = grid.blocks().iter().product();
         let mut boxes: Vec<Aabb> = (0..blocks).map(|block| grid.block_bounds(block)).collect();
-        let is_met = |corners: &&[Vec3; 3]| is_finite(corners);
-        boxes.extend(others.chunks(LEAF_SIZE).map(|some| Aabb::around(some.iter().filter(is_met).flatten().copied())));
+        let is_hit = |corners: &&[Vec3; 3]| is_finite(corners);
+        boxes.extend(others.chunks(LEAF_SIZE).map(|some| Aabb::around(some.iter().filter(is_hit).flatten().copied())));
         let tree = build::build(build::references(&boxes), &BuildSettings::blocks(quality));
         drop(boxes);
         let mut leaves = vec![0.0; ROWS * others.len()];

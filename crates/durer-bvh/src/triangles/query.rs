@@ -8,7 +8,7 @@ use crate::TraversalCounter;
 use crate::lanes::{Columns, Kernel, Lanes, Rows, WIDTH};
 use crate::math::{Ray, Vec2};
 use crate::traverse::{FAST_RANGE, NodeHits, TraversalRay, Visitor, traverse};
-use crate::watertight::{Exact, Plane, WatertightRay, turn};
+use crate::watertight::{Plane, PreciseLine, WatertightRay, turn};
 use glam::Vec3A;
 use std::mem::MaybeUninit;
 
@@ -36,7 +36,7 @@ pub trait HitCollector {
 
     /// Records a hit at or before `t_max`. Returns the new `t_max`. `facing` computes the side of
     /// the triangle when called.
-    fn met(&mut self, hit: TriangleHit, t_max: f32, facing: impl FnOnce() -> Facing) -> f32;
+    fn on_hit(&mut self, hit: TriangleHit, t_max: f32, facing: impl FnOnce() -> Facing) -> f32;
 
     /// Returns the result at the end of the traversal. `any` is true if it stopped at a hit.
     fn answer(&mut self, any: bool) -> Self::Answer;
@@ -63,7 +63,7 @@ impl HitCollector for Nearest {
     const ANY: bool = false;
 
     #[inline(always)]
-    fn met(&mut self, hit: TriangleHit, t_max: f32, _: impl FnOnce() -> Facing) -> f32 {
+    fn on_hit(&mut self, hit: TriangleHit, t_max: f32, _: impl FnOnce() -> Facing) -> f32 {
         // The initial best hit has the greatest number.
         if hit.t < t_max || hit.triangle < self.best.triangle {
             self.best = hit;
@@ -87,7 +87,7 @@ impl HitCollector for Any {
     const ANY: bool = true;
 
     #[inline(always)]
-    fn met(&mut self, _: TriangleHit, _: f32, _: impl FnOnce() -> Facing) -> f32 {
+    fn on_hit(&mut self, _: TriangleHit, _: f32, _: impl FnOnce() -> Facing) -> f32 {
         f32::NEG_INFINITY
     }
 
@@ -106,7 +106,7 @@ impl HitCollector for All {
 
     const ANY: bool = false;
 
-    fn met(&mut self, hit: TriangleHit, t_max: f32, _: impl FnOnce() -> Facing) -> f32 {
+    fn on_hit(&mut self, hit: TriangleHit, t_max: f32, _: impl FnOnce() -> Facing) -> f32 {
         self.0.push(hit);
         t_max
     }
@@ -132,10 +132,10 @@ impl<F: HitCollector> HitCollector for Filtered<'_, F> {
     // Even any-hit queries must pass each hit to the filter.
     const ANY: bool = false;
 
-    fn met(&mut self, hit: TriangleHit, t_max: f32, facing: impl FnOnce() -> Facing) -> f32 {
+    fn on_hit(&mut self, hit: TriangleHit, t_max: f32, facing: impl FnOnce() -> Facing) -> f32 {
         let facing = facing();
         match (self.filter)(&hit, facing) {
-            true => self.inner.met(hit, t_max, || facing),
+            true => self.inner.on_hit(hit, t_max, || facing),
             false => t_max,
         }
     }
@@ -233,8 +233,8 @@ impl<T: TraversalCounter, F: HitCollector> Visitor for Leaves<'_, T, F> {
     }
 
     #[inline(always)]
-    fn fetch<L: Lanes>(&self, lanes: L, met: &NodeHits<L>, likely: u32) {
-        let child = met.child(likely);
+    fn fetch<L: Lanes>(&self, lanes: L, hits: &NodeHits<L>, likely: u32) {
+        let child = hits.child(likely);
         self.places.fetch::<L, AND_SIBLINGS>(lanes, child);
     }
 
@@ -275,7 +275,7 @@ impl<T: TraversalCounter, F: HitCollector> Visitor for Leaves<'_, T, F> {
             // reaches a leaf.
             let sheared = std::hint::black_box(sheared);
             let (origin, dir) = sheared.ray();
-            let line = Exact::new(lanes.triple(origin), lanes.triple(dir));
+            let line = PreciseLine::new(lanes.triple(origin), lanes.triple(dir));
             let mut crossed = crossed;
             while crossed != 0 {
                 let lane = crossed.trailing_zeros() as usize & 7;
@@ -285,7 +285,7 @@ impl<T: TraversalCounter, F: HitCollector> Visitor for Leaves<'_, T, F> {
                 if self.ray_in_tree.is_wanted(t, t_max) {
                     let uv = sheared.uv([a, b, c]);
                     let hit = TriangleHit { t, uv, triangle: number(rows, count, lane) };
-                    t_max = self.found.met(hit, t_max, || Facing::of(sheared, [a, b, c]));
+                    t_max = self.found.on_hit(hit, t_max, || Facing::of(sheared, [a, b, c]));
                 }
             }
         }
@@ -309,7 +309,7 @@ impl<T: TraversalCounter, F: HitCollector> Leaves<'_, T, F> {
                 && let Some(t) = sheared.t(corners).filter(|t| self.ray_in_tree.is_wanted(*t, t_max))
             {
                 let hit = TriangleHit { t, uv: sheared.uv(corners), triangle };
-                t_max = self.found.met(hit, t_max, || Facing::of(&sheared, corners));
+                t_max = self.found.on_hit(hit, t_max, || Facing::of(&sheared, corners));
             }
         }
         t_max

@@ -116,12 +116,12 @@ impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Stream<'a, F, A>
 #[inline(always)]
 fn step<L: Lanes, F: HitCollector>(lanes: L, nodes: &[WideNode], flight: &mut InFlightRay<F>, stack: &mut Stack) {
     let slabs = Slabs::new(lanes, nodes, &flight.boxes);
-    let met = intersect_node::<L, true>(lanes, &slabs, flight.child as usize, lanes.splat(flight.t_max));
-    let order = met.node.order(F::ANY, flight.boxes.negative);
-    let next = met.next::<true>(lanes, F::ANY, end_of(met.mask, order != 0));
-    met.push(lanes, stack, next, order);
+    let hits = intersect_node::<L, true>(lanes, &slabs, flight.child as usize, lanes.splat(flight.t_max));
+    let order = hits.node.order(F::ANY, flight.boxes.negative);
+    let next = hits.next::<true>(lanes, F::ANY, end_of(hits.mask, order != 0));
+    hits.push(lanes, stack, next, order);
     // If nothing was hit, nothing was pushed.
-    flight.child = select_unpredictable(met.mask == 0, stack.pop_if(met.mask == 0), met.child(next & PLACE));
+    flight.child = select_unpredictable(hits.mask == 0, stack.pop_if(hits.mask == 0), hits.child(next & PLACE));
 }
 
 impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {

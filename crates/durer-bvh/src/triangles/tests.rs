@@ -288,7 +288,7 @@ fn bundle(mesh: &Mesh, random: &mut Random, scale: f32, offset: Vec3) -> Vec<Ray
 
 #[test]
 fn batches_answer_like_single_rays() {
-    let (mut random, mut met) = (Random(4), 0);
+    let (mut random, mut hit_mask) = (Random(4), 0);
     for (name, mesh) in hard() {
         for (scale, offset) in [(1.0, Vec3::ZERO), (1.0, Vec3::new(1e4, -3e3, 7e4)), (1e-30, Vec3::ZERO)] {
             let mesh = scaled(&mesh, scale, offset);
@@ -321,13 +321,13 @@ fn batches_answer_like_single_rays() {
                         let (hit, context) = (tree.closest(ray), || format!("{name} {scale} {offset} {i} {ray:?}"));
                         assert_eq!(hits[i].as_ref().map(bits), hit.as_ref().map(bits), "{}", context());
                         assert_eq!(occluded[i], tree.occluded(ray), "{}", context());
-                        met += usize::from(occluded[i]);
+                        hit_mask += usize::from(occluded[i]);
                     }
                 }
             }
         }
     }
-    assert!(met > 13_000, "{met}");
+    assert!(hit_mask > 13_000, "{hit_mask}");
 }
 
 #[test]
@@ -335,7 +335,7 @@ fn axis_parallel_rays_go_together_and_hit_correctly() {
     let mesh = torus(40, 20);
     let tree = TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Best);
     let trees: Vec<_> = SimdLevel::available().map(|level| tree.clone().at_level(level)).collect();
-    let mut met = 0;
+    let mut hit_mask = 0;
     for (k, corner) in mesh.0.iter().enumerate().step_by(11) {
         let (axis, small) = (k % 3, [0.0, -0.0, 1e-42][k / 3 % 3]);
         let (length, away) = ([1e-6, -1.0, 1.0, -1e14][k % 4], [4.0, 1e4][k / 2 % 2]);
@@ -361,11 +361,11 @@ fn axis_parallel_rays_go_together_and_hit_correctly() {
                 assert_eq!(tree.closest(ray).as_ref().map(bits), first, "{ray:?}");
                 assert_eq!((occluded[i], tree.occluded(ray)), (first.is_some(), first.is_some()), "{ray:?}");
                 assert_eq!((tree.hit_count(ray), expected.len() % 2), (expected.len(), 0), "{ray:?}");
-                met += usize::from(first.is_some());
+                hit_mask += usize::from(first.is_some());
             }
         }
     }
-    assert!(met > 5_000, "{met}");
+    assert!(hit_mask > 5_000, "{hit_mask}");
 }
 
 #[test]

@@ -125,7 +125,7 @@ impl WatertightRay {
     /// triangle. It may be infinite.
     #[inline(always)]
     pub(crate) fn t(&self, corners: [Vec3A; 3]) -> Option<f32> {
-        let [t, volume] = Exact::single(self.origin, self.dir).t(&Plane::single(corners));
+        let [t, volume] = PreciseLine::single(self.origin, self.dir).t(&Plane::single(corners));
         if volume.abs() < self.least_volume {
             return None;
         }
@@ -175,32 +175,32 @@ impl Plane<[f64; 3]> {
 /// Line of a ray with permuted axes, in double precision; one, or several in lanes. Its methods are
 /// branchless.
 #[derive(Clone, Copy)]
-pub(crate) struct Exact<V: Triple> {
+pub(crate) struct PreciseLine<V: Triple> {
     origin: V,
     dir: V,
     /// 1 over the third component of the direction.
     inverse: V::Component,
 }
 
-impl Exact<[f64; 3]> {
+impl PreciseLine<[f64; 3]> {
     #[inline(always)]
     pub fn single(origin: Vec3A, dir: Vec3A) -> Self {
-        Exact::new(origin.as_dvec3().to_array(), dir.as_dvec3().to_array())
+        PreciseLine::new(origin.as_dvec3().to_array(), dir.as_dvec3().to_array())
     }
 }
 
-impl<V: Triple<Component = f64>> Exact<V> {
+impl<V: Triple<Component = f64>> PreciseLine<V> {
     #[inline(always)]
     pub fn new(origin: V, dir: V) -> Self {
         Self::with_inverse(origin, dir, 1.0 / dir.z())
     }
 }
 
-impl<V: Triple> Exact<V> {
+impl<V: Triple> PreciseLine<V> {
     /// Creates the line. `inverse` is 1 over the third component of the direction.
     #[inline(always)]
     pub fn with_inverse(origin: V, dir: V, inverse: V::Component) -> Self {
-        Exact { origin, dir, inverse }
+        PreciseLine { origin, dir, inverse }
     }
 
     /// Computes `t` of the crossing with a triangle that the line crosses, and the signed volume (b

@@ -1,7 +1,7 @@
 //! Output of `--json`; `durer check --help` describes its form.
 
 use super::change::Change;
-use super::checked::Checked;
+use super::checked_scene::CheckedScene;
 use durer::report::findings;
 use serde_json::{Value, json};
 
@@ -9,8 +9,8 @@ use serde_json::{Value, json};
 const VERSION: u32 = 1;
 
 /// Returns the document for the checked scenes and their changes.
-pub fn document(all: &[(Checked, Vec<Change>)]) -> Value {
-    let scene = |(checked, changes): &(Checked, Vec<Change>)| {
+pub fn document(all: &[(CheckedScene, Vec<Change>)]) -> Value {
+    let scene = |(checked, changes): &(CheckedScene, Vec<Change>)| {
         json!({
             "scene": checked.path.to_string_lossy(),
             "dialect": checked.dialect,

@@ -2,7 +2,7 @@
 
 use super::args::CheckArgs;
 use super::change::Change;
-use super::checked::{Checked, look};
+use super::checked_scene::{CheckedScene, look};
 use crate::failure::Failure;
 use durer::check::{Finding, apply, rank};
 use durer::diag::{Edit, Severity};
@@ -13,7 +13,11 @@ use std::sync::Arc;
 const MOST: usize = 100;
 
 /// Applies all fixes that help. Leaves the findings of the new text in `checked`.
-pub fn mend(checked: &mut Checked, mut text: Arc<[u8]>, args: &CheckArgs) -> Result<(Arc<[u8]>, Vec<Change>), Failure> {
+pub fn mend(
+    checked: &mut CheckedScene,
+    mut text: Arc<[u8]>,
+    args: &CheckArgs,
+) -> Result<(Arc<[u8]>, Vec<Change>), Failure> {
     let mut changes = Vec::new();
     'again: for _ in 0..MOST {
         for finding in checked.findings.iter().filter(|finding| !finding.diagnostic.fix.is_empty()) {
@@ -38,7 +42,7 @@ pub fn mend(checked: &mut Checked, mut text: Arc<[u8]>, args: &CheckArgs) -> Res
 const MAX_TRIED: usize = 8;
 
 /// Withdraws offered edits that `--fix` would not keep.
-pub fn withdraw(checked: &mut Checked, text: &[u8], args: &CheckArgs) -> Result<(), Failure> {
+pub fn withdraw(checked: &mut CheckedScene, text: &[u8], args: &CheckArgs) -> Result<(), Failure> {
     let offered = |finding: &&Finding| !finding.diagnostic.fix.is_empty();
     let mut kept = Vec::new();
     for finding in checked.findings.iter().filter(offered).take(MAX_TRIED) {
@@ -57,11 +61,11 @@ pub fn withdraw(checked: &mut Checked, text: &[u8], args: &CheckArgs) -> Result<
 
 /// Returns true if `finding` is gone and nothing is worse: no new error, and no new finding that
 /// precedes it in causal order.
-fn is_better(before: &Checked, after: &Checked, finding: &Finding) -> bool {
+fn is_better(before: &CheckedScene, after: &CheckedScene, finding: &Finding) -> bool {
     let code = finding.diagnostic.code;
-    let errors = |checked: &Checked| checked.count(|f| f.diagnostic.severity == Severity::Error);
+    let errors = |checked: &CheckedScene| checked.count(|f| f.diagnostic.severity == Severity::Error);
     // One finding may represent several similar ones.
-    let alike = |checked: &Checked| checked.count(|f| f.diagnostic.code == code);
+    let alike = |checked: &CheckedScene| checked.count(|f| f.diagnostic.code == code);
     if errors(after) < errors(before) {
         return true;
     }
@@ -69,7 +73,7 @@ fn is_better(before: &Checked, after: &Checked, finding: &Finding) -> bool {
     errors(after) == errors(before) && alike(after) < alike(before) && after.count(worse) <= before.count(worse)
 }
 
-fn change(checked: &Checked, finding: &Finding, edit: &Edit) -> Change {
+fn change(checked: &CheckedScene, finding: &Finding, edit: &Edit) -> Change {
     let span = edit.span;
     let bytes = checked.files.bytes(span.file).unwrap_or_default();
     let (line, column) = checked.files.position(span).unwrap_or_default();

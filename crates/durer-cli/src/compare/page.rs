@@ -1,7 +1,7 @@
 //! The report of a comparison: one HTML file that needs no network.
 
 use super::args::CompareArgs;
-use super::compared::{Compared, Outcome, Shown, name};
+use super::compared_pair::{ComparedPair, Outcome, PairPictures, name};
 use super::text;
 use crate::failure::Failure;
 use crate::page;
@@ -14,12 +14,12 @@ use std::path::PathBuf;
 const PAGE: &str = include_str!("page.html");
 
 /// Encodes the pictures of a pair for the page.
-pub fn shown(reference: &Picture, picture: &Picture, found: &Comparison) -> Result<Shown, String> {
+pub fn shown(reference: &Picture, picture: &Picture, found: &Comparison) -> Result<PairPictures, String> {
     let png = |(layer, transfer): (Layer, Transfer)| -> Result<String, String> {
         let png = page::png(layer, transfer).map_err(|_| "the picture is too large for a page")?;
         Ok(page::uri(&png))
     };
-    Ok(Shown {
+    Ok(PairPictures {
         reference: png(screen(reference))?,
         picture: png(screen(picture))?,
         heat: png((heat(found), Transfer::Linear))?,
@@ -42,7 +42,7 @@ fn screen(picture: &Picture) -> (Layer, Transfer) {
 }
 
 /// Returns the page as text.
-pub fn page(all: &[Compared], extra: &[PathBuf], args: &CompareArgs) -> Result<String, Failure> {
+pub fn page(all: &[ComparedPair], extra: &[PathBuf], args: &CompareArgs) -> Result<String, Failure> {
     let data = json!({
         "reference": args.reference.to_string_lossy(),
         "picture": args.picture.to_string_lossy(),
@@ -55,14 +55,14 @@ pub fn page(all: &[Compared], extra: &[PathBuf], args: &CompareArgs) -> Result<S
     Ok(page::with_data(PAGE, &data))
 }
 
-fn pair(compared: &Compared) -> Value {
+fn pair(compared: &ComparedPair) -> Value {
     let mut value = text::pair(compared);
     value["title"] = name(&compared.pair).into();
     if let Outcome::Compared(found) = &compared.outcome {
         value["causes"] = compared.causes().into();
         value["places"] = found.regions.iter().map(text::place).collect::<Vec<_>>().into();
     }
-    if let Some(Shown { reference, picture, heat }) = &compared.shown {
+    if let Some(PairPictures { reference, picture, heat }) = &compared.shown {
         value["images"] = json!([reference, picture, heat]);
     }
     value

@@ -5,12 +5,12 @@ use super::pairs::Pair;
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
 use crate::job;
-use crate::open::{Opened, load_options, open, readable};
+use crate::open::{CompiledInput, load_options, open, readable};
 use durer::LoadOptions;
 use durer::dialect::Dialect;
 use durer::image::Transfer;
 use durer::image::compare::Picture;
-use durer::mistakes::{Question, off};
+use durer::mistakes::{DiagnosisInput, off};
 use durer::render::{Job, Sampling};
 use std::path::{Path, PathBuf};
 
@@ -21,7 +21,7 @@ const MAX_OFF: f64 = 0.2;
 
 /// An opened scene and the options that reproduce the reference.
 pub struct Stage {
-    pub opened: Opened,
+    pub compiled: CompiledInput,
     pub job: Job,
     pub transfer: Transfer,
     /// Scene file.
@@ -33,7 +33,7 @@ pub struct Stage {
 }
 
 /// Candidate options of the reference.
-struct Way {
+struct RenderGuess {
     dialect: Option<Dialect>,
     center: bool,
     shadows: Option<bool>,
@@ -50,8 +50,8 @@ pub fn stage(
 ) -> Result<Option<Stage>, Failure> {
     let Some(scene) = &args.scene else { return Ok(None) };
     let path = path(scene, pair)?;
-    let asked = load_options(&args.reading);
-    let first = opened(args, &path, &asked, reference, guard)?;
+    let requested = load_options(&args.reading);
+    let first = compiled(args, &path, &requested, reference, guard)?;
     let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
     let mut best = (way_off(&first, reference, transfer), first, transfer, None);
     // Filters wider than a pixel make edges inexact.
@@ -60,9 +60,9 @@ pub fn stage(
     if best.0 <= enough || best.1.1.method.transport().is_some() {
         return Ok(Some(finished(args, path, best.1, best.2, None)));
     }
-    let guessed = asked.dialect.or(best.1.0.loaded.guess.as_ref().map(|guess| guess.dialect));
-    let mut dialects = vec![asked.dialect];
-    if asked.dialect.is_none() {
+    let guessed = requested.dialect.or(best.1.0.loaded.guess.as_ref().map(|guess| guess.dialect));
+    let mut dialects = vec![requested.dialect];
+    if requested.dialect.is_none() {
         dialects.push(guessed);
         let others = Dialect::ALL.into_iter().filter(|dialect| Some(*dialect) != guessed && *dialect != Dialect::Durer);
         dialects.extend(others.map(Some));
@@ -77,12 +77,12 @@ pub fn stage(
     'found: for dialect in dialects {
         let options = LoadOptions { dialect, ..load_options(&args.reading) };
         // Skip dialects in which the scene cannot be read.
-        let Some((opened, job)) = tried(args, &path, &options, reference, guard) else { continue };
-        let mut current = (opened, job);
+        let Some((compiled, job)) = tried(args, &path, &options, reference, guard) else { continue };
+        let mut current = (compiled, job);
         for way in shadows.iter().flat_map(|&shadows| {
             bounces
                 .iter()
-                .flat_map(move |&bounces| [false, true].map(|center| Way { dialect, center, shadows, bounces }))
+                .flat_map(move |&bounces| [false, true].map(|center| RenderGuess { dialect, center, shadows, bounces }))
         }) {
             let kept = current.1.clone();
             way.apply(&mut current.1);
@@ -108,7 +108,7 @@ pub fn stage(
     Ok(Some(stage))
 }
 
-impl Way {
+impl RenderGuess {
     fn apply(&self, job: &mut Job) {
         if self.center {
             job.sampling = Sampling::Center;
@@ -123,12 +123,12 @@ fn reopened(
     path: &Path,
     options: &LoadOptions,
     reference: &Picture,
-    way: &Way,
+    way: &RenderGuess,
     guard: &mut Guard,
-) -> Result<(Opened, Job), Failure> {
-    let (opened, mut job) = opened(args, path, options, reference, guard)?;
+) -> Result<(CompiledInput, Job), Failure> {
+    let (compiled, mut job) = compiled(args, path, options, reference, guard)?;
     way.apply(&mut job);
-    Ok((opened, job))
+    Ok((compiled, job))
 }
 
 /// Opens the scene in a dialect that is only tried: its errors are not printed.
@@ -138,44 +138,51 @@ fn tried(
     options: &LoadOptions,
     reference: &Picture,
     guard: &mut Guard,
-) -> Option<(Opened, Job)> {
+) -> Option<(CompiledInput, Job)> {
     let is_readable = options.dialect.is_none() || readable(path, options);
-    is_readable.then(|| opened(args, path, options, reference, guard).ok()).flatten()
+    is_readable.then(|| compiled(args, path, options, reference, guard).ok()).flatten()
 }
 
-fn opened(
+fn compiled(
     args: &CompareArgs,
     path: &Path,
     options: &LoadOptions,
     reference: &Picture,
     guard: &mut Guard,
-) -> Result<(Opened, Job), Failure> {
-    let opened = open(path, options, true, guard)?;
-    let job = job::job(&args.job, Some(&args.view), &opened.loaded, false)?;
+) -> Result<(CompiledInput, Job), Failure> {
+    let compiled = open(path, options, true, guard)?;
+    let job = job::job(&args.job, Some(&args.view), &compiled.loaded, false)?;
     if !job.color || !job.aovs.is_empty() {
         return Err(bad("`--scene` needs colour pictures: remove `--show` or `--scene`"));
     }
     let (width, height) = (reference.image.width, reference.image.height);
     let job = Job { width, height, crop: None, color: true, aovs: Vec::new(), ..job };
-    Ok((opened, job))
+    Ok((compiled, job))
 }
 
-fn way_off((opened, job): &(Opened, Job), reference: &Picture, transfer: Transfer) -> f64 {
-    off(&Question { scene: &opened.loaded.scene, world: &opened.world, job, transfer, reference, test: reference })
+fn way_off((compiled, job): &(CompiledInput, Job), reference: &Picture, transfer: Transfer) -> f64 {
+    off(&DiagnosisInput {
+        scene: &compiled.loaded.scene,
+        world: &compiled.world,
+        job,
+        transfer,
+        reference,
+        test: reference,
+    })
 }
 
 fn finished(
     args: &CompareArgs,
     path: PathBuf,
-    (opened, job): (Opened, Job),
+    (compiled, job): (CompiledInput, Job),
     transfer: Transfer,
     note: Option<String>,
 ) -> Stage {
-    let mut options = job::spelled(&args.reading, &job, &opened.loaded);
+    let mut options = job::spelled(&args.reading, &job, &compiled.loaded);
     if transfer != Transfer::Srgb {
         options += &format!(" --transfer {}", transfer.name());
     }
-    Stage { options: options.trim().into(), opened, job, transfer, path, note }
+    Stage { options: options.trim().into(), compiled, job, transfer, path, note }
 }
 
 impl Stage {

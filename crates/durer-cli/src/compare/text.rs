@@ -1,9 +1,9 @@
 //! Comparisons as text and as JSON.
 
 use super::args::CompareArgs;
-use super::compared::{Compared, Outcome, name};
-use super::named;
-use super::there::There;
+use super::compared_pair::{ComparedPair, Outcome, name};
+use super::mistakes;
+use super::pixel_hit::PixelHit;
 use crate::report::counted;
 use crate::terminal::{complain, say};
 use durer::image::compare::{Options, Region, Verdict};
@@ -16,7 +16,7 @@ use std::path::PathBuf;
 const VERSION: u32 = 1;
 
 /// Prints the comparison of one pair.
-pub fn single(compared: &Compared, options: &Options) {
+pub fn single(compared: &ComparedPair, options: &Options) {
     let Outcome::Compared(found) = &compared.outcome else { return };
     let measures = &found.measures;
     let pixels = found.width as usize * found.height as usize;
@@ -67,9 +67,9 @@ pub fn single(compared: &Compared, options: &Options) {
     }
     for (i, region) in found.regions.iter().enumerate().take(3) {
         say(&format!("  where     {}", place(region)));
-        if let Some(there) = compared.there.get(i) {
-            say(&format!("            {}", there.line()));
-            say(&format!("            {}", there.command));
+        if let Some(hit) = compared.hits.get(i) {
+            say(&format!("            {}", hit.line()));
+            say(&format!("            {}", hit.command));
         }
     }
 }
@@ -94,7 +94,7 @@ fn tolerance(value: f32) -> String {
 }
 
 /// Prints a line for each picture of a folder, and one for each student.
-pub fn table(all: &[Compared], extra: &[PathBuf]) {
+pub fn table(all: &[ComparedPair], extra: &[PathBuf]) {
     let names: Vec<String> = all.iter().map(|compared| name(&compared.pair)).collect();
     let wide = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(7);
     say(&format!("{:wide$}  verdict    differ %     RMSE    SSIM    FLIP  why", "picture"));
@@ -132,7 +132,7 @@ pub fn table(all: &[Compared], extra: &[PathBuf]) {
 
 /// Returns a table of comma-separated values (RFC 4180), one line a picture: its verdict, measures,
 /// the keywords of its mistakes, and their words.
-pub fn csv(all: &[Compared]) -> String {
+pub fn csv(all: &[ComparedPair]) -> String {
     let quoted = |text: &str| match text.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", text.replace('"', "\"\"")),
         false => text.to_string(),
@@ -162,7 +162,7 @@ pub fn csv(all: &[Compared]) -> String {
 }
 
 /// Counts the pictures of each student: same, different, missing, unreadable.
-pub fn students(all: &[Compared]) -> BTreeMap<String, [usize; 4]> {
+pub fn students(all: &[ComparedPair]) -> BTreeMap<String, [usize; 4]> {
     let mut students = BTreeMap::new();
     for compared in all {
         let Some(who) = &compared.pair.who else { continue };
@@ -178,7 +178,7 @@ pub fn students(all: &[Compared]) -> BTreeMap<String, [usize; 4]> {
 
 /// Returns all results as JSON. `psnr` is null if it is infinite, `ssim` if a picture is too small
 /// for it.
-pub fn json(all: &[Compared], extra: &[PathBuf], args: &CompareArgs) -> Value {
+pub fn json(all: &[ComparedPair], extra: &[PathBuf], args: &CompareArgs) -> Value {
     let verdicts = |wanted: &str| all.iter().filter(|compared| compared.verdict() == wanted).count();
     json!({
         "version": VERSION,
@@ -195,7 +195,7 @@ pub fn json(all: &[Compared], extra: &[PathBuf], args: &CompareArgs) -> Value {
 }
 
 /// Returns one pair as JSON.
-pub fn pair(compared: &Compared) -> Value {
+pub fn pair(compared: &ComparedPair) -> Value {
     let pair = &compared.pair;
     let mut value = json!({
         "name": pair.name,
@@ -208,11 +208,11 @@ pub fn pair(compared: &Compared) -> Value {
         Outcome::Missing => json!({}),
         Outcome::Failed(reason) => json!({ "error": reason }),
         Outcome::Compared(found) => {
-            report::comparison(found, &compared.there.iter().map(There::json).collect::<Vec<_>>())
+            report::comparison(found, &compared.hits.iter().map(PixelHit::json).collect::<Vec<_>>())
         }
     };
     if let Some(diagnosis) = &compared.diagnosis {
-        value["diagnosis"] = named::json(diagnosis);
+        value["diagnosis"] = mistakes::json(diagnosis);
     }
     if let (Value::Object(value), Value::Object(more)) = (&mut value, more) {
         value.extend(more);

@@ -3,7 +3,7 @@
 use crate::failure::{Failure, bad};
 use crate::terminal::{complain, say};
 use durer::diag::did_you_mean;
-use durer::dialect::{Compat, Dialect, DialectSet, set};
+use durer::dialect::{Dialect, DialectSet, Quirk, set};
 use durer::format::course::Hint;
 use std::path::Path;
 
@@ -11,13 +11,13 @@ use std::path::Path;
 pub struct Program {
     pub name: &'static str,
     pub dialect: Dialect,
-    pub compat: &'static [Compat],
+    pub compat: &'static [Quirk],
 }
 
 pub const PROGRAMS: [Program; 7] = [
     Program { name: "raytracer", dialect: Dialect::F04, compat: &[] },
     Program { name: "a4soln", dialect: Dialect::F12a4, compat: &[] },
-    Program { name: "a5soln", dialect: Dialect::F12a5, compat: &[Compat::ExitR0] },
+    Program { name: "a5soln", dialect: Dialect::F12a5, compat: &[Quirk::ExitR0] },
     Program { name: "a5soln-v2", dialect: Dialect::F12a5, compat: &[] },
     Program { name: "a4", dialect: Dialect::F16, compat: &[] },
     Program { name: "a4soln19", dialect: Dialect::F16, compat: &[] },
@@ -83,18 +83,18 @@ pub fn rows() -> impl Iterator<Item = &'static Row> {
 }
 
 /// The parsed arguments.
-pub struct Given {
+pub struct Arguments {
     options: Vec<(&'static Row, Vec<String>)>,
     unknown: Vec<String>,
 }
 
-impl Given {
+impl Arguments {
     pub fn parse(arguments: Vec<String>) -> Result<Self, Failure> {
-        let mut given = Given { options: Vec::new(), unknown: Vec::new() };
+        let mut parsed = Arguments { options: Vec::new(), unknown: Vec::new() };
         let mut rest = arguments.into_iter();
         while let Some(word) = rest.next() {
             let Some(row) = rows().find(|row| row.0 == word) else {
-                given.unknown.push(word);
+                parsed.unknown.push(word);
                 continue;
             };
             let values: Vec<String> = rest.by_ref().take(row.1.len()).collect();
@@ -104,9 +104,9 @@ impl Given {
                 let found = option.map(|option| format!(", but found {option}")).unwrap_or_default();
                 return Err(bad(format!("{word} needs {}{found}", row.1.join(" "))));
             }
-            given.options.push((row, values));
+            parsed.options.push((row, values));
         }
-        Ok(given)
+        Ok(parsed)
     }
 
     pub fn has(&self, name: &str) -> bool {

@@ -4,10 +4,10 @@
 //! samples and another's has none.
 
 use super::job;
-use super::options::Given;
+use super::options::Arguments;
 use crate::failure::{Failure, failed};
 use crate::guard::Guard;
-use crate::open::{Opened, read};
+use crate::open::{CompiledInput, read};
 use crate::report;
 use durer::LoadOptions;
 use durer::diag::Diagnostic;
@@ -29,19 +29,24 @@ const ONE_OF: usize = 1000;
 
 /// Opens a scene under the year that fits best. Prints its warnings, and a note where hints
 /// outside the scene's words changed the picture.
-pub fn open(scene: &Path, options: &LoadOptions, given: &Given, guard: &mut Guard) -> Result<Opened, Failure> {
-    let quiet = given.has("--quiet");
+pub fn open(
+    scene: &Path,
+    options: &LoadOptions,
+    arguments: &Arguments,
+    guard: &mut Guard,
+) -> Result<CompiledInput, Failure> {
+    let quiet = arguments.has("--quiet");
     let read = read(scene, options, quiet, guard)?;
     let guess = read.loaded.guess.clone().filter(|guess| guess.is_hinted() || guess.fitting.len() > 1);
     let Some(guess) = guess else {
         return read.compile(options, guard);
     };
     let mut chosen = read.quiet().compile(options, guard)?;
-    let mut trial = Trial::of(&chosen, given)?;
+    let mut trial = Trial::of(&chosen, arguments)?;
     let mut under = |dialect| {
         let options = LoadOptions { dialect: Some(dialect), ..options.clone() };
-        let opened = self::read(scene, &options, true, guard)?.compile(&options, guard)?;
-        Ok::<_, Failure>((Trial::of(&opened, given)?, opened))
+        let compiled = self::read(scene, &options, true, guard)?.compile(&options, guard)?;
+        Ok::<_, Failure>((Trial::of(&compiled, arguments)?, compiled))
     };
     if trial.nan > 0 {
         let others = guess.fitting.iter().filter(|other| **other != guess.dialect);
@@ -80,12 +85,12 @@ struct Trial {
 }
 
 impl Trial {
-    fn of(opened: &Opened, given: &Given) -> Result<Self, Failure> {
-        let job = job(given, opened)?;
+    fn of(compiled: &CompiledInput, arguments: &Arguments) -> Result<Self, Failure> {
+        let job = job(arguments, compiled)?;
         let times = job.width.max(job.height).div_ceil(SIDE);
         let [width, height] = [job.width, job.height].map(|length| (length / times).max(1));
         let job = Job { width, height, sampling: Sampling::Center, ..job };
-        let rendered = durer::render::render(&opened.world, &job, &Control::default()).map_err(failed)?;
+        let rendered = durer::render::render(&compiled.world, &job, &Control::default()).map_err(failed)?;
         Ok(Trial { nan: rendered.statistics.rejected, layers: rendered.pictures })
     }
 

@@ -8,7 +8,7 @@
 
 use durer::image::Image;
 use durer::math::Vec3;
-use durer::render::Noisy;
+use durer::render::NoisyPicture;
 use libloading::{Library, Symbol};
 use std::ffi::{CStr, c_char, c_int, c_void};
 use std::path::{Path, PathBuf};
@@ -33,7 +33,7 @@ const FLOAT3: c_int = 3;
 type Object = *mut c_void;
 
 /// Denoises a picture.
-pub fn denoise(noisy: &Noisy, threads: Option<usize>) -> Result<Image, String> {
+pub fn denoise(noisy: &NoisyPicture, threads: Option<usize>) -> Result<Image, String> {
     let library = load()?;
     let (width, height) = (noisy.picture.width as usize, noisy.picture.height as usize);
     let count = noisy.picture.pixels.len();

@@ -1,6 +1,6 @@
 //! The folder of a lesson. Only files of a lesson are replaced.
 
-use super::written::TEXT;
+use super::step_files::TEXT;
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
 use crate::output::save_silently;

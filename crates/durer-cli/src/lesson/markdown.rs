@@ -1,7 +1,7 @@
 //! The lesson as Markdown, with pictures as files.
 
 use super::folder::MARK;
-use super::written::{Lesson, PAGE, Written};
+use super::step_files::{Lesson, PAGE, StepFiles};
 use durer::lesson::OWN_SCENE_NAME;
 use std::fmt::Write;
 
@@ -20,7 +20,7 @@ pub fn text(lesson: &Lesson) -> String {
 }
 
 /// Appends one step. Writing to a string cannot fail.
-fn step(text: &mut String, number: usize, step: &Written, scene: &str) {
+fn step(text: &mut String, number: usize, step: &StepFiles, scene: &str) {
     let _ = writeln!(text, "\n## {number}. {}\n", step.title);
     if let Some(elsewhere) = step.elsewhere(scene) {
         let link = format!("[{OWN_SCENE_NAME}]({OWN_SCENE_NAME})");

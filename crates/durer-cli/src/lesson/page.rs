@@ -1,6 +1,6 @@
 //! The lesson as an HTML page.
 
-use super::written::{Figure, Lesson, Written};
+use super::step_files::{Figure, Lesson, StepFiles};
 use crate::page::{uri, with_data};
 use durer::lesson::OWN_SCENE;
 use serde_json::{Map, Value, json};
@@ -21,7 +21,7 @@ pub fn page(lesson: &Lesson) -> String {
     with_data(PAGE, &data)
 }
 
-fn step(step: &Written, scene: &str) -> Value {
+fn step(step: &StepFiles, scene: &str) -> Value {
     let figure = |figure: &Figure| json!({ "caption": figure.caption, "file": figure.file });
     json!({
         "title": step.title,

@@ -1,6 +1,6 @@
 //! Options of the picture, as stated by the library, and of the acceleration structure.
 
-use super::method::MethodArgs;
+use super::method::IntegratorArgs;
 use crate::failure::{Failure, bad};
 use clap::builder::{ArgPredicate, PossibleValuesParser, TypedValueParser};
 use clap::parser::ValueSource;
@@ -68,7 +68,7 @@ fn arg(option: &'static JobOption) -> Arg {
 impl Args for JobArgs {
     fn augment_args(command: Command) -> Command {
         let command = RenderJob::OPTIONS.iter().fold(command, |command, option| {
-            let command = if option.name == "bounces" { MethodArgs::augment_args(command) } else { command };
+            let command = if option.name == "bounces" { IntegratorArgs::augment_args(command) } else { command };
             command.arg(arg(option))
         });
         AccelArgs::augment_args(command)
@@ -81,7 +81,7 @@ impl Args for JobArgs {
 
 impl FromArgMatches for JobArgs {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let MethodArgs(mut options) = MethodArgs::from_arg_matches(matches)?;
+        let IntegratorArgs(mut options) = IntegratorArgs::from_arg_matches(matches)?;
         let given = |name: &str| matches.value_source(name).is_some_and(|source| source != ValueSource::DefaultValue);
         for JobOption { name, form, .. } in RenderJob::OPTIONS.iter().filter(|option| given(option.name)) {
             let text = match form {

@@ -3,20 +3,20 @@
 use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use durer::describe::{DescribedList, Kind, Value};
-use durer::integrator::Method;
+use durer::integrator::IntegratorKind;
 use durer::job::{RenderJob, option_name};
 use durer::options::{integrator_help, integrator_options};
 
 /// The integrator options that were given.
 #[derive(Clone, Default)]
-pub struct MethodArgs(pub RenderJob);
+pub struct IntegratorArgs(pub RenderJob);
 
-impl Args for MethodArgs {
+impl Args for IntegratorArgs {
     fn augment_args(command: Command) -> Command {
         let integrator = Arg::new("integrator")
             .long("integrator")
             .value_name("METHOD")
-            .value_parser(PossibleValuesParser::new(Method::kinds().iter().map(Method::name)))
+            .value_parser(PossibleValuesParser::new(IntegratorKind::kinds().iter().map(IntegratorKind::name)))
             .help(integrator_help());
         integrator_options().into_iter().fold(command.arg(integrator), |command, (field, help)| {
             let (value, parser) = match field.kind {
@@ -34,7 +34,7 @@ impl Args for MethodArgs {
     }
 }
 
-impl FromArgMatches for MethodArgs {
+impl FromArgMatches for IntegratorArgs {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         let mut job = RenderJob::default();
         if let Some(name) = matches.get_one::<String>("integrator") {
@@ -46,7 +46,7 @@ impl FromArgMatches for MethodArgs {
                 job.set_integrator_option(option_name(&field), value.clone()).map_err(wrong)?;
             }
         }
-        Ok(MethodArgs(job))
+        Ok(IntegratorArgs(job))
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {

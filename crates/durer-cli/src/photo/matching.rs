@@ -28,11 +28,11 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         seed: args.run.seed,
         ..Options::default()
     };
-    let matched = progress::shares("matching photographs", |tell| {
-        let tell = |share: f64| {
+    let matched = progress::shares("matching photographs", |report| {
+        let report = |share: f64| {
             if args.run.quiet {
             } else {
-                tell(share)
+                report(share)
             }
         };
         let mut described = Vec::new();
@@ -45,9 +45,9 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
             let photo = photo::read(&name(path), &content).map_err(wrong)?;
             doubts.extend(photo.exif.doubt.as_ref().map(|doubt| format!("{}: {doubt}", photo.name)));
             described.push(threaded(args.run.threads, || describe(&photo, &options))?);
-            tell(FEATURES * (i + 1) as f64 / paths.len() as f64);
+            report(FEATURES * (i + 1) as f64 / paths.len() as f64);
         }
-        let watch = |share: f64| tell(FEATURES + (1.0 - FEATURES) * share);
+        let watch = |share: f64| report(FEATURES + (1.0 - FEATURES) * share);
         let matches = threaded(args.run.threads, || match_all(described, &options, &watch))?.map_err(wrong)?;
         Ok::<_, Failure>((matches, doubts))
     });

@@ -10,7 +10,7 @@ use super::inputs::{bytes, wrong};
 use crate::failure::failed;
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
-use crate::open::{Opened, load_options, read};
+use crate::open::{CompiledInput, load_options, read};
 use crate::options::accel;
 use crate::output::{encode, format, save};
 use crate::{job, progress};
@@ -77,15 +77,15 @@ pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
 }
 
 /// Returns a flag for each material: true for stand-ins.
-fn stand_ins(opened: &Opened, numbers: &[u32]) -> Result<Vec<bool>, Failure> {
-    let count = opened.loaded.scene.materials.len();
+fn stand_ins(compiled: &CompiledInput, numbers: &[u32]) -> Result<Vec<bool>, Failure> {
+    let count = compiled.loaded.scene.materials.len();
     let mut all = vec![false; count];
     for number in numbers {
         let slot = all.get_mut(*number as usize);
         *slot.ok_or_else(|| bad(format!("--stand-in {number}: the scene has {count} materials, numbered from 0")))? =
             true;
     }
-    let objects = opened.loaded.scene.root.iter().flat_map(|root| &root.objects);
+    let objects = compiled.loaded.scene.root.iter().flat_map(|root| &root.objects);
     let (there, others) = objects.fold((false, false), |(a, b), object| {
         let (c, d) = (has(object, &all, true), has(object, &all, false));
         (a || c, b || d)
@@ -152,9 +152,9 @@ fn coverage(
         for (i, material) in layer.image.pixels.iter().enumerate() {
             let (x, y) = (i as u32 % width, top + i as u32 / width);
             // A negative material is the background.
-            let thing = material.x >= 0.0 && stand_in.get(material.x as usize) != Some(&true);
+            let object = material.x >= 0.0 && stand_in.get(material.x as usize) != Some(&true);
             let pixel = (y / ACROSS) as usize * (width / ACROSS) as usize + (x / ACROSS) as usize;
-            covered[pixel] += f32::from(u8::from(thing)) / (ACROSS * ACROSS) as f32;
+            covered[pixel] += f32::from(u8::from(object)) / (ACROSS * ACROSS) as f32;
         }
     }
     Ok(covered)
@@ -200,15 +200,15 @@ mod tests {
 
     #[test]
     fn shadows_darken_and_objects_cover_the_photograph() {
-        let [plate, ground, thing] = [0.6, 0.4, 0.9].map(Vec3::splat);
+        let [plate, ground, object] = [0.6, 0.4, 0.9].map(Vec3::splat);
         // Three lit pixels; one in half shadow; one half covered, half in shadow; one covered.
         let without = [ground; 6];
-        let with = [ground, ground, ground, 0.5 * ground, 0.5 * thing + 0.25 * ground, thing];
+        let with = [ground, ground, ground, 0.5 * ground, 0.5 * object + 0.25 * ground, object];
         let covered = [0.0, 0.0, 0.0, 0.0, 0.5, 1.0];
         let placed = composed(1, &[plate; 6], &with, &without, &covered);
         // The neighbours of the half covered pixel have a mean shadow of three quarters.
-        let mixed = 0.5 * thing + 0.25 * ground + 0.5 * 0.75 * (plate - ground);
-        let expected = [plate, plate, plate, 0.5 * plate, mixed, thing];
+        let mixed = 0.5 * object + 0.25 * ground + 0.5 * 0.75 * (plate - ground);
+        let expected = [plate, plate, plate, 0.5 * plate, mixed, object];
         assert!(placed.iter().zip(expected).all(|(a, b)| (*a - b).length() < 1e-6), "{placed:?}");
         // A black stand-in leaves the photograph unchanged.
         assert_eq!(composed(1, &[plate], &[Vec3::ZERO], &[Vec3::ZERO], &[0.0]), [plate]);

@@ -12,7 +12,7 @@ use durer_photo::format::Output;
 use std::path::{Path, PathBuf};
 
 /// Prints a summary of a reconstruction and its residuals.
-pub fn tell(all: &Reconstruction) {
+pub fn report(all: &Reconstruction) {
     let (fit, count) = (all.fit(), all.registered());
     say(&format!("{count} of {} photographs registered; {} points", all.views.len(), all.points.len()));
     if fit.observations > 0 {

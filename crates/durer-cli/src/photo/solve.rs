@@ -2,7 +2,7 @@
 
 use super::args::SolveArgs;
 use super::inputs::{bytes, read, threaded, wrong};
-use super::results::{Results, tell};
+use super::results::{Results, report};
 use crate::failure::Failure;
 use crate::guard::Guard;
 use crate::progress;
@@ -28,7 +28,7 @@ pub fn run(args: &SolveArgs) -> Result<(), Failure> {
             (incremental(args, &matches)?, control)
         }
         false => {
-            let all = given(args, &mut guard)?;
+            let all = read_input(args, &mut guard)?;
             let names: Vec<&str> = all.views.iter().map(|view| &*view.name).collect();
             let control = control(args, &names, &mut guard)?;
             (adjusted(args, all)?, control)
@@ -44,7 +44,7 @@ pub fn run(args: &SolveArgs) -> Result<(), Failure> {
         }
     }
     if !args.run.quiet {
-        tell(&all);
+        report(&all);
         all.lenses.iter().enumerate().for_each(|(i, lens)| say(&lens_line(&all, i, lens)));
     }
     if args.covariance {
@@ -94,7 +94,7 @@ fn incremental(args: &SolveArgs, matches: &Matches) -> Result<Reconstruction, Fa
 }
 
 /// Reads a file that has cameras.
-fn given(args: &SolveArgs, guard: &mut Guard) -> Result<Reconstruction, Failure> {
+fn read_input(args: &SolveArgs, guard: &mut Guard) -> Result<Reconstruction, Failure> {
     let mut all = read(&args.file, args.pictures.as_deref(), guard)?;
     if args.own_lenses {
         all.lenses = all.views.iter().map(|view| all.lenses[view.lens]).collect();

@@ -1,6 +1,6 @@
 //! Pages in a real browser: headless Chromium, from file:// URLs.
 
-use super::Place;
+use super::TestFolder;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -40,7 +40,7 @@ fn chromium() -> Option<PathBuf> {
 /// The page must fetch nothing, from disk or network. It must be readable in windows of several
 /// widths, light and dark.
 #[track_caller]
-pub fn sees(place: &Place, page: &str, script: &str, wanted: &[&str]) {
+pub fn sees(place: &TestFolder, page: &str, script: &str, wanted: &[&str]) {
     let Some(chromium) = chromium() else { return };
     let title = title_of(place, &chromium, page, "clicked.html", &format!("{HELPERS}{script}"));
     for wanted in wanted.iter().chain(&["fetched 0"]) {
@@ -111,7 +111,7 @@ setTimeout(() => {
 "#;
 
 /// Writes a copy of a page with a script at its end.
-fn put_with(place: &Place, page: &str, name: &str, script: &str) {
+fn put_with(place: &TestFolder, page: &str, name: &str, script: &str) {
     let text = String::from_utf8(place.bytes(page)).unwrap();
     let end = text.rfind("</body>").unwrap();
     place.put(name, format!("{}<script>{script}</script>{}", &text[..end], &text[end..]));
@@ -119,7 +119,7 @@ fn put_with(place: &Place, page: &str, name: &str, script: &str) {
 
 /// Returns the title of a page after a script at its end has run.
 #[track_caller]
-fn title_of(place: &Place, chromium: &Path, page: &str, name: &str, script: &str) -> String {
+fn title_of(place: &TestFolder, chromium: &Path, page: &str, name: &str, script: &str) -> String {
     let text = String::from_utf8(place.bytes(page)).unwrap();
     // The SVG namespace is an address that is never fetched.
     let links = text.replace("http://www.w3.org/2000/svg", "");

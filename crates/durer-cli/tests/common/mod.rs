@@ -32,20 +32,20 @@ Group { numObjects 3 MaterialIndex 0
 ";
 
 /// A temporary folder with `scene.txt` and `endless.txt`, in which the program runs.
-pub struct Place {
+pub struct TestFolder {
     folder: TempDir,
 }
 
 /// Output of a run.
-pub struct Ran {
+pub struct ProgramOutput {
     pub code: Option<i32>,
     pub out: String,
     pub err: String,
 }
 
-impl Place {
-    pub fn new() -> Place {
-        let place = Place { folder: TempDir::new().unwrap() };
+impl TestFolder {
+    pub fn new() -> TestFolder {
+        let place = TestFolder { folder: TempDir::new().unwrap() };
         place.put("scene.txt", SCENE);
         place.put("endless.txt", ENDLESS);
         place
@@ -66,28 +66,28 @@ impl Place {
         command
     }
 
-    pub fn run(&self, arguments: &str) -> Ran {
-        Ran::of(self.command(arguments).output().unwrap())
+    pub fn run(&self, arguments: &str) -> ProgramOutput {
+        ProgramOutput::of(self.command(arguments).output().unwrap())
     }
 
     /// Runs the program and checks its exit code.
     #[track_caller]
-    pub fn gives(&self, code: i32, arguments: &str) -> Ran {
-        let ran = self.run(arguments);
-        assert_eq!(ran.code, Some(code), "{arguments}\n{}", ran.err);
-        assert!(!ran.err.contains("panicked"), "{}", ran.err);
-        ran
+    pub fn expect_exit(&self, code: i32, arguments: &str) -> ProgramOutput {
+        let output = self.run(arguments);
+        assert_eq!(output.code, Some(code), "{arguments}\n{}", output.err);
+        assert!(!output.err.contains("panicked"), "{}", output.err);
+        output
     }
 
     /// Runs the program and checks that it fails with these words and writes nothing.
     #[track_caller]
     pub fn refused(&self, code: i32, arguments: &str, words: &[&str]) {
         let before = self.names();
-        let ran = self.gives(code, arguments);
+        let output = self.expect_exit(code, arguments);
         for word in words {
-            assert!(ran.err.contains(word), "{arguments}\n`{word}` is not in:\n{}", ran.err);
+            assert!(output.err.contains(word), "{arguments}\n`{word}` is not in:\n{}", output.err);
         }
-        assert_eq!(ran.out, "", "{arguments}");
+        assert_eq!(output.out, "", "{arguments}");
         assert_eq!(self.names(), before, "{arguments}");
     }
 
@@ -113,13 +113,13 @@ impl Place {
 
     /// Interrupts a run after a while. Returns its output and the time it took to end.
     #[cfg(unix)]
-    pub fn interrupted(&self, arguments: &str, after: Duration) -> (Ran, Duration) {
+    pub fn interrupted(&self, arguments: &str, after: Duration) -> (ProgramOutput, Duration) {
         self.signalled(arguments, after, &["INT"])
     }
 
     /// Sends several signals in quick succession to a run. See [`Self::interrupted`].
     #[cfg(unix)]
-    pub fn signalled(&self, arguments: &str, after: Duration, signals: &[&str]) -> (Ran, Duration) {
+    pub fn signalled(&self, arguments: &str, after: Duration, signals: &[&str]) -> (ProgramOutput, Duration) {
         let mut command = self.command(arguments);
         let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         std::thread::sleep(after);
@@ -128,23 +128,23 @@ impl Place {
             let sent = Command::new("kill").args([&format!("-{signal}"), &id]).stderr(Stdio::null()).status();
             assert!(sent.unwrap().success() || *signal != signals[0]);
         }
-        let ran = Ran::of(child.wait_with_output().unwrap());
-        (ran, start.elapsed())
+        let output = ProgramOutput::of(child.wait_with_output().unwrap());
+        (output, start.elapsed())
     }
 
     /// Runs a shell script in which `$DURER` is the program, for example under resource limits.
     #[cfg(unix)]
-    pub fn shell(&self, script: &str) -> Ran {
+    pub fn shell(&self, script: &str) -> ProgramOutput {
         let mut command = Command::new("bash");
         command.args(["-c", script]).env("DURER", durer()).current_dir(self.folder.path()).stdin(Stdio::null());
-        Ran::of(command.output().unwrap())
+        ProgramOutput::of(command.output().unwrap())
     }
 }
 
-impl Ran {
-    fn of(output: Output) -> Ran {
+impl ProgramOutput {
+    fn of(output: Output) -> ProgramOutput {
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-        Ran { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
+        ProgramOutput { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
     }
 }
 

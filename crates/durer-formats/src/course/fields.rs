@@ -5,8 +5,8 @@ use super::reader::{Reader, names};
 use super::words::begins_block;
 use crate::report::shown;
 use durer_diag::{Diagnostic, Span, did_you_mean};
-use durer_scene::describe::{DescribedList, Field, FileName, Kind, Rule, Value};
-use durer_scene::dialect::{Compat, Dialect, DialectSet};
+use durer_scene::describe::{Constraint, DescribedList, Field, FileName, Kind, Value};
+use durer_scene::dialect::{Dialect, DialectSet, Quirk};
 use durer_scene::math::Vec3;
 
 /// Order of the fields that the course's parsers require.
@@ -21,7 +21,7 @@ impl Reader<'_, '_> {
     /// returns true if it did.
     pub(super) fn fields<T: DescribedList>(
         &mut self,
-        thing: &mut T,
+        item: &mut T,
         keyword: Span,
         order: Order,
         mut extra: impl FnMut(&mut Self, &str, Span) -> bool,
@@ -32,8 +32,8 @@ impl Reader<'_, '_> {
             return;
         }
         // For a statement of the Dürer dialect only, report the keyword and not its fields as well.
-        let ours = thing.is_ours();
-        let fields = thing.fields();
+        let ours = item.is_ours();
+        let fields = item.fields();
         let mut given = vec![None; fields.len()];
         let mut last = 0;
         while let Some((word, span)) = self.word_before_close() {
@@ -69,8 +69,8 @@ impl Reader<'_, '_> {
                 self.diagnostics.push(warning.related(first, "first given here"));
             }
             given[index] = Some(span);
-            if let Some(value) = self.value(thing.keyword(Dialect::Durer), field, &word, span) {
-                thing.set(index, value);
+            if let Some(value) = self.value(item.keyword(Dialect::Durer), field, &word, span) {
+                item.set(index, value);
             } else {
                 self.skip_values();
             }
@@ -165,18 +165,18 @@ impl Reader<'_, '_> {
                 false => format!("its fields are {}", words.join(", ")),
             }
         });
-        let help = super::meant::misplaced(word, name).map_or(help, String::from);
+        let help = super::suggestions::misplaced(word, name).map_or(help, String::from);
         let message = match word.parse::<f32>() {
             Ok(_) => format!("unexpected number {} in `{name}`", shown(word.as_bytes())),
             Err(_) => format!("`{name}` has no field {}", shown(word.as_bytes())),
         };
         let error = Diagnostic::error(message).code("unknown-word").at(span).label("not known here").help(help);
-        self.error(self.with_meant(error, word, span, known()));
+        self.error(self.with_suggestion(error, word, span, known()));
         self.skip_value();
     }
 
     /// Reads a value of a field's kind and checks its rule.
-    fn value(&mut self, thing: &str, field: &Field, word: &str, keyword: Span) -> Option<Value> {
+    fn value(&mut self, item: &str, field: &Field, word: &str, keyword: Span) -> Option<Value> {
         let start = self.peek().map_or(keyword, |t| t.span);
         let value = match field.kind {
             Kind::Float => Value::Float(self.number(word, 1, 1)?),
@@ -195,11 +195,11 @@ impl Reader<'_, '_> {
             Kind::Word(words) => Value::Word(self.one_of(word, words)?),
             Kind::Rows(width) => Value::Rows(self.rows(word, keyword, width)?),
         };
-        if field.rule != Rule::Any
+        if field.rule != Constraint::Any
             && let Err(violation) = field.rule.validate(&value)
         {
             let span = start.to(self.last_span());
-            if let Some(drawn) = self.any_values().then(|| field.drawn_anyway(thing, &value)).flatten() {
+            if let Some(drawn) = self.any_values().then(|| field.drawn_anyway(item, &value)).flatten() {
                 let warning = Diagnostic::warning(format!("`{word}` {violation}")).code("bad-value").at(span);
                 self.diagnostics.push(warning.effect("rendered anyway, as by the official program"));
                 return Some(drawn);
@@ -300,7 +300,7 @@ impl Reader<'_, '_> {
 
     /// True with the quirk `any-values`, which renders senseless values.
     pub(super) fn any_values(&self) -> bool {
-        self.options.compat & Compat::AnyValues.bit() != 0
+        self.options.compat & Quirk::AnyValues.bit() != 0
     }
 
     /// Reads the `i`-th of `count` finite numbers.
@@ -350,19 +350,19 @@ impl Reader<'_, '_> {
         let text = self.text(token.span);
         let message = format!("`{after}` needs {what}, but found {}", shown(text.as_bytes()));
         let error = Diagnostic::error(message).code("syntax").at(token.span).label(format!("{what} expected"));
-        let Some((help, meant)) = number_help(&text).filter(|_| what.contains("number")) else {
+        let Some((help, suggestion)) = number_help(&text).filter(|_| what.contains("number")) else {
             return self.error(error);
         };
         let mut error = error.help(help);
         // The numbers after it most likely have the same mistake.
         let following = (self.at..).map_while(|i| self.ahead(i - self.at)).map_while(|t| {
             let text = self.text(t.span);
-            let meant = number_help(&text).and_then(|(_, meant)| meant);
-            (meant.is_some() || text.parse::<f32>().is_ok()).then_some((t.span, meant))
+            let suggestion = number_help(&text).and_then(|(_, suggestion)| suggestion);
+            (suggestion.is_some() || text.parse::<f32>().is_ok()).then_some((t.span, suggestion))
         });
-        if meant.is_some() {
-            let edits: Vec<_> = following.take(16).filter_map(|(span, meant)| Some((span, meant?))).collect();
-            error = edits.into_iter().fold(error, |error, (span, meant)| error.fix(span, meant));
+        if suggestion.is_some() {
+            let edits: Vec<_> = following.take(16).filter_map(|(span, suggestion)| Some((span, suggestion?))).collect();
+            error = edits.into_iter().fold(error, |error, (span, suggestion)| error.fix(span, suggestion));
         }
         self.error(error);
     }
@@ -411,7 +411,7 @@ impl Reader<'_, '_> {
             self.error(Diagnostic::error(message).at(span));
         } else {
             let warning = Diagnostic::warning(message).code("foreign-word").at(span);
-            self.diagnostics.push(match super::meant::here(word, dialect) {
+            self.diagnostics.push(match super::suggestions::here(word, dialect) {
                 Some(here) => warning.help(format!("in {} it is `{here}`", dialect.name())),
                 None => warning,
             });

@@ -14,7 +14,7 @@ const MAX_WORDS: usize = 1 << 26;
 
 /// Result of opening an included file.
 #[derive(Debug)]
-pub enum Opened {
+pub enum IncludedFile {
     /// Index of the file for spans, and its bytes.
     Text(u32, Arc<[u8]>),
     /// The file cannot be read.
@@ -24,10 +24,10 @@ pub enum Opened {
 }
 
 /// Returns a function that opens included files below a folder and registers them.
-pub fn below<'a>(source: &'a dyn AssetSource, files: &'a RefCell<Files>) -> impl Fn(&str) -> Opened + 'a {
+pub fn below<'a>(source: &'a dyn AssetSource, files: &'a RefCell<Files>) -> impl Fn(&str) -> IncludedFile + 'a {
     move |name| match source.read(name) {
-        Ok(bytes) => Opened::Text(files.borrow_mut().add_once(name, &bytes), bytes),
-        Err(error) => Opened::Failed(error),
+        Ok(bytes) => IncludedFile::Text(files.borrow_mut().add_once(name, &bytes), bytes),
+        Err(error) => IncludedFile::Failed(error),
     }
 }
 
@@ -58,7 +58,7 @@ impl<'a> Texts<'a> {
 
 /// Replaces each `include` by the tokens of its file.
 pub(super) struct Splicer<'o, 't, 'a> {
-    pub open: &'o dyn Fn(&str) -> Opened,
+    pub open: &'o dyn Fn(&str) -> IncludedFile,
     pub texts: &'t mut Texts<'a>,
     pub diagnostics: &'t mut Diagnostics,
     /// Names of the files being read, outermost first.
@@ -112,14 +112,14 @@ impl Splicer<'_, '_, '_> {
             return Vec::new();
         }
         let (number, bytes) = match (self.open)(&name) {
-            Opened::Text(number, bytes) => (number, bytes),
-            Opened::Failed(error) => {
+            IncludedFile::Text(number, bytes) => (number, bytes),
+            IncludedFile::Failed(error) => {
                 let help = error.help();
                 let error = Diagnostic::error(error.to_string()).code("missing-file").at(at);
                 self.diagnostics.push(Diagnostic { help, ..error });
                 return Vec::new();
             }
-            Opened::Nowhere => {
+            IncludedFile::Nowhere => {
                 let message = "a text without a folder cannot include files";
                 self.diagnostics.push(Diagnostic::error(message).code("include").at(keyword.to(at)));
                 return Vec::new();

@@ -4,7 +4,6 @@ mod fields;
 pub mod guess;
 mod include;
 mod lexer;
-mod meant;
 mod named;
 mod nodes;
 pub mod place;
@@ -15,15 +14,16 @@ mod reader;
 mod recover;
 pub mod reference;
 mod sections;
+mod suggestions;
 mod transform;
 mod words;
 pub mod write;
 
 use durer_diag::{Diagnostic, Diagnostics, Span};
-use durer_scene::dialect::{CompatSet, Dialect};
+use durer_scene::dialect::{Dialect, QuirkSet};
 use durer_scene::scene::Scene;
 pub use guess::{Guess, Hint, guess};
-pub use include::{Opened, below};
+pub use include::{IncludedFile, below};
 pub(super) use lexer::is_word;
 pub(super) use transform::{flat, senseless};
 pub use write::write;
@@ -37,12 +37,12 @@ pub struct ReadOptions {
     /// of other years, and their order of fields and counts.
     pub strict: bool,
     /// Quirks of the course's program.
-    pub compat: CompatSet,
+    pub compat: QuirkSet,
 }
 
 /// Reads a scene that includes no files. Collects all errors; returns `None` if there is one.
 pub fn read(bytes: &[u8], file: u32, options: ReadOptions, diagnostics: &mut Diagnostics) -> Option<Scene> {
-    read_with(bytes, file, options, &|_| Opened::Nowhere, diagnostics)
+    read_with(bytes, file, options, &|_| IncludedFile::Nowhere, diagnostics)
 }
 
 /// Reads a scene; `open` opens the files that it includes.
@@ -50,7 +50,7 @@ pub fn read_with(
     bytes: &[u8],
     file: u32,
     options: ReadOptions,
-    open: &dyn Fn(&str) -> Opened,
+    open: &dyn Fn(&str) -> IncludedFile,
     diagnostics: &mut Diagnostics,
 ) -> Option<Scene> {
     if bytes.len() >= u32::MAX as usize {

@@ -7,7 +7,7 @@ use crate::report::shown;
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::camera::Camera;
 use durer_scene::describe::DescribedList;
-use durer_scene::dialect::{Compat, Dialect, set};
+use durer_scene::dialect::{Dialect, Quirk, set};
 use durer_scene::light::Light;
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Group, MatrixOp, MatrixRules, Node, Object, Operation, Spanned};
@@ -47,11 +47,11 @@ impl Reader<'_, '_> {
 
     /// Rules for matrix products, from the requested quirks.
     fn matrix_rules(&self) -> MatrixRules {
-        let has = |compat: Compat| self.options.compat & compat.bit() != 0;
+        let has = |compat: Quirk| self.options.compat & compat.bit() != 0;
         MatrixRules {
-            matrix_on_left: has(Compat::MatrixOnLeft),
-            dropped_shear: has(Compat::DroppedShear),
-            dropped_tiny: has(Compat::TinyTransforms),
+            matrix_on_left: has(Quirk::MatrixOnLeft),
+            dropped_shear: has(Quirk::DroppedShear),
+            dropped_tiny: has(Quirk::TinyTransforms),
         }
     }
 
@@ -72,9 +72,9 @@ impl Reader<'_, '_> {
     }
 
     /// Reads one node: its transform, its components and its child nodes, in any order.
-    fn node(&mut self, keyword: Span) -> Inside {
+    fn node(&mut self, keyword: Span) -> NodeContent {
         const KNOWN: [&str; 5] = ["Node", "Transform", "Component<Material>", "Component<Light>", "Component<Object>"];
-        let mut inside = Inside::default();
+        let mut inside = NodeContent::default();
         if !self.descend("nodes", keyword) || !self.open(keyword) {
             return inside;
         }
@@ -275,8 +275,8 @@ impl Reader<'_, '_> {
     }
 
     /// Reads the fields of a component; ignores `type`.
-    fn component_fields<T: DescribedList>(&mut self, thing: &mut T, keyword: Span) {
-        self.fields(thing, keyword, Order::Any, |reader, word, _| {
+    fn component_fields<T: DescribedList>(&mut self, item: &mut T, keyword: Span) {
+        self.fields(item, keyword, Order::Any, |reader, word, _| {
             let is_type = word == "type";
             if is_type {
                 reader.advance();
@@ -288,7 +288,7 @@ impl Reader<'_, '_> {
 
 /// Contents of a node.
 #[derive(Default)]
-struct Inside {
+struct NodeContent {
     /// Matrices of the node; `None` without a `Transform`.
     ops: Option<Vec<MatrixOp>>,
     material: Option<u32>,
@@ -298,10 +298,10 @@ struct Inside {
     has_nodes: bool,
 }
 
-impl Inside {
+impl NodeContent {
     /// Returns the node as one object; `None` if it has lights only.
     fn object(self, span: Span) -> Option<Object> {
-        let Inside { ops, material, mut objects, lights, has_nodes } = self;
+        let NodeContent { ops, material, mut objects, lights, has_nodes } = self;
         if objects.is_empty() && !lights.is_empty() {
             return None;
         }

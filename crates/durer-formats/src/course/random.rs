@@ -2,7 +2,7 @@
 //! fuzzer's bytes make the choices.
 
 use durer_scene::camera::Camera;
-use durer_scene::describe::{DescribedList, Field, FileName, Kind, Rule, Value};
+use durer_scene::describe::{Constraint, DescribedList, Field, FileName, Kind, Value};
 use durer_scene::dialect::Dialect;
 use durer_scene::light::Light;
 use durer_scene::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid, is_material_index};
@@ -88,15 +88,15 @@ impl Random {
             };
             // A random number is rarely in the range of a narrow rule, so draw from the range.
             let value = match (field.rule, value) {
-                (Rule::Counts(most), _) => {
+                (Constraint::Counts(most), _) => {
                     Value::Vec3(Vec3::from([0; 3].map(|_| 1.0 + self.below(most as usize) as f32)))
                 }
-                (Rule::From(low, high), _) => Value::Float(low + (high - low) * self.below(1001) as f32 / 1000.0),
-                (Rule::Between(low, high), _) => {
+                (Constraint::From(low, high), _) => Value::Float(low + (high - low) * self.below(1001) as f32 / 1000.0),
+                (Constraint::Between(low, high), _) => {
                     Value::Float(low + (high - low) * (1 + self.below(998)) as f32 / 1000.0)
                 }
-                (Rule::Share, _) => Value::Float(self.below(1001) as f32 / 1000.0),
-                (Rule::UpTo(high), _) => Value::Float(high * (1 + self.below(1000)) as f32 / 1000.0),
+                (Constraint::Share, _) => Value::Float(self.below(1001) as f32 / 1000.0),
+                (Constraint::UpTo(high), _) => Value::Float(high * (1 + self.below(1000)) as f32 / 1000.0),
                 (_, value) => value,
             };
             if field.rule.validate(&value).is_ok() {
@@ -105,18 +105,18 @@ impl Random {
         }
     }
 
-    fn thing<T: DescribedList>(&mut self, materials: usize) -> T {
+    fn item<T: DescribedList>(&mut self, materials: usize) -> T {
         let mut kinds = T::kinds();
-        let mut thing = kinds.remove(self.below(kinds.len()));
-        for (i, field) in thing.fields().iter().enumerate() {
+        let mut entry = kinds.remove(self.below(kinds.len()));
+        for (i, field) in entry.fields().iter().enumerate() {
             // A cube map needs six files.
             let missing = self.tame && field.name.to_lowercase().starts_with("cube");
             if field.required || self.below(2) == 0 && !missing {
                 let value = self.value(field, materials);
-                thing.set(i, value);
+                entry.set(i, value);
             }
         }
-        thing
+        entry
     }
 
     fn matrix(&mut self) -> MatrixOp {
@@ -152,11 +152,11 @@ impl Random {
         }
         let material = *current;
         let node = match self.below(if depth > 4 { 5 } else { 8 }) {
-            0 | 1 => Node::Primitive(self.thing::<Primitive>(materials)),
-            2 => Node::Mesh(self.thing::<TriangleMesh>(materials)),
-            3 => Node::HeightField(self.thing::<HeightField>(materials)),
+            0 | 1 => Node::Primitive(self.item::<Primitive>(materials)),
+            2 => Node::Mesh(self.item::<TriangleMesh>(materials)),
+            3 => Node::HeightField(self.item::<HeightField>(materials)),
             4 => Node::Voxels(
-                self.thing::<VoxelGrid>(materials),
+                self.item::<VoxelGrid>(materials),
                 (0..self.below(3))
                     .map(|_| Sphere { center: self.vec3(), radius: 1.0 + self.below(9) as f32 })
                     .collect(),
@@ -180,7 +180,7 @@ impl Random {
     fn textures(&mut self) -> Assets {
         let mut assets = Assets::default();
         for i in 0..self.below(3) {
-            assets.pictures.insert(format!("t{i}"), self.thing::<NamedTexture>(0).picture());
+            assets.pictures.insert(format!("t{i}"), self.item::<NamedTexture>(0).picture());
         }
         assets
     }
@@ -194,20 +194,20 @@ impl Random {
         let mut materials = Vec::new();
         for i in 0..self.below(6) {
             materials.push(spanned(if i > 0 && self.below(3) == 0 {
-                Material::Solid(self.thing::<Solid>(i), self.matrices())
+                Material::Solid(self.item::<Solid>(i), self.matrices())
             } else if dialect == Dialect::Durer && self.below(3) == 0 {
-                Material::Principled(Box::new(self.thing::<PrincipledMaterial>(i)))
+                Material::Principled(Box::new(self.item::<PrincipledMaterial>(i)))
             } else if dialect == Dialect::Durer && self.below(4) == 0 {
-                Material::Hair(self.thing::<HairMaterial>(i))
+                Material::Hair(self.item::<HairMaterial>(i))
             } else {
-                let noise = (self.below(3) == 0).then(|| self.thing::<ColorNoise>(i));
-                Material::Phong(Box::new(self.thing::<PhongMaterial>(i)), noise)
+                let noise = (self.below(3) == 0).then(|| self.item::<ColorNoise>(i));
+                Material::Phong(Box::new(self.item::<PhongMaterial>(i)), noise)
             }));
         }
         let light = |random: &mut Self| {
             // Scenes of nodes support only their two kinds of lights.
             let mut value = loop {
-                let value = random.thing::<Light>(0);
+                let value = random.item::<Light>(0);
                 if !(nodes && value.is_ours()) {
                     break value;
                 }
@@ -222,10 +222,10 @@ impl Random {
         let mut current = None;
         let objects = (0..self.below(5)).map(|_| self.object(0, materials.len(), &mut current, true)).collect();
         Scene {
-            wishes: Default::default(),
-            camera: (self.below(4) > 0).then(|| self.thing::<Camera>(0)),
-            background: self.thing::<Background>(0),
-            fog: (dialect == Dialect::Durer && self.below(3) == 0).then(|| spanned(self.thing::<Fog>(0))),
+            render_defaults: Default::default(),
+            camera: (self.below(4) > 0).then(|| self.item::<Camera>(0)),
+            background: self.item::<Background>(0),
+            fog: (dialect == Dialect::Durer && self.below(3) == 0).then(|| spanned(self.item::<Fog>(0))),
             lights,
             materials,
             root: (nodes || self.below(8) > 0).then_some(Group { objects }),

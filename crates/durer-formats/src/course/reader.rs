@@ -1,7 +1,7 @@
 //! State of reading a file: its tokens, and the recovery after mistakes.
 
 use super::ReadOptions;
-use super::include::{Opened, Splicer, Texts};
+use super::include::{IncludedFile, Splicer, Texts};
 use super::lexer::{Token, TokenKind, tokens};
 use super::words::{begins_block, dialects_of, home_of, is_section};
 use durer_diag::{Diagnostic, Diagnostics, Span};
@@ -14,7 +14,7 @@ const DEEPEST: usize = 200;
 
 /// Named items of the file.
 #[derive(Default)]
-pub(super) struct Named {
+pub(super) struct NamedItems {
     pub materials: BTreeMap<String, u32>,
     pub objects: BTreeMap<String, (Object, usize, Span)>,
     /// Names of objects with errors, which were reported.
@@ -23,7 +23,7 @@ pub(super) struct Named {
     pub used: usize,
 }
 
-impl Named {
+impl NamedItems {
     /// Removes the names of materials.
     pub fn clear_materials(&mut self) {
         self.materials.clear();
@@ -52,7 +52,7 @@ pub(super) struct Reader<'a, 'd> {
     /// Every `MaterialIndex`, checked when all materials are known.
     pub material_uses: Vec<(u32, Span)>,
     /// Named materials and objects.
-    pub named: Named,
+    pub named: NamedItems,
     /// Number of errors that were merged into an earlier report.
     pub repeated: usize,
 }
@@ -62,7 +62,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         bytes: &'a [u8],
         file: u32,
         options: ReadOptions,
-        open: &dyn Fn(&str) -> Opened,
+        open: &dyn Fn(&str) -> IncludedFile,
         diagnostics: &'d mut Diagnostics,
     ) -> Self {
         let (mut all, mut texts) = (tokens(bytes, file), Texts::new(bytes, file));
@@ -86,7 +86,7 @@ impl<'a, 'd> Reader<'a, 'd> {
             stopped: false,
             material: None,
             material_uses: Vec::new(),
-            named: Named::default(),
+            named: NamedItems::default(),
             repeated: 0,
         };
         reader.check_form(&comments);

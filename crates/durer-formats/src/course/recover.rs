@@ -1,8 +1,8 @@
 //! Recovery after a mistake, so that one mistake gives one error.
 
 use super::lexer::TokenKind;
-use super::meant::{counterpart, misplaced, slip};
 use super::reader::{Reader, names};
+use super::suggestions::{counterpart, misplaced, slip};
 use super::words::{dialects_of, home_of};
 use crate::report::shown;
 use durer_diag::{Diagnostic, Span, did_you_mean};
@@ -84,7 +84,7 @@ impl Reader<'_, '_> {
         let help = misplaced(word, place).map(String::from);
         let help = help.or_else(|| self.advice(word, known.iter().copied())).unwrap_or_else(list);
         let error = Diagnostic::error(message).code("unknown-word").at(span).label("not known here").help(help);
-        self.error(self.with_meant(error, word, span, known.iter().copied()));
+        self.error(self.with_suggestion(error, word, span, known.iter().copied()));
         while let Some(token) = self.peek() {
             match token.kind {
                 TokenKind::Close => return,
@@ -99,36 +99,36 @@ impl Reader<'_, '_> {
 
     /// Returns the known word that an unknown one probably stands for. A word of the language is
     /// taken for another only if they differ in case.
-    fn meant<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
+    fn suggest<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
         let known: Vec<&str> = known.into_iter().collect();
         let there = counterpart(word, self.options.dialect);
         if let Some(there) = known.iter().find(|known| there == Some(*known)) {
             return Some(there);
         }
-        if let Some((meant, _)) = slip(word, known.iter().copied()) {
-            return Some(meant);
+        if let Some((suggestion, _)) = slip(word, known.iter().copied()) {
+            return Some(suggestion);
         }
         let near = did_you_mean(word, known).filter(|near| *near != word)?;
         (dialects_of(word).is_none() || near.eq_ignore_ascii_case(word)).then_some(near)
     }
 
     /// Adds a fix to an error about a word: its replacement by the probable word, if that is clear.
-    pub(super) fn with_meant<'w>(
+    pub(super) fn with_suggestion<'w>(
         &self,
         error: Diagnostic,
         word: &str,
         span: Span,
         known: impl IntoIterator<Item = &'w str>,
     ) -> Diagnostic {
-        let meant = self.meant(word, known);
-        error.fix_at(meant.map(|_| span), meant.unwrap_or_default())
+        let suggestion = self.suggest(word, known);
+        error.fix_at(suggestion.map(|_| span), suggestion.unwrap_or_default())
     }
 
     /// Returns help on a word in a wrong place.
     pub(super) fn advice<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<String> {
         let known: Vec<&str> = known.into_iter().collect();
         let year = self.options.dialect.name();
-        if let Some(near) = self.meant(word, known.iter().copied()) {
+        if let Some(near) = self.suggest(word, known.iter().copied()) {
             let remark = slip(word, known.iter().copied()).map(|slip| slip.1).filter(|remark| !remark.is_empty());
             return Some(match (counterpart(word, self.options.dialect), remark) {
                 (Some(there), _) if there == near => format!("in {year} it is `{near}`"),

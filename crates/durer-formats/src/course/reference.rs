@@ -3,9 +3,9 @@
 //! Keywords with parameters come from the descriptions of their statements. The table [`GRAMMAR`]
 //! lists the others, which belong to the grammar itself.
 
-use super::write::write_thing;
+use super::write::write_item;
 use durer_scene::camera::Camera;
-use durer_scene::describe::{DescribedList, Kind, Rule, Value};
+use durer_scene::describe::{Constraint, DescribedList, Kind, Value};
 use durer_scene::dialect::{Dialect, DialectSet, set};
 use durer_scene::light::Light;
 use durer_scene::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid};
@@ -354,7 +354,7 @@ fn of<T: DescribedList>(chapter: Chapter) -> Vec<Entry> {
                 if let (Chapter::Cameras, Some(center)) = (chapter, center) {
                     kind.set(center, Value::Vec3(Vec3::new(0.0, 0.3, 0.0)));
                 }
-                let text = write_thing(&kind, Dialect::Durer);
+                let text = write_item(&kind, Dialect::Durer);
                 text.split_whitespace().collect::<Vec<_>>().join(" ")
             }
         };
@@ -392,7 +392,7 @@ pub fn dialect_names(dialects: DialectSet) -> String {
 }
 
 /// Description of the values that a kind and a rule allow.
-fn value_of(kind: Kind, rule: Rule) -> String {
+fn value_of(kind: Kind, rule: Constraint) -> String {
     let kind = match kind {
         Kind::Float => "number".to_string(),
         Kind::Int => "whole number".into(),
@@ -402,19 +402,19 @@ fn value_of(kind: Kind, rule: Rule) -> String {
         Kind::Rows(width) => format!("`{{ }}` with rows of {width} numbers"),
     };
     let rule = match rule {
-        Rule::Any => return kind,
-        Rule::Positive => "more than 0".to_string(),
-        Rule::NonNegative => "0 or more".into(),
-        Rule::NonZero => "not 0 0 0".into(),
-        Rule::Between(low, high) => format!("more than {low}, less than {high}"),
-        Rule::From(low, high) => format!("from {low} to {high}"),
-        Rule::Share => "from 0 to 1".into(),
-        Rule::UpTo(high) => format!("more than 0, at most {high}"),
-        Rule::AtMost(most) => format!("at most {most}"),
-        Rule::Numbered(last) => format!("from 1 to {last}"),
-        Rule::Rows(least, most) if least == most => format!("{least} of them"),
-        Rule::Rows(least, most) => format!("{least} to {most} of them"),
-        Rule::Counts(most) => format!("whole, 1 to {most}"),
+        Constraint::Any => return kind,
+        Constraint::Positive => "more than 0".to_string(),
+        Constraint::NonNegative => "0 or more".into(),
+        Constraint::NonZero => "not 0 0 0".into(),
+        Constraint::Between(low, high) => format!("more than {low}, less than {high}"),
+        Constraint::From(low, high) => format!("from {low} to {high}"),
+        Constraint::Share => "from 0 to 1".into(),
+        Constraint::UpTo(high) => format!("more than 0, at most {high}"),
+        Constraint::AtMost(most) => format!("at most {most}"),
+        Constraint::Numbered(last) => format!("from 1 to {last}"),
+        Constraint::Rows(least, most) if least == most => format!("{least} of them"),
+        Constraint::Rows(least, most) => format!("{least} to {most} of them"),
+        Constraint::Counts(most) => format!("whole, 1 to {most}"),
     };
     format!("{kind}, {rule}")
 }

@@ -7,7 +7,7 @@ use super::words::{OURS, SECTIONS, camera_of, home_of, is_section};
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::camera::Camera;
 use durer_scene::describe::{DescribedList, FileName};
-use durer_scene::dialect::{Compat, Dialect, DialectSet, set};
+use durer_scene::dialect::{Dialect, DialectSet, Quirk, set};
 use durer_scene::light::Light;
 use durer_scene::material::presets;
 use durer_scene::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid};
@@ -107,9 +107,9 @@ impl Reader<'_, '_> {
     }
 
     /// Warns of a keyword that this dialect lacks.
-    pub(super) fn check_keyword<T: DescribedList>(&mut self, thing: &T, keyword: Span) {
+    pub(super) fn check_keyword<T: DescribedList>(&mut self, item: &T, keyword: Span) {
         let word = self.text(keyword);
-        let set = thing.keywords().iter().find(|(w, _)| *w == word).map_or(0, |k| k.1);
+        let set = item.keywords().iter().find(|(w, _)| *w == word).map_or(0, |k| k.1);
         self.foreign(&word, keyword, set);
     }
 
@@ -191,7 +191,7 @@ impl Reader<'_, '_> {
             lights.push(Spanned { value: light, span });
             true
         });
-        let added = self.options.compat & Compat::AddedLights.bit() != 0;
+        let added = self.options.compat & Quirk::AddedLights.bit() != 0;
         let mut known = self.scene.lights.take().filter(|_| added).unwrap_or_default();
         known.extend(lights);
         self.scene.lights = Some(known);

@@ -19,9 +19,9 @@ pub fn write(scene: &Scene, dialect: Dialect) -> String {
 }
 
 /// Writes one statement by itself, as [`write`] does.
-pub(super) fn write_thing<T: DescribedList>(thing: &T, dialect: Dialect) -> String {
+pub(super) fn write_item<T: DescribedList>(item: &T, dialect: Dialect) -> String {
     let mut writer = Writer { out: String::new(), depth: 0, dialect, material: None };
-    writer.thing(thing);
+    writer.item(item);
     writer.out
 }
 
@@ -48,13 +48,13 @@ impl Writer {
         self.line("}");
     }
 
-    fn fields<T: DescribedList>(&mut self, thing: &T) {
-        let plain = T::from_keyword(thing.keywords()[0].0);
+    fn fields<T: DescribedList>(&mut self, item: &T) {
+        let plain = T::from_keyword(item.keywords()[0].0);
         // Statements of the Dürer dialect only use its words.
-        let ours = thing.is_ours();
+        let ours = item.is_ours();
         let dialect = if ours { Dialect::Durer } else { self.dialect };
-        for (i, field) in thing.fields().iter().enumerate() {
-            let Some(value) = thing.get(i) else { continue };
+        for (i, field) in item.fields().iter().enumerate() {
+            let Some(value) = item.get(i) else { continue };
             let (word, text) = (field.spelling(dialect), value_text(&value));
             // Omit a default value that the dialect has no word for. Compare texts, since they
             // distinguish 0 from -0.
@@ -66,27 +66,27 @@ impl Writer {
         }
     }
 
-    fn thing<T: DescribedList>(&mut self, thing: &T) {
-        self.block(thing.keyword(self.dialect), |w| w.fields(thing));
+    fn item<T: DescribedList>(&mut self, entry: &T) {
+        self.block(entry.keyword(self.dialect), |w| w.fields(entry));
     }
 
     fn scene(&mut self, scene: &Scene) {
         if let Some(camera) = &scene.camera {
-            self.thing(camera);
+            self.item(camera);
         }
-        self.thing(&scene.background);
+        self.item(&scene.background);
         if let Some(fog) = &scene.fog {
-            self.thing(&fog.value);
+            self.item(&fog.value);
         }
         if let Some(lights) = &scene.lights {
             self.block("Lights", |w| {
                 w.line(format!("numLights {}", lights.len()));
-                lights.iter().for_each(|light| w.thing(&light.value));
+                lights.iter().for_each(|light| w.item(&light.value));
             });
         }
         let mut textures = scene.assets.textures().peekable();
         if textures.peek().is_some() {
-            self.block("Textures", |w| textures.for_each(|texture| w.thing(&texture)));
+            self.block("Textures", |w| textures.for_each(|texture| w.item(&texture)));
         }
         if !scene.materials.is_empty() {
             self.block("Materials", |w| {
@@ -110,8 +110,8 @@ impl Writer {
                     }
                 });
             }
-            Material::Principled(principled) => self.thing(&**principled),
-            Material::Hair(hair) => self.thing(hair),
+            Material::Principled(principled) => self.item(&**principled),
+            Material::Hair(hair) => self.item(hair),
             Material::Solid(solid, transform) => self.block(solid.keyword(self.dialect), |w| {
                 if !transform.is_empty() {
                     w.block("Transform", |w| transform.iter().for_each(|op| w.matrix(op)));
@@ -149,9 +149,9 @@ impl Writer {
                     false => w.group(&Group { objects: vec![Object::clone(inner)] }),
                 }
             }),
-            Node::Primitive(shape) => self.thing(shape),
-            Node::Mesh(mesh) => self.thing(mesh),
-            Node::HeightField(field) => self.thing(field),
+            Node::Primitive(shape) => self.item(shape),
+            Node::Mesh(mesh) => self.item(mesh),
+            Node::HeightField(field) => self.item(field),
             Node::Solid(operation, parts) => self.block(operation.keyword(), |w| w.objects(parts)),
             Node::Voxels(grid, balls) => self.block(grid.keyword(self.dialect), |w| w.voxels(grid, balls)),
         }
@@ -188,9 +188,9 @@ impl Writer {
 
     fn node_scene(&mut self, scene: &Scene) {
         if let Some(camera) = &scene.camera {
-            self.thing(camera);
+            self.item(camera);
         }
-        self.thing(&scene.background);
+        self.item(&scene.background);
         self.block("Materials", |w| scene.materials.iter().for_each(|m| w.material(&m.value)));
         let lights = scene.lights.as_deref().unwrap_or_default();
         if scene.root.is_some() || !lights.is_empty() {
@@ -240,10 +240,10 @@ impl Writer {
         });
     }
 
-    fn component<T: DescribedList>(&mut self, name: &str, thing: &T) {
+    fn component<T: DescribedList>(&mut self, name: &str, item: &T) {
         self.block(&format!("Component<{name}>"), |w| {
-            w.line(format!("type {}", thing.keyword(w.dialect)));
-            w.fields(thing);
+            w.line(format!("type {}", item.keyword(w.dialect)));
+            w.fields(item);
         });
     }
 

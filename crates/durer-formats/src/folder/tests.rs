@@ -119,14 +119,18 @@ fn asset_folders_are_searched_by_path_and_bare_name() {
 #[test]
 fn given_files_take_precedence_and_enter_the_record() {
     let (root, source) = house();
-    let given = source.clone().give("near.obj", b"given".as_slice().into()).give("none.obj", b"n".as_slice().into());
-    assert!(given.contains("none.obj") && !source.contains("none.obj"));
-    assert_eq!((&*given.read("near.obj").unwrap(), &*given.read("none.obj").unwrap()), (&b"given"[..], &b"n"[..]));
+    let in_memory =
+        source.clone().give("near.obj", b"given".as_slice().into()).give("none.obj", b"n".as_slice().into());
+    assert!(in_memory.contains("none.obj") && !source.contains("none.obj"));
+    assert_eq!(
+        (&*in_memory.read("near.obj").unwrap(), &*in_memory.read("none.obj").unwrap()),
+        (&b"given"[..], &b"n"[..])
+    );
     fs::write(root.path().join("scene/near.obj"), "given").unwrap();
     fs::write(root.path().join("scene/none.obj"), "n").unwrap();
     source.read("near.obj").unwrap();
     source.read("none.obj").unwrap();
-    assert_eq!(source.record().digest(b""), given.record().digest(b""));
+    assert_eq!(source.record().digest(b""), in_memory.record().digest(b""));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use super::Model;
 use super::buffers::View;
-use super::json::At;
+use super::json::JsonRef;
 use rayon::prelude::*;
 
 /// Component type.
@@ -90,12 +90,12 @@ const TYPES: [(&str, usize); 7] =
     [("SCALAR", 1), ("VEC2", 2), ("VEC3", 3), ("VEC4", 4), ("MAT2", 4), ("MAT3", 9), ("MAT4", 16)];
 
 impl Model<'_> {
-    pub(super) fn accessors(&self, root: &At) -> Vec<Option<Accessor>> {
+    pub(super) fn accessors(&self, root: &JsonRef) -> Vec<Option<Accessor>> {
         let Some(accessors) = root.get("accessors") else { return Vec::new() };
         accessors.items().map(|accessor| self.accessor_of(&accessor)).collect()
     }
 
-    fn component(&self, at: &At) -> Option<Component> {
+    fn component(&self, at: &JsonRef) -> Option<Component> {
         let code = at.whole(..)?;
         let component = Component::of(code);
         if component.is_none() {
@@ -104,7 +104,7 @@ impl Model<'_> {
         component
     }
 
-    fn accessor_of(&self, at: &At) -> Option<Accessor> {
+    fn accessor_of(&self, at: &JsonRef) -> Option<Accessor> {
         at.object()?;
         let component = at.need("componentType").and_then(|code| self.component(&code));
         let count = at.need("count").and_then(|count| count.whole(1..=u64::from(u32::MAX)));
@@ -151,7 +151,7 @@ impl Model<'_> {
         Some(accessor)
     }
 
-    fn sparse(&self, at: &At, accessor: &Accessor) -> Option<Sparse> {
+    fn sparse(&self, at: &JsonRef, accessor: &Accessor) -> Option<Sparse> {
         let count = at.need("count")?.whole(1..)? as usize;
         if count > accessor.count {
             let message = format!("{count} rows are replaced, but the accessor has {}", accessor.count);
@@ -164,7 +164,7 @@ impl Model<'_> {
             indices.error("VALUE_NOT_IN_LIST", "indices must be unsigned whole numbers");
             return None;
         }
-        let place = |at: &At, size: usize| {
+        let place = |at: &JsonRef, size: usize| {
             let view = at.need("bufferView")?;
             let found = self.views[view.index(self.views.len())?].clone()?;
             if found.stride.is_some() {
@@ -230,7 +230,7 @@ impl Accessor {
     }
 
     /// Checks that the accessor fits into its buffer view.
-    fn check(&self, at: &At) -> Option<()> {
+    fn check(&self, at: &JsonRef) -> Option<()> {
         let Some(view) = &self.view else { return Some(()) };
         let bytes = view.length;
         if self.stride() < self.row() {
@@ -259,7 +259,7 @@ impl Accessor {
     }
 
     /// Checks that all numbers are finite.
-    pub fn check_values(&self, at: &At) {
+    pub fn check_values(&self, at: &JsonRef) {
         if self.component != Component::F32 {
             return;
         }

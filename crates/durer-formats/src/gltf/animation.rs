@@ -3,7 +3,7 @@
 //! Source: *glTF 2.0 Specification*, chapter 3.11 and appendix C.
 
 use super::Model;
-use super::json::At;
+use super::json::JsonRef;
 use super::nodes::NodeData;
 use crate::report::counted;
 use durer_scene::math::fp;
@@ -11,7 +11,7 @@ use glam::{DQuat, DVec3, DVec4};
 
 /// Interpolation between two key frames.
 #[derive(Clone, Copy, PartialEq)]
-enum Between {
+enum Interpolation {
     Step,
     Linear,
     Cubic,
@@ -23,13 +23,13 @@ struct Track {
     /// Values of the key frames, row by row. For cubic splines, each key frame has its in-tangent,
     /// value and out-tangent.
     values: Vec<f32>,
-    between: Between,
+    between: Interpolation,
 }
 
 impl Model<'_> {
     /// Poses the nodes by the first animation at the requested time.
-    pub(super) fn animate(&self, root: &At, nodes: &mut [NodeData]) {
-        let (at, animations) = match (self.input.staging.at, root.get("animations")) {
+    pub(super) fn animate(&self, root: &JsonRef, nodes: &mut [NodeData]) {
+        let (at, animations) = match (self.input.scene_defaults.at, root.get("animations")) {
             (Some(at), Some(animations)) => (at, animations),
             (Some(_), None) => return root.warning("no-animation", "the file has no animation: `--at` has no effect"),
             (None, Some(animations)) => return at_rest(&animations),
@@ -43,7 +43,7 @@ impl Model<'_> {
         }
     }
 
-    fn channel(&self, channel: &At, samplers: &[Option<Track>], at: f32, nodes: &mut [NodeData]) -> Option<()> {
+    fn channel(&self, channel: &JsonRef, samplers: &[Option<Track>], at: f32, nodes: &mut [NodeData]) -> Option<()> {
         let track = samplers[channel.need("sampler")?.index(samplers.len())?].as_ref()?;
         let target = channel.need("target")?;
         let node = &mut nodes[target.get("node")?.index(nodes.len())?];
@@ -58,9 +58,10 @@ impl Model<'_> {
         Some(())
     }
 
-    fn track(&self, at: &At) -> Option<Track> {
-        let words = [("STEP", Between::Step), ("LINEAR", Between::Linear), ("CUBICSPLINE", Between::Cubic)];
-        let between = at.get("interpolation").map_or(Some(Between::Linear), |word| word.word(&words))?;
+    fn track(&self, at: &JsonRef) -> Option<Track> {
+        let words =
+            [("STEP", Interpolation::Step), ("LINEAR", Interpolation::Linear), ("CUBICSPLINE", Interpolation::Cubic)];
+        let between = at.get("interpolation").map_or(Some(Interpolation::Linear), |word| word.word(&words))?;
         let (input, output) = (at.need("input")?, at.need("output")?);
         let times = self.rows::<1>(self.accessor(&input)?, &input)?.into_iter().map(|[t]| t).collect::<Vec<_>>();
         if !times.is_sorted() {
@@ -77,7 +78,7 @@ impl Model<'_> {
 impl Track {
     /// Number of components of a key frame.
     fn width(&self) -> Option<usize> {
-        let rows = self.times.len() * if self.between == Between::Cubic { 3 } else { 1 };
+        let rows = self.times.len() * if self.between == Interpolation::Cubic { 3 } else { 1 };
         self.values.len().checked_div(rows).filter(|&width| width > 0)
     }
 
@@ -89,7 +90,7 @@ impl Track {
     fn rotation(&self, at: f32) -> Option<DQuat> {
         let (i, share, _) = self.around(at);
         let row = match self.between {
-            Between::Linear if share > 0.0 => slerp(self.key(i, 4)?, self.key(i + 1, 4)?, share),
+            Interpolation::Linear if share > 0.0 => slerp(self.key(i, 4)?, self.key(i + 1, 4)?, share),
             _ => self.row(at, 4)?,
         };
         let q = DQuat::from_array([row[0].into(), row[1].into(), row[2].into(), row[3].into()]);
@@ -112,18 +113,18 @@ impl Track {
     }
 
     fn key(&self, i: usize, width: usize) -> Option<&[f32]> {
-        let (stride, skip) = if self.between == Between::Cubic { (3 * width, width) } else { (width, 0) };
+        let (stride, skip) = if self.between == Interpolation::Cubic { (3 * width, width) } else { (width, 0) };
         self.values.get(i * stride + skip..i * stride + skip + width)
     }
 
     fn row(&self, at: f32, width: usize) -> Option<Vec<f32>> {
         let (i, t, length) = self.around(at);
         let first = self.key(i, width)?;
-        if t == 0.0 || self.between == Between::Step {
+        if t == 0.0 || self.between == Interpolation::Step {
             return Some(first.to_vec());
         }
         let second = self.key(i + 1, width)?;
-        if self.between == Between::Linear {
+        if self.between == Interpolation::Linear {
             return Some(first.iter().zip(second).map(|(a, b)| a + t * (b - a)).collect());
         }
         // Cubic Hermite spline: out-tangent of the first key frame, in-tangent of the second.
@@ -141,7 +142,7 @@ impl Track {
 }
 
 /// Notes that the file has animations if it is shown at rest.
-fn at_rest(animations: &At) {
+fn at_rest(animations: &JsonRef) {
     let mut all = animations.items();
     let count = all.len();
     let name = all.next().map_or(String::new(), |first| first.name());

@@ -1,7 +1,7 @@
 //! Buffers, buffer views, and resolution of URIs.
 
 use super::Model;
-use super::json::At;
+use super::json::JsonRef;
 use crate::files::unescaped;
 use crate::report::shown;
 use base64::Engine;
@@ -70,7 +70,7 @@ pub(super) enum Target<'a> {
 ///
 /// Source: RFC 3986 and RFC 2397. Folder implementations of [`durer_scene::source::AssetSource`]
 /// reject paths that leave the folder.
-pub(super) fn target<'a>(at: &At<'a>) -> Option<Target<'a>> {
+pub(super) fn target<'a>(at: &JsonRef<'a>) -> Option<Target<'a>> {
     let uri = at.string()?;
     if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
         let data = uri[5..].split_once(',').and_then(|(kind, data)| {
@@ -110,12 +110,12 @@ pub(super) fn target<'a>(at: &At<'a>) -> Option<Target<'a>> {
 
 impl Model<'_> {
     /// Reads the buffers. An unreadable buffer is an error where its data are used.
-    pub(super) fn buffers(&self, root: &At) -> Vec<Option<Buffer>> {
+    pub(super) fn buffers(&self, root: &JsonRef) -> Vec<Option<Buffer>> {
         let Some(buffers) = root.get("buffers") else { return Vec::new() };
         buffers.items().enumerate().map(|(i, buffer)| self.buffer(i, &buffer)).collect()
     }
 
-    fn buffer(&self, number: usize, at: &At) -> Option<Buffer> {
+    fn buffer(&self, number: usize, at: &JsonRef) -> Option<Buffer> {
         at.object()?;
         let length = at.need("byteLength")?.whole(1..)? as usize;
         // A fallback buffer is only for readers without support for compressed views.
@@ -124,7 +124,7 @@ impl Model<'_> {
     }
 
     /// Returns the bytes of a buffer.
-    fn data(&self, number: usize, length: usize, at: &At) -> Option<Slice> {
+    fn data(&self, number: usize, length: usize, at: &JsonRef) -> Option<Slice> {
         let bytes = match at.get("uri") {
             Some(uri) => match target(&uri)? {
                 Target::Data(kind, bytes) => {
@@ -162,7 +162,7 @@ impl Model<'_> {
     }
 
     /// Reads a file named by a URI.
-    pub(super) fn file(&self, uri: &At, path: &str) -> Option<Arc<[u8]>> {
+    pub(super) fn file(&self, uri: &JsonRef, path: &str) -> Option<Arc<[u8]>> {
         let name = FileName { path: path.to_string(), span: uri.span() };
         match self.input.source.read(&name.path) {
             Ok(bytes) => Some(bytes),
@@ -173,12 +173,12 @@ impl Model<'_> {
         }
     }
 
-    pub(super) fn views(&self, root: &At) -> Vec<Option<View>> {
+    pub(super) fn views(&self, root: &JsonRef) -> Vec<Option<View>> {
         let Some(views) = root.get("bufferViews") else { return Vec::new() };
         views.items().map(|view| self.view_of(&view)).collect()
     }
 
-    fn view_of(&self, at: &At) -> Option<View> {
+    fn view_of(&self, at: &JsonRef) -> Option<View> {
         at.object()?;
         let buffer = at.need("buffer").and_then(|buffer| buffer.index(self.buffers.len()));
         let offset = at.get("byteOffset").map_or(Some(0), |offset| offset.whole(..));
@@ -214,6 +214,6 @@ impl Model<'_> {
 }
 
 /// Returns the compression extension of a buffer or view, if present.
-fn compression<'a>(at: &At<'a>) -> Option<&'a Value> {
+fn compression<'a>(at: &JsonRef<'a>) -> Option<&'a Value> {
     at.value.get("extensions")?.get(MESHOPT)
 }

@@ -1,7 +1,7 @@
 //! Cameras, and the lights of KHR_lights_punctual.
 
 use super::Model;
-use super::json::At;
+use super::json::JsonRef;
 use super::nodes::NodeData;
 use durer_diag::did_you_mean;
 use durer_scene::camera::{Camera, OrthographicCamera, PerspectiveCamera};
@@ -15,11 +15,11 @@ use std::f32::consts::PI;
 #[derive(Clone)]
 pub(super) struct CameraData {
     name: String,
-    view: Seen,
+    view: Projection,
 }
 
 #[derive(Clone, Copy)]
-enum Seen {
+enum Projection {
     /// Vertical field of view in radians, and the aspect ratio.
     Perspective(f32, Option<f32>),
     /// Half the height.
@@ -36,7 +36,7 @@ pub(super) struct LightData {
 }
 
 impl Model<'_> {
-    pub(super) fn read_cameras(&self, root: &At) -> Vec<Option<CameraData>> {
+    pub(super) fn read_cameras(&self, root: &JsonRef) -> Vec<Option<CameraData>> {
         root.list("cameras", |at| {
             at.object()?;
             let name = at.get("name").and_then(|name| name.value.as_str()).unwrap_or_default().to_string();
@@ -52,21 +52,21 @@ impl Model<'_> {
                 lens.error("CAMERA_ZFAR_LEQUAL_ZNEAR", format!("`zfar` {far} must be greater than `znear` {near}"));
             }
             let view = match is_flat {
-                true => Seen::Orthographic(lens.need("ymag")?.number().filter(|half| *half != 0.0)?.abs()),
+                true => Projection::Orthographic(lens.need("ymag")?.number().filter(|half| *half != 0.0)?.abs()),
                 false => {
                     let angle = lens.need("yfov")?.within(1e-4..)?;
                     if angle >= PI {
                         lens.warning("CAMERA_YFOV_GEQUAL_PI", "`yfov` must be less than pi");
                     }
                     let aspect = lens.get("aspectRatio").and_then(|aspect| aspect.within(1e-4..));
-                    Seen::Perspective(angle.min(3.1), aspect)
+                    Projection::Perspective(angle.min(3.1), aspect)
                 }
             };
             Some(CameraData { name, view })
         })
     }
 
-    pub(super) fn read_lights(&self, root: &At) -> Vec<Option<LightData>> {
+    pub(super) fn read_lights(&self, root: &JsonRef) -> Vec<Option<LightData>> {
         let extensions = root.get("extensions");
         let Some(punctual) = extensions.as_ref().and_then(|e| e.get("KHR_lights_punctual")) else { return Vec::new() };
         punctual.list("lights", |at| {
@@ -90,7 +90,7 @@ impl Model<'_> {
         let there = order.iter().filter_map(|&i| Some((i, self.cameras[nodes[i].camera?].as_ref()?)));
         let there: Vec<(usize, &CameraData)> = there.collect();
         let names = |&(i, camera): &(usize, &CameraData)| [nodes[i].name.clone(), camera.name.clone()];
-        let chosen = match &self.input.staging.camera {
+        let chosen = match &self.input.scene_defaults.camera {
             None => there.first(),
             Some(wanted) => {
                 let by_name = there.iter().find(|camera| names(camera).contains(wanted));
@@ -98,9 +98,9 @@ impl Model<'_> {
                 let found = by_name.or_else(by_number);
                 if found.is_none() {
                     let all: Vec<String> = there.iter().flat_map(names).filter(|name| !name.is_empty()).collect();
-                    let meant = did_you_mean(wanted, all.iter().map(String::as_str));
-                    let known = match (meant, all.is_empty()) {
-                        (Some(meant), _) => format!("did you mean `{meant}`?"),
+                    let suggestion = did_you_mean(wanted, all.iter().map(String::as_str));
+                    let known = match (suggestion, all.is_empty()) {
+                        (Some(suggestion), _) => format!("did you mean `{suggestion}`?"),
                         (None, true) => format!("the {} cameras have no names, only numbers from 0", there.len()),
                         (None, false) => format!("the cameras are `{}`", all.join("`, `")),
                     };
@@ -120,15 +120,15 @@ impl Model<'_> {
         let up = map.transform_vector3(DVec3::Y).normalize_or(DVec3::Y).as_vec3();
         let center = map.translation.as_vec3();
         // The scene's angles and sizes refer to the picture's larger side.
-        let own = if let Seen::Perspective(_, aspect) = camera.view { aspect } else { None };
-        let wide = self.input.staging.aspect.or(own).unwrap_or(1.0).max(1.0);
+        let own = if let Projection::Perspective(_, aspect) = camera.view { aspect } else { None };
+        let wide = self.input.scene_defaults.aspect.or(own).unwrap_or(1.0).max(1.0);
         let camera = match camera.view {
-            Seen::Perspective(angle, _) => {
+            Projection::Perspective(angle, _) => {
                 let half = fp::tan_f64(f64::from(angle) / 2.0) * f64::from(wide);
                 let angle = (2.0 * fp::atan_f64(half)).to_degrees() as f32;
                 PerspectiveCamera { center, direction, up, angle: angle.min(179.9) }.into()
             }
-            Seen::Orthographic(half) => {
+            Projection::Orthographic(half) => {
                 OrthographicCamera { center, direction, up, size: 2.0 * half * wide, ..Default::default() }.into()
             }
         };

@@ -4,7 +4,7 @@
 
 use super::Model;
 use super::accessor::Component;
-use super::json::At;
+use super::json::JsonRef;
 use durer_scene::math::Vec3;
 use durer_scene::shape::MeshData;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
@@ -40,12 +40,12 @@ impl Skin {
 }
 
 impl Model<'_> {
-    pub(super) fn read_skins(&self, root: &At) -> Vec<Option<Skin>> {
+    pub(super) fn read_skins(&self, root: &JsonRef) -> Vec<Option<Skin>> {
         let nodes = root.get("nodes").and_then(|nodes| nodes.value.as_array()).map_or(0, Vec::len);
         root.list("skins", |skin| self.skin(skin, nodes))
     }
 
-    fn skin(&self, at: &At, nodes: usize) -> Option<Skin> {
+    fn skin(&self, at: &JsonRef, nodes: usize) -> Option<Skin> {
         at.object()?;
         let joints = at.need("joints")?;
         let joints: Vec<usize> = joints.items().map(|joint| joint.index(nodes)).collect::<Option<_>>()?;
@@ -75,7 +75,7 @@ impl Model<'_> {
     }
 
     /// Reads the morph targets and joints of a primitive, if any.
-    pub(super) fn pose(&self, primitive: &At, attributes: &At, count: usize) -> Option<Pose> {
+    pub(super) fn pose(&self, primitive: &JsonRef, attributes: &JsonRef, count: usize) -> Option<Pose> {
         let targets = primitive.list("targets", |target| self.target(target, count));
         let joints = attributes.get("JOINTS_0");
         let weights = attributes.get("WEIGHTS_0");
@@ -100,7 +100,7 @@ impl Model<'_> {
         (sizes && !(pose.targets.is_empty() && pose.joints.is_empty())).then_some(pose)
     }
 
-    fn target(&self, at: &At, count: usize) -> Target {
+    fn target(&self, at: &JsonRef, count: usize) -> Target {
         at.object();
         let rows = |key| {
             let Some(attribute) = at.get(key) else { return Vec::new() };

@@ -6,7 +6,7 @@
 use super::Model;
 use super::accessor::Component;
 use super::buffers::{Slice, View};
-use super::json::At;
+use super::json::JsonRef;
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, Mesh, MeshDecoder, PointAttribute, PointIndex};
 use durer_image::panics::caught;
 
@@ -14,7 +14,7 @@ const DRACO: &str = "KHR_draco_mesh_compression";
 
 impl Model<'_> {
     /// Decodes all primitives compressed by Draco.
-    pub(super) fn unpack_primitives(&mut self, root: &At) {
+    pub(super) fn unpack_primitives(&mut self, root: &JsonRef) {
         let Some(meshes) = root.get("meshes") else { return };
         for mesh in meshes.items() {
             let Some(primitives) = mesh.get("primitives") else { continue };
@@ -27,7 +27,7 @@ impl Model<'_> {
         }
     }
 
-    fn unpack_primitive(&mut self, primitive: &At, at: &At) -> Option<()> {
+    fn unpack_primitive(&mut self, primitive: &JsonRef, at: &JsonRef) -> Option<()> {
         at.object()?;
         let mode = primitive.get("mode").and_then(|mode| mode.value.as_u64()).unwrap_or(4);
         if !matches!(mode, 4 | 5) {
@@ -69,7 +69,12 @@ impl Model<'_> {
     }
 
     /// Stores decoded bytes in the accessor that a property names: `count` rows of `width` numbers.
-    fn give(&mut self, at: &At, (component, width, count): (Component, usize, usize), bytes: Vec<u8>) -> Option<()> {
+    fn give(
+        &mut self,
+        at: &JsonRef,
+        (component, width, count): (Component, usize, usize),
+        bytes: Vec<u8>,
+    ) -> Option<()> {
         let number = at.index(self.accessors.len())?;
         let accessor = self.accessors[number].as_mut()?;
         if (accessor.width, accessor.count) != (width, count) {

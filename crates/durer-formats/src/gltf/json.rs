@@ -13,7 +13,7 @@ use std::collections::HashMap;
 use std::ops::{Range, RangeBounds};
 
 /// Collector of the diagnostics of one file, shared by its readers.
-pub(super) struct Findings<'a> {
+pub(super) struct JsonReport<'a> {
     /// JSON text: the file, or the JSON chunk of a binary file.
     text: &'a [u8],
     /// Byte offsets of the items of top-level lists.
@@ -23,9 +23,9 @@ pub(super) struct Findings<'a> {
     failed: Cell<bool>,
 }
 
-impl<'a> Findings<'a> {
+impl<'a> JsonReport<'a> {
     pub fn new(text: &'a [u8], report: Report) -> Self {
-        Findings { text, starts: RefCell::default(), report: RefCell::new(report), failed: Cell::default() }
+        JsonReport { text, starts: RefCell::default(), report: RefCell::new(report), failed: Cell::default() }
     }
 
     pub fn finish(self) -> Report {
@@ -78,10 +78,10 @@ impl<'a> Findings<'a> {
 
 /// Value of the document, with its path.
 #[derive(Clone, Copy)]
-pub(super) struct At<'a> {
+pub(super) struct JsonRef<'a> {
     pub value: &'a Value,
-    pub findings: &'a Findings<'a>,
-    parent: Option<&'a At<'a>>,
+    pub findings: &'a JsonReport<'a>,
+    parent: Option<&'a JsonRef<'a>>,
     step: Step<'a>,
 }
 
@@ -91,9 +91,9 @@ enum Step<'a> {
     Index(usize),
 }
 
-impl<'a> At<'a> {
-    pub fn root(value: &'a Value, findings: &'a Findings<'a>) -> Self {
-        At { value, findings, parent: None, step: Step::Key("") }
+impl<'a> JsonRef<'a> {
+    pub fn root(value: &'a Value, findings: &'a JsonReport<'a>) -> Self {
+        JsonRef { value, findings, parent: None, step: Step::Key("") }
     }
 
     /// Returns the JSON pointer (RFC 6901) of this value.
@@ -133,13 +133,13 @@ impl<'a> At<'a> {
     }
 
     /// Returns a property of this object, if present.
-    pub fn get(&'a self, key: &'a str) -> Option<At<'a>> {
+    pub fn get(&'a self, key: &'a str) -> Option<JsonRef<'a>> {
         let value = self.value.as_object()?.get(key)?;
-        Some(At { value, findings: self.findings, parent: Some(self), step: Step::Key(key) })
+        Some(JsonRef { value, findings: self.findings, parent: Some(self), step: Step::Key(key) })
     }
 
     /// Returns a required property.
-    pub fn need(&'a self, key: &'a str) -> Option<At<'a>> {
+    pub fn need(&'a self, key: &'a str) -> Option<JsonRef<'a>> {
         let found = self.get(key);
         if found.is_none() && self.value.is_object() {
             self.error("UNDEFINED_PROPERTY", format!("property `{key}` must be defined"));
@@ -162,7 +162,7 @@ impl<'a> At<'a> {
     }
 
     /// Returns the items of this array, which must not be empty.
-    pub fn items(&'a self) -> impl ExactSizeIterator<Item = At<'a>> {
+    pub fn items(&'a self) -> impl ExactSizeIterator<Item = JsonRef<'a>> {
         let items = match self.value {
             Value::Array(items) => {
                 if items.is_empty() {
@@ -175,7 +175,7 @@ impl<'a> At<'a> {
                 &[]
             }
         };
-        items.iter().enumerate().map(|(i, value)| At {
+        items.iter().enumerate().map(|(i, value)| JsonRef {
             value,
             findings: self.findings,
             parent: Some(self),
@@ -184,7 +184,7 @@ impl<'a> At<'a> {
     }
 
     /// Reads each item of an array property; empty if the property is missing.
-    pub fn list<T>(&'a self, key: &'a str, mut read: impl FnMut(&At) -> T) -> Vec<T> {
+    pub fn list<T>(&'a self, key: &'a str, mut read: impl FnMut(&JsonRef) -> T) -> Vec<T> {
         match self.get(key) {
             Some(array) => array.items().map(|item| read(&item)).collect(),
             None => Vec::new(),

@@ -4,7 +4,7 @@
 //! the translation, *OpenPBR Surface specification* 1.1, section on translation of other models.
 
 use super::Model;
-use super::json::At;
+use super::json::JsonRef;
 use durer_scene::bsdf::layers::opaque_ior;
 use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::describe::FileName;
@@ -33,19 +33,19 @@ enum Alpha {
 }
 
 /// Returns true if a material depends on the orientation of the tangent.
-pub(super) fn needs_tangents(at: &At) -> bool {
-    let anisotropic = |e: At| e.get("KHR_materials_anisotropy").is_some();
+pub(super) fn needs_tangents(at: &JsonRef) -> bool {
+    let anisotropic = |e: JsonRef| e.get("KHR_materials_anisotropy").is_some();
     at.get("normalTexture").is_some() || at.get("extensions").is_some_and(anisotropic)
 }
 
 impl Model<'_> {
-    pub(super) fn materials(&self, root: &At) -> Vec<PrincipledMaterial> {
+    pub(super) fn materials(&self, root: &JsonRef) -> Vec<PrincipledMaterial> {
         let Some(materials) = root.get("materials") else { return Vec::new() };
         materials.items().enumerate().map(|(i, material)| self.material(i, &material)).collect()
     }
 
     /// Returns for each material true if some vertices with it have colours.
-    pub(super) fn colored(root: &At) -> Vec<bool> {
+    pub(super) fn colored(root: &JsonRef) -> Vec<bool> {
         let mut colored = vec![false; root.get("materials").map_or(0, |materials| materials.items().count())];
         let meshes = root.value.get("meshes").and_then(|meshes| meshes.as_array()).into_iter().flatten();
         let primitives = meshes.filter_map(|mesh| mesh.get("primitives")?.as_array()).flatten();
@@ -56,7 +56,7 @@ impl Model<'_> {
         colored
     }
 
-    fn material(&self, number: usize, at: &At) -> PrincipledMaterial {
+    fn material(&self, number: usize, at: &JsonRef) -> PrincipledMaterial {
         // glTF's default material: white, fully metallic, fully rough, with an index of 1.5.
         let mut m = PrincipledMaterial {
             base_color: Vec3::ONE,
@@ -116,7 +116,7 @@ impl Model<'_> {
         m
     }
 
-    fn metallic(&self, m: &mut PrincipledMaterial, pbr: &At, alpha: Alpha, cutoff: f32) {
+    fn metallic(&self, m: &mut PrincipledMaterial, pbr: &JsonRef, alpha: Alpha, cutoff: f32) {
         let factor = pbr.get("baseColorFactor").and_then(|factor| factor.numbers::<4>()).unwrap_or([1.0; 4]);
         m.base_color = Vec3::new(factor[0], factor[1], factor[2]);
         self.base(m, pbr.get("baseColorTexture"), factor[3], alpha, cutoff);
@@ -127,7 +127,7 @@ impl Model<'_> {
     }
 
     /// Sets up a mask by the product of the alphas of factor, texture and vertices.
-    fn mask_whole(&self, m: &mut PrincipledMaterial, at: &At, cutoff: f32) {
+    fn mask_whole(&self, m: &mut PrincipledMaterial, at: &JsonRef, cutoff: f32) {
         let extensions = at.get("extensions");
         let old = extensions.as_ref().and_then(|extensions| extensions.get("KHR_materials_pbrSpecularGlossiness"));
         let (base, [factor, texture]) = match old {
@@ -145,7 +145,7 @@ impl Model<'_> {
     }
 
     /// Reads the base colour texture, and sets the opacity from the alphas of texture and factor.
-    fn base(&self, m: &mut PrincipledMaterial, texture: Option<At>, factor: f32, alpha: Alpha, cutoff: f32) {
+    fn base(&self, m: &mut PrincipledMaterial, texture: Option<JsonRef>, factor: f32, alpha: Alpha, cutoff: f32) {
         // The cutoff applies to the texture's alpha times the factor.
         let least = match alpha {
             Alpha::Opaque => Some(0.0),
@@ -164,7 +164,7 @@ impl Model<'_> {
 
     /// Reads KHR_materials_pbrSpecularGlossiness, which has a colour for the reflectance at normal
     /// incidence.
-    fn glossy(&self, m: &mut PrincipledMaterial, old: &At, alpha: Alpha, cutoff: f32) {
+    fn glossy(&self, m: &mut PrincipledMaterial, old: &JsonRef, alpha: Alpha, cutoff: f32) {
         let factor = old.get("diffuseFactor").and_then(|factor| factor.numbers::<4>()).unwrap_or([1.0; 4]);
         let specular = old.get("specularFactor").and_then(|factor| color(&factor)).unwrap_or(Vec3::ONE);
         m.base_color = Vec3::new(factor[0], factor[1], factor[2]);
@@ -190,15 +190,15 @@ impl Model<'_> {
         m.specular_roughness_texture = self.number(&texture, Channel::Alpha, [1.0, 1.0 - glossiness]);
     }
 
-    fn extended(&self, m: &mut PrincipledMaterial, extensions: &At) {
+    fn extended(&self, m: &mut PrincipledMaterial, extensions: &JsonRef) {
         for (name, key, instead) in TEXTURES {
             let Some(extension) = extensions.get(name) else { continue };
             if let Some(texture) = extension.get(key) {
                 texture.warning("NO_COUNTERPART", format!("this texture of {name} is left out: {instead}"));
             }
         }
-        let number = |at: &At, key, channel| self.number(&at.get(key)?, channel, [0.0, 1.0]);
-        let picture = |at: &At, key| self.texture(&at.get(key)?, |_| ());
+        let number = |at: &JsonRef, key, channel| self.number(&at.get(key)?, channel, [0.0, 1.0]);
+        let picture = |at: &JsonRef, key| self.texture(&at.get(key)?, |_| ());
         for (name, message) in WITHOUT_COUNTERPART {
             if extensions.get(name).is_some() {
                 self.once(name, message);
@@ -333,7 +333,7 @@ fn weighed_by_brightness(m: &mut PrincipledMaterial, clear: bool) {
 impl Model<'_> {
     /// Reads KHR_materials_diffuse_transmission: a thin sheet transmits a share of the diffuse
     /// light, with its own colour.
-    fn let_through(&self, m: &mut PrincipledMaterial, e: &At) {
+    fn let_through(&self, m: &mut PrincipledMaterial, e: &JsonRef) {
         let through = share(e, "diffuseTransmissionFactor", 0.0);
         if through == 0.0 || m.walls == Walls::Solid && m.transmission_weight > 0.0 {
             return;
@@ -349,7 +349,7 @@ impl Model<'_> {
     }
 
     /// Texture whose channel scales a parameter; texel values 0 and 1 map to `range`.
-    fn number(&self, texture: &At, channel: Channel, range: [f32; 2]) -> Option<FileName> {
+    fn number(&self, texture: &JsonRef, channel: Channel, range: [f32; 2]) -> Option<FileName> {
         let change = |mapping: &mut Mapping| (mapping.channel, mapping.range) = (Some(channel), range);
         // One texture may scale several parameters.
         self.texture_as(texture, &format!(":{channel:?}"), change)
@@ -357,11 +357,11 @@ impl Model<'_> {
 }
 
 /// Reads a factor from 0 to 1.
-fn share(at: &At, key: &str, or: f32) -> f32 {
+fn share(at: &JsonRef, key: &str, or: f32) -> f32 {
     at.get(key).and_then(|factor| factor.within(0.0..=1.0)).unwrap_or(or)
 }
 
 /// Reads a colour; clamps negative components to 0.
-fn color(at: &At) -> Option<Vec3> {
+fn color(at: &JsonRef) -> Option<Vec3> {
     at.numbers::<3>().map(|rgb| Vec3::from_array(rgb).max(Vec3::ZERO))
 }

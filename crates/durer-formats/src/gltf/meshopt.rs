@@ -6,7 +6,7 @@
 
 use super::Model;
 use super::buffers::Slice;
-use super::json::At;
+use super::json::JsonRef;
 
 /// Kind of compressed data.
 #[derive(Clone, Copy, PartialEq)]
@@ -27,7 +27,7 @@ enum Filter {
 
 impl Model<'_> {
     /// Decodes a compressed buffer view of `length` bytes.
-    pub(super) fn unpacked(&self, at: &At, length: usize) -> Option<Slice> {
+    pub(super) fn unpacked(&self, at: &JsonRef, length: usize) -> Option<Slice> {
         at.object()?;
         let buffer = at.need("buffer").and_then(|buffer| buffer.index(self.buffers.len()))?;
         let offset = at.get("byteOffset").map_or(Some(0), |offset| offset.whole(..))? as usize;
@@ -192,12 +192,12 @@ fn deltas(reader: &mut Reader, mode: u8) -> Option<[u8; 16]> {
 
 /// Ring buffer of the last sixteen values.
 #[derive(Default)]
-struct Recent<T> {
+struct RecentValues<T> {
     all: [T; 16],
     next: usize,
 }
 
-impl<T: Copy> Recent<T> {
+impl<T: Copy> RecentValues<T> {
     fn push(&mut self, value: T) {
         self.all[self.next % 16] = value;
         self.next += 1;
@@ -217,7 +217,7 @@ fn triangles(packed: &[u8], count: usize) -> Option<Vec<u32>> {
     let (codes, data) = data.split_at_checked(count / 3)?;
     let mut reader = Reader(data);
     let (mut next, mut last) = (0u32, 0u32);
-    let (mut edges, mut vertices) = (Recent::<[u32; 2]>::default(), Recent::<u32>::default());
+    let (mut edges, mut vertices) = (RecentValues::<[u32; 2]>::default(), RecentValues::<u32>::default());
     let mut all = Vec::with_capacity(count);
     for &code in codes {
         let (x, y) = (usize::from(code >> 4), usize::from(code & 15));

@@ -33,7 +33,7 @@ use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::scene::{Axis, Material, Picture, PictureBytes, Scene, Spanned};
 use durer_scene::texture::Mapping;
-use json::{At, Findings};
+use json::{JsonRef, JsonReport};
 use primitive::Primitives;
 use serde_json::Value;
 use std::cell::RefCell;
@@ -71,7 +71,7 @@ const KNOWN: [&str; 24] = [
 /// State of reading one file.
 struct Model<'a> {
     input: &'a Input<'a>,
-    findings: &'a Findings<'a>,
+    findings: &'a JsonReport<'a>,
     parts: Parts,
     /// True if KHR_mesh_quantization allows integer attributes.
     quantized: bool,
@@ -103,7 +103,7 @@ struct Model<'a> {
     /// Objects, and bytes that are kept.
     kept: Growth,
     /// Codes of the warnings that were reported.
-    said: RefCell<BTreeSet<&'static str>>,
+    reported: RefCell<BTreeSet<&'static str>>,
 }
 
 /// The glTF format.
@@ -115,7 +115,7 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     write: Some(write),
     up: Axis::Y,
     whole: false,
-    shines: None,
+    light_hint: None,
 };
 
 /// Reads a file; see [`read_model`](super::scene::read_model).
@@ -148,14 +148,14 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
             return None;
         }
     };
-    let findings = Findings::new(text, report);
-    let scene = scene(input, parts, At::root(&value, &findings));
+    let findings = JsonReport::new(text, report);
+    let scene = scene(input, parts, JsonRef::root(&value, &findings));
     let scene = findings.finish().finish(diagnostics, scene)?;
     input.files.borrow_mut().cut(input.file, end, diagnostics);
     scene
 }
 
-fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
+fn scene(input: &Input, parts: Parts, root: JsonRef) -> Option<Scene> {
     root.object()?;
     check_version(&root)?;
     let quantized = required(&root);
@@ -185,7 +185,7 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
         lights: Vec::new(),
         work: Growth::of_file(0, u64::MAX),
         kept: Growth::within(input.memory),
-        said: RefCell::default(),
+        reported: RefCell::default(),
     };
     // Each step needs the ones before it.
     model.buffers = model.buffers(&root);
@@ -201,8 +201,9 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
     let materials = model.materials(&root);
     model.material_count = materials.len();
     model.variant = model.chosen_variant(&root);
-    let alpha = |at: &At| at.get("alphaMode").and_then(|mode| mode.value.as_str()).is_some_and(|mode| mode != "OPAQUE");
-    let of_materials = |what: &dyn Fn(&At) -> bool| match root.get("materials") {
+    let alpha =
+        |at: &JsonRef| at.get("alphaMode").and_then(|mode| mode.value.as_str()).is_some_and(|mode| mode != "OPAQUE");
+    let of_materials = |what: &dyn Fn(&JsonRef) -> bool| match root.get("materials") {
         Some(materials) => materials.items().map(|material| what(&material)).collect(),
         None => Vec::new(),
     };
@@ -247,7 +248,7 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
 }
 
 /// Rejects versions other than 2.
-fn check_version(root: &At) -> Option<()> {
+fn check_version(root: &JsonRef) -> Option<()> {
     let asset = root.need("asset")?;
     asset.object()?;
     let version = asset.need("version")?;
@@ -274,7 +275,7 @@ fn check_version(root: &At) -> Option<()> {
 }
 
 /// Rejects required extensions that are not supported; returns true if attributes may be quantized.
-fn required(root: &At) -> bool {
+fn required(root: &JsonRef) -> bool {
     let mut quantized = false;
     for key in ["extensionsUsed", "extensionsRequired"] {
         let mut seen = BTreeSet::new();
@@ -307,13 +308,13 @@ impl Model<'_> {
 
     /// Reports a warning once, at the first place where it applies.
     fn once_at(&self, code: &'static str, pointer: &str, message: &str) {
-        if self.said.borrow_mut().insert(code) {
+        if self.reported.borrow_mut().insert(code) {
             self.findings.say(Diagnostic::warning, code, pointer, message);
         }
     }
 
     /// Charges memory to the budget, so that decoded data stay in proportion to the file's size.
-    fn charge(&self, count: usize, size: usize, at: &At) -> Option<()> {
+    fn charge(&self, count: usize, size: usize, at: &JsonRef) -> Option<()> {
         self.charge_at(count, size, &|| at.pointer())
     }
 
@@ -327,7 +328,7 @@ impl Model<'_> {
     }
 
     /// Counts bytes that are kept.
-    fn keep(&self, count: usize, size: usize, at: &At) -> Option<()> {
+    fn keep(&self, count: usize, size: usize, at: &JsonRef) -> Option<()> {
         self.told(self.kept.bytes(count, size), &|| at.pointer())
     }
 
@@ -342,7 +343,7 @@ impl Model<'_> {
     }
 
     /// Returns all rows of an accessor.
-    fn rows<const N: usize>(&self, accessor: &Accessor, at: &At) -> Option<Vec<[f32; N]>> {
+    fn rows<const N: usize>(&self, accessor: &Accessor, at: &JsonRef) -> Option<Vec<[f32; N]>> {
         self.rows_as(accessor, at, |row| row)
     }
 
@@ -350,7 +351,7 @@ impl Model<'_> {
     fn rows_as<const N: usize, T: Send>(
         &self,
         accessor: &Accessor,
-        at: &At,
+        at: &JsonRef,
         of: impl Fn([f32; N]) -> T + Sync + Send,
     ) -> Option<Vec<T>> {
         self.charge(accessor.count, 4 * N, at)?;

@@ -3,7 +3,7 @@
 use super::Model;
 use super::deform::Skin;
 use super::flat::{flattened, is_sheet};
-use super::json::At;
+use super::json::JsonRef;
 use crate::report::shown;
 use durer_diag::Span;
 use durer_scene::material::PrincipledMaterial;
@@ -65,12 +65,12 @@ fn matrix_of(map: DAffine3) -> Option<MatrixOp> {
     Affine::new(op.matrix()).map(|_| op)
 }
 
-fn vector(at: &At) -> Option<DVec3> {
+fn vector(at: &JsonRef) -> Option<DVec3> {
     at.numbers::<3>().map(|v| Vec3::from_array(v).as_dvec3())
 }
 
 impl Model<'_> {
-    pub(super) fn read_nodes(&self, root: &At) -> Vec<NodeData> {
+    pub(super) fn read_nodes(&self, root: &JsonRef) -> Vec<NodeData> {
         let Some(list) = root.get("nodes") else { return Vec::new() };
         let count = list.items().len();
         let mut nodes: Vec<NodeData> = list.items().map(|at| self.node(&at, count)).collect();
@@ -99,7 +99,7 @@ impl Model<'_> {
         nodes
     }
 
-    fn node(&self, at: &At, count: usize) -> NodeData {
+    fn node(&self, at: &JsonRef, count: usize) -> NodeData {
         let mut node = NodeData::default();
         if at.object().is_none() {
             return node;
@@ -120,7 +120,7 @@ impl Model<'_> {
         node
     }
 
-    fn local(&self, at: &At) -> Local {
+    fn local(&self, at: &JsonRef) -> Local {
         let mut local = Local::default();
         if let Some(matrix) = at.get("matrix") {
             if ["translation", "rotation", "scale"].iter().any(|key| at.get(key).is_some()) {
@@ -148,7 +148,7 @@ impl Model<'_> {
         local
     }
 
-    fn copies(&self, at: &At) -> Option<Vec<DAffine3>> {
+    fn copies(&self, at: &JsonRef) -> Option<Vec<DAffine3>> {
         let attributes = at.need("attributes")?;
         let rows = |key| attributes.get(key).and_then(|at| self.rows::<4>(self.accessor(&at)?, &at));
         let (moves, turns, scales) = (rows("TRANSLATION"), rows("ROTATION"), rows("SCALE"));
@@ -167,7 +167,7 @@ impl Model<'_> {
 
     /// Returns the nodes of the shown scene, parents first, and the transforms to world space of
     /// all nodes. Joints may be nodes outside the shown scene.
-    pub(super) fn placed(&self, root: &At, nodes: &[NodeData]) -> (Vec<usize>, Vec<DAffine3>) {
+    pub(super) fn placed(&self, root: &JsonRef, nodes: &[NodeData]) -> (Vec<usize>, Vec<DAffine3>) {
         let mut maps = vec![DAffine3::IDENTITY; nodes.len()];
         let mut order = Vec::with_capacity(nodes.len());
         let mut stack: Vec<usize> = (0..nodes.len()).filter(|&i| nodes[i].parent.is_none()).rev().collect();
@@ -187,7 +187,7 @@ impl Model<'_> {
 
     /// Returns the roots of the shown scene: the default scene, else the first, else all roots if
     /// the file has no scenes.
-    fn shown(&self, root: &At, nodes: &[NodeData]) -> Vec<usize> {
+    fn shown(&self, root: &JsonRef, nodes: &[NodeData]) -> Vec<usize> {
         let all = || (0..nodes.len()).filter(|&i| nodes[i].parent.is_none()).collect();
         let Some(scenes) = root.get("scenes") else {
             if let Some(wanted) = root.get("scene") {
@@ -195,7 +195,7 @@ impl Model<'_> {
             }
             return all();
         };
-        let roots = |scene: &At| {
+        let roots = |scene: &JsonRef| {
             scene.object();
             scene.list("nodes", |node| {
                 let number = node.index(nodes.len());

@@ -3,7 +3,7 @@
 use super::Model;
 use super::accessor::{Accessor, Component};
 use super::deform::{Pose, copy};
-use super::json::At;
+use super::json::JsonRef;
 use crate::sticks::thickened;
 use durer_scene::math::{Vec2, Vec3};
 use durer_scene::shape::MeshData;
@@ -47,12 +47,12 @@ const STRIP: u64 = 5;
 const FAN: u64 = 6;
 
 impl Model<'_> {
-    pub(super) fn meshes(&self, root: &At) -> Vec<Primitives> {
+    pub(super) fn meshes(&self, root: &JsonRef) -> Vec<Primitives> {
         let Some(meshes) = root.get("meshes") else { return Vec::new() };
         meshes.items().map(|mesh| self.mesh(&mesh)).collect()
     }
 
-    fn mesh(&self, at: &At) -> Primitives {
+    fn mesh(&self, at: &JsonRef) -> Primitives {
         let Some(primitives) = at.object().and_then(|_| at.need("primitives")) else { return Vec::new() };
         if let Some(weights) = at.get("weights") {
             let targets = primitives.items().next().map_or(0, |first| first.list("targets", |_| ()).len());
@@ -72,12 +72,12 @@ impl Model<'_> {
     }
 
     /// Returns the accessor that a property names.
-    pub(super) fn accessor(&self, at: &At) -> Option<&Accessor> {
+    pub(super) fn accessor(&self, at: &JsonRef) -> Option<&Accessor> {
         self.accessors[at.index(self.accessors.len())?].as_ref()
     }
 
     /// Returns the accessor of an attribute, if its format is valid for the attribute.
-    fn attribute(&self, at: &At, name: &str, widths: &[usize], whole: &[Component]) -> Option<&Accessor> {
+    fn attribute(&self, at: &JsonRef, name: &str, widths: &[usize], whole: &[Component]) -> Option<&Accessor> {
         let accessor = self.accessor(at)?;
         let quantized = self.quantized && !matches!(accessor.component, Component::U32);
         let right = accessor.component == Component::F32
@@ -91,7 +91,7 @@ impl Model<'_> {
         None
     }
 
-    fn primitive(&self, at: &At) -> Option<Primitive> {
+    fn primitive(&self, at: &JsonRef) -> Option<Primitive> {
         at.object()?;
         let material = self.material_of(at)?;
         let mode = at.get("mode").map_or(Some(TRIANGLES), |mode| mode.whole(0..=6))?;
@@ -164,7 +164,7 @@ impl Model<'_> {
         mode: u64,
         order: &[u32],
         material: Option<u32>,
-        at: &At,
+        at: &JsonRef,
     ) -> Option<Primitive> {
         let name = at.name();
         let message = format!("points and lines of mesh{name} have no surface: small balls and thin sticks are shown");
@@ -185,7 +185,7 @@ impl Model<'_> {
     }
 
     /// Reads an attribute other than the position.
-    fn fill(&self, data: &mut MeshData, key: &str, at: &At) {
+    fn fill(&self, data: &mut MeshData, key: &str, at: &JsonRef) {
         const UNSIGNED: &[Component] = &[Component::U8, Component::U16];
         match key {
             "POSITION" | "JOINTS_0" | "WEIGHTS_0" => {}
@@ -227,7 +227,7 @@ impl Model<'_> {
     }
 
     /// Returns the vertex indices of the primitive in order.
-    fn order(&self, at: &At, count: usize) -> Option<Vec<u32>> {
+    fn order(&self, at: &JsonRef, count: usize) -> Option<Vec<u32>> {
         let Some(indices) = at.get("indices") else {
             self.keep(count, 4, at)?;
             return Some((0..count as u32).collect());

@@ -8,7 +8,7 @@ use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::{Backs, Walls};
 use durer_scene::math::random::Random;
 use durer_scene::math::{Vec2, Vec3};
-use durer_scene::scene::{Material, Scene, Staging};
+use durer_scene::scene::{Material, Scene, SceneDefaults};
 use durer_scene::shape::MeshData;
 use durer_scene::texture::Channel;
 use std::path::{Path, PathBuf};
@@ -18,16 +18,21 @@ mod vertices;
 
 /// Reads bytes as a file of a folder; returns findings with severity, code and message.
 fn read(bytes: &[u8], folder: &Path, name: &str, at: Option<f32>) -> (Option<Scene>, Vec<(Severity, String)>) {
-    staged(bytes, folder, name, &Staging { at, ..Staging::default() })
+    staged(bytes, folder, name, &SceneDefaults { at, ..SceneDefaults::default() })
 }
 
-fn staged(bytes: &[u8], folder: &Path, name: &str, staging: &Staging) -> (Option<Scene>, Vec<(Severity, String)>) {
+fn staged(
+    bytes: &[u8],
+    folder: &Path,
+    name: &str,
+    scene_defaults: &SceneDefaults,
+) -> (Option<Scene>, Vec<(Severity, String)>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let bytes = bytes.into();
     let file = files.add(name, std::sync::Arc::clone(&bytes));
     let source = FolderSource::new(folder);
     let files = std::cell::RefCell::new(files);
-    let input = Input { bytes: &bytes, file, files: &files, name, source: &source, staging, memory: u64::MAX };
+    let input = Input { bytes: &bytes, file, files: &files, name, source: &source, scene_defaults, memory: u64::MAX };
     let format = find_scene_format(&bytes, name).expect("it is known");
     let scene = read_model(format, &input, &mut diagnostics);
     // Every error has a span.
@@ -303,7 +308,7 @@ fn white_material_exists_only_for_colours_without_material() {
     let accessors = format!(r#"{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",{BOUNDS}}}"#);
     let count = |attributes: &str| {
         let text = document(r#"{"buffer":0,"byteLength":36}"#, &accessors, attributes, &bytes);
-        let bare = Staging { bare: true, ..Staging::default() };
+        let bare = SceneDefaults { bare: true, ..SceneDefaults::default() };
         let (scene, findings) = staged(text.as_bytes(), Path::new("."), "a.gltf", &bare);
         scene.unwrap_or_else(|| panic!("{findings:?}")).materials.len()
     };
@@ -366,9 +371,9 @@ fn double_sided_emitters_emit_on_both_sides() {
         let m = material(words);
         (m.walls, m.backs)
     };
-    let shining = r#","emissiveFactor":[1,1,1]"#;
-    assert_eq!(of(&format!(r#""doubleSided":true{shining}"#)), (Walls::Thin, Backs::Shown));
-    assert_eq!(of(&format!(r#""doubleSided":false{shining}"#)), (Walls::Solid, Backs::Hidden));
+    let emissive = r#","emissiveFactor":[1,1,1]"#;
+    assert_eq!(of(&format!(r#""doubleSided":true{emissive}"#)), (Walls::Thin, Backs::Shown));
+    assert_eq!(of(&format!(r#""doubleSided":false{emissive}"#)), (Walls::Solid, Backs::Hidden));
     assert_eq!(of(r#""doubleSided":true"#), (Walls::Solid, Backs::Shown));
     let unlit = r#""doubleSided":true,"extensions":{"KHR_materials_unlit":{}}"#;
     assert_eq!(of(unlit), (Walls::Thin, Backs::Shown));
@@ -547,8 +552,8 @@ fn variant_is_selected_by_name_or_number() {
            {"name":"2nd red"}]}},"nodes":[{"mesh":0}]"#,
     );
     let shown = |variant: Option<&str>| {
-        let staging = Staging { variant: variant.map(Into::into), ..Staging::default() };
-        let (scene, findings) = staged(text.as_bytes(), Path::new("."), "a.gltf", &staging);
+        let scene_defaults = SceneDefaults { variant: variant.map(Into::into), ..SceneDefaults::default() };
+        let (scene, findings) = staged(text.as_bytes(), Path::new("."), "a.gltf", &scene_defaults);
         scene.map(|scene| scene.root.unwrap().objects[0].material).ok_or(format!("{findings:?}"))
     };
     assert_eq!(shown(None), Ok(Some(0)));
@@ -568,21 +573,21 @@ fn errors_count_if_diagnostics_are_full() {
     (0..100).for_each(|_| diagnostics.push(durer_diag::Diagnostic::error("before")));
     let file = files.add("a.gltf", lost.as_bytes().into());
     let (source, files) = (FolderSource::new("."), std::cell::RefCell::new(files));
-    let (name, staging) = ("a.gltf", Staging::default());
+    let (name, scene_defaults) = ("a.gltf", SceneDefaults::default());
     let input = Input {
         bytes: &lost.as_bytes().into(),
         file,
         files: &files,
         name,
         source: &source,
-        staging: &staging,
+        scene_defaults: &scene_defaults,
         memory: 1 << 30,
     };
     assert!(read_model(find_scene_format(lost.as_bytes(), name).unwrap(), &input, &mut diagnostics).is_none());
     // Many warnings precede the error.
     let wide = r#"{"type":"perspective","perspective":{"yfov":4,"znear":0.1}},"#.repeat(400);
     let text = lost.replace(r#""nodes":[{"#, &format!(r#""cameras":[{}],"nodes":[{{"#, wide.trim_end_matches(',')));
-    let (scene, told) = read(text.as_bytes(), Path::new("."), "a.gltf", None);
-    let last = told.last().unwrap();
-    assert!(scene.is_none() && told.len() > 20 && last.0 == Severity::Error, "{} {last:?}", told.len()); // prose: keep
+    let (scene, messages) = read(text.as_bytes(), Path::new("."), "a.gltf", None);
+    let last = messages.last().unwrap();
+    assert!(scene.is_none() && messages.len() > 20 && last.0 == Severity::Error, "{} {last:?}", messages.len()); // prose: keep
 }

@@ -2,7 +2,7 @@
 
 use super::Model;
 use super::buffers::{Target, target};
-use super::json::At;
+use super::json::JsonRef;
 use durer_diag::Span;
 use durer_scene::describe::FileName;
 use durer_scene::math::fp;
@@ -10,7 +10,7 @@ use durer_scene::scene::{Picture, PictureBytes};
 use durer_scene::texture::{Mapping, Wrap};
 
 /// Returns the wrapping mode for `wrapS` or `wrapT` of a sampler.
-fn wrap(at: &At) -> Option<Wrap> {
+fn wrap(at: &JsonRef) -> Option<Wrap> {
     match at.whole(..)? {
         10497 => Some(Wrap::Repeat),
         33648 => Some(Wrap::Mirror),
@@ -24,12 +24,12 @@ fn wrap(at: &At) -> Option<Wrap> {
 
 impl Model<'_> {
     /// Returns the bytes or file names of the images.
-    pub(super) fn images(&self, root: &At) -> Vec<Option<PictureBytes>> {
+    pub(super) fn images(&self, root: &JsonRef) -> Vec<Option<PictureBytes>> {
         let Some(images) = root.get("images") else { return Vec::new() };
         images.items().map(|image| self.image(&image)).collect()
     }
 
-    fn image(&self, at: &At) -> Option<PictureBytes> {
+    fn image(&self, at: &JsonRef) -> Option<PictureBytes> {
         at.object()?;
         let name = format!("{}#{}", self.input.name, at.pointer());
         let kind = at.get("mimeType").and_then(|kind| kind.string());
@@ -63,13 +63,13 @@ impl Model<'_> {
     }
 
     /// Reads a `textureInfo` with a change to its mapping; returns the name of the new asset.
-    pub(super) fn texture(&self, at: &At, change: impl FnOnce(&mut Mapping)) -> Option<FileName> {
+    pub(super) fn texture(&self, at: &JsonRef, change: impl FnOnce(&mut Mapping)) -> Option<FileName> {
         self.texture_as(at, "", change)
     }
 
     /// Reads a `textureInfo` as [`Model::texture`] does. `role` distinguishes several uses of one
     /// texture.
-    pub(super) fn texture_as(&self, at: &At, role: &str, change: impl FnOnce(&mut Mapping)) -> Option<FileName> {
+    pub(super) fn texture_as(&self, at: &JsonRef, role: &str, change: impl FnOnce(&mut Mapping)) -> Option<FileName> {
         at.object()?;
         let number = at.need("index")?.index(self.textures.len())?;
         let (image, mut mapping, span) = self.textures[number].clone()?;
@@ -92,13 +92,13 @@ impl Model<'_> {
         Some(FileName { path, span })
     }
 
-    pub(super) fn textures(&self, root: &At) -> Vec<Option<(PictureBytes, Mapping, Span)>> {
+    pub(super) fn textures(&self, root: &JsonRef) -> Vec<Option<(PictureBytes, Mapping, Span)>> {
         let samplers = match root.get("samplers") {
             Some(samplers) => samplers.items().map(|sampler| self.sampler(&sampler)).collect(),
             None => Vec::new(),
         };
         let Some(textures) = root.get("textures") else { return Vec::new() };
-        let one = |at: At| {
+        let one = |at: JsonRef| {
             at.object()?;
             let mapping = match at.get("sampler") {
                 Some(sampler) => samplers[sampler.index(samplers.len())?],
@@ -129,7 +129,7 @@ impl Model<'_> {
         textures.items().map(one).collect()
     }
 
-    fn sampler(&self, at: &At) -> Mapping {
+    fn sampler(&self, at: &JsonRef) -> Mapping {
         let mode = |key| at.get(key).and_then(|mode| wrap(&mode)).unwrap_or_default();
         let nearest = at.get("magFilter").and_then(|filter| filter.whole(9728..=9729)) == Some(9728);
         // Filters with mipmaps.
@@ -141,7 +141,7 @@ impl Model<'_> {
 /// Returns the matrix of KHR_texture_transform from offset, rotation and scale.
 ///
 /// Source: KHR_texture_transform: T R S with R = (cos r, sin r; -sin r, cos r).
-fn transformed(at: &At) -> [[f32; 3]; 2] {
+fn transformed(at: &JsonRef) -> [[f32; 3]; 2] {
     let pair = |key, or| at.get(key).and_then(|pair| pair.numbers::<2>()).unwrap_or(or);
     let ([x, y], [sx, sy]) = (pair("offset", [0.0; 2]), pair("scale", [1.0; 2]));
     let angle = at.get("rotation").and_then(|angle| angle.number()).unwrap_or(0.0);

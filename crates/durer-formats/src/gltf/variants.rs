@@ -1,14 +1,14 @@
 //! KHR_materials_variants: alternative materials of one model.
 
 use super::Model;
-use super::json::At;
+use super::json::JsonRef;
 use durer_diag::did_you_mean;
 
 const VARIANTS: &str = "KHR_materials_variants";
 
 impl Model<'_> {
     /// Returns the index of the requested variant.
-    pub(super) fn chosen_variant(&self, root: &At) -> Option<usize> {
+    pub(super) fn chosen_variant(&self, root: &JsonRef) -> Option<usize> {
         let extensions = root.get("extensions");
         let variants = extensions.as_ref().and_then(|extensions| extensions.get(VARIANTS));
         let variants = variants.as_ref().and_then(|variants| variants.need("variants"));
@@ -17,7 +17,7 @@ impl Model<'_> {
             None => Vec::new(),
         };
         let known = format!("`{}`", names.join("`, `"));
-        let Some(wanted) = &self.input.staging.variant else {
+        let Some(wanted) = &self.input.scene_defaults.variant else {
             if !names.is_empty() {
                 let message = format!("the model has the variants {known}: `--variant NAME` selects one");
                 variants.as_ref().unwrap_or(root).note("variants", message);
@@ -28,7 +28,7 @@ impl Model<'_> {
         let found = names.iter().position(|name| name == wanted).or_else(by_number);
         if found.is_none() {
             let help = match did_you_mean(wanted, names.iter().copied()) {
-                Some(meant) => format!("did you mean `{meant}`?"),
+                Some(suggestion) => format!("did you mean `{suggestion}`?"),
                 None if names.is_empty() => "it has none".into(),
                 None => format!("the variants are {known}"),
             };
@@ -38,8 +38,8 @@ impl Model<'_> {
     }
 
     /// Returns the material of a primitive: that of the selected variant, else its own.
-    pub(super) fn material_of(&self, at: &At) -> Option<Option<u32>> {
-        let number = |material: &At| material.index(self.material_count).map(|number| Some(number as u32));
+    pub(super) fn material_of(&self, at: &JsonRef) -> Option<Option<u32>> {
+        let number = |material: &JsonRef| material.index(self.material_count).map(|number| Some(number as u32));
         if let Some(variant) = self.variant
             && let Some(mappings) = at
                 .get("extensions")

@@ -5,7 +5,7 @@ use super::values::{Members, Reader};
 use super::{DEEPEST, schema};
 use crate::course::{flat, senseless};
 use crate::report::{Report, counted, shown};
-use crate::said::meant;
+use crate::shared_report::suggest;
 use durer_diag::{Diagnostic, Diagnostics};
 use durer_scene::camera::Camera;
 use durer_scene::dialect::Dialect;
@@ -29,8 +29,8 @@ impl<'a> Document<'a> {
         let root = match text.len() < u32::MAX as usize {
             true => parse(text).map_err(|error| {
                 let first = error.first.map(|first| (report.span(first), "first here".to_string()));
-                let said = report.error(error.at, error.message);
-                (said.code, said.related) = ("syntax", first);
+                let diagnostic = report.error(error.at, error.message);
+                (diagnostic.code, diagnostic.related) = ("syntax", first);
             }),
             false => {
                 report.error(0..0, "a scene file must be smaller than 4 GiB");
@@ -43,8 +43,8 @@ impl<'a> Document<'a> {
     /// Dialect that defines the meaning of the keywords; [`Dialect::Durer`] if the file names none.
     pub fn dialect(&self) -> Dialect {
         let Some(Node { value: Value::Object(members), .. }) = &self.root else { return Dialect::Durer };
-        let said = members.iter().find(|member| member.name == "dialect").map(|member| &member.node.value);
-        match said {
+        let stated = members.iter().find(|member| member.name == "dialect").map(|member| &member.node.value);
+        match stated {
             Some(Value::String(name)) => Dialect::from_name(name).unwrap_or(Dialect::Durer),
             _ => Dialect::Durer,
         }
@@ -73,11 +73,11 @@ impl Reader<'_> {
             scene.camera_span = self.span(&node.head());
         }
         if let Some(node) = members.take("background") {
-            scene.background = self.thing(scene.background, node, "background");
+            scene.background = self.item(scene.background, node, "background");
             scene.background_span = self.span(&node.head());
         }
         if let Some(node) = members.take("fog") {
-            scene.fog = self.spanned(node, |reader| Some(reader.thing(Default::default(), node, "fog")));
+            scene.fog = self.spanned(node, |reader| Some(reader.item(Default::default(), node, "fog")));
         }
         if let Some(node) = members.take("lights") {
             let lights = self.items(node, "lights").iter();
@@ -86,7 +86,7 @@ impl Reader<'_> {
         }
         if let Some(node) = members.take("textures") {
             for node in self.items(node, "textures") {
-                let texture = self.thing(NamedTexture::default(), node, "texture");
+                let texture = self.item(NamedTexture::default(), node, "texture");
                 let name = texture.name.path.clone();
                 if scene.assets.pictures.insert(name.clone(), texture.picture()).is_some() {
                     let message = format!("a texture {} already exists", shown(name.as_bytes()));
@@ -113,9 +113,10 @@ impl Reader<'_> {
         for (index, at) in std::mem::take(&mut self.uses) {
             if index as usize >= count {
                 let has = counted(count, "material", "materials");
-                let said = self.report.warning(at, format!("material {index} does not exist: the scene has {has}"));
-                said.code = "material-index";
-                said.help = Some("objects that use it are drawn in plain grey".into());
+                let diagnostic =
+                    self.report.warning(at, format!("material {index} does not exist: the scene has {has}"));
+                diagnostic.code = "material-index";
+                diagnostic.help = Some("objects that use it are drawn in plain grey".into());
             }
         }
     }
@@ -135,7 +136,7 @@ impl Reader<'_> {
             let name = members.take("preset").and_then(|node| Some((node, self.string(node, "preset")?)));
             let preset = name.and_then(|(_, name)| presets::named(name));
             if let (Some((node, name)), None) = (name, &preset) {
-                let help = meant(name, presets::PRESETS.iter().map(|row| row.0));
+                let help = suggest(name, presets::PRESETS.iter().map(|row| row.0));
                 let help = help.unwrap_or("`durer words preset` lists them".into());
                 let message = format!("unknown preset {}", shown(name.as_bytes()));
                 self.error(node.at.clone(), "unknown-word", message, Some(help));
@@ -148,7 +149,7 @@ impl Reader<'_> {
             Material::Hair(hair)
         } else {
             let mut phong = PhongMaterial::default();
-            let noise = members.take("noise").map(|node| self.thing(ColorNoise::default(), node, "noise"));
+            let noise = members.take("noise").map(|node| self.item(ColorNoise::default(), node, "noise"));
             self.fields(&mut phong, &mut members);
             Material::Phong(Box::new(phong), noise)
         };
@@ -173,7 +174,7 @@ impl Reader<'_> {
             return None;
         };
         let Some((name, like)) = MatrixOp::KINDS.iter().find(|row| row.0 == name) else {
-            let help = meant(name, words).unwrap_or_else(|| format!("one of {}", words.join(", ")));
+            let help = suggest(name, words).unwrap_or_else(|| format!("one of {}", words.join(", ")));
             self.error(at.clone(), "unknown-word", format!("{} is not a matrix", shown(name.as_bytes())), Some(help));
             return None;
         };
@@ -253,7 +254,7 @@ impl Reader<'_> {
             let mut grid = VoxelGrid::default();
             self.fields(&mut grid, &mut members);
             let balls = members.take("balls").map_or(&[][..], |node| self.items(node, "balls"));
-            What::Voxels(grid, balls.iter().map(|node| self.thing(Sphere::default(), node, "ball")).collect())
+            What::Voxels(grid, balls.iter().map(|node| self.item(Sphere::default(), node, "ball")).collect())
         };
         self.finish(members);
         Some(Object { node: what, material, span: self.span(&node.head()) })

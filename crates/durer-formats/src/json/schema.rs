@@ -3,7 +3,7 @@
 
 use super::DEEPEST;
 use durer_scene::camera::Camera;
-use durer_scene::describe::{DescribedList, Field, Kind, Rule};
+use durer_scene::describe::{Constraint, DescribedList, Field, Kind};
 use durer_scene::dialect::Dialect;
 use durer_scene::light::Light;
 use durer_scene::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid, presets};
@@ -18,13 +18,13 @@ pub(super) fn keywords<T: DescribedList>() -> Vec<&'static str> {
 }
 
 /// Keyword of a described item in the Dürer dialect.
-pub(super) fn word<T: DescribedList>(thing: &T) -> &'static str {
-    thing.keyword(Dialect::Durer)
+pub(super) fn word<T: DescribedList>(item: &T) -> &'static str {
+    item.keyword(Dialect::Durer)
 }
 
 /// Item with default values for a keyword.
 pub(super) fn of_keyword<T: DescribedList>(keyword: &str) -> Option<T> {
-    T::kinds().into_iter().find(|thing| word(thing) == keyword)
+    T::kinds().into_iter().find(|item| word(item) == keyword)
 }
 
 /// Keywords of all materials.
@@ -81,11 +81,11 @@ pub fn schema() -> Value {
                 "pattern": r"^[^\s{}\u0000]+$",
                 "description": "A file, relative to the scene's folder.",
             },
-            "camera": one_of(things::<Camera>()),
-            "light": one_of(things::<Light>()),
-            "material": one_of(material_things()),
+            "camera": one_of(items::<Camera>()),
+            "light": one_of(items::<Light>()),
+            "material": one_of(material_items()),
             "matrix": one_of(MatrixOp::KINDS.map(|(name, op)| matrix(name, op)).to_vec()),
-            "object": one_of(object_things()),
+            "object": one_of(object_items()),
         },
     })
 }
@@ -94,8 +94,8 @@ fn reference(name: &str) -> Value {
     json!({ "$ref": format!("#/$defs/{name}") })
 }
 
-fn one_of(things: Vec<Value>) -> Value {
-    json!({ "oneOf": things })
+fn one_of(items: Vec<Value>) -> Value {
+    json!({ "oneOf": items })
 }
 
 /// A number with the shortest decimal digits of its `f32` value.
@@ -122,21 +122,21 @@ fn field(field: &Field) -> Value {
         }),
     };
     match field.rule {
-        Rule::Any if field.kind == Kind::Float => value = reference("number"),
-        Rule::Any => {}
-        Rule::Positive => (value["exclusiveMinimum"], value["maximum"]) = (json!(0), number(f32::MAX)),
-        Rule::NonNegative => (value["minimum"], value["maximum"]) = (json!(0), number(f32::MAX)),
-        Rule::NonZero => value["not"] = json!({"const": [0, 0, 0]}),
-        Rule::Between(low, high) => {
+        Constraint::Any if field.kind == Kind::Float => value = reference("number"),
+        Constraint::Any => {}
+        Constraint::Positive => (value["exclusiveMinimum"], value["maximum"]) = (json!(0), number(f32::MAX)),
+        Constraint::NonNegative => (value["minimum"], value["maximum"]) = (json!(0), number(f32::MAX)),
+        Constraint::NonZero => value["not"] = json!({"const": [0, 0, 0]}),
+        Constraint::Between(low, high) => {
             (value["exclusiveMinimum"], value["exclusiveMaximum"]) = (number(low), number(high));
         }
-        Rule::From(low, high) => (value["minimum"], value["maximum"]) = (number(low), number(high)),
-        Rule::UpTo(high) => (value["exclusiveMinimum"], value["maximum"]) = (json!(0), number(high)),
-        Rule::Share => (value["minimum"], value["maximum"]) = (json!(0), json!(1)),
-        Rule::AtMost(most) => value["maximum"] = json!(most),
-        Rule::Numbered(last) => (value["minimum"], value["maximum"]) = (json!(1), json!(last)),
-        Rule::Rows(least, most) => (value["minItems"], value["maxItems"]) = (json!(least), json!(most)),
-        Rule::Counts(most) => value["items"] = json!({"type": "integer", "minimum": 1, "maximum": most}),
+        Constraint::From(low, high) => (value["minimum"], value["maximum"]) = (number(low), number(high)),
+        Constraint::UpTo(high) => (value["exclusiveMinimum"], value["maximum"]) = (json!(0), number(high)),
+        Constraint::Share => (value["minimum"], value["maximum"]) = (json!(0), json!(1)),
+        Constraint::AtMost(most) => value["maximum"] = json!(most),
+        Constraint::Numbered(last) => (value["minimum"], value["maximum"]) = (json!(1), json!(last)),
+        Constraint::Rows(least, most) => (value["minItems"], value["maxItems"]) = (json!(least), json!(most)),
+        Constraint::Counts(most) => value["items"] = json!({"type": "integer", "minimum": 1, "maximum": most}),
     }
     value["description"] = about(field.doc).into();
     value
@@ -154,15 +154,15 @@ fn object(doc: &str, members: Value, required: &[&str]) -> Value {
 }
 
 /// Schema of a described item with further members.
-fn described<T: DescribedList>(thing: &T, more: Value, also: &[&'static str]) -> Value {
+fn described<T: DescribedList>(item: &T, more: Value, also: &[&'static str]) -> Value {
     let mut members = Map::new();
     if let Value::Object(more) = more {
         members.extend(more);
     }
-    members.extend(thing.fields().iter().map(|f| (f.name.to_string(), field(f))));
-    let fields = thing.fields().iter().filter(|field| field.required).map(|field| field.name);
+    members.extend(item.fields().iter().map(|f| (f.name.to_string(), field(f))));
+    let fields = item.fields().iter().filter(|field| field.required).map(|field| field.name);
     let required: Vec<&str> = also.iter().copied().chain(fields).collect();
-    object(thing.doc(), members.into(), &required)
+    object(item.doc(), members.into(), &required)
 }
 
 /// Schema of an item that needs no `type`.
@@ -171,8 +171,8 @@ fn record<T: DescribedList + Default>(more: Value) -> Value {
 }
 
 /// Schema of an item with its `type`.
-fn named<T: DescribedList>(thing: &T, more: &Value) -> Value {
-    described(thing, with(more, "type", json!({ "const": word(thing) })), &["type"])
+fn named<T: DescribedList>(item: &T, more: &Value) -> Value {
+    described(item, with(more, "type", json!({ "const": word(item) })), &["type"])
 }
 
 /// Returns a copy of `members` with one more member.
@@ -186,18 +186,18 @@ fn with(members: &Value, name: &str, value: Value) -> Value {
     all
 }
 
-fn things<T: DescribedList>() -> Vec<Value> {
-    T::kinds().iter().map(|thing| named(thing, &json!({}))).collect()
+fn items<T: DescribedList>() -> Vec<Value> {
+    T::kinds().iter().map(|item| named(item, &json!({}))).collect()
 }
 
-fn material_things() -> Vec<Value> {
+fn material_items() -> Vec<Value> {
     let noise = json!({ "noise": record::<ColorNoise>(json!({})) });
     let presets: Vec<&str> = presets::PRESETS.iter().map(|row| row.0).collect();
     let preset =
         json!({"preset": {"enum": presets, "description": "A real material by name; the other members change it."}});
     let transform = json!({"transform": matrices("From world to pattern space: the product of these matrices.")});
     let mut all = vec![named(&PhongMaterial::default(), &noise), named(&PrincipledMaterial::default(), &preset)];
-    all.extend(things::<HairMaterial>());
+    all.extend(items::<HairMaterial>());
     all.extend(Solid::kinds().iter().map(|solid| named(solid, &transform)));
     all
 }
@@ -226,7 +226,7 @@ fn matrix(name: &str, op: MatrixOp) -> Value {
     object(about, json!({ name: value }), &[name])
 }
 
-fn object_things() -> Vec<Value> {
+fn object_items() -> Vec<Value> {
     let material = json!({
         "type": "integer",
         "minimum": 0,

@@ -14,11 +14,11 @@ fn read(text: &str) -> (Option<Scene>, Vec<String>) {
     let (mut files, mut found) = (Files::default(), Diagnostics::default());
     let file = files.add("x.json", text.as_bytes().into());
     let scene = Document::open(text.as_bytes(), file, &found).scene(&mut found);
-    let said = found.iter().map(|finding| {
+    let messages = found.iter().map(|finding| {
         let (line, column) = files.position(finding.span.unwrap()).unwrap();
         format!("{line}:{column}: {}", finding.message)
     });
-    (scene, said.collect())
+    (scene, messages.collect())
 }
 
 /// Asserts that two scenes are equal bit for bit; `PartialEq` treats 0 and -0 as equal.
@@ -36,9 +36,9 @@ fn random_scenes_round_trip() {
         for dialect in Dialect::ALL {
             let scene = random.scene(dialect);
             let text = write(&scene, dialect);
-            let (again, said) = read(&text);
+            let (again, messages) = read(&text);
             let (context, wrong) =
-                (format!("{said:?}\n{text}"), said.iter().any(|said| !said.contains("does not exist")));
+                (format!("{messages:?}\n{text}"), messages.iter().any(|message| !message.contains("does not exist")));
             assert!(!wrong, "{context}");
             same(&scene, &again.expect(&context), &context);
             let document = Document::open(text.as_bytes(), 0, &Diagnostics::default());
@@ -65,8 +65,8 @@ const SMALL: &str = r#"{
 
 #[test]
 fn handwritten_scene_is_read() {
-    let (scene, said) = read(SMALL);
-    assert_eq!(said, [""; 0]);
+    let (scene, messages) = read(SMALL);
+    assert_eq!(messages, [""; 0]);
     let scene = scene.unwrap();
     let Material::Principled(gold) = &scene.materials[0].value else { panic!() };
     assert_eq!((gold.base_metalness, gold.specular_roughness), (1.0, 0.5));
@@ -143,17 +143,17 @@ fn errors_have_line_and_column() {
         (materials("{\"type\": \"PrincipledMaterial\", \"base_weight\": 2}"), "2:47: `base_weight` must be from 0 to 1"),
     ];
     for (text, wanted) in cases {
-        let (scene, said) = read(&text);
+        let (scene, messages) = read(&text);
         assert!(scene.is_none(), "{text}");
-        assert!(said[0].starts_with(wanted), "{text}\n{said:?}\n{wanted}");
+        assert!(messages[0].starts_with(wanted), "{text}\n{messages:?}\n{wanted}");
     }
 }
 
 #[test]
 fn number_of_errors_and_nesting_are_limited() {
     let bad = "{\"type\": \"Sphere\"},".repeat(1000);
-    let (scene, said) = read(&format!("{{\"type\": \"Scene\", \"objects\": [{bad} 1]}}"));
-    assert!(scene.is_none() && said.len() == durer_diag::ERROR_LIMIT);
+    let (scene, messages) = read(&format!("{{\"type\": \"Scene\", \"objects\": [{bad} 1]}}"));
+    assert!(scene.is_none() && messages.len() == durer_diag::ERROR_LIMIT);
     let nested = |depth: usize| {
         let open = "{\"type\": \"Group\", \"objects\": [".repeat(depth);
         read(&format!("{{\"type\": \"Scene\", \"objects\": [{open}{}]}}", "]}".repeat(depth)))
@@ -162,8 +162,11 @@ fn number_of_errors_and_nesting_are_limited() {
     assert!(nested(super::DEEPEST + 1).1[0].contains("objects are nested deeper than 200"));
     assert!(nested(1000).1[0].contains("values are nested deeper than 640"));
     // A material index out of range is reported, and the scene is still read.
-    let (scene, said) = read(&SMALL.replace("\"material\": 2", "\"material\": 3"));
-    assert!(scene.is_some() && said[0].contains("material 3 does not exist: the scene has 3 materials"), "{said:?}");
+    let (scene, messages) = read(&SMALL.replace("\"material\": 2", "\"material\": 3"));
+    assert!(
+        scene.is_some() && messages[0].contains("material 3 does not exist: the scene has 3 materials"),
+        "{messages:?}"
+    );
 }
 
 /// Returns true if a value matches a schema. Supports the part of JSON Schema that the generated
@@ -184,37 +187,37 @@ fn fits(root: &Value, schema: &Value, value: &Value) -> bool {
     let within =
         |limit: &Value, fits: fn(f64, f64) -> bool| value.as_f64().is_none_or(|x| fits(x, limit.as_f64().unwrap()));
     let length = value.as_array().map(Vec::len);
-    schema.as_object().unwrap().iter().all(|(word, said)| match word.as_str() {
+    schema.as_object().unwrap().iter().all(|(word, constraint)| match word.as_str() {
         "description" | "title" | "$schema" | "$defs" => true,
-        "$ref" => fits(root, root.pointer(&said.as_str().unwrap()[1..]).unwrap(), value),
-        "type" => of_type(said.as_str().unwrap()),
-        "const" => equal(said, value),
-        "enum" => said.as_array().unwrap().iter().any(|one| equal(one, value)),
+        "$ref" => fits(root, root.pointer(&constraint.as_str().unwrap()[1..]).unwrap(), value),
+        "type" => of_type(constraint.as_str().unwrap()),
+        "const" => equal(constraint, value),
+        "enum" => constraint.as_array().unwrap().iter().any(|one| equal(one, value)),
         "not" => !value.as_array().is_some_and(|list| list.len() == 3 && list.iter().all(|x| x.as_f64() == Some(0.0))),
         "pattern" => {
             value.as_str().is_none_or(|text| !text.is_empty() && !text.contains([' ', '{', '}', '\t', '\n', '\0']))
         }
-        "minimum" => within(said, |x, limit| x >= limit),
-        "maximum" => within(said, |x, limit| x <= limit),
-        "exclusiveMinimum" => within(said, |x, limit| x > limit),
-        "exclusiveMaximum" => within(said, |x, limit| x < limit),
-        "minItems" => length.is_none_or(|length| length as u64 >= said.as_u64().unwrap()),
-        "maxItems" => length.is_none_or(|length| length as u64 <= said.as_u64().unwrap()),
-        "items" => value.as_array().is_none_or(|list| list.iter().all(|item| fits(root, said, item))),
+        "minimum" => within(constraint, |x, limit| x >= limit),
+        "maximum" => within(constraint, |x, limit| x <= limit),
+        "exclusiveMinimum" => within(constraint, |x, limit| x > limit),
+        "exclusiveMaximum" => within(constraint, |x, limit| x < limit),
+        "minItems" => length.is_none_or(|length| length as u64 >= constraint.as_u64().unwrap()),
+        "maxItems" => length.is_none_or(|length| length as u64 <= constraint.as_u64().unwrap()),
+        "items" => value.as_array().is_none_or(|list| list.iter().all(|item| fits(root, constraint, item))),
         "required" => {
             let has = |name: &Value| value.get(name.as_str().unwrap()).is_some();
-            !value.is_object() || said.as_array().unwrap().iter().all(has)
+            !value.is_object() || constraint.as_array().unwrap().iter().all(has)
         }
         "additionalProperties" => {
             value.as_object().is_none_or(|members| members.keys().all(|name| schema["properties"].get(name).is_some()))
         }
         "properties" => value.as_object().is_none_or(|members| {
-            members.iter().all(|(name, value)| said.get(name).is_none_or(|schema| fits(root, schema, value)))
+            members.iter().all(|(name, value)| constraint.get(name).is_none_or(|schema| fits(root, schema, value)))
         }),
         "oneOf" => {
             let kind =
                 |one: &&Value| one["properties"].get("type").is_none_or(|kind| value.get("type") == kind.get("const"));
-            said.as_array().unwrap().iter().filter(kind).filter(|one| fits(root, one, value)).count() == 1
+            constraint.as_array().unwrap().iter().filter(kind).filter(|one| fits(root, one, value)).count() == 1
         }
         other => panic!("{other}"),
     })
@@ -280,11 +283,12 @@ fn schema_and_reader_agree() {
             changed(&mut random, &mut value);
         }
         let text = value.to_string();
-        let (scene, said) = read(&text);
-        let wrong = said.iter().filter(|said| !said.contains("does not exist"));
-        let beyond = scene.is_none() && wrong.clone().all(|said| BEYOND.iter().any(|words| said.contains(words)));
+        let (scene, messages) = read(&text);
+        let wrong = messages.iter().filter(|message| !message.contains("does not exist"));
+        let beyond =
+            scene.is_none() && wrong.clone().all(|messages| BEYOND.iter().any(|words| messages.contains(words)));
         let fits = fits(&schema, &schema, &value);
-        assert_eq!(scene.is_some() || beyond, fits, "{said:?}\n{text}");
+        assert_eq!(scene.is_some() || beyond, fits, "{messages:?}\n{text}");
         refused += usize::from(!fits);
     }
     assert!((200..550).contains(&refused), "{refused}");

@@ -4,9 +4,9 @@ use super::schema;
 use super::tree::{Member, Node, Value};
 use crate::course::is_word;
 use crate::report::{Report, counted, shown};
-use crate::said::meant;
+use crate::shared_report::suggest;
 use durer_diag::Span;
-use durer_scene::describe::{self, DescribedList, FileName, Kind, Rule};
+use durer_scene::describe::{self, Constraint, DescribedList, FileName, Kind};
 use durer_scene::math::Vec3;
 use durer_scene::scene::Spanned;
 use std::ops::Range;
@@ -78,7 +78,7 @@ impl Reader<'_> {
         for (member, _) in all.iter().zip(taken).filter(|(_, taken)| !taken) {
             // A list of seventy names does not help.
             let few = || (known.len() <= 24).then(|| format!("it has {}", known.join(", ")));
-            let help = meant(&member.name, known.iter().copied()).or_else(few);
+            let help = suggest(&member.name, known.iter().copied()).or_else(few);
             let message = format!("`{name}` has no member {}", shown(member.name.as_bytes()));
             self.error(member.at.clone(), "unknown-word", message, help);
         }
@@ -110,7 +110,7 @@ impl Reader<'_> {
         let word = words.iter().copied().find(|word| *word == text);
         if word.is_none() {
             let help =
-                meant(text, words.iter().copied()).unwrap_or_else(|| format!("it is one of {}", words.join(", ")));
+                suggest(text, words.iter().copied()).unwrap_or_else(|| format!("it is one of {}", words.join(", ")));
             let message = format!("`{name}` cannot be {}", shown(text.as_bytes()));
             self.error(node.at.clone(), "bad-value", message, Some(help));
         }
@@ -174,7 +174,7 @@ impl Reader<'_> {
     }
 
     /// Reads a value of a field's kind and checks its constraint.
-    fn value(&mut self, node: &Node, name: &str, kind: Kind, rule: Rule) -> Option<describe::Value> {
+    fn value(&mut self, node: &Node, name: &str, kind: Kind, rule: Constraint) -> Option<describe::Value> {
         let value = match kind {
             Kind::Float => describe::Value::Float(self.number(node, name)?),
             Kind::Int => describe::Value::Int(self.whole(node, name)?),
@@ -220,12 +220,12 @@ impl Reader<'_> {
     }
 
     /// Reads the fields of a described item. The object may have further members.
-    pub fn fields<T: DescribedList>(&mut self, thing: &mut T, members: &mut Members) {
-        for (i, field) in thing.fields().iter().enumerate() {
+    pub fn fields<T: DescribedList>(&mut self, item: &mut T, members: &mut Members) {
+        for (i, field) in item.fields().iter().enumerate() {
             match members.take(field.name) {
                 Some(node) => {
                     if let Some(value) = self.value(node, field.name, field.kind, field.rule) {
-                        thing.set(i, value);
+                        item.set(i, value);
                     }
                 }
                 None if field.required => {
@@ -238,12 +238,12 @@ impl Reader<'_> {
     }
 
     /// Reads a described item whose object has no other members.
-    pub fn thing<T: DescribedList>(&mut self, mut thing: T, node: &Node, name: &str) -> T {
+    pub fn item<T: DescribedList>(&mut self, mut entry: T, node: &Node, name: &str) -> T {
         if let Some(mut members) = self.members(node, name) {
-            self.fields(&mut thing, &mut members);
+            self.fields(&mut entry, &mut members);
             self.finish(members);
         }
-        thing
+        entry
     }
 
     /// Returns an object's `type`, which must be one of `known`, and its members.
@@ -259,7 +259,7 @@ impl Reader<'_> {
         };
         if !known.contains(&word.as_str()) {
             let message = format!("{} is not a type of `{what}`", shown(word.as_bytes()));
-            let near = meant(word, known.iter().copied());
+            let near = suggest(word, known.iter().copied());
             let help = near.unwrap_or_else(|| format!("known are {}", known.join(", ")));
             self.error(named.at.clone(), "unknown-word", message, Some(help));
             return None;
@@ -271,10 +271,10 @@ impl Reader<'_> {
     /// Reads one of the kinds of a described list, chosen by its `type`.
     pub fn choice<T: DescribedList>(&mut self, node: &Node, what: &str) -> Option<T> {
         let (word, mut members) = self.typed(node, what, &schema::keywords::<T>())?;
-        let mut thing = schema::of_keyword::<T>(word)?;
-        self.fields(&mut thing, &mut members);
+        let mut item = schema::of_keyword::<T>(word)?;
+        self.fields(&mut item, &mut members);
         self.finish(members);
-        Some(thing)
+        Some(item)
     }
 
     /// Reads an item and attaches its span.

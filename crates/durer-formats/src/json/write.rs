@@ -23,11 +23,11 @@ pub fn write(scene: &Scene, dialect: Dialect) -> String {
     if dialect != Dialect::Durer {
         members.push(("dialect", string(dialect.name())));
     }
-    members.extend(scene.camera.as_ref().map(|camera| ("camera", thing(camera))));
+    members.extend(scene.camera.as_ref().map(|camera| ("camera", item(camera))));
     members.push(("background", Json::Object(fields(&scene.background))));
     members.extend(scene.fog.as_ref().map(|fog| ("fog", Json::Object(fields(&fog.value)))));
     let lights = |lights: &Vec<_>| {
-        Json::List(lights.iter().map(|light: &durer_scene::scene::Spanned<_>| thing(&light.value)).collect())
+        Json::List(lights.iter().map(|light: &durer_scene::scene::Spanned<_>| item(&light.value)).collect())
     };
     members.extend(scene.lights.as_ref().map(|list| ("lights", lights(list))));
     let textures: Vec<Json> = scene.assets.textures().map(|texture| Json::Object(fields(&texture))).collect();
@@ -62,7 +62,7 @@ fn vector(v: Vec3) -> Json {
 }
 
 /// Members for the fields that have values.
-fn fields<T: DescribedList>(thing: &T) -> Vec<(&'static str, Json)> {
+fn fields<T: DescribedList>(item: &T) -> Vec<(&'static str, Json)> {
     let value = |value: Value| match value {
         Value::Float(x) => number(x),
         Value::Int(i) => Json::Plain(i.to_string()),
@@ -71,15 +71,15 @@ fn fields<T: DescribedList>(thing: &T) -> Vec<(&'static str, Json)> {
         Value::Word(word) => string(&word),
         Value::Rows(rows) => Json::List(rows.iter().map(|row| numbers(row)).collect()),
     };
-    thing.fields().iter().enumerate().filter_map(|(i, f)| Some((f.name, value(thing.get(i)?)))).collect()
+    item.fields().iter().enumerate().filter_map(|(i, f)| Some((f.name, value(item.get(i)?)))).collect()
 }
 
 fn typed(word: &str, more: Vec<(&'static str, Json)>) -> Vec<(&'static str, Json)> {
     [("type", string(word))].into_iter().chain(more).collect()
 }
 
-fn thing<T: DescribedList>(thing: &T) -> Json {
-    Json::Object(typed(word(thing), fields(thing)))
+fn item<T: DescribedList>(entry: &T) -> Json {
+    Json::Object(typed(word(entry), fields(entry)))
 }
 
 fn material(material: &Material) -> Json {

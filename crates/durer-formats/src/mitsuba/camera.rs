@@ -5,7 +5,7 @@
 
 use super::plugin::Plugin;
 use super::state::Reader;
-use crate::said::meant;
+use crate::shared_report::suggest;
 use durer_diag::Diagnostic;
 use durer_image::MAX_PIXELS;
 use durer_scene::camera::{Camera, Handedness, OrthographicCamera, PerspectiveCamera, ThinLensCamera};
@@ -27,16 +27,16 @@ impl Reader<'_> {
     /// Reads the camera: the sensor chosen by id or number, or the first.
     pub fn camera(&mut self, sensors: &[Rc<Plugin>]) {
         let Some(sensor) = self.chosen(sensors) else { return };
-        let said = self.said;
+        let report = self.report;
         let (width, height) = self.film(&sensor);
-        self.scene.wishes.size = Some((width, height));
+        self.scene.render_defaults.size = Some((width, height));
         self.sampler(&sensor);
         for (property, medium) in self.parts(&sensor, Some("medium")) {
             if let Some((medium, _)) = self.medium(&medium) {
-                self.scene.fog = medium.fog(property.at, said);
+                self.scene.fog = medium.fog(property.at, report);
             }
         }
-        let to_world = sensor.map(said, "to_world");
+        let to_world = sensor.map(report, "to_world");
         let size = DVec2::new(f64::from(width), f64::from(height));
         let camera = match sensor.kind.as_str() {
             "perspective" | "thinlens" => Some(self.perspective(&sensor, to_world, size)),
@@ -44,20 +44,20 @@ impl Reader<'_> {
             other => {
                 let what = format!("the sensor `{other}` has no counterpart: a camera that frames the scene is used");
                 let warning = Diagnostic::warning(what).code("NO_COUNTERPART").at(sensor.at);
-                said.push(Diagnostic { help: meant(other, KNOWN), ..warning });
+                report.push(Diagnostic { help: suggest(other, KNOWN), ..warning });
                 None
             }
         };
         sensor.known(&["near_clip", "far_clip", "shutter_open", "shutter_close"]);
         if camera.is_some() {
-            sensor.finish(said);
+            sensor.finish(report);
         }
         self.scene.camera = camera;
         self.scene.camera_span = sensor.at;
     }
 
     fn chosen(&self, sensors: &[Rc<Plugin>]) -> Option<Rc<Plugin>> {
-        let Some(wanted) = &self.input.staging.camera else { return sensors.first().cloned() };
+        let Some(wanted) = &self.input.scene_defaults.camera else { return sensors.first().cloned() };
         let ids = &self.loader.plugins;
         let by_id = ids.get(wanted).filter(|plugin| plugin.class == "sensor").cloned();
         let found = by_id.or_else(|| sensors.get(wanted.parse::<usize>().ok()?).cloned());
@@ -65,46 +65,47 @@ impl Reader<'_> {
             let known = ids.iter().filter(|(_, plugin)| plugin.class == "sensor").map(|(id, _)| id.as_str());
             let count = sensors.len();
             let message = format!("unknown sensor `{wanted}`: the file has {count}, numbered from 0");
-            let help = meant(wanted, known);
-            self.said.push(Diagnostic { help, ..Diagnostic::error(message).code("bad-value") });
+            let help = suggest(wanted, known);
+            self.report.push(Diagnostic { help, ..Diagnostic::error(message).code("bad-value") });
         }
         found
     }
 
     fn film(&mut self, sensor: &Plugin) -> (u32, u32) {
-        let said = self.said;
+        let report = self.report;
         let films = self.parts(sensor, Some("film"));
         let Some((_, film)) = films.first() else { return (SIZE[0], SIZE[1]) };
-        let side = |name, usual: u32| match film.number(said, name) {
+        let side = |name, usual: u32| match film.number(report, name) {
             Some(value) if (1.0..=1048576.0).contains(&value) && value.fract() == 0.0 => value as u32,
             Some(_) => {
-                said.bad(film.place(name), format!("`{name}` must be a whole number from 1 to {}", 1 << 20));
+                report.bad(film.place(name), format!("`{name}` must be a whole number from 1 to {}", 1 << 20));
                 usual
             }
             None => usual,
         };
         let (width, height) = (side("width", SIZE[0]), side("height", SIZE[1]));
         if u64::from(width) * u64::from(height) > MAX_PIXELS {
-            said.bad(film.at, format!("too many pixels: {width} x {height}"));
+            report.bad(film.at, format!("too many pixels: {width} x {height}"));
         }
         let crop = ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"];
         if crop.iter().any(|name| film.get(name).is_some()) {
-            let number = |name, usual: u32| film.number(said, name).unwrap_or(usual as f32);
+            let number = |name, usual: u32| film.number(report, name).unwrap_or(usual as f32);
             let part = [number(crop[0], 0), number(crop[1], 0), number(crop[2], width), number(crop[3], height)];
             let [left, top, columns, rows] = part.map(|value| value as u32);
             let whole = part.iter().all(|value| *value >= 0.0 && value.fract() == 0.0);
             let fits = |from: u32, count: u32, of: u32| count > 0 && from.saturating_add(count) <= of;
             if whole && fits(left, columns, width) && fits(top, rows, height) {
-                self.scene.wishes.crop = Some((left, top, columns, rows));
+                self.scene.render_defaults.crop = Some((left, top, columns, rows));
             } else {
                 let place = crop.iter().find_map(|name| film.get(name)).map_or(film.at, |property| property.at);
-                said.bad(place, format!("the crop window must lie within the picture of {width} x {height} pixels"));
+                report.bad(place, format!("the crop window must lie within the picture of {width} x {height} pixels"));
             }
         }
-        if let Some(format) = film.text(said, "pixel_format").filter(|format| !format.to_lowercase().starts_with("rgb"))
+        if let Some(format) =
+            film.text(report, "pixel_format").filter(|format| !format.to_lowercase().starts_with("rgb"))
         {
             let what = format!("the pixel format `{format}` has no counterpart: `rgb` is used");
-            said.once(film.place("pixel_format"), what);
+            report.once(film.place("pixel_format"), what);
         }
         // Ignore output formats and reconstruction filters.
         film.properties.iter().for_each(|property| property.used.set(true));
@@ -114,36 +115,38 @@ impl Reader<'_> {
     fn sampler(&mut self, sensor: &Plugin) {
         let samplers = self.parts(sensor, Some("sampler"));
         let Some((_, sampler)) = samplers.first() else { return };
-        match sampler.number(self.said, "sample_count") {
-            Some(count) if (1.0..=1048576.0).contains(&count) => self.scene.wishes.samples = Some(count as u32),
-            Some(_) => self.said.bad(sampler.place("sample_count"), "samples per pixel must be from 1 to 1048576"),
+        match sampler.number(self.report, "sample_count") {
+            Some(count) if (1.0..=1048576.0).contains(&count) => {
+                self.scene.render_defaults.samples = Some(count as u32)
+            }
+            Some(_) => self.report.bad(sampler.place("sample_count"), "samples per pixel must be from 1 to 1048576"),
             None => {}
         }
     }
 
     fn perspective(&self, sensor: &Plugin, to_world: DAffine3, size: DVec2) -> Camera {
-        let said = self.said;
+        let report = self.report;
         let half = self.half_view(sensor, size);
         let (right, up, forward) = axes(to_world);
         // Ignore scale: Mitsuba forbids it in a camera's transform.
         let (center, handedness) = (to_world.translation.as_vec3(), handedness(right, up, forward));
         let angle = ((2.0 * fp::atan_f64(half.max_element())).to_degrees() as f32).clamp(1e-4, 179.99);
         let [direction, up] = [forward, up].map(|v| v.normalize_or(DVec3::Y).as_vec3());
-        let offset = |name| f64::from(sensor.number(said, name).unwrap_or(0.0));
+        let offset = |name| f64::from(sensor.number(report, name).unwrap_or(0.0));
         // Offset in widths and heights of the film; it moves the view right and down.
         let offset = 2.0 * DVec2::new(offset("principal_point_offset_x"), offset("principal_point_offset_y"));
         let shift = offset * half / half.max_element();
         let aperture = match sensor.kind.as_str() {
-            "thinlens" => 2.0 * sensor.positive(said, "aperture_radius").unwrap_or(0.0),
+            "thinlens" => 2.0 * sensor.positive(report, "aperture_radius").unwrap_or(0.0),
             _ => 0.0,
         };
-        let focus = sensor.positive(said, "focus_distance").unwrap_or(1.0);
+        let focus = sensor.positive(report, "focus_distance").unwrap_or(1.0);
         if sensor.kind == "thinlens" && aperture == 0.0 {
-            said.bad(sensor.at, "a `thinlens` needs an `aperture_radius`");
+            report.bad(sensor.at, "a `thinlens` needs an `aperture_radius`");
         }
         // Ignore the default planes, which clip nothing that is to be seen.
-        let near = sensor.number(said, "near_clip").filter(|near| *near > NEAR).unwrap_or(0.0);
-        let far = sensor.positive(said, "far_clip");
+        let near = sensor.number(report, "near_clip").filter(|near| *near > NEAR).unwrap_or(0.0);
+        let far = sensor.positive(report, "far_clip");
         let far = far.filter(|far| *far < FAR);
         if aperture == 0.0 && handedness == Handedness::Right && shift == DVec2::ZERO && near == 0.0 && far.is_none() {
             return PerspectiveCamera { center, direction, up, angle }.into();
@@ -166,21 +169,21 @@ impl Reader<'_> {
 
     /// Half width and half height of the view at distance 1.
     pub(super) fn half_view(&self, sensor: &Plugin, size: DVec2) -> DVec2 {
-        let said = self.said;
+        let report = self.report;
         let aspect = size.x / size.y;
         let tan = |degrees: f64| fp::tan_f64(0.5 * degrees.to_radians());
-        let (mut fov, mut axis) = (f64::from(sensor.number(said, "fov").unwrap_or(0.0)), "x".to_string());
-        if let Some(given) = sensor.text(said, "fov_axis") {
+        let (mut fov, mut axis) = (f64::from(sensor.number(report, "fov").unwrap_or(0.0)), "x".to_string());
+        if let Some(given) = sensor.text(report, "fov_axis") {
             axis = given;
         }
-        match (sensor.text(said, "focal_length"), sensor.get("fov")) {
-            (Some(_), Some(fov)) => said.bad(fov.at, "a camera takes either `fov` or `focal_length`"),
+        match (sensor.text(report, "focal_length"), sensor.get("fov")) {
+            (Some(_), Some(fov)) => report.bad(fov.at, "a camera takes either `fov` or `focal_length`"),
             (given, None) => {
                 let given = given.unwrap_or("50mm".into());
                 let length = given.trim().trim_end_matches("mm").trim().parse::<f64>().ok().filter(|x| *x > 0.0);
                 if length.is_none() {
                     let message = format!("expected a length in millimetres such as `50mm`, found `{given}`");
-                    said.bad(sensor.place("focal_length"), message);
+                    report.bad(sensor.place("focal_length"), message);
                 }
                 // Field of view across the diagonal of a 36 x 24 mm film.
                 let half = (36f64 * 36.0 + 24.0 * 24.0).sqrt() / 2.0;
@@ -190,7 +193,7 @@ impl Reader<'_> {
             (None, Some(_)) => {}
         }
         if !(fov > 0.0 && fov < 180.0) {
-            said.bad(sensor.place("fov"), "a field of view must be more than 0 and less than 180 degrees");
+            report.bad(sensor.place("fov"), "a field of view must be more than 0 and less than 180 degrees");
             fov = 45.0;
         }
         let tan = tan(fov);
@@ -201,8 +204,8 @@ impl Reader<'_> {
             "smaller" => tan * aspect.max(1.0),
             "larger" => tan * aspect.min(1.0),
             other => {
-                let help = meant(other, ["x", "y", "diagonal", "smaller", "larger"]);
-                said.bad_with(sensor.place("fov_axis"), format!("unknown axis `{other}`"), help);
+                let help = suggest(other, ["x", "y", "diagonal", "smaller", "larger"]);
+                report.bad_with(sensor.place("fov_axis"), format!("unknown axis `{other}`"), help);
                 tan
             }
         };
@@ -211,14 +214,14 @@ impl Reader<'_> {
 
     /// Reads the integrator. `max_depth` counts path segments: `bounces` is two less.
     pub fn integrator(&mut self, plugin: &Plugin, depth: u32) {
-        let said = self.said;
+        let report = self.report;
         if self.too_deep(depth, plugin.at) {
             return;
         }
         match plugin.kind.as_str() {
             "path" | "volpath" | "volpathmis" | "prb" | "ptracer" | "bdpt" => {}
             "direct" => {
-                self.scene.wishes.bounces = Some(0);
+                self.scene.render_defaults.bounces = Some(0);
                 plugin.known(&["emitter_samples", "bsdf_samples", "shading_samples"]);
             }
             // These wrap the integrator that makes the picture.
@@ -232,25 +235,25 @@ impl Reader<'_> {
                 let what = format!("the integrator `{other}` has no counterpart: path tracing is used");
                 let known = ["path", "volpath", "volpathmis", "direct", "aov", "moment", "ptracer", "bdpt"];
                 let note = Diagnostic::note(what).code("NO_COUNTERPART").at(plugin.at);
-                said.push(Diagnostic { help: meant(other, known), ..note });
+                report.push(Diagnostic { help: suggest(other, known), ..note });
                 plugin.properties.iter().for_each(|property| property.used.set(true));
             }
         }
-        match plugin.number(said, "max_depth") {
-            Some(-1.0) => self.scene.wishes.bounces = Some(ENDLESS),
+        match plugin.number(report, "max_depth") {
+            Some(-1.0) => self.scene.render_defaults.bounces = Some(ENDLESS),
             Some(depth) if (0.0..=1e6).contains(&depth) => {
-                self.scene.wishes.bounces = Some((depth as u32).saturating_sub(2));
+                self.scene.render_defaults.bounces = Some((depth as u32).saturating_sub(2));
                 self.emitters_only = depth < 2.0;
             }
-            Some(_) => said.bad(plugin.place("max_depth"), "`max_depth` must be -1 or from 0 to 1000000"),
-            None if plugin.kind.contains("path") => self.scene.wishes.bounces = Some(ENDLESS),
+            Some(_) => report.bad(plugin.place("max_depth"), "`max_depth` must be -1 or from 0 to 1000000"),
+            None if plugin.kind.contains("path") => self.scene.render_defaults.bounces = Some(ENDLESS),
             None => {}
         }
-        if plugin.truth(said, "hide_emitters") == Some(true) {
-            said.once(plugin.place("hide_emitters"), "hidden lights have no counterpart: they are visible");
+        if plugin.truth(report, "hide_emitters") == Some(true) {
+            report.once(plugin.place("hide_emitters"), "hidden lights have no counterpart: they are visible");
         }
         plugin.known(&["rr_depth", "strict_normals", "samples_per_pass", "block_size", "timeout"]);
-        plugin.finish(said);
+        plugin.finish(report);
     }
 }
 

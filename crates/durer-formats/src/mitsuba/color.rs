@@ -24,7 +24,7 @@ impl Reader<'_> {
     }
 
     /// Colour of a light; `None` if the property is not a colour.
-    pub fn shining(&self, property: &Property) -> Option<Color> {
+    pub fn emission(&self, property: &Property) -> Option<Color> {
         match &property.value {
             Value::Number(number) => Some(Vec3::splat(*number as f32)),
             Value::Even(number) => Some(*number * radiance(|_| 1.0)),
@@ -38,39 +38,39 @@ impl Reader<'_> {
     }
 
     /// Colour of a spectrum plugin.
-    fn spectrum_plugin(&self, property: &Property, shines: bool) -> Option<Color> {
+    fn spectrum_plugin(&self, property: &Property, emits: bool) -> Option<Color> {
         let plugin = self.part(property)?;
-        let said = self.said;
+        let report = self.report;
         let color = match plugin.kind.as_str() {
             "uniform" => {
-                let value = plugin.number(said, "value").unwrap_or(1.0);
-                value * if shines { radiance(|_| 1.0) } else { Vec3::ONE }
+                let value = plugin.number(report, "value").unwrap_or(1.0);
+                value * if emits { radiance(|_| 1.0) } else { Vec3::ONE }
             }
             "d65" => {
-                let scale = plugin.number(said, "scale").unwrap_or(1.0);
+                let scale = plugin.number(report, "scale").unwrap_or(1.0);
                 let color = plugin.get("color").and_then(|color| self.reflectance(color));
                 scale * color.unwrap_or(Vec3::ONE)
             }
             "srgb" => plugin.get("color").and_then(|color| self.reflectance(color)).unwrap_or(Vec3::ONE),
             "blackbody" => {
-                let kelvin = plugin.positive(said, "temperature").unwrap_or(5000.0);
-                radiance(|nm| planck(nm, kelvin)) * plugin.number(said, "scale").unwrap_or(1.0)
+                let kelvin = plugin.positive(report, "temperature").unwrap_or(5000.0);
+                radiance(|nm| planck(nm, kelvin)) * plugin.number(report, "scale").unwrap_or(1.0)
             }
             "regular" | "irregular" => {
                 let curve = SpectrumSource::Curve(self.listed(&plugin)?);
-                if shines { radiance(|nm| curve.at(nm)) } else { curve.coefficient() }
+                if emits { radiance(|nm| curve.at(nm)) } else { curve.coefficient() }
             }
             _ => return None,
         };
-        plugin.finish(said);
+        plugin.finish(report);
         Some(color)
     }
 
     /// Wavelengths and values of the plugins `regular` and `irregular`.
     fn listed(&self, plugin: &Plugin) -> Option<Vec<[f32; 2]>> {
-        let said = self.said;
+        let report = self.report;
         let list = |name| {
-            let text = plugin.text(said, name)?;
+            let text = plugin.text(report, name)?;
             super::load::numbers(&text)
         };
         let values = list("values")?;
@@ -78,7 +78,7 @@ impl Reader<'_> {
             if plugin.kind == "irregular" {
                 return list("wavelengths")?.get(i).copied();
             }
-            let [low, high] = ["wavelength_min", "wavelength_max"].map(|name| plugin.number(said, name));
+            let [low, high] = ["wavelength_min", "wavelength_max"].map(|name| plugin.number(report, name));
             let [low, high] = [f64::from(low?), f64::from(high?)];
             Some(low + (high - low) * i as f64 / (values.len() - 1).max(1) as f64)
         };
@@ -87,7 +87,7 @@ impl Reader<'_> {
         let curve = curve.filter(|curve| curve.len() > 1 && curve.is_sorted_by(|a, b| a[0] < b[0]));
         if curve.is_none() {
             let message = format!("a `{}` spectrum needs increasing wavelengths and as many values", plugin.kind);
-            said.bad(plugin.at, message);
+            report.bad(plugin.at, message);
         }
         curve
     }

@@ -3,7 +3,7 @@
 use crate::files::named_bytes;
 use crate::model::Input;
 use crate::number::parse_f32;
-use crate::said::Said;
+use crate::shared_report::SharedReport;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::shape::MeshData;
 use durer_scene::shape::tessellate::tube::{Piece, add_tube, of_spline, places, rounded, straight};
@@ -16,16 +16,21 @@ const MAX_PIECES: usize = if cfg!(test) { 1 << 12 } else { 1 << 19 };
 const MANY: usize = 1 << 12;
 
 /// Tubes around the curves of a file, which are B-splines or polylines.
-pub(super) fn tubes(input: &Input, said: &Said, (path, at): (&str, Span), is_spline: bool) -> Option<MeshData> {
-    let (bytes, file) = named_bytes(input, said, "the curves", path, at)?;
-    let wrong = |(at, message): Wrong| {
+pub(super) fn tubes(
+    input: &Input,
+    report: &SharedReport,
+    (path, at): (&str, Span),
+    is_spline: bool,
+) -> Option<MeshData> {
+    let (bytes, file) = named_bytes(input, report, "the curves", path, at)?;
+    let wrong = |(at, message): ParseError| {
         let span = Span { file, start: at.start as u32, end: at.end as u32 };
-        said.push(Diagnostic::error(message).code("bad-file").at(span));
+        report.push(Diagnostic::error(message).code("bad-file").at(span));
     };
     let curves = parse(&bytes, is_spline).map_err(wrong).ok()?;
     let count = curves.iter().map(Vec::len).sum();
     if count > MAX_PIECES {
-        said.once(at, format!("these curves are left out: they have more than {MAX_PIECES} segments"));
+        report.once(at, format!("these curves are left out: they have more than {MAX_PIECES} segments"));
         return None;
     }
     let mut data = MeshData::default();
@@ -55,10 +60,10 @@ fn runs(pieces: &[Piece], is_round: bool) -> Vec<Range<usize>> {
 const STRAIGHT: f64 = 0.99;
 
 /// Place and message of an error.
-type Wrong = (Range<usize>, String);
+type ParseError = (Range<usize>, String);
 
 /// Segments of each curve.
-fn parse(bytes: &[u8], is_spline: bool) -> Result<Vec<Vec<Piece>>, Wrong> {
+fn parse(bytes: &[u8], is_spline: bool) -> Result<Vec<Vec<Piece>>, ParseError> {
     let (mut curves, mut points, mut start) = (Vec::new(), Vec::<DVec4>::new(), 0);
     for line in bytes.split_inclusive(|byte| *byte == b'\n').chain([&b""[..]]) {
         let place = start..start + line.trim_ascii_end().len();

@@ -2,14 +2,14 @@
 //!
 //! Source: *Mitsuba 3 documentation*, "Emitters".
 
-use super::made::{Infinite, Shine};
+use super::defs::{AreaEmitter, InfiniteLight};
 use super::plugin::Plugin;
 use super::state::Reader;
 use super::texture::Texture;
-use crate::lamps::{Axes, Lamps, steps};
 use crate::panorama::{self, between};
 use crate::pictures::unusable;
-use crate::said::meant;
+use crate::profile_lights::{Axes, ProfileLights, steps};
+use crate::shared_report::suggest;
 use durer_diag::Diagnostic;
 use durer_image::{self as image, Image};
 use durer_scene::describe::FileName;
@@ -37,18 +37,18 @@ impl Reader<'_> {
     /// Colour of a light.
     fn strength(&self, plugin: &Plugin, name: &'static str) -> Color {
         let Some(property) = plugin.get(name) else { return Vec3::ONE };
-        let color = self.shining(property).unwrap_or_else(|| self.color(plugin, name, Vec3::ONE));
+        let color = self.emission(property).unwrap_or_else(|| self.color(plugin, name, Vec3::ONE));
         if color.min_element() < 0.0 {
-            self.said.once(property.at, "negative light has no counterpart: 0 is used");
+            self.report.once(property.at, "negative light has no counterpart: 0 is used");
         }
         color.max(Vec3::ZERO)
     }
 
     /// Reads a light that is not part of a shape.
     pub fn emitter(&mut self, plugin: &Rc<Plugin>) {
-        let said = self.said;
-        let to_world = plugin.map(said, "to_world");
-        let place = |name| plugin.vector(said, name).unwrap_or(to_world.translation).as_vec3();
+        let report = self.report;
+        let to_world = plugin.map(report, "to_world");
+        let place = |name| plugin.vector(report, name).unwrap_or(to_world.translation).as_vec3();
         let along = |local: DVec3| to_world.transform_vector3(local).normalize_or(DVec3::Z).as_vec3();
         // A light's colour here is the radiance of a white diffuse surface: illuminance over pi.
         let value: Light = match plugin.kind.as_str() {
@@ -63,10 +63,10 @@ impl Reader<'_> {
             },
             "projector" => return self.projector(plugin, to_world),
             "directional" => {
-                let direction = plugin.vector(said, "direction");
+                let direction = plugin.vector(report, "direction");
                 let direction = direction.map_or(along(DVec3::Z), |d| d.normalize_or_zero().as_vec3());
                 if direction == Vec3::ZERO {
-                    said.bad(plugin.place("direction"), "a direction must have a length");
+                    report.bad(plugin.place("direction"), "a direction must have a length");
                 }
                 let color = self.strength(plugin, "irradiance") / PI;
                 DirectionalLight { direction, color, ..DirectionalLight::default() }.into()
@@ -74,41 +74,41 @@ impl Reader<'_> {
             "constant" => {
                 let color = self.strength(plugin, "radiance");
                 plugin.known(&["sampling_weight"]);
-                plugin.finish(said);
-                return self.far(Infinite::Even(color, plugin.at));
+                plugin.finish(report);
+                return self.far(InfiniteLight::Even(color, plugin.at));
             }
             "envmap" => {
-                let Some(name) = plugin.text(said, "filename") else {
-                    return said.bad(plugin.at, "an `envmap` needs a `filename`");
+                let Some(name) = plugin.text(report, "filename") else {
+                    return report.bad(plugin.at, "an `envmap` needs a `filename`");
                 };
                 let (name, at) = (self.loader.path(&name), plugin.place("filename"));
-                let scale = plugin.number(said, "scale").unwrap_or(1.0).max(0.0);
+                let scale = plugin.number(report, "scale").unwrap_or(1.0).max(0.0);
                 plugin.known(&["sampling_weight", "mis_compensation"]);
-                plugin.finish(said);
-                return self.far(Infinite::Picture { name, at, scale, to_world });
+                plugin.finish(report);
+                return self.far(InfiniteLight::Picture { name, at, scale, to_world });
             }
             "sky" | "sun" | "sunsky" => return self.daylight(plugin, to_world),
-            "area" => return said.bad(plugin.at, "an `area` light must be inside a shape"),
+            "area" => return report.bad(plugin.at, "an `area` light must be inside a shape"),
             other => {
                 let known = ["point", "spot", "projector", "directional", "constant", "envmap", "sunsky", "area"];
                 let message = format!("the light `{other}` has no counterpart: it is ignored");
                 let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(plugin.at);
-                return said.push(Diagnostic { help: meant(other, known), ..warning });
+                return report.push(Diagnostic { help: suggest(other, known), ..warning });
             }
         };
         plugin.known(&["sampling_weight", "position"]);
-        plugin.finish(said);
+        plugin.finish(report);
         self.scene.lights.get_or_insert_default().push(Spanned { value, span: plugin.at });
     }
 
     /// Spotlight. With falloff or a picture, it is added as a measured light with that directional
     /// distribution, and `None` is returned.
     fn spot(&mut self, plugin: &Plugin, to_world: DAffine3) -> Option<SpotLight> {
-        let said = self.said;
-        let angle = plugin.positive(said, "cutoff_angle").unwrap_or(20.0);
-        let inner_angle = plugin.number(said, "beam_width").unwrap_or(0.75 * angle).clamp(0.0, angle);
+        let report = self.report;
+        let angle = plugin.positive(report, "cutoff_angle").unwrap_or(20.0);
+        let inner_angle = plugin.number(report, "beam_width").unwrap_or(0.75 * angle).clamp(0.0, angle);
         if angle >= 180.0 {
-            said.bad(plugin.place("cutoff_angle"), "`cutoff_angle` must be less than 180 degrees");
+            report.bad(plugin.place("cutoff_angle"), "`cutoff_angle` must be less than 180 degrees");
             return None;
         }
         let intensity = self.strength(plugin, "intensity");
@@ -120,19 +120,21 @@ impl Reader<'_> {
             return Some(SpotLight { position, direction, color, angle, inner_angle, fade, ..SpotLight::default() });
         }
         plugin.known(&["sampling_weight"]);
-        plugin.finish(said);
+        plugin.finish(report);
         // The falloff is linear in the angle.
         let shown = |dir: Vec3| {
             let degrees = fp::atan2(dir.truncate().length(), dir.z).to_degrees();
             ((angle - degrees) / (angle - inner_angle).max(1e-6)).clamp(0.0, 1.0)
         };
         let axes = Axes::about_z(&to_world);
-        let lamps = match image {
-            None => Lamps::new([vec![0.0, inner_angle, angle], vec![0.0]], &axes, |dir| Vec3::splat(shown(dir))),
+        let lights = match image {
+            None => {
+                ProfileLights::new([vec![0.0, inner_angle, angle], vec![0.0]], &axes, |dir| Vec3::splat(shown(dir)))
+            }
             Some(image) => {
                 // The picture covers a square as wide as the cone at distance 1.
                 let half = fp::tan_f64(f64::from(angle).to_radians()) as f32;
-                Lamps::new([steps(angle, STEPS[0]), steps(360.0, STEPS[1])], &axes, |dir| {
+                ProfileLights::new([steps(angle, STEPS[0]), steps(360.0, STEPS[1])], &axes, |dir| {
                     let shown = shown(dir);
                     if shown > 0.0 && dir.z > 0.0 {
                         shown * between(&image, 0.5 + 0.5 * dir.truncate() / (dir.z * half))
@@ -142,26 +144,26 @@ impl Reader<'_> {
                 })
             }
         };
-        lamps.add(&mut self.scene, self.input.name, (to_world, axes), intensity, plugin.at);
+        lights.add(&mut self.scene, self.input.name, (to_world, axes), intensity, plugin.at);
         None
     }
 
     /// Adds a projector as a measured light with the distribution of its picture on the plane at
     /// distance 1.
     fn projector(&mut self, plugin: &Plugin, to_world: DAffine3) {
-        let said = self.said;
+        let report = self.report;
         let image = self.named_part(plugin, "irradiance").and_then(|texture| self.thrown(&texture));
         let Some(image) = image else {
-            return said.once(plugin.at, "this projector is ignored: it has no picture");
+            return report.once(plugin.at, "this projector is ignored: it has no picture");
         };
         let size = DVec2::new(f64::from(image.width), f64::from(image.height));
         let half = self.half_view(plugin, size).as_vec2();
-        let scale = plugin.number(said, "scale").unwrap_or(1.0).max(0.0);
+        let scale = plugin.number(report, "scale").unwrap_or(1.0).max(0.0);
         plugin.known(&["sampling_weight"]);
-        plugin.finish(said);
+        plugin.finish(report);
         let axes = Axes::about_z(&to_world);
         let widest = fp::atan2(half.length(), 1.0).to_degrees();
-        let lamps = Lamps::new([steps(widest, STEPS[0]), steps(360.0, STEPS[1])], &axes, |dir| {
+        let lights = ProfileLights::new([steps(widest, STEPS[0]), steps(360.0, STEPS[1])], &axes, |dir| {
             let place = dir.truncate() / (dir.z * half);
             if dir.z <= 0.0 || place.abs().max_element() > 1.0 {
                 return Vec3::ZERO;
@@ -169,40 +171,40 @@ impl Reader<'_> {
             // As seen by a camera: +x is to the left, +y up.
             between(&image, 0.5 - 0.5 * place) / (dir.z * dir.z * dir.z)
         });
-        lamps.add(&mut self.scene, self.input.name, (to_world, axes), Vec3::splat(PI * scale), plugin.at);
+        lights.add(&mut self.scene, self.input.name, (to_world, axes), Vec3::splat(PI * scale), plugin.at);
     }
 
     /// Picture that a light projects.
     fn thrown(&self, texture: &Plugin) -> Option<Image> {
         if texture.kind != "bitmap" {
-            self.said
+            self.report
                 .once(texture.at, "projecting other textures than `bitmap` has no counterpart: the texture is ignored");
             return None;
         }
-        let name = texture.text(self.said, "filename")?;
-        let raw = texture.truth(self.said, "raw").unwrap_or(false);
+        let name = texture.text(self.report, "filename")?;
+        let raw = texture.truth(self.report, "raw").unwrap_or(false);
         texture.known(&["filter_type", "wrap_mode"]);
-        texture.finish(self.said);
+        texture.finish(self.report);
         let decode = if raw { image::decode_linear } else { image::decode_srgb };
         self.pictures().decoded(&self.loader.path(&name), texture.place("filename"), decode)
     }
 
-    pub(super) fn far(&mut self, light: Infinite) {
+    pub(super) fn far(&mut self, light: InfiniteLight) {
         if let Some(first) = &self.infinite {
             let error = Diagnostic::error("a scene may have only one infinite light").code("bad-value");
-            return self.said.push(error.at(light.at()).related(first.at(), "the first is here"));
+            return self.report.push(error.at(light.at()).related(first.at(), "the first is here"));
         }
         self.infinite = Some(light);
     }
 
     /// Emission of a shape.
-    pub fn area_light(&mut self, plugin: &Plugin) -> Option<Shine> {
+    pub fn area_light(&mut self, plugin: &Plugin) -> Option<AreaEmitter> {
         if plugin.kind != "area" {
-            self.said
+            self.report
                 .once(plugin.at, format!("the light `{}` of a shape has no counterpart: it is ignored", plugin.kind));
             return None;
         }
-        let even = plugin.get("radiance").is_none_or(|property| self.shining(property).is_some());
+        let even = plugin.get("radiance").is_none_or(|property| self.emission(property).is_some());
         let (color, picture) = match even {
             true => (self.strength(plugin, "radiance"), None),
             false => match self.bright_texture(plugin, "radiance", Vec3::ONE) {
@@ -214,11 +216,11 @@ impl Reader<'_> {
             },
         };
         plugin.known(&["sampling_weight"]);
-        plugin.finish(self.said);
+        plugin.finish(self.report);
         if color == Vec3::ZERO {
-            self.said.push(Diagnostic::note("this light is black").code("black-light").at(plugin.at));
+            self.report.push(Diagnostic::note("this light is black").code("black-light").at(plugin.at));
         }
-        Some(Shine { color, picture, both: false, at: plugin.at, key: plugin.key() })
+        Some(AreaEmitter { color, picture, both: false, at: plugin.at, key: plugin.key() })
     }
 
     /// Sets the scene's environment from the infinite light.
@@ -227,8 +229,8 @@ impl Reader<'_> {
         (background.color, background.ambient_light) = (Vec3::ZERO, Vec3::ZERO);
         match self.infinite.take() {
             None => {}
-            Some(Infinite::Even(color, _)) => background.color = color,
-            Some(Infinite::Sky { sky, at, scale, to_world }) => {
+            Some(InfiniteLight::Even(color, _)) => background.color = color,
+            Some(InfiniteLight::Sky { sky, at, scale, to_world }) => {
                 let to_sky = to_world.inverse();
                 let light = |dir: DVec3| {
                     let dir = to_sky.transform_vector3(dir).normalize_or(DVec3::Y).as_vec3();
@@ -238,10 +240,10 @@ impl Reader<'_> {
                 let name = format!("{}#sky", self.input.name);
                 if let Err(error) = panorama::surround(&mut self.scene, (&name, at), SKY_ROWS, self.input.memory, light)
                 {
-                    self.said.push(unusable(&name, &error).at(at));
+                    self.report.push(unusable(&name, &error).at(at));
                 }
             }
-            Some(Infinite::Picture { name, at, scale, to_world }) => {
+            Some(InfiniteLight::Picture { name, at, scale, to_world }) => {
                 let Some(picture) = self.pictures().image(&name, at) else { return };
                 let is_fine = picture.height >= FINE_ROWS;
                 let rows = picture.height.clamp(FINE_ROWS, MAX_ROWS);
@@ -263,7 +265,7 @@ impl Reader<'_> {
                 };
                 let memory = panorama::beside([&picture], self.input.memory);
                 if let Err(error) = panorama::surround(&mut self.scene, (&name, at), rows, memory, light) {
-                    self.said.push(unusable(&name, &error).at(at));
+                    self.report.push(unusable(&name, &error).at(at));
                 }
             }
         }

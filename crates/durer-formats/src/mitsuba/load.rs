@@ -6,7 +6,7 @@
 use super::plugin::{Plugin, Property, Value};
 use crate::growth::Growth;
 use crate::model::Input;
-use crate::said::{Said, meant};
+use crate::shared_report::{SharedReport, suggest};
 use crate::xml::{Attribute, Piece, Tag, Xml, utf8};
 use durer_diag::{Diagnostic, Span};
 use durer_image::decode_srgb;
@@ -64,7 +64,7 @@ const OTHERS: [&str; 15] = [
 /// State shared by a file and those that it includes.
 pub(super) struct Loader<'a> {
     input: &'a Input<'a>,
-    said: &'a Said,
+    report: &'a SharedReport,
     variables: BTreeMap<String, String>,
     /// Plugins by id.
     pub plugins: BTreeMap<String, Rc<Plugin>>,
@@ -80,7 +80,7 @@ pub(super) struct Loader<'a> {
 }
 
 /// The file cannot be read on; the error was reported.
-pub(super) struct Broken;
+pub(super) struct ErrorReported;
 
 /// Converts a name to snake case: `toWorld` to `to_world`, `intIOR` to `int_ior`.
 fn today(name: &str) -> String {
@@ -103,10 +103,10 @@ pub(super) fn numbers(text: &str) -> Option<Vec<f64>> {
 }
 
 impl<'a> Loader<'a> {
-    pub fn new(input: &'a Input<'a>, said: &'a Said) -> Self {
+    pub fn new(input: &'a Input<'a>, report: &'a SharedReport) -> Self {
         Loader {
             input,
-            said,
+            report,
             variables: BTreeMap::new(),
             plugins: BTreeMap::new(),
             folders: Vec::new(),
@@ -119,7 +119,7 @@ impl<'a> Loader<'a> {
     }
 
     /// Reads the scene of the file. Another root element becomes the only child of a scene.
-    pub fn scene(&mut self) -> Result<Plugin, Broken> {
+    pub fn scene(&mut self) -> Result<Plugin, ErrorReported> {
         let at = Span { file: self.input.file, start: 0, end: 0 };
         let mut scene = Plugin::new("scene", String::new(), at);
         let (bytes, name) = (self.input.bytes.clone(), self.input.name.to_string());
@@ -127,12 +127,12 @@ impl<'a> Loader<'a> {
         Ok(scene)
     }
 
-    fn file(&mut self, bytes: &Arc<[u8]>, file: u32, name: String, scene: &mut Plugin) -> Result<(), Broken> {
+    fn file(&mut self, bytes: &Arc<[u8]>, file: u32, name: String, scene: &mut Plugin) -> Result<(), ErrorReported> {
         self.open.push(name);
-        let said = self.said;
+        let report = self.report;
         let broken = |error: Box<Diagnostic>| {
-            said.push(*error);
-            Broken
+            report.push(*error);
+            ErrorReported
         };
         let mut xml = Xml::new(bytes, file).map_err(broken)?;
         while let Piece::Open(tag) = xml.next().map_err(broken)? {
@@ -149,34 +149,34 @@ impl<'a> Loader<'a> {
     }
 
     /// Next element, or `None` at the end of the open element.
-    fn next<'x>(&mut self, xml: &mut Xml<'x>) -> Result<Option<Tag<'x>>, Broken> {
+    fn next<'x>(&mut self, xml: &mut Xml<'x>) -> Result<Option<Tag<'x>>, ErrorReported> {
         self.elements += 1;
         match xml.next() {
-            Ok(Piece::Open(tag)) if self.elements <= MAX_ELEMENTS && !self.said.is_full() => Ok(Some(tag)),
+            Ok(Piece::Open(tag)) if self.elements <= MAX_ELEMENTS && !self.report.is_full() => Ok(Some(tag)),
             Ok(Piece::Open(tag)) => {
-                if !self.said.is_full() {
-                    self.said.bad(tag.at, format!("too many elements: more than {MAX_ELEMENTS}"));
+                if !self.report.is_full() {
+                    self.report.bad(tag.at, format!("too many elements: more than {MAX_ELEMENTS}"));
                 }
-                Err(Broken)
+                Err(ErrorReported)
             }
             Ok(_) => Ok(None),
             Err(error) => {
-                self.said.push(*error);
-                Err(Broken)
+                self.report.push(*error);
+                Err(ErrorReported)
             }
         }
     }
 
     /// Skips the content of an element; reports any child.
-    fn leaf(&mut self, xml: &mut Xml, of: &str) -> Result<(), Broken> {
+    fn leaf(&mut self, xml: &mut Xml, of: &str) -> Result<(), ErrorReported> {
         while let Some(tag) = self.next(xml)? {
-            self.said.bad(tag.at, format!("a `{of}` must have no child elements"));
+            self.report.bad(tag.at, format!("a `{of}` must have no child elements"));
             self.skip(xml)?;
         }
         Ok(())
     }
 
-    fn skip(&mut self, xml: &mut Xml) -> Result<(), Broken> {
+    fn skip(&mut self, xml: &mut Xml) -> Result<(), ErrorReported> {
         let mut depth = 1;
         while depth > 0 {
             match self.next(xml)? {
@@ -187,7 +187,7 @@ impl<'a> Loader<'a> {
         Ok(())
     }
 
-    fn children(&mut self, xml: &mut Xml, parent: &mut Plugin) -> Result<(), Broken> {
+    fn children(&mut self, xml: &mut Xml, parent: &mut Plugin) -> Result<(), ErrorReported> {
         while let Some(tag) = self.next(xml)? {
             self.child(xml, &tag, parent)?;
         }
@@ -195,7 +195,7 @@ impl<'a> Loader<'a> {
     }
 
     /// Reads a child element of a plugin.
-    fn child(&mut self, xml: &mut Xml, tag: &Tag, parent: &mut Plugin) -> Result<(), Broken> {
+    fn child(&mut self, xml: &mut Xml, tag: &Tag, parent: &mut Plugin) -> Result<(), ErrorReported> {
         match tag.name {
             "default" => self.default(tag),
             "include" => self.include(tag, parent)?,
@@ -227,15 +227,15 @@ impl<'a> Loader<'a> {
                 }
             }
             other => {
-                let help = meant(other, CLASSES.into_iter().chain(OTHERS));
-                self.said.bad_with(tag.at, format!("unknown element `<{other}>`"), help);
+                let help = suggest(other, CLASSES.into_iter().chain(OTHERS));
+                self.report.bad_with(tag.at, format!("unknown element `<{other}>`"), help);
                 return self.skip(xml);
             }
         }
         self.leaf(xml, tag.name)
     }
 
-    fn plugin(&mut self, xml: &mut Xml, tag: &Tag, parent: &mut Plugin) -> Result<(), Broken> {
+    fn plugin(&mut self, xml: &mut Xml, tag: &Tag, parent: &mut Plugin) -> Result<(), ErrorReported> {
         let class = match tag.name {
             "camera" => "sensor",
             "spectrum" => "texture",
@@ -257,7 +257,7 @@ impl<'a> Loader<'a> {
     fn register(&mut self, id: String, at: Span, plugin: Rc<Plugin>) {
         if let Some(other) = self.plugins.get(&id) {
             let error = Diagnostic::error(format!("the id `{id}` is given twice")).code("bad-value").at(at);
-            return self.said.push(error.related(other.at, "the first is here"));
+            return self.report.push(error.related(other.at, "the first is here"));
         }
         self.plugins.insert(id, plugin);
     }
@@ -269,8 +269,8 @@ impl<'a> Loader<'a> {
         match self.plugins.get(&id).cloned() {
             Some(plugin) => self.register(other, other_at, plugin),
             None => {
-                let help = meant(&id, self.plugins.keys().map(String::as_str));
-                self.said.bad_with(at, format!("no plugin has the id `{id}` before this"), help);
+                let help = suggest(&id, self.plugins.keys().map(String::as_str));
+                self.report.bad_with(at, format!("no plugin has the id `{id}` before this"), help);
             }
         }
     }
@@ -279,7 +279,7 @@ impl<'a> Loader<'a> {
     fn give(&self, parent: &mut Plugin, name: String, value: Value, at: Span) {
         if let Some(other) = parent.properties.iter().find(|other| !name.is_empty() && other.name == name) {
             let error = Diagnostic::error(format!("`{name}` is given twice")).code("bad-value").at(at);
-            return self.said.push(error.related(other.at, "the first is here"));
+            return self.report.push(error.related(other.at, "the first is here"));
         }
         parent.properties.push(Property { name, value, at, used: Cell::default() });
     }
@@ -292,7 +292,7 @@ impl<'a> Loader<'a> {
         self.variables.entry(name).or_insert(value);
     }
 
-    fn include(&mut self, tag: &Tag, parent: &mut Plugin) -> Result<(), Broken> {
+    fn include(&mut self, tag: &Tag, parent: &mut Plugin) -> Result<(), ErrorReported> {
         let Some((name, at)) = self.attribute(tag, "filename") else { return Ok(()) };
         self.files += 1;
         let refused = if self.open.contains(&name) {
@@ -305,13 +305,13 @@ impl<'a> Loader<'a> {
             None
         };
         if let Some(message) = refused {
-            self.said.bad(at, message);
-            return Err(Broken);
+            self.report.bad(at, message);
+            return Err(ErrorReported);
         }
         let bytes = match self.input.source.read(&self.path(&name)) {
             Ok(bytes) if bytes.len() < u32::MAX as usize => utf8(bytes),
             Ok(_) => {
-                self.said.bad(at, format!("`{name}` is too large"));
+                self.report.bad(at, format!("`{name}` is too large"));
                 return Ok(());
             }
             Err(error) => {
@@ -327,7 +327,7 @@ impl<'a> Loader<'a> {
     /// Reports a file that cannot be read.
     fn missing(&self, error: &SourceError, at: Span) {
         let help = error.help();
-        self.said.push(Diagnostic { help, ..Diagnostic::error(error.to_string()).code("missing-file").at(at) });
+        self.report.push(Diagnostic { help, ..Diagnostic::error(error.to_string()).code("missing-file").at(at) });
     }
 
     /// Path of a file: in the scene's folder, or in one given by `<path>`.
@@ -342,7 +342,7 @@ impl<'a> Loader<'a> {
         match tag.get(name) {
             Some(attribute) => Some((self.substituted(attribute)?, attribute.at)),
             None => {
-                self.said.bad(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
+                self.report.bad(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
                 None
             }
         }
@@ -365,10 +365,10 @@ impl<'a> Loader<'a> {
                 Some((name, value)) => {
                     if made.len() + value.len() > MAX_VALUE {
                         let message = format!("with its variables replaced, this is longer than {MAX_VALUE} bytes");
-                        self.said.bad(attribute.at, message);
+                        self.report.bad(attribute.at, message);
                         return None;
                     }
-                    if !self.growth.has_bytes(value.len(), 1, self.said, attribute.at) {
+                    if !self.growth.has_bytes(value.len(), 1, self.report, attribute.at) {
                         return None;
                     }
                     made.push_str(value);
@@ -377,9 +377,9 @@ impl<'a> Loader<'a> {
                 None => {
                     let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
                     let word = &rest[..end];
-                    let help = meant(word, self.variables.keys().map(String::as_str));
+                    let help = suggest(word, self.variables.keys().map(String::as_str));
                     let help = help.or_else(|| Some(format!("write `<default name=\"{word}\" value=\"...\"/>`")));
-                    self.said.bad_with(attribute.at, format!("the variable `${word}` is undefined"), help);
+                    self.report.bad_with(attribute.at, format!("the variable `${word}` is undefined"), help);
                     return None;
                 }
             }
@@ -392,7 +392,7 @@ impl<'a> Loader<'a> {
         let found = numbers(text).and_then(|all| <[f64; N]>::try_from(all).ok());
         if found.is_none() {
             let what = if N == 1 { "a number".into() } else { format!("{N} numbers") };
-            self.said.bad(*at, format!("expected {what}, found `{text}`"));
+            self.report.bad(*at, format!("expected {what}, found `{text}`"));
         }
         found
     }
@@ -404,8 +404,8 @@ impl<'a> Loader<'a> {
         }
         let mut triple = [usual; 3];
         for (axis, name) in triple.iter_mut().zip(["x", "y", "z"]) {
-            if let Some(given) = tag.get(name) {
-                [*axis] = self.numbers(&(self.substituted(given)?, given.at))?;
+            if let Some(attribute) = tag.get(name) {
+                [*axis] = self.numbers(&(self.substituted(attribute)?, attribute.at))?;
             }
         }
         Some(DVec3::from_array(triple))
@@ -422,40 +422,40 @@ impl<'a> Loader<'a> {
             let lines: Vec<&str> = text.lines().map(|line| line.split('#').next().unwrap_or("")).collect();
             let all = numbers(&lines.join(" ")).filter(|all| all.len() > 1 && all.len() % 2 == 0);
             let Some(all) = all else {
-                self.said.bad(at, format!("`{name}` must hold pairs of wavelength and value"));
+                self.report.bad(at, format!("`{name}` must hold pairs of wavelength and value"));
                 return None;
             };
             return self.curve(all, at).map(|curve| (curve, at));
         }
-        let given = self.attribute(tag, "value")?;
-        let at = given.1;
+        let attribute = self.attribute(tag, "value")?;
+        let at = attribute.1;
         let value = match tag.name {
-            "float" => self.numbers(&given).map(|[number]| Value::Number(number)),
+            "float" => self.numbers(&attribute).map(|[number]| Value::Number(number)),
             "integer" => {
-                let number = given.0.trim().parse::<i64>().ok();
+                let number = attribute.0.trim().parse::<i64>().ok();
                 if number.is_none() {
-                    self.said.bad(at, format!("expected an integer, found `{}`", given.0));
+                    self.report.bad(at, format!("expected an integer, found `{}`", attribute.0));
                 }
                 number.map(|number| Value::Number(number as f64))
             }
-            "boolean" => match given.0.trim().to_lowercase().as_str() {
+            "boolean" => match attribute.0.trim().to_lowercase().as_str() {
                 "true" => Some(Value::Truth(true)),
                 "false" => Some(Value::Truth(false)),
                 _ => {
-                    self.said.bad(at, format!("expected `true` or `false`, found `{}`", given.0));
+                    self.report.bad(at, format!("expected `true` or `false`, found `{}`", attribute.0));
                     None
                 }
             },
-            "string" => Some(Value::Text(given.0)),
-            "rgb" | "srgb" => self.rgb(&given, tag.name == "srgb").map(Value::Rgb),
-            _ => self.spectrum(&given),
+            "string" => Some(Value::Text(attribute.0)),
+            "rgb" | "srgb" => self.rgb(&attribute, tag.name == "srgb").map(Value::Rgb),
+            _ => self.spectrum(&attribute),
         };
         value.map(|value| (value, at))
     }
 
     /// Parses three numbers, one for all three, or `#rrggbb` in sRGB.
-    fn rgb(&self, given: &(String, Span), curved: bool) -> Option<Vec3> {
-        let text = given.0.trim();
+    fn rgb(&self, attribute: &(String, Span), curved: bool) -> Option<Vec3> {
+        let text = attribute.0.trim();
         if let Some(digits) = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii()) {
             let byte = |i: usize| u8::from_str_radix(&digits[2 * i..2 * i + 2], 16).ok();
             if let (Some(r), Some(g), Some(b)) = (byte(0), byte(1), byte(2)) {
@@ -466,7 +466,7 @@ impl<'a> Loader<'a> {
             Some([one]) => Vec3::splat(*one as f32),
             Some(&[r, g, b]) => DVec3::new(r, g, b).as_vec3(),
             _ => {
-                self.said.bad(given.1, format!("expected three numbers, found `{}`", given.0));
+                self.report.bad(attribute.1, format!("expected three numbers, found `{}`", attribute.0));
                 return None;
             }
         };
@@ -474,20 +474,20 @@ impl<'a> Loader<'a> {
     }
 
     /// Parses a number, or pairs of wavelength and value: `400:0.1, 500:0.2`.
-    fn spectrum(&self, given: &(String, Span)) -> Option<Value> {
-        if !given.0.contains(':') {
-            return match numbers(&given.0).as_deref() {
+    fn spectrum(&self, attribute: &(String, Span)) -> Option<Value> {
+        if !attribute.0.contains(':') {
+            return match numbers(&attribute.0).as_deref() {
                 // Mitsuba 0.6 also allows colours here.
                 Some(&[r, g, b]) => Some(Value::Rgb(DVec3::new(r, g, b).as_vec3())),
-                _ => self.numbers(given).map(|[number]| Value::Even(number as f32)),
+                _ => self.numbers(attribute).map(|[number]| Value::Even(number as f32)),
             };
         }
-        let all = numbers(&given.0.replace(':', " ")).filter(|all| all.len() % 2 == 0);
+        let all = numbers(&attribute.0.replace(':', " ")).filter(|all| all.len() % 2 == 0);
         let Some(all) = all else {
-            self.said.bad(given.1, format!("expected pairs `wavelength:value`, found `{}`", given.0));
+            self.report.bad(attribute.1, format!("expected pairs `wavelength:value`, found `{}`", attribute.0));
             return None;
         };
-        self.curve(all, given.1)
+        self.curve(all, attribute.1)
     }
 
     fn curve(&self, all: Vec<f64>, at: Span) -> Option<Value> {
@@ -495,7 +495,7 @@ impl<'a> Loader<'a> {
         if let Some(pair) = curve.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
             let message =
                 format!("the wavelengths of a spectrum must increase: {} comes after {}", pair[1][0], pair[0][0]);
-            self.said.bad(at, message);
+            self.report.bad(at, message);
             return None;
         }
         Some(Value::Curve(curve))
@@ -503,15 +503,15 @@ impl<'a> Loader<'a> {
 
     /// Reports an error in an element.
     pub fn bad(&self, at: Span, message: impl Into<String>, help: Option<String>) {
-        self.said.bad_with(at, message, help);
+        self.report.bad_with(at, message, help);
     }
 
     pub fn warn(&self, at: Span, message: &str) {
-        self.said.once(at, message);
+        self.report.once(at, message);
     }
 
     /// Next element of a transform; consumes its end too.
-    pub fn next_leaf<'x>(&mut self, xml: &mut Xml<'x>) -> Result<Option<Tag<'x>>, Broken> {
+    pub fn next_leaf<'x>(&mut self, xml: &mut Xml<'x>) -> Result<Option<Tag<'x>>, ErrorReported> {
         let Some(tag) = self.next(xml)? else { return Ok(None) };
         self.leaf(xml, tag.name)?;
         Ok(Some(tag))

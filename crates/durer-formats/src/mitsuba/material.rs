@@ -2,7 +2,7 @@
 //!
 //! Source: *Mitsuba 3 documentation*, "BSDFs". GGX's alpha is the square of our roughness.
 
-use super::made::{Made, Shine, matte};
+use super::defs::{AreaEmitter, MaterialDef, matte};
 use super::metals;
 use super::plugin::{Key, Plugin, Value};
 use super::rough::Boundary;
@@ -10,7 +10,7 @@ use super::state::Reader;
 use super::texture::Texture;
 use crate::medium::Medium;
 use crate::pictures::asset;
-use crate::said::meant;
+use crate::shared_report::suggest;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::bsdf::fresnel::conductor_colors;
 use durer_scene::bsdf::fresnel::schlick_82;
@@ -53,55 +53,59 @@ const MAX_PARTS: usize = 4096;
 
 impl Reader<'_> {
     /// Material of a plugin.
-    pub fn material(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<Made> {
+    pub fn material(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<MaterialDef> {
         let key = (plugin.key(), self.inside_out);
         if let Some(known) = self.materials.get(&key) {
             return known.clone();
         }
         if self.too_deep(depth, plugin.at) {
-            return Rc::new(Made::matte(0.5));
+            return Rc::new(MaterialDef::matte(0.5));
         }
         let mut made = self.made(plugin, depth);
-        plugin.finish(self.said);
+        plugin.finish(self.report);
         if !self.has_room_for(&made, plugin.at) {
-            made = Rc::new(Made::matte(0.5));
+            made = Rc::new(MaterialDef::matte(0.5));
         }
         self.materials.insert(key, made.clone());
         made
     }
 
     /// Whether a material is of so few others that it may be copied.
-    fn has_room_for(&self, made: &Made, at: Span) -> bool {
+    fn has_room_for(&self, made: &MaterialDef, at: Span) -> bool {
         let count = made.count(MAX_PARTS);
         if count > MAX_PARTS {
-            self.said.bad(at, format!("a material of more than {MAX_PARTS} others is too large"));
+            self.report.bad(at, format!("a material of more than {MAX_PARTS} others is too large"));
         }
-        count <= MAX_PARTS && self.loader.growth.has_bytes(count, size_of::<PrincipledMaterial>(), self.said, at)
+        count <= MAX_PARTS && self.loader.growth.has_bytes(count, size_of::<PrincipledMaterial>(), self.report, at)
     }
 
-    fn made(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<Made> {
+    fn made(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<MaterialDef> {
         let mut m = PrincipledMaterial::default();
         match plugin.kind.as_str() {
             "diffuse" | "roughdiffuse" => {
                 let (color, picture) = self.colored(plugin, "reflectance", 0.5);
                 m = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
-                plugin.left_out(self.said, &["alpha", "use_fast_approx"], "the surface is Lambertian");
+                plugin.left_out(self.report, &["alpha", "use_fast_approx"], "the surface is Lambertian");
             }
             "dielectric" | "roughdielectric" | "thindielectric" => self.glass(plugin, &mut m),
             "conductor" | "roughconductor" => self.conductor(plugin, &mut m),
             "plastic" | "roughplastic" => self.plastic(plugin, &mut m),
             "principled" | "principledthin" => m = self.principled(plugin),
             "hair" => return Rc::new(self.hair(plugin)),
-            "null" => return Rc::new(Made::Nothing),
+            "null" => return Rc::new(MaterialDef::Nothing),
             "twosided" => {
-                let both = |made: &Made| Rc::new(made.changed(&|m| m.backs = Backs::Shown));
+                let both = |made: &MaterialDef| Rc::new(made.changed(&|m| m.backs = Backs::Shown));
                 let parts = self.parts(plugin, Some("bsdf"));
                 return match parts.as_slice() {
                     [(_, front), (_, back)] => {
                         let sides = [front, back].map(|side| both(&self.material(side, depth + 1)));
                         // The front of an inverted sphere is the back of ours.
                         let [front, back] = sides;
-                        Rc::new(if self.inside_out { Made::Sides(back, front) } else { Made::Sides(front, back) })
+                        Rc::new(if self.inside_out {
+                            MaterialDef::Sides(back, front)
+                        } else {
+                            MaterialDef::Sides(front, back)
+                        })
                     }
                     _ => both(&self.inner(plugin, depth)),
                 };
@@ -121,19 +125,19 @@ impl Reader<'_> {
                 let (share, picture) = self.pictured(plugin, "weight", 0.5, |weight| 1.0 - weight.clamp(0.0, 1.0));
                 let parts = self.parts(plugin, Some("bsdf"));
                 let [(_, a), (_, b)] = parts.as_slice() else {
-                    self.said.bad(plugin.at, format!("a `blendbsdf` needs two materials, found {}", parts.len()));
-                    return Rc::new(Made::matte(0.5));
+                    self.report.bad(plugin.at, format!("a `blendbsdf` needs two materials, found {}", parts.len()));
+                    return Rc::new(MaterialDef::matte(0.5));
                 };
                 let (a, b) = (self.material(a, depth + 1), self.material(b, depth + 1));
-                return Rc::new(Made::Mix(a, b, share, picture));
+                return Rc::new(MaterialDef::Mix(a, b, share, picture));
             }
             other => {
                 let message = format!("the material `{other}` has no counterpart: diffuse grey is used");
                 let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(plugin.at);
-                self.said.push(Diagnostic { help: meant(other, KNOWN), ..warning });
+                self.report.push(Diagnostic { help: suggest(other, KNOWN), ..warning });
                 // Do not report its properties: they were not read.
                 plugin.properties.iter().for_each(|property| property.used.set(true));
-                return Rc::new(Made::matte(0.5));
+                return Rc::new(MaterialDef::matte(0.5));
             }
         }
         // Other materials than glass are black from behind unless they are `twosided`.
@@ -141,18 +145,18 @@ impl Reader<'_> {
         if !is_open && !self.inside_out {
             m.backs = Backs::Black;
         }
-        Rc::new(Made::Layers(Box::new(m)))
+        Rc::new(MaterialDef::Layers(Box::new(m)))
     }
 
     /// Reads hair given by absorption or by melanin.
-    fn hair(&self, plugin: &Plugin) -> Made {
+    fn hair(&self, plugin: &Plugin) -> MaterialDef {
         let usual = HairMaterial::default();
-        let number = |name| plugin.number(self.said, name);
+        let number = |name| plugin.number(self.report, name);
         let share = |name, usual: f32| number(name).unwrap_or(usual).clamp(0.0, 1.0);
         let scale = number("scale").unwrap_or(1.0);
         let absorbed = || scale * self.color(plugin, "sigma_a", Vec3::ZERO).max(Vec3::ZERO);
         let absorption = plugin.get("sigma_a").is_some().then(absorbed);
-        Made::Hair(HairMaterial {
+        MaterialDef::Hair(HairMaterial {
             eumelanin: number("eumelanin").unwrap_or(1.3).max(0.0),
             pheomelanin: number("pheomelanin").unwrap_or(0.2).max(0.0),
             color: None,
@@ -165,44 +169,44 @@ impl Reader<'_> {
     }
 
     /// Material that another material wraps.
-    fn inner(&mut self, plugin: &Plugin, depth: u32) -> Rc<Made> {
+    fn inner(&mut self, plugin: &Plugin, depth: u32) -> Rc<MaterialDef> {
         match self.parts(plugin, Some("bsdf")).first() {
             Some((_, part)) => self.material(part, depth + 1),
             None => {
-                self.said.bad(plugin.at, format!("a `{}` needs a nested material", plugin.kind));
-                Rc::new(Made::matte(0.5))
+                self.report.bad(plugin.at, format!("a `{}` needs a nested material", plugin.kind));
+                Rc::new(MaterialDef::matte(0.5))
             }
         }
     }
 
     /// Reads a bump map; `scale` is the height where the picture is 1.
-    fn bump_map(&mut self, plugin: &Plugin, depth: u32) -> Rc<Made> {
+    fn bump_map(&mut self, plugin: &Plugin, depth: u32) -> Rc<MaterialDef> {
         let inner = self.inner(plugin, depth);
-        let height = plugin.number(self.said, "scale").unwrap_or(1.0);
+        let height = plugin.number(self.report, "scale").unwrap_or(1.0);
         let Some((property, _)) = self.parts(plugin, Some("texture")).into_iter().next() else {
-            self.said.once(plugin.at, "a `bumpmap` needs a texture: the surface stays smooth");
+            self.report.once(plugin.at, "a `bumpmap` needs a texture: the surface stays smooth");
             return inner;
         };
         plugin.known(&["use_shadowing_function", "flip_invalid_normals"]);
         let picture = self.numbers(property, |x| x);
         if picture.is_none() {
-            self.said.once(property.at, "a `bumpmap` needs a picture: the surface stays smooth");
+            self.report.once(property.at, "a `bumpmap` needs a picture: the surface stays smooth");
         }
         Rc::new(inner.changed(&|m| {
             (m.bump_texture, m.bump_height, m.normal_bending) = (picture.clone(), height, Switch::Off);
         }))
     }
 
-    fn normal_map(&mut self, plugin: &Plugin, depth: u32) -> Rc<Made> {
+    fn normal_map(&mut self, plugin: &Plugin, depth: u32) -> Rc<MaterialDef> {
         let inner = self.inner(plugin, depth);
         let texture = self.parts(plugin, Some("texture")).into_iter().next();
         let Some((property, texture)) = texture.filter(|(_, texture)| texture.kind == "bitmap") else {
-            self.said.once(plugin.at, "a `normalmap` needs a `bitmap`: the surface stays smooth");
+            self.report.once(plugin.at, "a `normalmap` needs a `bitmap`: the surface stays smooth");
             return inner;
         };
         plugin.known(&["use_shadowing_function", "flip_invalid_normals"]);
         let picture = self.bitmap(&texture);
-        texture.finish(self.said);
+        texture.finish(self.report);
         let Some(picture) = picture else { return inner };
         let name = asset(&mut self.scene, picture, property.at);
         Rc::new(inner.changed(&|m| (m.normal_texture, m.normal_bending) = (Some(name.clone()), Switch::Off)))
@@ -213,8 +217,8 @@ impl Reader<'_> {
         let Some(property) = plugin.get(name) else { return usual };
         if let Value::Text(text) = &property.value {
             return metals::clear(text).unwrap_or_else(|| {
-                let help = meant(text, metals::clear_names());
-                self.said.bad_with(
+                let help = suggest(text, metals::clear_names());
+                self.report.bad_with(
                     property.at,
                     format!("unknown material `{text}`: it has no index of refraction"),
                     help,
@@ -222,7 +226,7 @@ impl Reader<'_> {
                 usual
             });
         }
-        plugin.positive(self.said, name).unwrap_or(usual)
+        plugin.positive(self.report, name).unwrap_or(usual)
     }
 
     /// Interior index over exterior index.
@@ -245,21 +249,21 @@ impl Reader<'_> {
             let root = |alpha: f32| alpha.clamp(0.0, 1.0).sqrt();
             (m.specular_roughness, m.specular_roughness_texture) = self.pictured(plugin, "alpha", 0.1, root);
         }
-        match plugin.text(self.said, "distribution").as_deref() {
+        match plugin.text(self.report, "distribution").as_deref() {
             Some("ggx") => {}
             Some(distribution @ ("beckmann" | "phong" | "as")) => {
                 let what =
                     format!("the distribution `{distribution}` has no counterpart: `ggx` of the same alpha is used");
-                self.said.once(plugin.place("distribution"), what);
+                self.report.once(plugin.place("distribution"), what);
             }
             None => {
                 let what = "the default distribution `beckmann` has no counterpart: `ggx` of the same alpha \
                             is used";
-                self.said.once(plugin.at, what);
+                self.report.once(plugin.at, what);
             }
             Some(other) => {
-                let help = meant(other, ["beckmann", "ggx"]);
-                self.said.bad_with(plugin.place("distribution"), format!("unknown distribution `{other}`"), help);
+                let help = suggest(other, ["beckmann", "ggx"]);
+                self.report.bad_with(plugin.place("distribution"), format!("unknown distribution `{other}`"), help);
             }
         }
         plugin.known(&["sample_visible"]);
@@ -286,18 +290,18 @@ impl Reader<'_> {
     }
 
     fn conductor(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
-        let name = plugin.text(self.said, "material").unwrap_or("none".into());
+        let name = plugin.text(self.report, "material").unwrap_or("none".into());
         let by_numbers = ["eta", "k"].iter().any(|name| plugin.get(name).is_some());
         if by_numbers && plugin.get("material").is_some() {
-            self.said.bad(plugin.place("material"), "a conductor takes either `material`, or `eta` and `k`");
+            self.report.bad(plugin.place("material"), "a conductor takes either `material`, or `eta` and `k`");
         }
         let [f0, f82] = if !by_numbers && name == "none" {
             [Vec3::ONE; 2]
         } else {
             let named = metals::metal(&name).unwrap_or_else(|| {
                 if !by_numbers {
-                    let help = meant(&name, metals::metal_names());
-                    self.said.bad_with(plugin.place("material"), format!("unknown metal `{name}`"), help);
+                    let help = suggest(&name, metals::metal_names());
+                    self.report.bad_with(plugin.place("material"), format!("unknown metal `{name}`"), help);
                 }
                 [[0.0; 3], [1.0; 3]]
             });
@@ -327,9 +331,9 @@ impl Reader<'_> {
         let index = self.relative_index(plugin, 1.49);
         self.tint(plugin, m);
         self.roughness(plugin, m);
-        let nonlinear = plugin.truth(self.said, "nonlinear").unwrap_or(false);
+        let nonlinear = plugin.truth(self.report, "nonlinear").unwrap_or(false);
         if m.specular_roughness > 0.0 && m.specular_roughness_texture.is_none() {
-            let beckmann = plugin.text(self.said, "distribution").is_none_or(|distribution| distribution != "ggx");
+            let beckmann = plugin.text(self.report, "distribution").is_none_or(|distribution| distribution != "ggx");
             let boundary = Boundary::new(index, m.specular_roughness, beckmann);
             m.base_color = match m.base_color_texture.is_some() {
                 // For a picture, use middle grey.
@@ -343,7 +347,7 @@ impl Reader<'_> {
             m.coat_roughness_texture = m.specular_roughness_texture.take();
             m.specular_weight = 0.0;
             if m.specular_color != Vec3::ONE || m.specular_color_texture.take().is_some() {
-                self.said.once(
+                self.report.once(
                     plugin.place("specular_reflectance"),
                     "a coloured reflection of a coat has no counterpart: white is used",
                 );
@@ -361,65 +365,70 @@ impl Reader<'_> {
     pub fn number(
         &mut self,
         bsdf: Option<&Rc<Plugin>>,
-        shine: Option<&Shine>,
+        emitter: Option<&AreaEmitter>,
         inside: Option<(Medium, Key)>,
         at: Span,
     ) -> Option<u32> {
-        let key = [bsdf.map(|bsdf| bsdf.key()), shine.map(|shine| shine.key), inside.as_ref().map(|inside| inside.1)];
+        let key =
+            [bsdf.map(|bsdf| bsdf.key()), emitter.map(|emitter| emitter.key), inside.as_ref().map(|inside| inside.1)];
         let key = (key, self.inside_out);
         if let Some(known) = self.numbers.get(&key) {
             return *known;
         }
         // An emitter without a material does not scatter.
-        let grey = if shine.is_some() { 0.0 } else { 0.5 };
-        let mut made = bsdf.map_or_else(|| Rc::new(Made::matte(grey)), |bsdf| self.material(bsdf, 0));
+        let grey = if emitter.is_some() { 0.0 } else { 0.5 };
+        let mut made = bsdf.map_or_else(|| Rc::new(MaterialDef::matte(grey)), |bsdf| self.material(bsdf, 0));
         if let Some((medium, _)) = inside {
             made = Rc::new(filled(&made, &medium));
         }
         let at = bsdf.map_or(at, |bsdf| bsdf.at);
-        let number = if self.has_room_for(&made, at) { self.numbered(&made, shine, at) } else { None };
+        let number = if self.has_room_for(&made, at) { self.numbered(&made, emitter, at) } else { None };
         self.numbers.insert(key, number);
         number
     }
 
-    fn numbered(&mut self, made: &Made, shine: Option<&Shine>, at: Span) -> Option<u32> {
+    fn numbered(&mut self, made: &MaterialDef, emitter: Option<&AreaEmitter>, at: Span) -> Option<u32> {
         let material = match made {
-            Made::Nothing => return None,
-            Made::Layers(layers) => {
+            MaterialDef::Nothing => return None,
+            MaterialDef::Layers(layers) => {
                 let mut layers = layers.clone();
-                let most = shine.map_or(0.0, |shine| shine.color.max_element());
-                if let Some(shine) = shine.filter(|_| most > 0.0) {
-                    (layers.emission_luminance, layers.emission_color) = (most, shine.color / most);
-                    layers.walls = if shine.both { Walls::Thin } else { layers.walls };
-                    if let Some(picture) = &shine.picture {
-                        layers.emission_texture = Some(asset(&mut self.scene, picture.clone(), shine.at));
+                let most = emitter.map_or(0.0, |emitter| emitter.color.max_element());
+                if let Some(emitter) = emitter.filter(|_| most > 0.0) {
+                    (layers.emission_luminance, layers.emission_color) = (most, emitter.color / most);
+                    layers.walls = if emitter.both { Walls::Thin } else { layers.walls };
+                    if let Some(picture) = &emitter.picture {
+                        layers.emission_texture = Some(asset(&mut self.scene, picture.clone(), emitter.at));
                     }
                 }
                 Material::Principled(layers)
             }
-            Made::Hair(hair) => {
-                if shine.is_some() {
-                    self.said.once(at, "emission of hair has no counterpart: it is ignored");
+            MaterialDef::Hair(hair) => {
+                if emitter.is_some() {
+                    self.report.once(at, "emission of hair has no counterpart: it is ignored");
                 }
                 Material::Hair(hair.clone())
             }
-            Made::Sides(front, back) => match (self.numbered(front, shine, at), self.numbered(back, None, at)) {
+            MaterialDef::Sides(front, back) => match (self.numbered(front, emitter, at), self.numbered(back, None, at))
+            {
                 (Some(material1), Some(material2)) => {
                     Material::Solid(Solid::from(TwoSided { material1, material2 }), Vec::new())
                 }
                 (only, other) => return only.or(other),
             },
-            Made::Mix(a, b, share, picture) => match (self.numbered(a, shine, at), self.numbered(b, shine, at)) {
-                (Some(material1), Some(material2)) => {
-                    let mix = Mix { material1, material2, share: *share, share_texture: picture.clone() };
-                    Material::Solid(Solid::from(mix), Vec::new())
+            MaterialDef::Mix(a, b, share, picture) => {
+                match (self.numbered(a, emitter, at), self.numbered(b, emitter, at)) {
+                    (Some(material1), Some(material2)) => {
+                        let mix = Mix { material1, material2, share: *share, share_texture: picture.clone() };
+                        Material::Solid(Solid::from(mix), Vec::new())
+                    }
+                    (Some(only), None) | (None, Some(only)) => {
+                        self.report
+                            .once(at, "a blend with a `null` material has no counterpart: only the other is used");
+                        return Some(only);
+                    }
+                    (None, None) => return None,
                 }
-                (Some(only), None) | (None, Some(only)) => {
-                    self.said.once(at, "a blend with a `null` material has no counterpart: only the other is used");
-                    return Some(only);
-                }
-                (None, None) => return None,
-            },
+            }
         };
         self.scene.materials.push(Spanned { value: material, span: at });
         Some((self.scene.materials.len() - 1) as u32)
@@ -427,13 +436,13 @@ impl Reader<'_> {
 }
 
 /// Material filled with a medium.
-fn filled(made: &Made, medium: &Medium) -> Made {
+fn filled(made: &MaterialDef, medium: &Medium) -> MaterialDef {
     match made {
-        Made::Nothing => {
+        MaterialDef::Nothing => {
             let mut m =
                 PrincipledMaterial { specular_ior: 1.0, transmission_weight: 1.0, ..PrincipledMaterial::default() };
             medium.fill(&mut m);
-            Made::Layers(Box::new(m))
+            MaterialDef::Layers(Box::new(m))
         }
         // Light does not enter opaque materials.
         _ => made.changed(&|m| {

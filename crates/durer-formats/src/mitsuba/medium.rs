@@ -15,13 +15,13 @@ use std::sync::Arc;
 impl Reader<'_> {
     /// Medium with its key; `None` for a medium without a counterpart.
     pub fn medium(&mut self, plugin: &Rc<Plugin>) -> Option<(Medium, Key)> {
-        let said = self.said;
+        let report = self.report;
         if !matches!(plugin.kind.as_str(), "homogeneous" | "heterogeneous") {
             let what = format!("the medium `{}` has no counterpart: it is ignored", plugin.kind);
-            said.once(plugin.at, what);
+            report.once(plugin.at, what);
             return None;
         }
-        let scale = plugin.number(said, "scale").unwrap_or(1.0).max(0.0);
+        let scale = plugin.number(report, "scale").unwrap_or(1.0).max(0.0);
         let density = self.density(plugin);
         let color = |name, usual| self.volume_color(plugin, name, usual).max(Vec3::ZERO);
         let (absorption, scattering) = match plugin.get("sigma_s").is_some() || plugin.get("sigma_a").is_some() {
@@ -38,15 +38,15 @@ impl Reader<'_> {
         for (_, phase) in self.parts(plugin, Some("phase")) {
             match phase.kind.as_str() {
                 "isotropic" => {}
-                "hg" => anisotropy = phase.number(said, "g").unwrap_or(0.8).clamp(-0.99, 0.99),
-                other => said.once(
+                "hg" => anisotropy = phase.number(report, "g").unwrap_or(0.8).clamp(-0.99, 0.99),
+                other => report.once(
                     phase.at,
                     format!("the phase function `{other}` has no counterpart: isotropic scattering is used"),
                 ),
             }
         }
         plugin.known(&["sample_emitters", "has_spectral_extinction", "majorant_resolution_factor"]);
-        plugin.finish(said);
+        plugin.finish(report);
         let medium = Medium { absorption: scale * absorption, scattering: scale * scattering, anisotropy, density };
         Some((medium, plugin.key()))
     }
@@ -61,40 +61,41 @@ impl Reader<'_> {
             "constvolume" => self.color(&volume, "value", usual),
             _ => {
                 let at = volume.at;
-                self.said.once(at, format!("a `{name}` that varies has no counterpart: its mean is used"));
-                let bytes = volume.text(self.said, "filename");
-                let bytes = bytes.and_then(|path| named_bytes(self.input, self.said, "the volume", &path, at));
-                let mean = bytes
-                    .and_then(|(bytes, file)| self.told(|found| vol::mean(&bytes, file, self.input.memory, found)));
+                self.report.once(at, format!("a `{name}` that varies has no counterpart: its mean is used"));
+                let bytes = volume.text(self.report, "filename");
+                let bytes = bytes.and_then(|path| named_bytes(self.input, self.report, "the volume", &path, at));
+                let mean = bytes.and_then(|(bytes, file)| {
+                    self.collect_diagnostics(|found| vol::mean(&bytes, file, self.input.memory, found))
+                });
                 mean.unwrap_or(usual)
             }
         };
         volume.known(&["to_world", "use_grid_bbox", "raw", "accel", "wrap_mode", "filter_type"]);
-        volume.finish(self.said);
+        volume.finish(self.report);
         color
     }
 
     /// Runs a reader that reports to diagnostics, and passes these on.
-    fn told<T>(&self, read: impl FnOnce(&mut Diagnostics) -> T) -> T {
+    fn collect_diagnostics<T>(&self, read: impl FnOnce(&mut Diagnostics) -> T) -> T {
         let mut found = Diagnostics::default();
         let made = read(&mut found);
-        self.said.extend(found);
+        self.report.extend(found);
         made
     }
 
     /// Density of a medium whose extinction is a `gridvolume`.
     fn density(&mut self, plugin: &Plugin) -> Option<Density> {
         let volume = self.named_part(plugin, "sigma_t").filter(|volume| volume.kind == "gridvolume")?;
-        let said = self.said;
-        let Some(name) = volume.text(said, "filename") else {
-            said.bad(volume.at, "a `gridvolume` needs a `filename`");
+        let report = self.report;
+        let Some(name) = volume.text(report, "filename") else {
+            report.bad(volume.at, "a `gridvolume` needs a `filename`");
             return None;
         };
         let at = volume.place("filename");
-        let (bytes, file) = named_bytes(self.input, said, "the densities", &name, at)?;
-        let (bounds, grid) = self.told(|found| vol::read(&bytes, file, self.input.memory, found))?;
-        let map = volume.map(said, "to_world");
-        let own = match volume.truth(said, "use_grid_bbox").unwrap_or(false) {
+        let (bytes, file) = named_bytes(self.input, report, "the densities", &name, at)?;
+        let (bounds, grid) = self.collect_diagnostics(|found| vol::read(&bytes, file, self.input.memory, found))?;
+        let map = volume.map(report, "to_world");
+        let own = match volume.truth(report, "use_grid_bbox").unwrap_or(false) {
             true => DAffine3::from_scale_rotation_translation(
                 (bounds.max - bounds.min).as_dvec3(),
                 DQuat::IDENTITY,
@@ -103,7 +104,7 @@ impl Reader<'_> {
             false => DAffine3::IDENTITY,
         };
         volume.known(&["raw", "accel", "wrap_mode", "filter_type"]);
-        volume.finish(said);
+        volume.finish(report);
         self.scene.assets.densities.insert(name.clone(), (bounds, Arc::new(grid)));
         Some(Density { name: FileName { path: name, span: at }, placed: Some(map * own) })
     }

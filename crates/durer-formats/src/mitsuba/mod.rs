@@ -7,9 +7,9 @@
 mod camera;
 mod color;
 mod curve;
+mod defs;
 mod light;
 mod load;
-mod made;
 mod material;
 mod medium;
 mod metals;
@@ -28,7 +28,7 @@ mod transform;
 mod tests;
 
 use super::model::{Input, SceneFormat};
-use super::said::Said;
+use super::shared_report::SharedReport;
 use super::{too_large, xml};
 use durer_diag::{Diagnostic, Diagnostics};
 use durer_scene::scene::{Axis, Scene};
@@ -44,7 +44,7 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     write: None,
     up: Axis::Y,
     whole: true,
-    shines: Some(
+    light_hint: Some(
         "write `<emitter type=\"area\"/>` in a shape, or `<emitter type=\"constant\"/>` in the scene: an environment is a light too",
     ),
 };
@@ -60,13 +60,13 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
         diagnostics.push(Diagnostic { message: error.message.replace("mesh file", "scene"), help: None, ..error });
         return None;
     }
-    let said = Said::default();
-    let mut loader = Loader::new(input, &said);
+    let report = SharedReport::default();
+    let mut loader = Loader::new(input, &report);
     let scene = match loader.scene() {
-        Ok(all) => Some(Reader::new(input, &said, loader).read(&all)),
+        Ok(all) => Some(Reader::new(input, &report, loader).read(&all)),
         Err(_) => None,
     };
-    let sound = !said.has_errors() && !diagnostics.has_errors();
-    diagnostics.extend(said.finish());
+    let sound = !report.has_errors() && !diagnostics.has_errors();
+    diagnostics.extend(report.finish());
     scene.filter(|_| sound)
 }

@@ -1,6 +1,6 @@
 //! Plugin: a type, and properties by name.
 
-use crate::said::{Said, meant};
+use crate::shared_report::{SharedReport, suggest};
 use durer_diag::Span;
 use durer_scene::math::Vec3;
 use glam::{DAffine3, DVec3};
@@ -20,7 +20,7 @@ pub(super) struct Plugin {
     pub at: Span,
     pub properties: Vec<Property>,
     /// Names of the known properties.
-    asked: RefCell<Vec<&'static str>>,
+    queried: RefCell<Vec<&'static str>>,
 }
 
 /// Property. Nested plugins may have no name.
@@ -67,8 +67,8 @@ impl Value {
 
 impl Plugin {
     pub fn new(class: &str, kind: String, at: Span) -> Plugin {
-        let asked = RefCell::default();
-        Plugin { class: class.into(), kind, at, properties: Vec::new(), asked }
+        let queried = RefCell::default();
+        Plugin { class: class.into(), kind, at, properties: Vec::new(), queried }
     }
 
     /// Key that is unique to the plugin.
@@ -78,7 +78,7 @@ impl Plugin {
 
     /// Marks properties as known, so that they are not reported.
     pub fn known(&self, names: &[&'static str]) {
-        self.asked.borrow_mut().extend(names);
+        self.queried.borrow_mut().extend(names);
     }
 
     /// Property by name; marks it as used.
@@ -94,17 +94,23 @@ impl Plugin {
     }
 
     /// Property of one type; reports an error for another type.
-    fn typed<T>(&self, said: &Said, name: &'static str, what: &str, get: impl Fn(&Value) -> Option<T>) -> Option<T> {
+    fn typed<T>(
+        &self,
+        report: &SharedReport,
+        name: &'static str,
+        what: &str,
+        get: impl Fn(&Value) -> Option<T>,
+    ) -> Option<T> {
         let property = self.get(name)?;
         let value = get(&property.value);
         if value.is_none() {
-            said.bad(property.at, format!("`{name}` must be {what}, not {}", property.value.kind()));
+            report.bad(property.at, format!("`{name}` must be {what}, not {}", property.value.kind()));
         }
         value
     }
 
-    pub fn number(&self, said: &Said, name: &'static str) -> Option<f32> {
-        self.typed(said, name, "a number", |value| match value {
+    pub fn number(&self, report: &SharedReport, name: &'static str) -> Option<f32> {
+        self.typed(report, name, "a number", |value| match value {
             Value::Number(number) => Some(*number as f32),
             Value::Even(number) => Some(*number),
             _ => None,
@@ -112,38 +118,38 @@ impl Plugin {
     }
 
     /// Number that must be more than 0.
-    pub fn positive(&self, said: &Said, name: &'static str) -> Option<f32> {
-        let number = self.number(said, name)?;
+    pub fn positive(&self, report: &SharedReport, name: &'static str) -> Option<f32> {
+        let number = self.number(report, name)?;
         if number <= 0.0 {
-            said.bad(self.place(name), format!("`{name}` must be more than 0"));
+            report.bad(self.place(name), format!("`{name}` must be more than 0"));
         }
         Some(number).filter(|number| *number > 0.0)
     }
 
-    pub fn truth(&self, said: &Said, name: &'static str) -> Option<bool> {
-        self.typed(said, name, "`true` or `false`", |value| match value {
+    pub fn truth(&self, report: &SharedReport, name: &'static str) -> Option<bool> {
+        self.typed(report, name, "`true` or `false`", |value| match value {
             Value::Truth(truth) => Some(*truth),
             _ => None,
         })
     }
 
-    pub fn text(&self, said: &Said, name: &'static str) -> Option<String> {
-        self.typed(said, name, "a string", |value| match value {
+    pub fn text(&self, report: &SharedReport, name: &'static str) -> Option<String> {
+        self.typed(report, name, "a string", |value| match value {
             Value::Text(text) => Some(text.clone()),
             _ => None,
         })
     }
 
-    pub fn vector(&self, said: &Said, name: &'static str) -> Option<DVec3> {
-        self.typed(said, name, "a vector or point", |value| match value {
+    pub fn vector(&self, report: &SharedReport, name: &'static str) -> Option<DVec3> {
+        self.typed(report, name, "a vector or point", |value| match value {
             Value::Vector(vector) => Some(*vector),
             _ => None,
         })
     }
 
     /// Transform; the identity if it is not given.
-    pub fn map(&self, said: &Said, name: &'static str) -> DAffine3 {
-        let map = self.typed(said, name, "a transform", |value| match value {
+    pub fn map(&self, report: &SharedReport, name: &'static str) -> DAffine3 {
+        let map = self.typed(report, name, "a transform", |value| match value {
             Value::Map(map) => Some(*map),
             _ => None,
         });
@@ -151,36 +157,36 @@ impl Plugin {
     }
 
     /// Warns of properties that have no counterpart; `instead` names the substitute.
-    pub fn left_out(&self, said: &Said, names: &[&'static str], instead: &str) {
+    pub fn left_out(&self, report: &SharedReport, names: &[&'static str], instead: &str) {
         for name in names {
             if let Some(property) = self.get(name) {
-                said.once(property.at, format!("`{name}` has no counterpart: {instead}"));
+                report.once(property.at, format!("`{name}` has no counterpart: {instead}"));
             }
         }
     }
 
     /// Warns of unknown properties.
-    pub fn finish(&self, said: &Said) {
-        let asked = self.asked.borrow();
+    pub fn finish(&self, report: &SharedReport) {
+        let queried = self.queried.borrow();
         for property in &self.properties {
             let nested = matches!(property.value, Value::Plugin(_) | Value::Ref(_));
-            if property.used.get() || asked.contains(&property.name.as_str()) {
+            if property.used.get() || queried.contains(&property.name.as_str()) {
                 continue;
             }
             let message = match (nested, property.name.as_str()) {
                 (true, "") => format!("the {} `{}` does not use this: it is ignored", self.class, self.kind),
                 (_, name) => format!("the {} `{}` has no property `{name}`: it is ignored", self.class, self.kind),
             };
-            let help = meant(&property.name, asked.iter().copied());
+            let help = suggest(&property.name, queried.iter().copied());
             let warning = durer_diag::Diagnostic::warning(message).code("unknown-property").at(property.at);
-            said.push(durer_diag::Diagnostic { help, ..warning });
+            report.push(durer_diag::Diagnostic { help, ..warning });
         }
     }
 }
 
 /// Returns true if a shape is a sphere with inward normals, by `flip_normals` or by a mirroring
 /// transform.
-pub(super) fn is_inside_out(plugin: &Plugin, said: &Said) -> bool {
-    let flipped = || plugin.truth(said, "flip_normals").unwrap_or(false);
-    plugin.kind == "sphere" && flipped() != (plugin.map(said, "to_world").matrix3.determinant() < 0.0)
+pub(super) fn is_inside_out(plugin: &Plugin, report: &SharedReport) -> bool {
+    let flipped = || plugin.truth(report, "flip_normals").unwrap_or(false);
+    plugin.kind == "sphere" && flipped() != (plugin.map(report, "to_world").matrix3.determinant() < 0.0)
 }

@@ -79,7 +79,7 @@ impl Reader<'_> {
             ..PrincipledMaterial::default()
         };
         let none = "the base stays diffuse";
-        plugin.left_out(self.said, &["flatness"], none);
+        plugin.left_out(self.report, &["flatness"], none);
         plugin.known(&["diffuse_reflectance_sampling_rate", "main_specular_sampling_rate", "clearcoat_sampling_rate"]);
         m
     }

@@ -8,7 +8,7 @@
 
 use crate::files::named_bytes;
 use crate::model::Input;
-use crate::said::Said;
+use crate::shared_report::SharedReport;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::math::{Vec2, Vec3};
 use durer_scene::shape::MeshData;
@@ -32,28 +32,28 @@ const MAX_TIMES: u64 = 200;
 const FREE: u64 = 1 << 24;
 
 /// Byte offset and message of an error.
-type Wrong = (usize, String);
+type ParseError = (usize, String);
 
 /// Reads a mesh of a file by its index.
-pub(super) fn mesh(input: &Input, said: &Said, (path, at): (&str, Span), number: u32) -> Option<MeshData> {
-    let (bytes, file) = named_bytes(input, said, "the mesh", path, at)?;
-    let tell = |(place, message): Wrong| {
+pub(super) fn mesh(input: &Input, report: &SharedReport, (path, at): (&str, Span), number: u32) -> Option<MeshData> {
+    let (bytes, file) = named_bytes(input, report, "the mesh", path, at)?;
+    let report_error = |(place, message): ParseError| {
         let place = place.min(bytes.len()) as u32;
         let error = Diagnostic::error(message).code("bad-file").at(Span { file, start: place, end: place });
-        said.push(error.related(at, "asked for here"));
+        report.push(error.related(at, "asked for here"));
     };
-    let data = parse(&bytes, number, input.memory).map_err(tell).ok()?;
+    let data = parse(&bytes, number, input.memory).map_err(report_error).ok()?;
     if data.triangles.is_empty() {
-        said.push(Diagnostic::warning("the mesh has no triangles").at(at));
+        report.push(Diagnostic::warning("the mesh has no triangles").at(at));
     }
     Some(data)
 }
 
-fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, Wrong> {
+fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, ParseError> {
     let (start, version) = found(bytes, number)?;
     let packed = &bytes[start + HEAD..];
     let budget = memory.min(FREE + MAX_TIMES * packed.len() as u64);
-    let mut unpacked = Unpacked { inner: ZlibDecoder::new(packed), start: start + HEAD };
+    let mut unpacked = ZlibReader { inner: ZlibDecoder::new(packed), start: start + HEAD };
     let [flags] = unpacked.words::<1>("flags")?;
     if version == 4 {
         unpacked.pass_name()?;
@@ -105,7 +105,7 @@ fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, Wrong> {
 }
 
 /// Offset of a mesh, and the file's version.
-fn found(bytes: &[u8], number: u32) -> Result<(usize, u16), Wrong> {
+fn found(bytes: &[u8], number: u32) -> Result<(usize, u16), ParseError> {
     let begins = |at: usize| {
         let found =
             at.checked_add(HEAD).and_then(|end| bytes.get(at..end)).filter(|head| head[..2] == MARK.to_le_bytes());
@@ -140,20 +140,20 @@ fn found(bytes: &[u8], number: u32) -> Result<(usize, u16), Wrong> {
 }
 
 /// Stream of a mesh while it is decompressed.
-struct Unpacked<'a> {
+struct ZlibReader<'a> {
     inner: ZlibDecoder<&'a [u8]>,
     /// Offset of the compressed data in the file.
     start: usize,
 }
 
-impl Unpacked<'_> {
+impl ZlibReader<'_> {
     /// Offset in the file up to which data was read.
     fn place(&self) -> usize {
         self.start + self.inner.total_in() as usize
     }
 
     /// Reads `count` bytes. Allocates only for bytes that exist.
-    fn bytes(&mut self, what: &str, count: u64) -> Result<Vec<u8>, Wrong> {
+    fn bytes(&mut self, what: &str, count: u64) -> Result<Vec<u8>, ParseError> {
         let mut bytes = Vec::new();
         let read = (&mut self.inner).take(count).read_to_end(&mut bytes);
         match read {
@@ -165,12 +165,12 @@ impl Unpacked<'_> {
         }
     }
 
-    fn words<const N: usize>(&mut self, what: &str) -> Result<[u32; N], Wrong> {
+    fn words<const N: usize>(&mut self, what: &str) -> Result<[u32; N], ParseError> {
         let bytes = self.bytes(what, 4 * N as u64)?;
         Ok(std::array::from_fn(|i| u32::from_le_bytes(bytes.as_chunks().0[i])))
     }
 
-    fn pass_name(&mut self) -> Result<(), Wrong> {
+    fn pass_name(&mut self) -> Result<(), ParseError> {
         for _ in 0..LONGEST_NAME {
             if self.bytes("name", 1)? == [0] {
                 return Ok(());
@@ -180,7 +180,7 @@ impl Unpacked<'_> {
     }
 
     /// Reads `count` numbers of 32 or 64 bits.
-    fn numbers(&mut self, what: &str, count: u64, double: bool) -> Result<Vec<f32>, Wrong> {
+    fn numbers(&mut self, what: &str, count: u64, double: bool) -> Result<Vec<f32>, ParseError> {
         let bytes = self.bytes(what, count * if double { 8 } else { 4 })?;
         let numbers: Vec<f32> = match double {
             true => bytes.as_chunks().0.iter().map(|eight| f64::from_le_bytes(*eight) as f32).collect(),
@@ -253,8 +253,8 @@ pub(super) mod tests {
         let good = file(4, &[stream(4, 0x1000), stream(4, 0x1003)]);
         assert!(parse(&good, 0, MEMORY).unwrap().uvs.is_empty() && parse(&good, 1, MEMORY).unwrap().uvs.len() == 4);
         let refused = |bytes: &[u8], number: u32, memory: u64, message: &str| {
-            let (at, told) = parse(bytes, number, memory).unwrap_err();
-            assert!(at <= bytes.len() && told.contains(message), "{at} {told}"); // prose: keep
+            let (at, messages) = parse(bytes, number, memory).unwrap_err();
+            assert!(at <= bytes.len() && messages.contains(message), "{at} {messages}"); // prose: keep
             at
         };
         assert_eq!(refused(b"ply\n", 0, MEMORY, "expected a mesh"), 0);

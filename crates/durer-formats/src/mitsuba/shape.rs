@@ -10,7 +10,7 @@ use super::state::Reader;
 use super::transform::frame;
 use crate::files::mesh_file;
 use crate::medium::Medium;
-use crate::said::meant;
+use crate::shared_report::suggest;
 use crate::smooth::smoothed;
 use durer_diag::{Diagnostic, Span};
 use durer_image::Transfer;
@@ -43,8 +43,8 @@ impl Reader<'_> {
         if self.too_deep(depth, plugin.at) {
             return;
         }
-        let (said, at) = (self.said, plugin.at);
-        let map = plugin.map(said, "to_world");
+        let (report, at) = (self.report, plugin.at);
+        let map = plugin.map(report, "to_world");
         let found = match plugin.kind.as_str() {
             // Shape groups are shown by instances.
             "shapegroup" => return,
@@ -65,24 +65,24 @@ impl Reader<'_> {
             other => {
                 let message = format!("the shape `{other}` has no counterpart: it is ignored");
                 let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(at);
-                return said.push(Diagnostic { help: meant(other, KNOWN), ..warning });
+                return report.push(Diagnostic { help: suggest(other, KNOWN), ..warning });
             }
         };
         if let Some((node, map)) = found {
             let inside = self.inside(plugin);
-            let shine = self.parts(plugin, Some("emitter")).into_iter().next();
-            let mut shine = shine.and_then(|(_, emitter)| self.area_light(&emitter));
-            self.inside_out = is_inside_out(plugin, said);
-            if let Some(shine) = shine.as_mut().filter(|_| self.inside_out) {
-                (shine.both, shine.key) = (true, plugin.key());
+            let area_emitter = self.parts(plugin, Some("emitter")).into_iter().next();
+            let mut area_emitter = area_emitter.and_then(|(_, emitter)| self.area_light(&emitter));
+            self.inside_out = is_inside_out(plugin, report);
+            if let Some(area_emitter) = area_emitter.as_mut().filter(|_| self.inside_out) {
+                (area_emitter.both, area_emitter.key) = (true, plugin.key());
             }
             let material = self.parts(plugin, Some("bsdf")).into_iter().next().map(|(_, bsdf)| bsdf);
-            match self.number(material.as_ref(), shine.as_ref(), inside, at) {
+            match self.number(material.as_ref(), area_emitter.as_ref(), inside, at) {
                 Some(number) => {
                     let inner = Object { node, material: Some(number), span: at };
                     self.add(objects, inner.placed(map));
                 }
-                None if shine.is_some() => said.once(at, "a `null` surface does not emit light"),
+                None if area_emitter.is_some() => report.once(at, "a `null` surface does not emit light"),
                 None => {}
             }
         } else if !matches!(plugin.kind.as_str(), "instance" | "merge") {
@@ -92,7 +92,7 @@ impl Reader<'_> {
             }
         }
         plugin.known(&["flip_normals"]);
-        plugin.finish(said);
+        plugin.finish(report);
     }
 
     fn instance(
@@ -104,7 +104,7 @@ impl Reader<'_> {
     ) -> Option<(Node, DAffine3)> {
         let groups = self.parts(plugin, Some("shape"));
         let Some((property, group)) = groups.into_iter().find(|(_, group)| group.kind == "shapegroup") else {
-            self.said.bad(plugin.at, "an `instance` needs a `shapegroup`");
+            self.report.bad(plugin.at, "an `instance` needs a `shapegroup`");
             return None;
         };
         let (group, count) = match self.groups.get(&group.key()) {
@@ -159,15 +159,15 @@ impl Reader<'_> {
     }
 
     fn is_flipped(&self, plugin: &Plugin) -> bool {
-        plugin.truth(self.said, "flip_normals").unwrap_or(false)
+        plugin.truth(self.report, "flip_normals").unwrap_or(false)
     }
 
     fn sphere(&self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
-        let radius = plugin.positive(self.said, "radius").unwrap_or(1.0);
-        let center = plugin.vector(self.said, "center").unwrap_or(DVec3::ZERO);
-        if is_inside_out(plugin, self.said) && !self.parts(plugin, Some("emitter")).is_empty() {
+        let radius = plugin.positive(self.report, "radius").unwrap_or(1.0);
+        let center = plugin.vector(self.report, "center").unwrap_or(DVec3::ZERO);
+        if is_inside_out(plugin, self.report) && !self.parts(plugin, Some("emitter")).is_empty() {
             let what = "a sphere that emits inwards has no counterpart: it emits on both sides";
-            self.said.once(plugin.place("flip_normals"), what);
+            self.report.once(plugin.place("flip_normals"), what);
         }
         let map = map * DAffine3::from_translation(center);
         let (center, map) = match self.is_pictured(plugin) || self.is_brushed(plugin) {
@@ -193,13 +193,13 @@ impl Reader<'_> {
     }
 
     fn cylinder(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
-        let said = self.said;
-        let end = |name, usual| plugin.vector(said, name).unwrap_or(usual);
+        let report = self.report;
+        let end = |name, usual| plugin.vector(report, name).unwrap_or(usual);
         let ends = [end("p0", DVec3::ZERO), end("p1", DVec3::Z)];
-        let radius = plugin.positive(said, "radius").unwrap_or(1.0);
+        let radius = plugin.positive(report, "radius").unwrap_or(1.0);
         let along = ends[1] - ends[0];
         if along == DVec3::ZERO {
-            said.bad(plugin.place("p1"), "`p0` and `p1` of a cylinder must differ");
+            report.bad(plugin.place("p1"), "`p0` and `p1` of a cylinder must differ");
             return None;
         }
         let axes = frame(along.normalize()) * DMat3::from_diagonal(DVec3::new(1.0, 1.0, along.length()));
@@ -209,8 +209,8 @@ impl Reader<'_> {
 
     /// Name of the shape's file and its place in the scene.
     fn path(&self, plugin: &Plugin) -> Option<(String, Span)> {
-        let Some(name) = plugin.text(self.said, "filename") else {
-            self.said.bad(plugin.at, format!("the shape `{}` needs a `filename`", plugin.kind));
+        let Some(name) = plugin.text(self.report, "filename") else {
+            self.report.bad(plugin.at, format!("the shape `{}` needs a `filename`", plugin.kind));
             return None;
         };
         Some((self.loader.path(&name), plugin.place("filename")))
@@ -218,25 +218,25 @@ impl Reader<'_> {
 
     /// Index of the shape's mesh in its file.
     fn shape_index(&self, plugin: &Plugin) -> Option<u32> {
-        let number = plugin.number(self.said, "shape_index").unwrap_or(0.0);
+        let number = plugin.number(self.report, "shape_index").unwrap_or(0.0);
         if !(0.0..=16_777_216.0).contains(&number) || number.fract() != 0.0 {
-            self.said.bad(plugin.place("shape_index"), "`shape_index` must be an integer of 0 or more");
+            self.report.bad(plugin.place("shape_index"), "`shape_index` must be an integer of 0 or more");
             return None;
         }
         Some(number as u32)
     }
 
     fn file(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
-        let said = self.said;
+        let report = self.report;
         let (path, at) = self.path(plugin)?;
         let number = match plugin.kind.as_str() {
             "serialized" => Some(self.shape_index(plugin)?),
             _ => None,
         };
-        let flat = plugin.truth(said, "face_normals").unwrap_or(false);
+        let flat = plugin.truth(report, "face_normals").unwrap_or(false);
         let is_obj = plugin.kind == "obj";
         // Mitsuba flips v of OBJ files, which have v upwards as ours, but not v of PLY files.
-        let over = plugin.truth(said, "flip_tex_coords").unwrap_or(is_obj);
+        let over = plugin.truth(report, "flip_tex_coords").unwrap_or(is_obj);
         let mirrored = map.matrix3.determinant() < 0.0;
         let input = self.input;
         let colored = self.has_texture(plugin, &["mesh_attribute"]);
@@ -252,8 +252,8 @@ impl Reader<'_> {
         let key = turns.iter().filter(|turn| turn.0).fold(whole, |key, turn| key + turn.1);
         self.mesh(plugin, &key, map, || {
             let mut data = match number {
-                Some(number) => serialized::mesh(input, said, (&path, at), number)?,
-                None => mesh_file(input, said, &path, at)?,
+                Some(number) => serialized::mesh(input, report, (&path, at), number)?,
+                None => mesh_file(input, report, &path, at)?,
             };
             if flat {
                 (data.normals, data.triangle_normals) = (Vec::new(), Vec::new());
@@ -286,11 +286,11 @@ impl Reader<'_> {
 
     /// Tubes of a curve file.
     fn curves(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
-        let said = self.said;
+        let report = self.report;
         let (path, at) = self.path(plugin)?;
         let (input, is_spline) = (self.input, plugin.kind == "bsplinecurve");
         let key = if is_spline { path.clone() } else { format!("{path}#linear") };
-        self.mesh(plugin, &key, map, || curve::tubes(input, said, (&path, at), is_spline))
+        self.mesh(plugin, &key, map, || curve::tubes(input, report, (&path, at), is_spline))
     }
 
     /// Mesh with v downwards and its transform.

@@ -4,7 +4,7 @@
 //! Radiance*, SIGGRAPH 2012. Dürer uses Preetham's sky, scaled to the same illuminance, and
 //! Preetham's sun.
 
-use super::made::Infinite;
+use super::defs::InfiniteLight;
 use super::plugin::Plugin;
 use super::state::Reader;
 use durer_scene::light::DirectionalLight;
@@ -49,8 +49,8 @@ fn place(steps: &[f32], x: f32) -> (usize, f32) {
 impl Reader<'_> {
     /// Adds a clear sky, the sun, or both.
     pub(super) fn daylight(&mut self, plugin: &Plugin, to_world: DAffine3) {
-        let said = self.said;
-        let number = |name, usual: f32| plugin.number(said, name).unwrap_or(usual);
+        let report = self.report;
+        let number = |name, usual: f32| plugin.number(report, name).unwrap_or(usual);
         let turbidity = number("turbidity", 3.0);
         let all = number("scale", 1.0);
         let [sky_scale, sun_scale] = ["sky_scale", "sun_scale"].map(|name| (all * number(name, 1.0)).max(0.0));
@@ -59,19 +59,19 @@ impl Reader<'_> {
             true => DMat3::IDENTITY,
             false => DMat3::from_cols(DVec3::Z, DVec3::NEG_X, DVec3::Y),
         };
-        let way = match plugin.vector(said, "sun_direction") {
+        let way = match plugin.vector(report, "sun_direction") {
             Some(way) => up * to_world.matrix3.inverse() * way,
             None => self.way_by_time(plugin).as_dvec3(),
         };
         plugin.known(&["sun_aperture", "sun_radius_scale", "resolution", "stretch", "sampling_weight", "complex_sun"]);
-        plugin.left_out(said, &["albedo"], "the ground's albedo is 0.2");
-        plugin.finish(said);
-        said.once(
+        plugin.left_out(report, &["albedo"], "the ground's albedo is 0.2");
+        plugin.finish(report);
+        report.once(
             plugin.at,
             "the sky of Hosek and Wilkie has no counterpart: Preetham's is used, with the same illuminance",
         );
         let Some(way) = way.try_normalize().filter(|way| way.y > 0.0) else {
-            return said.once(plugin.at, "the sun is below the horizon: this light is left out");
+            return report.once(plugin.at, "the sun is below the horizon: this light is left out");
         };
         let sky = Sky::new(way.as_vec3(), turbidity);
         let to_world = to_world * DAffine3::from_mat3(up.transpose());
@@ -79,7 +79,7 @@ impl Reader<'_> {
             let found = PI * sky.on_level_ground().dot(LUMINANCE);
             let height = fp::asin_f64(way.y).to_degrees() as f32;
             let scale = sky_scale * level(turbidity, height) / found.max(1.0) / LUMENS;
-            self.far(Infinite::Sky { sky, at: plugin.at, scale, to_world });
+            self.far(InfiniteLight::Sky { sky, at: plugin.at, scale, to_world });
         }
         if plugin.kind != "sky" && sun_scale > 0.0 {
             let direction = -to_world.transform_vector3(way).normalize_or(DVec3::Y).as_vec3();
@@ -92,12 +92,12 @@ impl Reader<'_> {
 
     /// Direction to the sun by place, date and time.
     fn way_by_time(&self, plugin: &Plugin) -> Vec3 {
-        let number = |name, usual: f32| f64::from(plugin.number(self.said, name).unwrap_or(usual));
+        let number = |name, usual: f32| f64::from(plugin.number(self.report, name).unwrap_or(usual));
         let date = [number("year", 2010.0), number("month", 7.0), number("day", 10.0)].map(|x| x as i32);
         let hours = number("hour", 15.0) + number("minute", 0.0) / 60.0 + number("second", 0.0) / 3600.0;
         let moment = Moment { date, hours, zone: number("timezone", 9.0) };
         if !(moment.exists() && (-9999..=9999).contains(&date[0])) {
-            self.said.bad(plugin.at, "this date does not exist");
+            self.report.bad(plugin.at, "this date does not exist");
             return Vec3::Y;
         }
         almanac::way(almanac::sun([number("latitude", 35.689), number("longitude", 139.6917)], &moment))

@@ -1,12 +1,12 @@
 //! Conversion of plugins to a scene.
 
+use super::defs::{InfiniteLight, MaterialDef};
 use super::load::Loader;
-use super::made::{Infinite, Made};
 use super::plugin::{Key, Plugin, Property, Value};
 use crate::bodies::join_bodies;
 use crate::model::Input;
 use crate::pictures::Pictures;
-use crate::said::{Said, meant};
+use crate::shared_report::{SharedReport, suggest};
 use crate::unscattered;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::scene::{Group, Object, Scene};
@@ -21,10 +21,10 @@ pub(super) const DEEPEST: u32 = 32;
 /// Reader of a scene's plugins.
 pub(super) struct Reader<'a> {
     pub input: &'a Input<'a>,
-    pub said: &'a Said,
+    pub report: &'a SharedReport,
     pub loader: Loader<'a>,
     /// Materials by their plugin, and whether their shape is turned inside out.
-    pub materials: BTreeMap<(Key, bool), Rc<Made>>,
+    pub materials: BTreeMap<(Key, bool), Rc<MaterialDef>>,
     /// Indices in the scene of materials, by plugins of the material, light and interior medium,
     /// and whether the shape is turned inside out.
     pub numbers: BTreeMap<([Option<Key>; 3], bool), Option<u32>>,
@@ -34,17 +34,17 @@ pub(super) struct Reader<'a> {
     pub groups: BTreeMap<Key, (Rc<Group>, usize)>,
     /// True if the current shape is turned inside out: the interior index of its glass is outside.
     pub inside_out: bool,
-    pub infinite: Option<Infinite>,
+    pub infinite: Option<InfiniteLight>,
     /// True if scattered light is not rendered (`max_depth` below 2).
     pub emitters_only: bool,
     pub scene: Scene,
 }
 
 impl<'a> Reader<'a> {
-    pub fn new(input: &'a Input<'a>, said: &'a Said, loader: Loader<'a>) -> Self {
+    pub fn new(input: &'a Input<'a>, report: &'a SharedReport, loader: Loader<'a>) -> Self {
         Reader {
             input,
-            said,
+            report,
             loader,
             materials: BTreeMap::new(),
             numbers: BTreeMap::new(),
@@ -61,7 +61,7 @@ impl<'a> Reader<'a> {
     pub fn read(mut self, all: &Plugin) -> Scene {
         let mut sensors = Vec::new();
         for (property, plugin) in self.parts(all, None) {
-            if self.said.is_full() {
+            if self.report.is_full() {
                 break;
             }
             property.used.set(true);
@@ -84,10 +84,10 @@ impl<'a> Reader<'a> {
         if self.emitters_only {
             unscattered::blacken(&mut self.scene);
         }
-        if self.scene.root.is_none() && !self.said.has_errors() {
+        if self.scene.root.is_none() && !self.report.has_errors() {
             let at = Span { end: all.at.start, ..all.at };
             let warning = Diagnostic::warning("the file has no visible shapes");
-            self.said.push(warning.code("no-objects").at(at));
+            self.report.push(warning.code("no-objects").at(at));
         }
         self.scene
     }
@@ -115,7 +115,7 @@ impl<'a> Reader<'a> {
     }
 
     pub fn pictures(&self) -> Pictures<'a> {
-        Pictures { input: self.input, said: self.said }
+        Pictures { input: self.input, report: self.report }
     }
 
     /// Child plugins in their order, of one class or of any.
@@ -139,10 +139,10 @@ impl<'a> Reader<'a> {
             Value::Ref(id) => {
                 let found = self.loader.plugins.get(id).cloned();
                 if found.is_none() {
-                    let help = meant(id, self.loader.plugins.keys().map(String::as_str));
+                    let help = suggest(id, self.loader.plugins.keys().map(String::as_str));
                     let message = format!("no plugin has the id `{id}`");
                     if !property.used.replace(true) {
-                        self.said.bad_with(property.at, message, help);
+                        self.report.bad_with(property.at, message, help);
                     }
                 }
                 found
@@ -155,14 +155,14 @@ impl<'a> Reader<'a> {
     /// circle.
     pub fn too_deep(&self, depth: u32, at: Span) -> bool {
         if depth > DEEPEST {
-            self.said.bad(at, format!("plugins are nested more than {DEEPEST} deep: does one refer to itself?"));
+            self.report.bad(at, format!("plugins are nested more than {DEEPEST} deep: does one refer to itself?"));
         }
         depth > DEEPEST
     }
 
     /// Counts `more` objects; returns false and reports an error if the limit is exceeded.
     pub fn room_for(&self, more: usize, at: Span) -> bool {
-        self.loader.growth.has_objects(more, self.said, at)
+        self.loader.growth.has_objects(more, self.report, at)
     }
 
     /// Adds an object to a list.

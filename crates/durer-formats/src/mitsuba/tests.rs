@@ -16,8 +16,8 @@ fn read(text: &str) -> (Option<Scene>, Vec<String>) {
 
 /// Reads elements inside a scene and expects no diagnostics.
 fn clean(inner: &str) -> Scene {
-    let (scene, told) = read(&format!("<scene version='3.0.0'>{inner}</scene>"));
-    assert_eq!(told, [""; 0], "{inner}");
+    let (scene, messages) = read(&format!("<scene version='3.0.0'>{inner}</scene>"));
+    assert_eq!(messages, [""; 0], "{inner}");
     scene.unwrap()
 }
 
@@ -53,13 +53,13 @@ fn variables_includes_and_old_names_are_read() {
             <translate x='1'/></transform><ref id='m'/></shape></scene>"),
     ]);
     let text = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
-    let (scene, told) = read_in(folder.path(), "a.xml", &text("a.xml"));
-    assert_eq!(told, [""; 0]);
+    let (scene, messages) = read_in(folder.path(), "a.xml", &text("a.xml"));
+    assert_eq!(messages, [""; 0]);
     let spheres = objects(scene.as_ref().unwrap()).into_iter().map(|object| format!("{:?}", object.node));
     let spheres: Vec<String> = spheres.collect();
     assert!(spheres[0].contains("radius: 3.0") && spheres[1].contains("radius: 15.0"), "{spheres:?}");
-    let (scene, told) = read_in(folder.path(), "c.xml", &text("c.xml"));
-    assert_eq!(told, [""; 0]);
+    let (scene, messages) = read_in(folder.path(), "c.xml", &text("c.xml"));
+    assert_eq!(messages, [""; 0]);
     let scene = scene.unwrap();
     let Material::Principled(layers) = material(&scene) else { panic!() };
     assert_eq!((layers.base_color.z, layers.specular_ior), (0.3, 1.6));
@@ -161,46 +161,46 @@ fn diagnostics_have_their_place() {
         ),
     ] {
         let text = format!("<scene>{inner}</scene>");
-        let (_, told) = read(&text);
+        let (_, messages) = read(&text);
         let expected = format!("scene.xml:1:{} {expected}", 1 + text.rfind(there).unwrap());
-        assert!(told.iter().any(|line| line.starts_with(&expected)), "{expected}: {told:#?}"); // prose: keep
+        assert!(messages.iter().any(|line| line.starts_with(&expected)), "{expected}: {messages:#?}"); // prose: keep
     }
 }
 
 #[test]
 fn errors_are_reported_once() {
-    let told = |inner: &str| read(&format!("<scene>{inner}</scene>")).1;
+    let messages = |inner: &str| read(&format!("<scene>{inner}</scene>")).1;
     for inner in [
         "<shape type='sphere'><float name='radius' value='$a'/></shape>",
         "<shape type='sphere'><point name='center' value='$a'/></shape>",
         "<shape type='sphere'><transform name='to_world'><scale value='$a'/></transform></shape>",
         "<bsdf type='diffuse' id='$a'/>",
     ] {
-        let told = told(inner);
-        assert!(told.len() == 1 && told[0].contains("the variable `$a` is undefined"), "{told:?}");
+        let messages = messages(inner);
+        assert!(messages.len() == 1 && messages[0].contains("the variable `$a` is undefined"), "{messages:?}");
     }
-    let told = told(
+    let messages = messages(
         "<shape type='ply'><string name='filename' value='none.ply'/><bsdf type='diffuse'/>\
         <emitter type='area'/></shape>",
     );
-    assert!(told.len() == 1 && told[0].contains("the mesh cannot be read"), "{told:?}");
+    assert!(messages.len() == 1 && messages[0].contains("the mesh cannot be read"), "{messages:?}");
 }
 
 #[test]
 fn hostile_files_are_refused() {
     // Cycles of materials, shapes and files; an entity bomb; deep nesting; instances of instances.
-    let (scene, told) = read(
+    let (scene, messages) = read(
         "<scene><bsdf type='twosided' id='a'><ref id='b'/></bsdf><bsdf type='twosided' id='b'><ref id='a'/></bsdf>\
         <shape type='sphere'><ref id='a'/></shape></scene>",
     );
-    assert!(scene.is_none() && told[0].contains("nested more than"), "{told:?}");
-    let (scene, told) = read(
+    assert!(scene.is_none() && messages[0].contains("nested more than"), "{messages:?}");
+    let (scene, messages) = read(
         "<scene><shape type='shapegroup' id='g'><shape type='instance'><ref id='g'/></shape></shape>\
         <shape type='instance'><ref id='g'/></shape></scene>",
     );
-    assert!(scene.is_none() && told[0].contains("nested more than"), "{told:?}");
-    let (scene, told) = read("<!DOCTYPE s [<!ENTITY a 'aaaa'><!ENTITY b '&a;&a;'>]><scene/>");
-    assert!(scene.is_none() && told[0].contains("1:1 error"), "{told:?}");
+    assert!(scene.is_none() && messages[0].contains("nested more than"), "{messages:?}");
+    let (scene, messages) = read("<!DOCTYPE s [<!ENTITY a 'aaaa'><!ENTITY b '&a;&a;'>]><scene/>");
+    assert!(scene.is_none() && messages[0].contains("1:1 error"), "{messages:?}");
     let deep = "<bsdf type='twosided'>".repeat(3000);
     assert!(read(&format!("<scene>{deep}</scene>")).1[0].contains("nested more than"));
     let mut groups =
@@ -209,16 +209,16 @@ fn hostile_files_are_refused() {
         let inner = format!("<shape type='instance'><ref id='g{}'/></shape>", i - 1).repeat(4);
         groups += &format!("<shape type='shapegroup' id='g{i}'>{inner}</shape>");
     }
-    let (scene, told) = read(&format!("<scene>{groups}<shape type='instance'><ref id='g23'/></shape></scene>"));
-    assert!(scene.is_none() && told[0].contains("too many"), "{told:?}");
+    let (scene, messages) = read(&format!("<scene>{groups}<shape type='instance'><ref id='g23'/></shape></scene>"));
+    assert!(scene.is_none() && messages[0].contains("too many"), "{messages:?}");
     let folder = folder(&[
         ("a.xml", b"<scene><include filename='b.xml'/></scene>"),
         ("b.xml", b"<scene><include filename='a.xml'/></scene>"),
     ]);
-    let (scene, told) = read_in(folder.path(), "a.xml", "<scene><include filename='b.xml'/></scene>");
-    assert!(scene.is_none() && told[0].starts_with("b.xml:1:27 error `a.xml` includes itself"), "{told:?}");
-    let (_, told) = read_in(folder.path(), "a.xml", "<scene><include filename='/etc/hostname'/></scene>");
-    assert!(told[0].starts_with("a.xml:1:27 error"), "{told:?}");
+    let (scene, messages) = read_in(folder.path(), "a.xml", "<scene><include filename='b.xml'/></scene>");
+    assert!(scene.is_none() && messages[0].starts_with("b.xml:1:27 error `a.xml` includes itself"), "{messages:?}");
+    let (_, messages) = read_in(folder.path(), "a.xml", "<scene><include filename='/etc/hostname'/></scene>");
+    assert!(messages[0].starts_with("a.xml:1:27 error"), "{messages:?}");
 }
 
 #[test]

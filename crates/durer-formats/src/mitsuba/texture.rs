@@ -3,7 +3,7 @@
 use super::plugin::{Plugin, Property};
 use super::state::Reader;
 use crate::pictures::{asset, checkerboard};
-use crate::said::meant;
+use crate::shared_report::suggest;
 use durer_diag::Span;
 use durer_image::{decode_linear, decode_srgb};
 use durer_scene::describe::FileName;
@@ -31,9 +31,9 @@ impl Reader<'_> {
     pub fn bright_texture(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Texture {
         let bitmap = self.named_part(plugin, name).filter(|part| part.kind == "bitmap");
         let Some(bitmap) = bitmap else { return self.texture(plugin, name, usual) };
-        let raw = bitmap.truth(self.said, "raw").unwrap_or(false);
+        let raw = bitmap.truth(self.report, "raw").unwrap_or(false);
         let picture = self.bitmap_as(&bitmap, |name, at| self.pictures().eight_bits_scaled(name, at));
-        bitmap.finish(self.said);
+        bitmap.finish(self.report);
         picture.map_or(Texture::Even(usual), |(picture, scale)| Texture::Picture(picture, Vec3::splat(scale), raw))
     }
 
@@ -48,18 +48,18 @@ impl Reader<'_> {
         }
         let Some(texture) = self.part(property) else {
             if !matches!(property.value, super::plugin::Value::Ref(_)) {
-                self.said.bad(property.at, format!("`{}` must be a colour or a texture", property.name));
+                self.report.bad(property.at, format!("`{}` must be a colour or a texture", property.name));
             }
             return Texture::Even(usual);
         };
         let made = match texture.kind.as_str() {
             "bitmap" => {
-                let raw = texture.truth(self.said, "raw").unwrap_or(false);
+                let raw = texture.truth(self.report, "raw").unwrap_or(false);
                 self.bitmap(&texture).map(|picture| Texture::Picture(picture, Vec3::ONE, raw))
             }
             "checkerboard" => Some(self.checkerboard(&texture, [("color0", 0.4), ("color1", 0.2)])),
             // Vertex colours multiply the material's colour.
-            "mesh_attribute" if texture.text(self.said, "name").is_some_and(|name| name == "vertex_color") => {
+            "mesh_attribute" if texture.text(self.report, "name").is_some_and(|name| name == "vertex_color") => {
                 texture.known(&["scale"]);
                 Some(Texture::Even(Vec3::ONE))
             }
@@ -68,11 +68,11 @@ impl Reader<'_> {
                 let known = ["bitmap", "checkerboard", "mesh_attribute"];
                 let known = known.into_iter().filter(|word| *word != other);
                 let warning = durer_diag::Diagnostic::warning(message).code("NO_COUNTERPART").at(texture.at);
-                self.said.push(durer_diag::Diagnostic { help: meant(other, known), ..warning });
+                self.report.push(durer_diag::Diagnostic { help: suggest(other, known), ..warning });
                 return Texture::Even(usual);
             }
         };
-        texture.finish(self.said);
+        texture.finish(self.report);
         made.unwrap_or(Texture::Even(usual))
     }
 
@@ -81,7 +81,7 @@ impl Reader<'_> {
         match self.texture(plugin, name, Vec3::splat(usual)) {
             Texture::Even(color) => {
                 if color.min_element() < 0.0 {
-                    self.said.once(plugin.place(name), format!("a negative `{name}` has no counterpart: 0 is used"));
+                    self.report.once(plugin.place(name), format!("a negative `{name}` has no counterpart: 0 is used"));
                 }
                 (color.max(Vec3::ZERO), None)
             }
@@ -114,7 +114,7 @@ impl Reader<'_> {
             // Mitsuba swaps the fields where it reads a number.
             Some(fields) => {
                 let made = self.checkerboard(&fields, [("color1", 0.2), ("color0", 0.4)]);
-                fields.finish(self.said);
+                fields.finish(self.report);
                 made
             }
             None => self.texture_of(property, Vec3::ZERO),
@@ -139,7 +139,7 @@ impl Reader<'_> {
             Texture::Even(color) => color,
             Texture::Picture(picture, scale, _) => {
                 let at = plugin.place(name);
-                self.said.once(at, format!("a picture for `{name}` has no counterpart: its mean is used"));
+                self.report.once(at, format!("a picture for `{name}` has no counterpart: its mean is used"));
                 self.pictures().mean(&picture, at).map_or(usual, |mean| mean * scale)
             }
         }
@@ -157,20 +157,20 @@ impl Reader<'_> {
         texture: &Plugin,
         make: impl FnOnce(&str, Span) -> Option<(PictureBytes, f32)>,
     ) -> Option<(Picture, f32)> {
-        let said = self.said;
-        let Some(name) = texture.text(said, "filename") else {
-            said.bad(texture.at, "a `bitmap` needs a `filename`");
+        let report = self.report;
+        let Some(name) = texture.text(report, "filename") else {
+            report.bad(texture.at, "a `bitmap` needs a `filename`");
             return None;
         };
         let mut mapping = self.mapping(texture);
-        let word = |name, usual: &str| texture.text(said, name).unwrap_or(usual.into());
+        let word = |name, usual: &str| texture.text(report, name).unwrap_or(usual.into());
         mapping.wrap = match word("wrap_mode", "repeat").as_str() {
             "repeat" => [Wrap::Repeat; 2],
             "mirror" => [Wrap::Mirror; 2],
             "clamp" => [Wrap::Clamp; 2],
             other => {
-                let help = meant(other, ["repeat", "mirror", "clamp"]);
-                said.bad_with(texture.place("wrap_mode"), format!("unknown wrap mode `{other}`"), help);
+                let help = suggest(other, ["repeat", "mirror", "clamp"]);
+                report.bad_with(texture.place("wrap_mode"), format!("unknown wrap mode `{other}`"), help);
                 return None;
             }
         };
@@ -179,8 +179,8 @@ impl Reader<'_> {
             "bilinear" | "ewa" | "trilinear" => false,
             "nearest" => true,
             other => {
-                let help = meant(other, ["bilinear", "nearest"]);
-                said.bad_with(texture.place("filter_type"), format!("unknown filter `{other}`"), help);
+                let help = suggest(other, ["bilinear", "nearest"]);
+                report.bad_with(texture.place("filter_type"), format!("unknown filter `{other}`"), help);
                 return None;
             }
         };
@@ -193,9 +193,9 @@ impl Reader<'_> {
 
     /// Mapping of a texture. In Mitsuba v grows downwards from the upper edge, as in our pictures.
     fn mapping(&self, texture: &Plugin) -> Mapping {
-        let said = self.said;
-        let mut map = texture.map(said, "to_uv");
-        let old = |name, usual: f32| f64::from(texture.number(said, name).unwrap_or(usual));
+        let report = self.report;
+        let mut map = texture.map(report, "to_uv");
+        let old = |name, usual: f32| f64::from(texture.number(report, name).unwrap_or(usual));
         // Parameters of Mitsuba 0.6.
         let scale = glam::DVec3::new(old("uscale", 1.0), old("vscale", 1.0), 1.0);
         map *= DAffine3::from_scale(scale);
@@ -212,7 +212,7 @@ impl Reader<'_> {
             let made = self.texture(texture, name, Vec3::splat(usual));
             if matches!(made, Texture::Picture(..)) {
                 let at: Span = texture.place(name);
-                self.said.once(at, "a picture in a field has no counterpart: the default colour is used");
+                self.report.once(at, "a picture in a field has no counterpart: the default colour is used");
             }
             match made {
                 Texture::Even(color) => color,

@@ -1,7 +1,7 @@
 //! Transforms. The first element is applied first.
 
-use super::load::{Broken, Loader, numbers};
-use crate::said::meant;
+use super::load::{ErrorReported, Loader, numbers};
+use crate::shared_report::suggest;
 use crate::xml::{Tag, Xml};
 use durer_scene::math::fp;
 use durer_scene::scene::MatrixOp;
@@ -11,7 +11,7 @@ const KNOWN: [&str; 6] = ["translate", "rotate", "scale", "matrix", "lookat", "l
 
 impl Loader<'_> {
     /// Map of a `<transform>`.
-    pub(super) fn transform(&mut self, xml: &mut Xml) -> Result<DAffine3, Broken> {
+    pub(super) fn transform(&mut self, xml: &mut Xml) -> Result<DAffine3, ErrorReported> {
         let mut map = DAffine3::IDENTITY;
         while let Some(tag) = self.next_leaf(xml)? {
             let Some(step) = step(self, &tag) else { continue };
@@ -81,18 +81,18 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
             Some(DAffine3::from_mat3(stretched(axis, angle)))
         }
         "matrix" => {
-            let given = loader.attribute(tag, "value")?;
-            match numbers(&given.0).as_deref() {
+            let attribute = loader.attribute(tag, "value")?;
+            match numbers(&attribute.0).as_deref() {
                 Some(nine) if nine.len() == 9 => Some(DAffine3::from_mat3(DMat3::from_cols_slice(nine).transpose())),
                 Some(all) if all.len() == 16 => {
                     if all[12..] != [0.0, 0.0, 0.0, 1.0] {
-                        loader.bad(given.1, "the last row of a matrix must be 0 0 0 1", None);
+                        loader.bad(attribute.1, "the last row of a matrix must be 0 0 0 1", None);
                         return None;
                     }
                     Some(DAffine3::from_mat4(DMat4::from_cols_slice(all).transpose()))
                 }
                 _ => {
-                    loader.bad(given.1, "a matrix needs 16 numbers, or 9", None);
+                    loader.bad(attribute.1, "a matrix needs 16 numbers, or 9", None);
                     None
                 }
             }
@@ -117,7 +117,7 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
             Some(DAffine3 { matrix3: axes, translation: origin })
         }
         other => {
-            loader.bad(tag.at, format!("a transform has no `<{other}>`"), meant(other, KNOWN));
+            loader.bad(tag.at, format!("a transform has no `<{other}>`"), suggest(other, KNOWN));
             None
         }
     }

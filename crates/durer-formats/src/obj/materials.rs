@@ -3,12 +3,12 @@
 //! Sources: *The MTL material format*, Alias|Wavefront, 1995; the extension for physically based
 //! materials of Clara.io (Pr, Pm, Pc, Pcr, Ps, Ke, norm).
 
+use super::mtl::MtlMaterial;
 use super::words::Words;
-use super::written::Written;
 use crate::model::Input;
 use crate::number::parse_f32;
 use crate::report::shown;
-use crate::said::NO_COUNTERPART;
+use crate::shared_report::NO_COUNTERPART;
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
@@ -105,7 +105,7 @@ struct Reader<'a, 'i> {
 
 impl Reader<'_, '_> {
     fn read(&mut self, bytes: &[u8], diagnostics: &mut Diagnostics) {
-        let (mut words, mut current, file) = (Words::new(bytes), None::<Written>, self.file);
+        let (mut words, mut current, file) = (Words::new(bytes), None::<MtlMaterial>, self.file);
         while let Some(keyword) = words.next_statement() {
             let rest: Vec<Range<usize>> = std::iter::from_fn(|| words.next_word()).collect();
             let word = |at: Range<usize>| Word {
@@ -118,7 +118,7 @@ impl Reader<'_, '_> {
                     (Some(first), Some(last)) => word(first.start..last.end).text,
                     _ => String::new(),
                 };
-                let next = Written { name, ..Written::default() };
+                let next = MtlMaterial { name, ..MtlMaterial::default() };
                 current.replace(next).into_iter().for_each(|written| self.finish(written));
                 continue;
             }
@@ -142,7 +142,7 @@ impl Reader<'_, '_> {
         &mut self,
         keyword: &Word,
         rest: &[Word],
-        m: &mut Written,
+        m: &mut MtlMaterial,
         diagnostics: &mut Diagnostics,
     ) -> Result<(), (Span, String)> {
         let word = &keyword.text;
@@ -217,7 +217,13 @@ impl Reader<'_, '_> {
     }
 
     /// Reads a texture: options that begin with `-`, then a file name, which may contain blanks.
-    fn map(&mut self, keyword: &Word, rest: &[Word], m: &Written, diagnostics: &mut Diagnostics) -> Option<FileName> {
+    fn map(
+        &mut self,
+        keyword: &Word,
+        rest: &[Word],
+        m: &MtlMaterial,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<FileName> {
         let (mut mapping, mut at) = (Mapping::default(), 0);
         let (mut scale, mut offset) = ([1.0f32; 2], [0.0f32; 2]);
         while let Some(option) = rest.get(at).map(|word| word.text.as_str()) {
@@ -283,7 +289,7 @@ impl Reader<'_, '_> {
     }
 
     /// Adds a material to the library, unless it already has one of this name.
-    fn finish(&mut self, mut written: Written) {
+    fn finish(&mut self, mut written: MtlMaterial) {
         if written.loses_filter() {
             self.leave_out("Tf", written.filter_at);
         }

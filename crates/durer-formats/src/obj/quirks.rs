@@ -1,21 +1,21 @@
 //! Compatibility with the course programs' readers of Wavefront files.
 
 use super::{Statement, statement, words::Words};
-use durer_scene::dialect::{Compat, CompatSet};
+use durer_scene::dialect::{Quirk, QuirkSet};
 use std::borrow::Cow;
 
 /// Returns the file with blanks in place of what programs with these quirks ignore, so that byte
 /// offsets stay the same.
 ///
-/// The quirks are [`Compat::LostLastLine`] and [`Compat::ThreeCorners`].
-pub fn known(bytes: &[u8], quirks: CompatSet) -> Cow<'_, [u8]> {
-    let has = |compat: Compat| quirks & compat.bit() != 0;
+/// The quirks are [`Quirk::LostLastLine`] and [`Quirk::ThreeCorners`].
+pub fn known(bytes: &[u8], quirks: QuirkSet) -> Cow<'_, [u8]> {
+    let has = |compat: Quirk| quirks & compat.bit() != 0;
     let end = match bytes.iter().rposition(|&byte| byte == b'\n') {
-        _ if !has(Compat::LostLastLine) => bytes.len(),
+        _ if !has(Quirk::LostLastLine) => bytes.len(),
         last => last.map_or(0, |last| last + 1),
     };
     let mut known = Cow::from(&bytes[..end]);
-    if has(Compat::ThreeCorners) {
+    if has(Quirk::ThreeCorners) {
         let mut words = Words::new(&bytes[..end]);
         while let Some(keyword) = words.next_statement() {
             if statement(&bytes[keyword]) == Some(Statement::Face) {
@@ -37,12 +37,12 @@ mod tests {
     #[test]
     fn ignored_parts_become_blank_or_are_cut_off() {
         assert_eq!(known(SQUARE, 0), SQUARE);
-        let last = known(SQUARE, Compat::LostLastLine.bit());
+        let last = known(SQUARE, Quirk::LostLastLine.bit());
         assert_eq!(*last, SQUARE[..SQUARE.len() - 7]);
-        assert_eq!(known(&last, Compat::LostLastLine.bit()), last);
-        let three = known(SQUARE, Compat::ThreeCorners.bit());
+        assert_eq!(known(&last, Quirk::LostLastLine.bit()), last);
+        let three = known(SQUARE, Quirk::ThreeCorners.bit());
         assert_eq!(three.len(), SQUARE.len());
         assert!(three.ends_with(b"f 1/1 2/1 3/1     # all\nf 1 2 4"), "{}", String::from_utf8_lossy(&three));
-        assert!(known(b"f 1 2 3", Compat::LostLastLine.bit()).is_empty());
+        assert!(known(b"f 1 2 3", Quirk::LostLastLine.bit()).is_empty());
     }
 }

@@ -28,7 +28,7 @@ pub(crate) const FORMAT: SceneFormat = SceneFormat {
     write: None,
     up: super::FORMAT.up,
     whole: false,
-    shines: None,
+    light_hint: None,
 };
 
 /// Reads a file; see [`read_model`](crate::scene::read_model).
@@ -92,10 +92,12 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
         });
         if material.is_none() && !name.is_empty() {
             let known = library.materials.keys().map(String::as_str);
-            let meant = did_you_mean(&name, known).map(|meant| format!("did you mean `{meant}`?"));
+            let suggestion = did_you_mean(&name, known).map(|suggestion| format!("did you mean `{suggestion}`?"));
             let message = format!("no material file has {}: a neutral material is used", shown(name.as_bytes()));
-            diagnostics
-                .push(Diagnostic { help: meant, ..Diagnostic::warning(message).code("no-material").at(span(&at)) });
+            diagnostics.push(Diagnostic {
+                help: suggestion,
+                ..Diagnostic::warning(message).code("no-material").at(span(&at))
+            });
         }
         let asset = if name.is_empty() { input.name.to_string() } else { format!("{}#{name}", input.name) };
         let node = scene.add_mesh(&asset, Arc::new(part), span(&at));

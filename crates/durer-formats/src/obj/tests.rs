@@ -159,27 +159,27 @@ fn lines_points_and_lone_vertices_become_sticks_and_balls() {
     let folder = folder(&[("m.mtl", b"newmtl red\nKd 1 0 0\n")]);
     let read = |text: &str| read_in(folder.path(), "m.obj", text);
     let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-    let (scene, told) = read(&format!("mtllib m.mtl\n{vertices}f 1 2 3\nusemtl red\nl -1/1 1 2\np 3\n"));
+    let (scene, messages) = read(&format!("mtllib m.mtl\n{vertices}f 1 2 3\nusemtl red\nl -1/1 1 2\np 3\n"));
     let named = |name: &str, triangles, positions| (name.to_string(), triangles, positions);
     // Two sticks of six sides, and an octahedron.
     assert_eq!(meshes(&scene.unwrap()), [named("m.obj", 1, 3), named("m.obj#red", 32, 30)]);
     let note = "2 lines and 1 point without a surface: thin sticks and small balls are shown";
-    assert_eq!(told, [format!("m.obj:6:8 note {note}")]);
-    let (scene, told) = read(vertices);
+    assert_eq!(messages, [format!("m.obj:6:8 note {note}")]);
+    let (scene, messages) = read(vertices);
     assert_eq!(meshes(&scene.unwrap()), [named("m.obj", 24, 18)]);
-    assert!(told[1].contains("3 points without a surface"), "{told:?}");
-    let (none, told) = read(&format!("{vertices}l 1 4\np 0 1\n"));
+    assert!(messages[1].contains("3 points without a surface"), "{messages:?}");
+    let (none, messages) = read(&format!("{vertices}l 1 4\np 0 1\n"));
     assert!(none.is_none());
     let wrong = ["vertex `4` does not exist: the file has 3 vertices", "vertex 0 does not exist: indices count from 1"];
-    assert_eq!(told[1..], [format!("m.obj:4:5 error {}", wrong[0]), format!("m.obj:5:3 error {}", wrong[1])]);
-    let (scene, told) = read_in(
+    assert_eq!(messages[1..], [format!("m.obj:4:5 error {}", wrong[0]), format!("m.obj:5:3 error {}", wrong[1])]);
+    let (scene, messages) = read_in(
         folder.path(),
         "m.ply",
         "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n\
         property float y\nproperty float z\nend_header\n0 0 0\n1 0 0\n",
     );
     assert_eq!(meshes(&scene.unwrap()), [named("m.ply", 16, 12)]);
-    assert!(told[1].contains("2 points without a surface"), "{told:?}");
+    assert!(messages[1].contains("2 points without a surface"), "{messages:?}");
 }
 
 #[test]
@@ -189,8 +189,8 @@ fn material_file_names_may_have_blanks() {
     let folder = folder(&[("one two.mtl", a.as_bytes()), ("three.mtl", b.as_bytes())]);
     let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
     for names in ["one two.mtl", "three.mtl one\\ two.mtl", "\"one two.mtl\"", "One Two.MTL"] {
-        let told = read_in(folder.path(), "m.obj", &format!("mtllib {names}\n{triangle}")).1;
-        assert!(told.is_empty(), "{names}: {told:?}"); // prose: keep
+        let messages = read_in(folder.path(), "m.obj", &format!("mtllib {names}\n{triangle}")).1;
+        assert!(messages.is_empty(), "{names}: {messages:?}"); // prose: keep
     }
 }
 
@@ -199,8 +199,8 @@ fn smoothing_group_smooths_its_faces() {
     // Two squares at a right angle along the x axis.
     let corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 1\nv 0 0 1\n";
     let of = |faces: &str| {
-        let (scene, told) = read_in(&std::env::temp_dir(), "m.obj", &format!("{corners}{faces}"));
-        assert_eq!(told, [""; 0], "{faces}");
+        let (scene, messages) = read_in(&std::env::temp_dir(), "m.obj", &format!("{corners}{faces}"));
+        assert_eq!(messages, [""; 0], "{faces}");
         let scene = scene.unwrap();
         let data = scene.assets.meshes.values().next().unwrap();
         // Normal of each face's first corner, which is the origin.
@@ -227,8 +227,8 @@ fn texture_without_kd_keeps_its_colours() {
         ("a.ppm", b"P6\n1 1\n255\n\x80\x80\x80"),
     ]);
     let faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n";
-    let (scene, told) = read_in(folder.path(), "m.obj", &format!("mtllib m.mtl\n{faces}"));
-    assert_eq!(told, [""; 0]);
+    let (scene, messages) = read_in(folder.path(), "m.obj", &format!("mtllib m.mtl\n{faces}"));
+    assert_eq!(messages, [""; 0]);
     let base = |material: &Spanned<Material>| match &material.value {
         Material::Principled(layers) => layers.base_color.x,
         _ => panic!(),

@@ -2,8 +2,8 @@
 
 use super::language::Language;
 use super::params::Params;
-use super::state::{Asked, Reader};
-use crate::said::meant;
+use super::state::{DeferredDirective, Reader};
+use crate::shared_report::suggest;
 use durer_image::MAX_PIXELS;
 use durer_scene::camera::{
     Camera, EquirectangularCamera, Handedness, OrthographicCamera, PerspectiveCamera, ThinLensCamera,
@@ -17,15 +17,15 @@ const OLD_SIZE: (u32, u32) = (640, 480);
 
 /// Camera in world space: its position and its right, up and forward axes. The length of an axis is
 /// one unit of camera space.
-struct Placed {
+struct CameraFrame {
     center: DVec3,
     axes: [DVec3; 3],
 }
 
-impl Placed {
+impl CameraFrame {
     fn new(to_world: DAffine3) -> Self {
         let m = to_world.matrix3;
-        Placed { center: to_world.translation, axes: [m.x_axis, m.y_axis, m.z_axis] }
+        CameraFrame { center: to_world.translation, axes: [m.x_axis, m.y_axis, m.z_axis] }
     }
 
     /// Handedness of a picture for a viewer who looks along `forward`.
@@ -48,7 +48,7 @@ fn crop(params: &Params, (width, height): (u32, u32)) -> Option<Part> {
     for (name, is_share) in [("pixelbounds", false), ("cropwindow", true)] {
         let Some(all) = params.get(name).map(|param| param.numbers()) else { continue };
         let Ok(all) = <[f64; 4]>::try_from(all) else {
-            params.said.bad(params.place(name), format!("`{name}` needs four numbers: from, to, from, to"));
+            params.report.bad(params.place(name), format!("`{name}` needs four numbers: from, to, from, to"));
             return None;
         };
         let pixel = |i: usize| if is_share { (all[i] * sides[i]).ceil() } else { all[i] };
@@ -57,7 +57,7 @@ fn crop(params: &Params, (width, height): (u32, u32)) -> Option<Part> {
     }
     let [left, right, top, bottom] = part.map(|pixel| pixel as u32);
     if left >= right || top >= bottom {
-        params.said.bad(params.place(given?), "this part of the film has no pixels");
+        params.report.bad(params.place(given?), "this part of the film has no pixels");
         return None;
     }
     given.map(|_| (left, top, right - left, bottom - top))
@@ -73,19 +73,20 @@ impl Reader<'_> {
     /// Creates the scene's camera from the camera and film directives.
     pub fn frame(&mut self) {
         let ((width, height), crop) = self.film_size();
-        let Some(asked) = self.camera.take() else { return };
-        self.scene.wishes.size = Some((width, height));
-        self.scene.wishes.crop = crop;
-        let params = self.params_of(&asked);
-        if asked.transforms.moves() {
-            self.said.once(asked.at, "motion has no counterpart: everything stays where it is when the shutter opens");
+        let Some(directive) = self.camera.take() else { return };
+        self.scene.render_defaults.size = Some((width, height));
+        self.scene.render_defaults.crop = crop;
+        let params = self.params_of(&directive);
+        if directive.transforms.moves() {
+            self.report
+                .once(directive.at, "motion has no counterpart: everything stays where it is when the shutter opens");
         }
-        let placed = Placed::new(asked.transforms.maps[0].inverse());
+        let placed = CameraFrame::new(directive.transforms.maps[0].inverse());
         let [a, b, c] = placed.axes.map(DVec3::normalize_or_zero);
         if a.dot(b).abs().max(a.dot(c).abs()).max(b.dot(c).abs()) > 1e-4 {
-            self.said.other(asked.at, "a sheared camera has no counterpart: perpendicular axes are used");
+            self.report.other(directive.at, "a sheared camera has no counterpart: perpendicular axes are used");
         }
-        let camera = match asked.kind.as_str() {
+        let camera = match directive.kind.as_str() {
             "perspective" => Some(self.perspective(&placed, &params, (width, height), None)),
             "orthographic" => self.orthographic(&placed, &params, (width, height)),
             "spherical" => Some(self.spherical(&placed, &params)),
@@ -93,22 +94,22 @@ impl Reader<'_> {
             "realistic" => {
                 let what = "a realistic camera has no counterpart: a field of view of 38 degrees across the film's \
                             diagonal is used";
-                self.said.other(asked.at, what);
+                self.report.other(directive.at, what);
                 params.known(&["lensfile", "aperturediameter", "focusdistance", "aperture", "scale"]);
                 let diagonal = DVec2::new(f64::from(width), f64::from(height));
                 let half = fp::tan_f64(19f64.to_radians()) * diagonal.min_element() / diagonal.length();
                 Some(self.perspective(&placed, &params, (width, height), Some(half)))
             }
             other => {
-                let help = meant(other, ["perspective", "orthographic", "spherical", "realistic"]);
-                self.said.bad_with(asked.at, format!("unknown camera `{other}`"), help);
+                let help = suggest(other, ["perspective", "orthographic", "spherical", "realistic"]);
+                self.report.bad_with(directive.at, format!("unknown camera `{other}`"), help);
                 None
             }
         };
         params.known(&["shutteropen", "shutterclose"]);
         params.finish("this camera");
         self.scene.camera = camera;
-        self.scene.camera_span = asked.at;
+        self.scene.camera_span = directive.at;
     }
 
     /// Resolution of the film and its crop window.
@@ -119,24 +120,24 @@ impl Reader<'_> {
         let params = self.params_of(film);
         let kinds = if third { &["image"][..] } else { &["rgb", "gbuffer", "spectral"][..] };
         if !kinds.contains(&film.kind.as_str()) {
-            let help = meant(&film.kind, kinds.iter().copied());
-            self.said.bad_with(film.at, format!("unknown film `{}`", film.kind), help);
+            let help = suggest(&film.kind, kinds.iter().copied());
+            self.report.bad_with(film.at, format!("unknown film `{}`", film.kind), help);
         }
         let side = |name: &'static str, usual: u32| match params.whole(name) {
             Some(value) if (1..=1 << 20).contains(&value) => value as u32,
             Some(_) => {
-                params.said.bad(params.place(name), format!("`{name}` must be from 1 to {}", 1 << 20));
+                params.report.bad(params.place(name), format!("`{name}` must be from 1 to {}", 1 << 20));
                 usual
             }
             None => usual,
         };
         let (width, height) = (side("xresolution", usual.0), side("yresolution", usual.1));
         if u64::from(width) * u64::from(height) > MAX_PIXELS {
-            params.said.bad(film.at, format!("too many pixels: {width} x {height}"));
+            params.report.bad(film.at, format!("too many pixels: {width} x {height}"));
         }
         if let Some(sensor) = params.text("sensor").filter(|sensor| *sensor != "cie1931") {
             let what = format!("the sensor `{sensor}` has no counterpart: `cie1931` is used");
-            params.said.other(params.place("sensor"), what);
+            params.report.other(params.place("sensor"), what);
         }
         params.left_out(&["whitebalance"], "colours are not white-balanced");
         let crop = crop(&params, (width, height));
@@ -178,7 +179,7 @@ impl Reader<'_> {
             }
             given => {
                 if given.is_some() {
-                    params.said.bad(
+                    params.report.bad(
                         params.place("screenwindow"),
                         "`screenwindow` needs four numbers: x from and to, y from and to",
                     );
@@ -193,7 +194,7 @@ impl Reader<'_> {
     fn larger(&self, window: &Window, (width, height): (u32, u32), params: &Params) -> (f64, DVec2) {
         let (x, y) = (window.half.x / f64::from(width), window.half.y / f64::from(height));
         if (x / y - 1.0).abs() > 2e-3 {
-            params.said.other(
+            params.report.other(
                 params.at,
                 "pixels that are not square have no counterpart: the view across the larger side is used",
             );
@@ -204,13 +205,13 @@ impl Reader<'_> {
 
     /// Perspective camera. `half` is half the shorter side at distance 1 and replaces the field of
     /// view.
-    fn perspective(&self, placed: &Placed, params: &Params, size: (u32, u32), half: Option<f64>) -> Camera {
+    fn perspective(&self, placed: &CameraFrame, params: &Params, size: (u32, u32), half: Option<f64>) -> Camera {
         let [a, b, c] = placed.axes;
         let (usual, mut window) = (half.map_or(90.0, |_| 90.0), self.window(params, size));
         let fov = params.float("fov").unwrap_or(usual);
         let fov = params.float("halffov").map_or(fov, |half| 2.0 * half);
         if !(fov > 0.0 && fov < 180.0) {
-            params.said.bad(params.place("fov"), "a field of view must be more than 0 and less than 180 degrees");
+            params.report.bad(params.place("fov"), "a field of view must be more than 0 and less than 180 degrees");
         }
         let scale = half.unwrap_or_else(|| fp::tan_f64(f64::from(fov.clamp(1e-3, 179.9)).to_radians() / 2.0));
         // A non-uniform scale of camera space widens the view.
@@ -220,7 +221,7 @@ impl Reader<'_> {
         let angle = ((2.0 * fp::atan_f64(half)).to_degrees() as f32).clamp(1e-4, 179.99);
         let lens = params.float("lensradius").unwrap_or(0.0).max(0.0);
         let focus = params.float("focaldistance").unwrap_or(1e6).max(f32::MIN_POSITIVE);
-        let handedness = Placed::handedness(a, b, c);
+        let handedness = CameraFrame::handedness(a, b, c);
         let [center, direction, up] = [placed.center, c.normalize(), b.normalize()].map(|v| v.as_vec3());
         if lens == 0.0 && handedness == Handedness::Right && shift == DVec2::ZERO {
             return PerspectiveCamera { center, direction, up, angle }.into();
@@ -240,7 +241,7 @@ impl Reader<'_> {
         .into()
     }
 
-    fn orthographic(&self, placed: &Placed, params: &Params, size: (u32, u32)) -> Option<Camera> {
+    fn orthographic(&self, placed: &CameraFrame, params: &Params, size: (u32, u32)) -> Option<Camera> {
         let [a, b, c] = placed.axes;
         let mut window = self.window(params, size);
         let middle = placed.center + window.middle.x * a + window.middle.y * b;
@@ -253,32 +254,32 @@ impl Reader<'_> {
             direction: c.normalize().as_vec3(),
             up: b.normalize().as_vec3(),
             size: (2.0 * half) as f32,
-            handedness: Placed::handedness(a, b, c),
+            handedness: CameraFrame::handedness(a, b, c),
             near: Some(0.0),
         };
         Some(camera.into())
     }
 
     /// Spherical camera. The middle of the picture is the direction -x.
-    fn spherical(&self, placed: &Placed, params: &Params) -> Camera {
+    fn spherical(&self, placed: &CameraFrame, params: &Params) -> Camera {
         let [a, b, c] = placed.axes;
         if self.language == Language::Third {
             params.known(&["frameaspectratio", "screenwindow", "lensradius", "focaldistance"]);
         } else if params.text("mapping").unwrap_or("equalarea") != "equirectangular" {
-            params.said.other(params.at, "the mapping `equalarea` has no counterpart: `equirectangular` is used");
+            params.report.other(params.at, "the mapping `equalarea` has no counterpart: `equirectangular` is used");
         }
         EquirectangularCamera {
             center: placed.center.as_vec3(),
             direction: -a.normalize().as_vec3(),
             up: b.normalize().as_vec3(),
-            handedness: Placed::handedness(-c, b, -a),
+            handedness: CameraFrame::handedness(-c, b, -a),
             ..EquirectangularCamera::default()
         }
         .into()
     }
 
     /// Reads the integrator. `maxdepth` counts the first scattering too; `bounces` does not.
-    pub fn integrator(&mut self, asked: &Asked) {
+    pub fn integrator(&mut self, directive: &DeferredDirective) {
         const OLD: [&str; 9] =
             ["path", "volpath", "bdpt", "mlt", "sppm", "ambientocclusion", "ao", "directlighting", "whitted"];
         const KNOWN: [&str; 11] = [
@@ -294,19 +295,19 @@ impl Reader<'_> {
             "ambientocclusion",
             "function",
         ];
-        let params = self.params_of(asked);
+        let params = self.params_of(directive);
         let known = if self.language == Language::Third { &OLD[..] } else { &KNOWN[..] };
-        if !known.contains(&asked.kind.as_str()) {
-            let help = meant(&asked.kind, known.iter().copied());
-            self.said.bad_with(asked.at, format!("unknown integrator `{}`", asked.kind), help);
-        } else if !asked.kind.ends_with("path") {
-            let what = format!("the integrator `{}` has no counterpart: path tracing is used", asked.kind);
-            self.said.push(durer_diag::Diagnostic::note(what).code("NO_COUNTERPART").at(asked.at));
+        if !known.contains(&directive.kind.as_str()) {
+            let help = suggest(&directive.kind, known.iter().copied());
+            self.report.bad_with(directive.at, format!("unknown integrator `{}`", directive.kind), help);
+        } else if !directive.kind.ends_with("path") {
+            let what = format!("the integrator `{}` has no counterpart: path tracing is used", directive.kind);
+            self.report.push(durer_diag::Diagnostic::note(what).code("NO_COUNTERPART").at(directive.at));
         }
         match params.whole("maxdepth").unwrap_or(5) {
-            depth @ 1..=1_000_000 => self.scene.wishes.bounces = Some(depth as u32 - 1),
-            0 => (self.scene.wishes.bounces, self.emitters_only) = (Some(0), true),
-            _ => self.said.bad(params.place("maxdepth"), "`maxdepth` must be from 0 to 1000000"),
+            depth @ 1..=1_000_000 => self.scene.render_defaults.bounces = Some(depth as u32 - 1),
+            0 => (self.scene.render_defaults.bounces, self.emitters_only) = (Some(0), true),
+            _ => self.report.bad(params.place("maxdepth"), "`maxdepth` must be from 0 to 1000000"),
         }
         params.known(&["regularize", "lightsampler", "sampledirect", "visualizestrategies", "visualizeweights"]);
         params.known(&["maxdistance", "cossample", "samplelights", "samplebsdf", "skipbad", "function", "filename"]);
@@ -319,25 +320,25 @@ impl Reader<'_> {
         params.finish("this integrator");
     }
 
-    pub fn sampler(&mut self, asked: &Asked) {
+    pub fn sampler(&mut self, directive: &DeferredDirective) {
         const KNOWN: [&str; 8] =
             ["halton", "independent", "paddedsobol", "pmj02bn", "sobol", "stratified", "zsobol", "mlt"];
         const OLD: [&str; 7] =
             ["02sequence", "halton", "lowdiscrepancy", "maxmindist", "random", "sobol", "stratified"];
-        let params = self.params_of(asked);
+        let params = self.params_of(directive);
         let known = if self.language == Language::Third { &OLD[..] } else { &KNOWN[..] };
-        if !known.contains(&asked.kind.as_str()) {
-            let help = meant(&asked.kind, known.iter().copied());
-            self.said.bad_with(asked.at, format!("unknown sampler `{}`", asked.kind), help);
+        if !known.contains(&directive.kind.as_str()) {
+            let help = suggest(&directive.kind, known.iter().copied());
+            self.report.bad_with(directive.at, format!("unknown sampler `{}`", directive.kind), help);
         }
         let samples = match (params.whole("xsamples"), params.whole("ysamples")) {
             (None, None) => params.whole("pixelsamples"),
             (x, y) => x.unwrap_or(4).checked_mul(y.unwrap_or(4)),
         };
         match samples {
-            Some(samples @ 1..=1_048_576) => self.scene.wishes.samples = Some(samples as u32),
+            Some(samples @ 1..=1_048_576) => self.scene.render_defaults.samples = Some(samples as u32),
             None => {}
-            Some(_) => self.said.bad(asked.at, "samples per pixel must be from 1 to 1048576"),
+            Some(_) => self.report.bad(directive.at, "samples per pixel must be from 1 to 1048576"),
         }
         params.known(&["pixelsamples", "randomization", "seed", "jitter"]);
         if self.language == Language::Third {

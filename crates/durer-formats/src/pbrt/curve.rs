@@ -3,7 +3,7 @@
 //! Source: *Physically Based Rendering*, 4th edition, section 6.7, and 3rd edition, section 3.7.
 
 use super::params::Params;
-use crate::said::meant;
+use crate::shared_report::suggest;
 use durer_scene::shape::MeshData;
 use durer_scene::shape::tessellate::tube::{add_tube, of_spline, places, raised, ribbon, widened};
 use glam::{DVec3, DVec4};
@@ -13,19 +13,19 @@ const MAX_POINTS: usize = 1 << 14;
 
 /// Tessellates a curve; with fewer sides if `many`.
 pub(super) fn mesh(params: &Params, reversed: bool, many: bool) -> Option<MeshData> {
-    let said = params.said;
+    let report = params.report;
     params.known(&["splitdepth"]);
     let kind = params.text("type").unwrap_or("flat");
     if !["flat", "cylinder", "ribbon"].contains(&kind) {
-        let help = meant(kind, ["flat", "cylinder", "ribbon"]);
-        said.bad_with(params.place("type"), format!("unknown type of curve `{kind}`"), help);
+        let help = suggest(kind, ["flat", "cylinder", "ribbon"]);
+        report.bad_with(params.place("type"), format!("unknown type of curve `{kind}`"), help);
         return None;
     }
     let pieces = pieces(params)?;
     let width = params.float("width").unwrap_or(1.0);
     let widths = [params.float("width0").unwrap_or(width), params.float("width1").unwrap_or(width)].map(f64::from);
     if widths.iter().any(|width| *width < 0.0) {
-        said.bad(params.at, "the width of a curve must be 0 or more");
+        report.bad(params.at, "the width of a curve must be 0 or more");
         return None;
     }
     let normals = params.triples("N").unwrap_or_default();
@@ -36,11 +36,11 @@ pub(super) fn mesh(params: &Params, reversed: bool, many: bool) -> Option<MeshDa
             pieces.len() + 1,
             normals.len()
         );
-        said.bad(params.place("N"), message);
+        report.bad(params.place("N"), message);
         return None;
     }
     if kind == "flat" {
-        said.once(params.at, "curves of type `flat` have no counterpart: round tubes are used");
+        report.once(params.at, "curves of type `flat` have no counterpart: round tubes are used");
     }
     let places = places(&widened(&pieces, widths), pieces.len());
     if places.len() < 2 {
@@ -59,14 +59,14 @@ pub(super) fn mesh(params: &Params, reversed: bool, many: bool) -> Option<MeshDa
 
 /// Segments of a curve as cubic Bézier curves.
 fn pieces(params: &Params) -> Option<Vec<[DVec3; 4]>> {
-    let said = params.said;
+    let report = params.report;
     let Some(points) = params.triples("P") else {
-        said.bad(params.at, "a curve needs points, `\"point3 P\"`");
+        report.bad(params.at, "a curve needs points, `\"point3 P\"`");
         return None;
     };
     let (basis, degree) = (params.text("basis").unwrap_or("bezier"), params.whole("degree").unwrap_or(3));
     if !(degree == 2 || degree == 3) {
-        said.bad(params.place("degree"), "`degree` must be 2 or 3");
+        report.bad(params.place("degree"), "`degree` must be 2 or 3");
         return None;
     }
     let degree = degree as usize;
@@ -74,8 +74,8 @@ fn pieces(params: &Params) -> Option<Vec<[DVec3; 4]>> {
         "bezier" => degree,
         "bspline" => 1,
         other => {
-            let help = meant(other, ["bezier", "bspline"]);
-            said.bad_with(params.place("basis"), format!("unknown basis `{other}`"), help);
+            let help = suggest(other, ["bezier", "bspline"]);
+            report.bad_with(params.place("basis"), format!("unknown basis `{other}`"), help);
             return None;
         }
     };
@@ -89,11 +89,11 @@ fn pieces(params: &Params) -> Option<Vec<[DVec3; 4]>> {
             }
             _ => format!("{} points do not make a curve of degree {degree}: give more than {degree}", points.len()),
         };
-        said.bad(params.place("P"), message);
+        report.bad(params.place("P"), message);
         return None;
     }
     if points.len() > MAX_POINTS {
-        said.bad(params.place("P"), format!("too many points: a curve may have at most {MAX_POINTS}"));
+        report.bad(params.place("P"), format!("too many points: a curve may have at most {MAX_POINTS}"));
         return None;
     }
     let points: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();

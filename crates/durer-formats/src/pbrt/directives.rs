@@ -3,10 +3,10 @@
 use super::language::Language;
 use super::lexer::{Lexer, Token};
 use super::params::read as read_params;
-use super::state::{Asked, Open, Reader, Scope};
+use super::state::{DeferredDirective, OpenFile, Reader, Scope};
 use super::transform::{look_at, matrix, numbers, rotation, sound};
 use crate::packed::read_unpacked;
-use crate::said::meant;
+use crate::shared_report::suggest;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::scene::{Node, Object, Scene};
 use durer_scene::source::SourceError;
@@ -79,7 +79,7 @@ const OF_WORLD: [&str; 10] = [
 const BEFORE_WORLD: [&str; 8] =
     ["Accelerator", "Camera", "Film", "Integrator", "Option", "PixelFilter", "Sampler", "TransformTimes"];
 
-/// Targets of `Attribute`, in the order of [`State::given`](super::state::State).
+/// Targets of `Attribute`, in the order of [`State::attributes`](super::state::State).
 const TARGETS: [&str; 5] = ["shape", "light", "material", "medium", "texture"];
 
 /// Limits: number of included files, depth of includes, depth of scopes.
@@ -90,10 +90,10 @@ const DEEPEST_SCOPES: usize = 1 << 12;
 impl Reader<'_> {
     /// Reads the whole file and returns the scene. Errors are in `said`.
     pub fn read(mut self) -> Scene {
-        while !self.said.is_full() {
-            let said = self.said;
+        while !self.report.is_full() {
+            let report = self.report;
             let Some(open) = self.texts.last_mut() else { break };
-            let Some(found) = open.text.next(said) else {
+            let Some(found) = open.text.next(report) else {
                 self.end_of_file();
                 continue;
             };
@@ -102,16 +102,16 @@ impl Reader<'_> {
                     Token::Open | Token::Close => "unexpected bracket: no parameter comes before it".to_string(),
                     _ => "unexpected string: no directive comes before it".to_string(),
                 };
-                said.bad(found.at, message);
+                report.bad(found.at, message);
                 self.skip();
                 continue;
             }
             let word = open.text.word(found.at).to_string();
             if !DIRECTIVES.iter().any(|row| row.0 == word) {
                 let shown = open.text.shown(found.at);
-                let help = meant(&word, DIRECTIVES.iter().map(|row| row.0));
+                let help = suggest(&word, DIRECTIVES.iter().map(|row| row.0));
                 let error = Diagnostic::error(format!("unknown directive {shown}")).code("unknown-word").at(found.at);
-                said.push(Diagnostic { help, ..error });
+                report.push(Diagnostic { help, ..error });
                 self.skip();
                 continue;
             }
@@ -119,7 +119,7 @@ impl Reader<'_> {
                 self.skip();
             }
         }
-        if !self.said.is_full() {
+        if !self.report.is_full() {
             self.finish();
         }
         self.scene
@@ -133,46 +133,46 @@ impl Reader<'_> {
 
     /// Skips to the next directive.
     fn skip(&mut self) {
-        let said = self.said;
+        let report = self.report;
         let text = self.text();
-        while let Some(found) = text.peek(said) {
+        while let Some(found) = text.peek(report) {
             let at = found.at;
             if found.token == Token::Word && DIRECTIVES.iter().any(|row| row.0 == text.word(at)) {
                 break;
             }
-            text.next(said);
+            text.next(report);
         }
     }
 
     /// String after a directive, with its place.
     fn name(&mut self, directive: Span) -> Option<(String, Span)> {
-        let said = self.said;
+        let report = self.report;
         let text = self.text();
-        if let Some(found) = text.peek(said)
+        if let Some(found) = text.peek(report)
             && let Token::Text(name) = &found.token
         {
             let named = (name.clone(), found.at);
-            text.next(said);
+            text.next(report);
             return Some(named);
         }
         let message = format!("{} needs a string in quotes after it", text.shown(directive));
-        said.bad(directive, message);
+        report.bad(directive, message);
         None
     }
 
     fn numbers<const N: usize>(&mut self, directive: Span) -> Option<[f64; N]> {
-        let said = self.said;
-        numbers(self.text(), directive, said)
+        let report = self.report;
+        numbers(self.text(), directive, report)
     }
 
     /// Executes a directive; `None` if its arguments cannot be read.
     fn directive(&mut self, word: &str, at: Span) -> Option<()> {
-        let said = self.said;
+        let report = self.report;
         if !self.in_world && OF_WORLD.contains(&word) {
             self.early.get_or_insert(at);
         }
         if self.in_world && BEFORE_WORLD.contains(&word) {
-            said.bad(at, format!("`{word}` must come before `WorldBegin`"));
+            report.bad(at, format!("`{word}` must come before `WorldBegin`"));
         }
         match word {
             "Identity" => self.state.transforms.change(|_| DAffine3::IDENTITY),
@@ -182,21 +182,20 @@ impl Reader<'_> {
             }
             "Scale" => {
                 let [x, y, z] = self.numbers(at)?;
-                let map = sound(DAffine3::from_scale(DVec3::new(x, y, z)), at, said);
+                let map = sound(DAffine3::from_scale(DVec3::new(x, y, z)), at, report);
                 map.into_iter().for_each(|map| self.state.transforms.apply(map));
             }
             "Rotate" => match rotation(self.numbers(at)?) {
                 Some(map) => self.state.transforms.apply(map),
-                None => said.bad(at, "the axis of a rotation must not be 0 0 0"),
+                None => report.bad(at, "the axis of a rotation must not be 0 0 0"),
             },
             "LookAt" => match look_at(self.numbers(at)?) {
                 Some(map) => self.state.transforms.apply(map),
-                None => {
-                    said.bad(at, "the eye and the target of `LookAt` must differ, and `up` must not be along the view")
-                }
+                None => report
+                    .bad(at, "the eye and the target of `LookAt` must differ, and `up` must not be along the view"),
             },
             "Transform" | "ConcatTransform" => {
-                let map = matrix(self.numbers(at)?, at, said);
+                let map = matrix(self.numbers(at)?, at, report);
                 match (map, word) {
                     (Some(map), "Transform") => self.state.transforms.change(|_| map),
                     (Some(map), _) => self.state.transforms.apply(map),
@@ -212,7 +211,7 @@ impl Reader<'_> {
             "ReverseOrientation" => self.state.reversed = !self.state.reversed,
             "WorldBegin" => self.world_begin(at),
             "WorldEnd" if self.language == Language::Third => {}
-            "WorldEnd" => said.once(at, "`WorldEnd` is of pbrt-v3 and is ignored"),
+            "WorldEnd" => report.once(at, "`WorldEnd` is of pbrt-v3 and is ignored"),
             "ObjectEnd" => self.close(Scope::Object, at),
             _ => return self.named(word, at),
         }
@@ -221,22 +220,22 @@ impl Reader<'_> {
 
     /// Executes a directive that is followed by a string.
     fn named(&mut self, word: &str, at: Span) -> Option<()> {
-        let (said, language) = (self.said, self.language);
+        let (report, language) = (self.report, self.language);
         let (name, name_at) = self.name(at)?;
         match word {
             "CoordinateSystem" => _ = self.systems.insert(name, self.state.transforms.maps),
             "CoordSysTransform" => match self.systems.get(&name) {
                 Some(maps) => self.state.transforms.maps = *maps,
                 None => {
-                    let help = meant(&name, self.systems.keys().map(String::as_str));
-                    said.bad_with(name_at, format!("unknown coordinate system `{name}`"), help);
+                    let help = suggest(&name, self.systems.keys().map(String::as_str));
+                    report.bad_with(name_at, format!("unknown coordinate system `{name}`"), help);
                 }
             },
             "ColorSpace" => match RgbSpace::named(&name) {
                 Some(space) => self.state.space = space,
                 None => {
-                    let help = meant(&name, RgbSpace::names());
-                    said.bad_with(name_at, format!("unknown colour space `{name}`"), help);
+                    let help = suggest(&name, RgbSpace::names());
+                    report.bad_with(name_at, format!("unknown colour space `{name}`"), help);
                 }
             },
             "Include" | "Import" => self.include(name, name_at, word == "Import"),
@@ -244,7 +243,7 @@ impl Reader<'_> {
             "ObjectInstance" => self.instance(&name, name_at),
             "NamedMaterial" => self.named_material(&name, name_at),
             "MediumInterface" => {
-                let second = matches!(self.text().peek(said).map(|next| &next.token), Some(Token::Text(_)));
+                let second = matches!(self.text().peek(report).map(|next| &next.token), Some(Token::Text(_)));
                 let outside = if second { self.name(at)?.0 } else { name.clone() };
                 self.medium_interface(&[name, outside], name_at);
             }
@@ -252,11 +251,11 @@ impl Reader<'_> {
             "Texture" => {
                 let (kind, kind_at) = self.name(at)?;
                 let (class, class_at) = self.name(at)?;
-                let list = read_params(self.text(), language, said);
+                let list = read_params(self.text(), language, report);
                 self.texture(name, (&kind, kind_at), (&class, class_at), list);
             }
             _ => {
-                let list = read_params(self.text(), language, said);
+                let list = read_params(self.text(), language, report);
                 self.with_params(word, name, name_at, list);
             }
         }
@@ -267,19 +266,19 @@ impl Reader<'_> {
     fn with_params(&mut self, word: &str, name: String, at: Span, list: Vec<Rc<super::params::Param>>) {
         let keep = |reader: &Self, list| {
             let (transforms, space) = (reader.state.transforms, reader.state.space);
-            Asked { kind: name.clone(), list, at, transforms, space }
+            DeferredDirective { kind: name.clone(), list, at, transforms, space }
         };
         match word {
             "Attribute" => match TARGETS.iter().position(|target| *target == name) {
                 Some(target) => {
                     // Later values replace earlier ones.
-                    let given = &mut self.state.given[target];
-                    given.retain(|old| list.iter().all(|new| new.name != old.name));
-                    given.extend(list);
+                    let attributes = &mut self.state.attributes[target];
+                    attributes.retain(|old| list.iter().all(|new| new.name != old.name));
+                    attributes.extend(list);
                 }
                 None => {
-                    let help = meant(&name, TARGETS);
-                    self.said.bad_with(at, format!("unknown target `{name}` of `Attribute`"), help);
+                    let help = suggest(&name, TARGETS);
+                    self.report.bad_with(at, format!("unknown target `{name}` of `Attribute`"), help);
                 }
             },
             "Camera" => {
@@ -304,17 +303,17 @@ impl Reader<'_> {
 
     /// Skips the value of an `Option`, whose string is its parameter. Options have no effect here.
     fn skip_value(&mut self) {
-        let said = self.said;
+        let report = self.report;
         let text = self.text();
-        if text.next(said).is_some_and(|found| found.token == Token::Open) {
-            while text.next(said).is_some_and(|found| found.token != Token::Close) {}
+        if text.next(report).is_some_and(|found| found.token == Token::Open) {
+            while text.next(report).is_some_and(|found| found.token != Token::Close) {}
         }
     }
 
     fn active(&mut self, at: Span) -> Option<()> {
-        let said = self.said;
+        let report = self.report;
         let text = self.text();
-        let found = text.peek(said).filter(|found| found.token == Token::Word).cloned();
+        let found = text.peek(report).filter(|found| found.token == Token::Word).cloned();
         let active = found.as_ref().and_then(|found| match text.word(found.at) {
             "All" => Some([true, true]),
             "StartTime" => Some([true, false]),
@@ -322,21 +321,21 @@ impl Reader<'_> {
             _ => None,
         });
         if active.is_none() {
-            said.bad(at, "`ActiveTransform` needs `All`, `StartTime` or `EndTime` after it");
+            report.bad(at, "`ActiveTransform` needs `All`, `StartTime` or `EndTime` after it");
             return None;
         }
-        text.next(said);
+        text.next(report);
         self.state.transforms.active = active?;
         Some(())
     }
 
     fn world_begin(&mut self, at: Span) {
         if self.in_world {
-            self.said.bad(at, "`WorldBegin` is given twice");
+            self.report.bad(at, "`WorldBegin` is given twice");
         }
         if let Some(early) = self.early {
             let error = Diagnostic::error("this must come after `WorldBegin`").code("bad-place").at(early);
-            self.said.push(error.related(at, "`WorldBegin` is here"));
+            self.report.push(error.related(at, "`WorldBegin` is here"));
         }
         self.in_world = true;
         self.state.transforms = super::transform::Transforms::default();
@@ -345,7 +344,7 @@ impl Reader<'_> {
 
     fn open(&mut self, scope: Scope, at: Span) {
         if self.stack.len() >= DEEPEST_SCOPES {
-            self.said.bad(at, format!("scopes are nested more than {DEEPEST_SCOPES} deep"));
+            self.report.bad(at, format!("scopes are nested more than {DEEPEST_SCOPES} deep"));
             return;
         }
         self.stack.push((scope, self.state.clone(), at));
@@ -361,12 +360,12 @@ impl Reader<'_> {
             Some((open, ..)) if *open == scope => {}
             Some((open, _, begun)) if *open != Scope::Import => {
                 let error = Diagnostic::error(format!("`{end}` does not match the scope that is open"));
-                self.said.push(error.code("unclosed").at(at).related(*begun, "this is still open"));
+                self.report.push(error.code("unclosed").at(at).related(*begun, "this is still open"));
                 return;
             }
             _ => {
                 let error = Diagnostic::error(format!("`{end}` without a scope to close"));
-                return self.said.push(error.code("unclosed").at(at));
+                return self.report.push(error.code("unclosed").at(at));
             }
         }
         let Some((_, state, _)) = self.stack.pop() else { return };
@@ -383,7 +382,7 @@ impl Reader<'_> {
 
     fn object_begin(&mut self, name: String, at: Span) {
         if self.defining.is_some() {
-            return self.said.bad(at, "objects cannot be defined inside objects");
+            return self.report.bad(at, "objects cannot be defined inside objects");
         }
         self.open(Scope::Object, at);
         self.defining = Some((name, Default::default()));
@@ -391,13 +390,13 @@ impl Reader<'_> {
 
     fn instance(&mut self, name: &str, at: Span) {
         if self.defining.is_some() {
-            return self.said.bad(at, "objects cannot be instanced inside objects: add an `ObjectEnd` before");
+            return self.report.bad(at, "objects cannot be instanced inside objects: add an `ObjectEnd` before");
         }
         let Some(group) = self.objects.get(name).cloned() else {
-            let help = meant(name, self.objects.keys().map(String::as_str));
-            return self.said.bad_with(at, format!("unknown object `{name}`"), help);
+            let help = suggest(name, self.objects.keys().map(String::as_str));
+            return self.report.bad_with(at, format!("unknown object `{name}`"), help);
         };
-        if !self.growth.has_objects(group.objects.len() + 1, self.said, at) {
+        if !self.growth.has_objects(group.objects.len() + 1, self.report, at) {
             return;
         }
         let inner = Object { node: Node::Group((*group).clone()), material: None, span: at };
@@ -410,14 +409,14 @@ impl Reader<'_> {
         if let Some(open) = self.texts.iter().find(|open| open.name == name) {
             let error = Diagnostic::error(format!("`{name}` includes itself")).code("bad-value").at(at);
             let own = open.at.start == 0 && open.at.end == 0;
-            return self.said.push(if own { error } else { error.related(open.at, "it is first included here") });
+            return self.report.push(if own { error } else { error.related(open.at, "it is first included here") });
         }
         self.included += 1;
         if self.included > MAX_FILES {
-            return self.said.bad(at, format!("too many files: more than {MAX_FILES} are included"));
+            return self.report.bad(at, format!("too many files: more than {MAX_FILES} are included"));
         }
         if self.texts.len() >= DEEPEST_FILES {
-            return self.said.bad(at, format!("includes are nested more than {DEEPEST_FILES} deep"));
+            return self.report.bad(at, format!("includes are nested more than {DEEPEST_FILES} deep"));
         }
         let bytes = match read_unpacked(self.input.source, &name) {
             Ok(bytes) => bytes,
@@ -427,17 +426,17 @@ impl Reader<'_> {
                     _ => None,
                 };
                 let missing = Diagnostic::error(format!("{error}")).code("missing-file").at(at);
-                return self.said.push(Diagnostic { help: near, ..missing });
+                return self.report.push(Diagnostic { help: near, ..missing });
             }
         };
         if bytes.len() >= u32::MAX as usize {
-            return self.said.bad(at, format!("`{name}` is too large"));
+            return self.report.bad(at, format!("`{name}` is too large"));
         }
         let file = self.input.files.borrow_mut().add(name.clone(), bytes.clone());
         if imported {
             self.open(Scope::Import, at);
         }
-        self.texts.push(Open { text: Lexer::new(bytes, file), name, at, imported });
+        self.texts.push(OpenFile { text: Lexer::new(bytes, file), name, at, imported });
     }
 
     fn end_of_file(&mut self) {
@@ -451,7 +450,7 @@ impl Reader<'_> {
                 self.state = state;
                 return;
             }
-            self.said.push(Diagnostic::error("this is not closed").code("unclosed").at(at));
+            self.report.push(Diagnostic::error("this is not closed").code("unclosed").at(at));
         }
     }
 
@@ -463,7 +462,7 @@ impl Reader<'_> {
                 Scope::Object | Scope::Import => "ObjectEnd",
             };
             let error = Diagnostic::error("this is not closed").code("unclosed").at(at);
-            self.said.push(error.help(format!("a `{end}` is missing")));
+            self.report.push(error.help(format!("a `{end}` is missing")));
         }
         crate::bodies::join_bodies(&mut self.scene, self.input.name);
         if self.emitters_only {
@@ -471,9 +470,9 @@ impl Reader<'_> {
         }
         self.frame();
         self.surround();
-        if self.scene.root.is_none() && !self.said.has_errors() {
+        if self.scene.root.is_none() && !self.report.has_errors() {
             let warning = Diagnostic::warning("the file has no visible shapes");
-            self.said.push(warning.code("no-objects"));
+            self.report.push(warning.code("no-objects"));
         }
     }
 }

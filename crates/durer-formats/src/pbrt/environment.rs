@@ -1,7 +1,7 @@
 //! Infinite lights: constant, or pictures of all directions. They are merged into one picture of
 //! longitude and latitude.
 
-use super::made::{Infinite, Map};
+use super::defs::{InfiniteLight, Map};
 use super::state::Reader;
 use crate::panorama::{self, between};
 use crate::pictures::unusable;
@@ -30,8 +30,8 @@ impl Reader<'_> {
         let mut first = None;
         for infinite in std::mem::take(&mut self.infinite) {
             match infinite {
-                Infinite::Even(color) => even += color,
-                Infinite::Picture { name, at, scale, map, to_light, illuminance } => {
+                InfiniteLight::Even(color) => even += color,
+                InfiniteLight::Picture { name, at, scale, map, to_light, illuminance } => {
                     let memory =
                         panorama::beside(sources.iter().map(|source: &Source| &source.image), self.input.memory);
                     let Some((image, map)) = self.environment(&name, at, map, memory) else { continue };
@@ -52,7 +52,7 @@ impl Reader<'_> {
         let light = |dir: DVec3| even + sources.iter().map(|source| source.at(dir)).sum::<Color>();
         let memory = panorama::beside(sources.iter().map(|source| &source.image), self.input.memory);
         if let Err(error) = panorama::surround(&mut self.scene, (&name, at), rows, memory, light) {
-            self.said.push(unusable(&name, &error).at(at));
+            self.report.push(unusable(&name, &error).at(at));
         }
     }
 
@@ -61,7 +61,7 @@ impl Reader<'_> {
         let bytes = match self.input.source.read(name) {
             Ok(bytes) => bytes,
             Err(error) => {
-                self.said.push(Diagnostic::error(error.to_string()).code("missing-file").at(at));
+                self.report.push(Diagnostic::error(error.to_string()).code("missing-file").at(at));
                 return None;
             }
         };
@@ -74,16 +74,16 @@ impl Reader<'_> {
             Ok(picture) if picture.width == 2 * picture.height => {
                 let what = "this picture is twice as wide as high: it is read as longitude and latitude, as in pbrt-v3, \
                             with z up";
-                self.said.other(at, what);
+                self.report.other(at, what);
                 Some((picture, Map::Longitude))
             }
             Ok(Image { width, height, .. }) => {
                 let message = format!("an environment picture must be square, found {width} x {height} pixels");
-                self.said.bad_with(at, message, Some("pbrt's `imgtool makeequiarea` makes such a picture".into()));
+                self.report.bad_with(at, message, Some("pbrt's `imgtool makeequiarea` makes such a picture".into()));
                 None
             }
             Err(error) => {
-                self.said.push(unusable(name, &error).at(at));
+                self.report.push(unusable(name, &error).at(at));
                 None
             }
         }

@@ -6,7 +6,7 @@
 use super::lexer::{Lexer, Token};
 use crate::model::Input;
 use crate::packed::read_unpacked;
-use crate::said::Said;
+use crate::shared_report::SharedReport;
 use durer_diag::Span;
 
 /// Version of pbrt that a file is written for.
@@ -19,7 +19,7 @@ pub(super) enum Language {
 /// Detected language and the word that decided it; `by` is `None` by default or if the word is in
 /// an included file.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Decided {
+pub(super) struct DetectedLanguage {
     pub language: Language,
     pub by: Option<Span>,
 }
@@ -87,22 +87,22 @@ const MAX_FILES: usize = 64;
 const DEEPEST: usize = 8;
 
 /// Decides by the first word that only one of the two languages has.
-pub(super) fn decide(input: &Input) -> Decided {
+pub(super) fn decide(input: &Input) -> DetectedLanguage {
     let mut left = MAX_FILES;
     let found = search(Lexer::new(input.bytes.clone(), input.file), input, &mut left, 0);
     let (language, by) = found.unwrap_or((Language::Fourth, None));
-    Decided { language, by }
+    DetectedLanguage { language, by }
 }
 
 /// Finds the deciding word, and its place if it is in the first file. Included files have no index
 /// yet.
 fn search(mut text: Lexer, input: &Input, left: &mut usize, depth: usize) -> Option<(Language, Option<Span>)> {
     // Ignore errors here: they are reported when the file is read.
-    let said = Said::default();
+    let report = SharedReport::default();
     // Current directive, number of strings after it, and last string that is a parameter's type and
     // name.
     let (mut directive, mut names, mut head) = (String::new(), 0, String::new());
-    while let Some(found) = text.next(&said) {
+    while let Some(found) = text.next(&report) {
         let here = (depth == 0).then_some(found.at);
         match found.token {
             Token::Word => {
@@ -120,7 +120,7 @@ fn search(mut text: Lexer, input: &Input, left: &mut usize, depth: usize) -> Opt
             }
             Token::Text(name) => {
                 names += 1;
-                if let Some(language) = told(&directive, names, &head, &name) {
+                if let Some(language) = language_of(&directive, names, &head, &name) {
                     return Some((language, here));
                 }
                 if name.contains(' ') {
@@ -138,7 +138,7 @@ fn search(mut text: Lexer, input: &Input, left: &mut usize, depth: usize) -> Opt
             }
             Token::Open | Token::Close => {}
         }
-        if said.is_full() {
+        if report.is_full() {
             break;
         }
     }
@@ -147,7 +147,7 @@ fn search(mut text: Lexer, input: &Input, left: &mut usize, depth: usize) -> Opt
 
 /// Language implied by string number `number` after a directive; `head` is the preceding
 /// parameter's type and name.
-fn told(directive: &str, number: usize, head: &str, text: &str) -> Option<Language> {
+fn language_of(directive: &str, number: usize, head: &str, text: &str) -> Option<Language> {
     let mut words = text.split_ascii_whitespace();
     if let (Some(kind), Some(name), None) = (words.next(), words.next(), words.next()) {
         let light = matches!(directive, "LightSource" | "AreaLightSource");

@@ -2,7 +2,7 @@
 //! comment.
 
 use crate::report::shown;
-use crate::said::Said;
+use crate::shared_report::SharedReport;
 use durer_diag::{Diagnostic, Span};
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ pub(super) enum Token {
 
 /// Token with its place.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Found {
+pub(super) struct SpannedToken {
     pub token: Token,
     pub at: Span,
 }
@@ -31,7 +31,7 @@ pub(super) struct Lexer {
     bytes: Arc<[u8]>,
     file: u32,
     at: usize,
-    peeked: Option<Found>,
+    peeked: Option<SpannedToken>,
 }
 
 impl Lexer {
@@ -61,19 +61,19 @@ impl Lexer {
     }
 
     /// Returns the next token without consuming it.
-    pub fn peek(&mut self, said: &Said) -> Option<&Found> {
+    pub fn peek(&mut self, report: &SharedReport) -> Option<&SpannedToken> {
         if self.peeked.is_none() {
-            self.peeked = self.read(said);
+            self.peeked = self.read(report);
         }
         self.peeked.as_ref()
     }
 
     /// Consumes and returns the next token.
-    pub fn next(&mut self, said: &Said) -> Option<Found> {
-        self.peeked.take().or_else(|| self.read(said))
+    pub fn next(&mut self, report: &SharedReport) -> Option<SpannedToken> {
+        self.peeked.take().or_else(|| self.read(report))
     }
 
-    fn read(&mut self, said: &Said) -> Option<Found> {
+    fn read(&mut self, report: &SharedReport) -> Option<SpannedToken> {
         loop {
             match *self.bytes.get(self.at)? {
                 b' ' | b'\t' | b'\r' | b'\n' => self.at += 1,
@@ -85,19 +85,19 @@ impl Lexer {
         let token = match self.bytes[start] {
             b'[' => Token::Open,
             b']' => Token::Close,
-            b'"' => return Some(self.text(start, said)),
+            b'"' => return Some(self.text(start, report)),
             _ => {
                 let ends = |b: &&u8| !matches!(b, b' ' | b'\t' | b'\r' | b'\n' | b'"' | b'[' | b']' | b'#');
                 self.at += self.bytes[start..].iter().take_while(ends).count();
-                return Some(Found { token: Token::Word, at: self.span(start, self.at) });
+                return Some(SpannedToken { token: Token::Word, at: self.span(start, self.at) });
             }
         };
         self.at += 1;
-        Some(Found { token, at: self.span(start, self.at) })
+        Some(SpannedToken { token, at: self.span(start, self.at) })
     }
 
     /// Reads a quoted string. Its span excludes the quotes. A string must end on its line.
-    fn text(&mut self, start: usize, said: &Said) -> Found {
+    fn text(&mut self, start: usize, report: &SharedReport) -> SpannedToken {
         let mut text = Vec::new();
         self.at = start + 1;
         loop {
@@ -114,7 +114,7 @@ impl Lexer {
                         Some(letter @ (b'"' | b'\\' | b'\'')) => letter,
                         _ => {
                             let at = self.span(self.at, (self.at + 2).min(self.bytes.len()));
-                            said.bad(
+                            report.bad(
                                 at,
                                 "unknown escape: `\\` must be followed by b, f, n, r, t, a quote or another `\\`",
                             );
@@ -126,9 +126,9 @@ impl Lexer {
                 }
                 Some(b'\n') | None => {
                     let error = Diagnostic::error("this string is not closed: add a `\"` on the same line");
-                    said.push(error.code("unclosed").at(self.span(start, self.at)));
+                    report.push(error.code("unclosed").at(self.span(start, self.at)));
                     let at = self.span(start + 1, self.at);
-                    return Found { token: Token::Text(String::from_utf8_lossy(&text).into_owned()), at };
+                    return SpannedToken { token: Token::Text(String::from_utf8_lossy(&text).into_owned()), at };
                 }
                 Some(&letter) => {
                     text.push(letter);
@@ -138,6 +138,6 @@ impl Lexer {
         }
         let at = self.span(start + 1, self.at);
         self.at += 1;
-        Found { token: Token::Text(String::from_utf8_lossy(&text).into_owned()), at }
+        SpannedToken { token: Token::Text(String::from_utf8_lossy(&text).into_owned()), at }
     }
 }

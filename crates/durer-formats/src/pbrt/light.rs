@@ -5,11 +5,11 @@
 //! `scale`; `power` is luminous flux. In pbrt-v3 (3rd edition, chapter 12) values are absolute and
 //! `scale` is a colour.
 
+use super::defs::{AreaLight, InfiniteLight, Map};
 use super::language::Language;
-use super::made::{AreaLight, Infinite, Map};
 use super::params::{Kind, Param, Params};
 use super::state::{LIGHT, Reader};
-use crate::said::meant;
+use crate::shared_report::suggest;
 use durer_diag::Span;
 use durer_scene::light::{DirectionalLight, Fade, Light, PointLight, SpotLight};
 use durer_scene::math::{Color, Vec3, fp};
@@ -31,7 +31,7 @@ fn color(params: &Params, name: &'static str) -> Color {
 fn colored_scale(params: &Params) -> Color {
     match params.get("scale") {
         Some(param) if param.kind == Kind::Float => {
-            params.said.once(param.at, "`scale` of a light is a colour in pbrt-v3: this number is ignored");
+            params.report.once(param.at, "`scale` of a light is a colour in pbrt-v3: this number is ignored");
             Vec3::ONE
         }
         _ => params.spectrum("scale").map_or(Vec3::ONE, |spectrum| spectrum.plain()),
@@ -49,7 +49,7 @@ impl Reader<'_> {
         let aimed = || {
             let direction = direction.try_normalize();
             if direction.is_none() {
-                params.said.bad(params.place("to"), "`to` of a light must differ from `from`");
+                params.report.bad(params.place("to"), "`to` of a light must differ from `from`");
             }
             direction.unwrap_or(DVec3::Z).as_vec3()
         };
@@ -72,7 +72,8 @@ impl Reader<'_> {
             "spot" => {
                 let cone = [params.float("coneangle").unwrap_or(30.0), params.float("conedeltaangle").unwrap_or(5.0)];
                 if !(cone[0] > 0.0 && cone[0] <= 180.0) {
-                    self.said.bad(params.place("coneangle"), "`coneangle` must be more than 0 and at most 180 degrees");
+                    self.report
+                        .bad(params.place("coneangle"), "`coneangle` must be more than 0 and at most 180 degrees");
                 }
                 let [outer, inner] = [cone[0], (cone[0] - cone[1]).max(0.0)];
                 let cosine = |degrees: f32| fp::sin_cos_degrees(f64::from(degrees)).1 as f32;
@@ -102,7 +103,7 @@ impl Reader<'_> {
             }
             other => {
                 let known = ["point", "distant", "spot", "goniometric", "projection", "infinite"];
-                return self.said.bad_with(at, format!("unknown light `{other}`"), meant(other, known));
+                return self.report.bad_with(at, format!("unknown light `{other}`"), suggest(other, known));
             }
         };
         params.known(&["from", "to", "scale"]);
@@ -122,9 +123,16 @@ impl Reader<'_> {
                     let at = params.get("mapname").map_or(params.at, |param| param.values_at);
                     let to_light = self.map(params.at).inverse();
                     let map = Map::Longitude;
-                    Infinite::Picture { name: name.to_string(), at, scale: color, map, to_light, illuminance: None }
+                    InfiniteLight::Picture {
+                        name: name.to_string(),
+                        at,
+                        scale: color,
+                        map,
+                        to_light,
+                        illuminance: None,
+                    }
                 }
-                None => Infinite::Even(color),
+                None => InfiniteLight::Even(color),
             };
             return self.infinite.push(infinite);
         }
@@ -136,9 +144,9 @@ impl Reader<'_> {
                 let scale = params.float("scale").unwrap_or(1.0).max(0.0) * exposure;
                 let to_light = self.map(params.at).inverse();
                 let (scale, map) = (Vec3::splat(scale), Map::EqualArea);
-                Infinite::Picture { name: name.to_string(), at, scale, map, to_light, illuminance }
+                InfiniteLight::Picture { name: name.to_string(), at, scale, map, to_light, illuminance }
             }
-            None => Infinite::Even(color(params, "L") * (exposure * illuminance.map_or(1.0, |e| e / PI))),
+            None => InfiniteLight::Even(color(params, "L") * (exposure * illuminance.map_or(1.0, |e| e / PI))),
         };
         params.known(&["from", "to", "power", "scale"]);
         self.infinite.push(infinite);
@@ -147,12 +155,12 @@ impl Reader<'_> {
     pub fn area_light(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
         let third = self.language == Language::Third;
         if kind != "diffuse" && !(third && kind == "area") {
-            return self.said.bad_with(at, format!("unknown area light `{kind}`"), Some("write `diffuse`".into()));
+            return self.report.bad_with(at, format!("unknown area light `{kind}`"), Some("write `diffuse`".into()));
         }
         let params = self.params(list, Some(LIGHT), at);
         let picture = if third { None } else { params.text("filename").map(str::to_string) };
         if picture.is_some() && params.get("L").is_some() {
-            self.said.bad(params.place("filename"), "a light takes either `L` or `filename`");
+            self.report.bad(params.place("filename"), "a light takes either `L` or `filename`");
         }
         let light = AreaLight {
             radiance: color(&params, "L") * self.exposure(),
@@ -166,7 +174,7 @@ impl Reader<'_> {
         }
         params.finish("this light");
         if light.radiance == Vec3::ZERO {
-            self.said.push(durer_diag::Diagnostic::note("this light is black").code("black-light").at(at));
+            self.report.push(durer_diag::Diagnostic::note("this light is black").code("black-light").at(at));
         }
         self.state.area = Some(Rc::new(light));
     }

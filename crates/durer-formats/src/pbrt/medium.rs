@@ -3,12 +3,12 @@
 //! Source, also of the default coefficients: *Physically Based Rendering*, 4th edition, chapter 11.
 //! Coefficients are per unit of world space.
 
+use super::defs::MaterialDef;
 use super::language::Language;
-use super::made::Made;
 use super::params::{Param, Params};
 use super::state::Reader;
 use crate::medium::{Density, Medium};
-use crate::said::meant;
+use crate::shared_report::suggest;
 use durer_diag::Span;
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
@@ -59,7 +59,7 @@ fn with(params: &Params, preset: &'static str, [usual_a, usual_s]: [[f32; 3]; 2]
             }
             None => {
                 let message = format!("the medium `{name}` is unknown: its coefficients are used");
-                params.said.once(params.place(preset), message);
+                params.report.once(params.place(preset), message);
             }
         }
     }
@@ -89,16 +89,16 @@ impl Reader<'_> {
             "uniformgrid" | "heterogeneous" => self.grid(&name, &params),
             "rgbgrid" | "cloud" | "nanovdb" => {
                 let what = format!("media of type `{kind}` have no counterpart: they are ignored");
-                self.said.once(at, what);
+                self.report.once(at, what);
                 None
             }
             other => {
-                let help = meant(other, ["homogeneous", "uniformgrid", "rgbgrid", "cloud", "nanovdb"]);
-                return self.said.bad_with(at, format!("unknown type of medium `{other}`"), help);
+                let help = suggest(other, ["homogeneous", "uniformgrid", "rgbgrid", "cloud", "nanovdb"]);
+                return self.report.bad_with(at, format!("unknown type of medium `{other}`"), help);
             }
         };
         if self.media.insert(name.clone(), medium).is_some() {
-            self.said.bad(at, format!("the medium `{name}` is already defined"));
+            self.report.bad(at, format!("the medium `{name}` is already defined"));
         }
     }
 
@@ -116,7 +116,7 @@ impl Reader<'_> {
         let densities = params.floats("density").map(<[f64]>::to_vec);
         params.finish(&format!("the medium `{name}`"));
         let Some(densities) = densities else {
-            self.said.bad(params.at, "this medium needs a `density`");
+            self.report.bad(params.at, "this medium needs a `density`");
             return None;
         };
         let place = params.place("density");
@@ -124,12 +124,12 @@ impl Reader<'_> {
         if wanted != Some(densities.len() as i64) {
             let [x, y, z] = counts;
             let given = densities.len();
-            self.said
+            self.report
                 .bad(place, format!("`density` needs {x} x {y} x {z} numbers, by `nx`, `ny` and `nz`: found {given}"));
             return None;
         }
         if let Some(bad) = densities.iter().position(|density| *density < 0.0) {
-            self.said.bad(place, format!("density {} is {}: it must be 0 or more", bad + 1, densities[bad]));
+            self.report.bad(place, format!("density {} is {}: it must be 0 or more", bad + 1, densities[bad]));
             return None;
         }
         // Surround the grid with zeros: the density is 0 outside.
@@ -152,8 +152,8 @@ impl Reader<'_> {
     /// Sets the media inside and outside shapes; they must be defined.
     pub fn medium_interface(&mut self, names: &[String; 2], at: Span) {
         for name in names.iter().filter(|name| !name.is_empty() && !self.media.contains_key(*name)) {
-            let help = meant(name, self.media.keys().map(String::as_str));
-            self.said.bad_with(at, format!("unknown medium `{name}`"), help);
+            let help = suggest(name, self.media.keys().map(String::as_str));
+            self.report.bad_with(at, format!("unknown medium `{name}`"), help);
         }
         let [inside, outside] = names.clone().map(|name| (!name.is_empty()).then_some(name));
         (self.state.inside, self.state.outside) = (inside, outside);
@@ -168,16 +168,16 @@ impl Reader<'_> {
             return *known;
         }
         let made = match &self.materials[plain] {
-            Made::Nothing => {
+            MaterialDef::Nothing => {
                 let mut m =
                     PrincipledMaterial { specular_ior: 1.0, transmission_weight: 1.0, ..PrincipledMaterial::default() };
                 medium.fill(&mut m);
-                Made::Layers(Box::new(m), Span::default())
+                MaterialDef::Layers(Box::new(m), Span::default())
             }
-            Made::Layers(layers, at) if layers.transmission_weight > 0.0 && layers.walls == Walls::Solid => {
+            MaterialDef::Layers(layers, at) if layers.transmission_weight > 0.0 && layers.walls == Walls::Solid => {
                 let mut m = layers.clone();
                 medium.fill(&mut m);
-                Made::Layers(m, *at)
+                MaterialDef::Layers(m, *at)
             }
             // Light does not enter other materials.
             _ => return plain,
@@ -193,7 +193,7 @@ impl Reader<'_> {
         let Some(Some(medium)) = self.state.outside.as_ref().and_then(|name| self.media.get(name)).cloned() else {
             return;
         };
-        if let Some(fog) = medium.fog(at, self.said) {
+        if let Some(fog) = medium.fog(at, self.report) {
             self.scene.fog = Some(fog);
         }
     }

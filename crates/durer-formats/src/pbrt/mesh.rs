@@ -11,7 +11,7 @@ use durer_scene::shape::tessellate::subdivision::loop_surface;
 const MAX_TRIANGLES: usize = if cfg!(test) { 1 << 14 } else { 1 << 20 };
 
 /// Vertex attributes and faces of a mesh; each face has `size` indices.
-struct Written {
+struct MeshArrays {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
     uvs: Vec<Vec2>,
@@ -20,17 +20,17 @@ struct Written {
 
 /// Reads vertices and faces of `size` corners. Without `indices`, `usual` are the corners of the
 /// only face.
-fn written(params: &Params, size: usize, usual: &[u32]) -> Option<Written> {
-    let said = params.said;
+fn written(params: &Params, size: usize, usual: &[u32]) -> Option<MeshArrays> {
+    let report = params.report;
     let Some(positions) = params.triples("P") else {
-        said.bad(params.at, "a mesh needs points, `\"point3 P\"`");
+        report.bad(params.at, "a mesh needs points, `\"point3 P\"`");
         return None;
     };
     let count = positions.len();
     let mut sound = true;
     let mut check = |name: &'static str, found: usize| {
         if found != count {
-            said.bad(params.place(name), format!("`{name}` has {found} values for {count} points"));
+            report.bad(params.place(name), format!("`{name}` has {found} values for {count} points"));
             sound = false;
         }
     };
@@ -47,26 +47,26 @@ fn written(params: &Params, size: usize, usual: &[u32]) -> Option<Written> {
         Some(indices) => indices,
         None if count == usual.len() => usual.iter().map(|&i| i64::from(i)).collect(),
         None => {
-            said.bad(params.at, "a mesh of several faces needs `\"integer indices\"`");
+            report.bad(params.at, "a mesh of several faces needs `\"integer indices\"`");
             return None;
         }
     };
     let place = params.get("indices").map_or(params.at, |param| param.values_at);
     if indices.len() % size != 0 {
-        said.bad(place, format!("`indices` has {} numbers: it must be a multiple of {size}", indices.len()));
+        report.bad(place, format!("`indices` has {} numbers: it must be a multiple of {size}", indices.len()));
         sound = false;
     }
     if let Some(wrong) = indices.iter().find(|&&i| i < 0 || i >= count as i64) {
-        said.bad(place, format!("`indices` has {wrong}, but points are numbered 0 to {}", count as i64 - 1));
+        report.bad(place, format!("`indices` has {wrong}, but points are numbered 0 to {}", count as i64 - 1));
         sound = false;
     }
     let faces = indices.chunks_exact(size).map(|face| face.iter().map(|&i| i as u32).collect()).collect();
-    sound.then_some(Written { positions, normals, uvs, faces })
+    sound.then_some(MeshArrays { positions, normals, uvs, faces })
 }
 
 /// Reads a `trianglemesh`.
 pub(super) fn triangles(params: &Params, reversed: bool) -> Option<MeshData> {
-    let Written { positions, normals, uvs, faces } = written(params, 3, &[0, 1, 2])?;
+    let MeshArrays { positions, normals, uvs, faces } = written(params, 3, &[0, 1, 2])?;
     let triangles: Vec<[u32; 3]> = faces.iter().map(|face| [face[0], face[1], face[2]]).collect();
     let of = |there: bool| if there { triangles.clone() } else { Vec::new() };
     let (triangle_uvs, triangle_normals) = (of(!uvs.is_empty()), of(!normals.is_empty()));
@@ -77,7 +77,7 @@ pub(super) fn triangles(params: &Params, reversed: bool) -> Option<MeshData> {
 /// Reads a `bilinearmesh`: patches of four corners at (u, v) = (0, 0), (1, 0), (0, 1) and (1, 1).
 pub(super) fn bilinear(params: &Params, reversed: bool) -> Option<MeshData> {
     params.left_out(&["emissionfilename"], "the patch emits evenly");
-    let Written { positions, normals, uvs, faces } = written(params, 4, &[0, 1, 2, 3])?;
+    let MeshArrays { positions, normals, uvs, faces } = written(params, 4, &[0, 1, 2, 3])?;
     let faces = faces.iter().map(|face| [face[0], face[1], face[2], face[3]]).collect();
     Some(net::bilinear(&Patches { positions, normals, uvs, faces }).oriented(reversed))
 }
@@ -87,7 +87,7 @@ pub(super) fn subdivided(params: &Params, reversed: bool, left: usize) -> Option
     params.known(&["scheme"]);
     let levels = params.whole("levels").or_else(|| params.whole("nlevels")).unwrap_or(3);
     if !(0..=16).contains(&levels) {
-        params.said.bad(params.place("levels"), "`levels` must be from 0 to 16");
+        params.report.bad(params.place("levels"), "`levels` must be from 0 to 16");
         return None;
     }
     let control = triangles(params, false)?;
@@ -95,7 +95,7 @@ pub(super) fn subdivided(params: &Params, reversed: bool, left: usize) -> Option
     let (data, done) = loop_surface(&control, levels as u32, most);
     if i64::from(done) < levels {
         let what = format!("more than {most} triangles: the surface is subdivided only {done} times");
-        params.said.once(params.place("levels"), what);
+        params.report.once(params.place("levels"), what);
     }
     Some(data.oriented(reversed))
 }

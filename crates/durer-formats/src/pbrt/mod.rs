@@ -7,19 +7,19 @@
 
 mod camera;
 mod curve;
+pub(super) mod defs;
 mod directives;
 pub(super) mod environment;
+mod image_lights;
 mod language;
 mod lexer;
 mod light;
-pub(super) mod made;
 mod material;
 pub(super) mod medium;
 pub(super) mod mesh;
 mod named;
 mod net;
 mod params;
-mod pictured;
 mod round;
 pub(super) mod shape;
 mod spectra;
@@ -31,7 +31,7 @@ mod transform;
 mod tests;
 
 use super::model::{Input, SceneFormat};
-use super::said::Said;
+use super::shared_report::SharedReport;
 use super::too_large;
 use directives::DIRECTIVES;
 use durer_diag::{Diagnostic, Diagnostics};
@@ -48,7 +48,7 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     write: None,
     up: Axis::Y,
     whole: true,
-    shines: Some(
+    light_hint: Some(
         "write `AreaLightSource \"diffuse\"` before a shape, or `LightSource \"infinite\"`: an environment is a light too",
     ),
 };
@@ -57,12 +57,12 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
 /// also begin files in the course's format.
 fn recognise(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(1 << 12)];
-    let (mut text, said) = (Lexer::new(head.into(), 0), Said::default());
+    let (mut text, report) = (Lexer::new(head.into(), 0), SharedReport::default());
     let is_text = |token: Option<&Token>| matches!(token, Some(Token::Text(_)));
-    let Some(first) = text.next(&said).filter(|found| found.token == Token::Word) else { return false };
+    let Some(first) = text.next(&report).filter(|found| found.token == Token::Word) else { return false };
     let word = text.word(first.at).to_string();
     match DIRECTIVES.iter().find(|row| row.0 == word) {
-        Some((_, true)) => is_text(text.peek(&said).map(|found| &found.token)),
+        Some((_, true)) => is_text(text.peek(&report).map(|found| &found.token)),
         Some(_) => matches!(word.as_str(), "LookAt" | "WorldBegin" | "AttributeBegin" | "ReverseOrientation"),
         None => false,
     }
@@ -74,9 +74,9 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
         diagnostics.push(Diagnostic { message: error.message.replace("mesh file", "scene"), help: None, ..error });
         return None;
     }
-    let said = Said::default();
-    let scene = Reader::new(input, language::decide(input), &said).read();
-    let sound = !said.has_errors() && !diagnostics.has_errors();
-    diagnostics.extend(said.finish());
+    let report = SharedReport::default();
+    let scene = Reader::new(input, language::decide(input), &report).read();
+    let sound = !report.has_errors() && !diagnostics.has_errors();
+    diagnostics.extend(report.finish());
     sound.then_some(scene)
 }

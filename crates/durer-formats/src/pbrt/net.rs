@@ -16,7 +16,7 @@ fn counts(params: &Params, least: i64) -> Option<[u32; 2]> {
     let counts = ["nu", "nv"].map(|name| params.whole(name).unwrap_or(0));
     if counts.iter().any(|count| *count < least) || counts[0].saturating_mul(counts[1]) > MAX_POINTS {
         let message = format!("`nu` and `nv` must be {least} or more, and their product at most {MAX_POINTS}");
-        params.said.bad(params.at, message);
+        params.report.bad(params.at, message);
         return None;
     }
     Some(counts.map(|count| count as u32))
@@ -28,7 +28,7 @@ pub(super) fn heights(params: &Params, reversed: bool) -> Option<MeshData> {
     let heights = params.floats("Pz").unwrap_or_default();
     if heights.len() != columns as usize * rows as usize {
         let message = format!("`Pz` has {} values for {columns} x {rows} points", heights.len());
-        params.said.bad(params.place("Pz"), message);
+        params.report.bad(params.place("Pz"), message);
         return None;
     }
     Some(net::heights([columns, rows], heights.iter().map(|height| *height as f32)).oriented(reversed))
@@ -48,7 +48,7 @@ pub(super) fn nurbs(params: &Params, reversed: bool) -> Option<MeshData> {
     let wanted = counts[0] as usize * counts[1] as usize;
     if points.len() != wanted || points.iter().any(|p| p.w <= 0.0) {
         let message = format!("a NURBS surface needs {wanted} points, `P` or `Pw`, with weights above 0");
-        params.said.bad(params.at, message);
+        params.report.bad(params.at, message);
         return None;
     }
     Some(net::nurbs(&points, counts[0], &sides).oriented(reversed))
@@ -64,7 +64,7 @@ fn knots<'a>(params: &'a Params, names: [&'static str; 4], count: u32) -> Option
             "`{}` must be from 2 to the number of points, and `{}` needs as many increasing numbers as order plus points",
             names[0], names[1]
         );
-        params.said.bad(params.place(names[1]), message);
+        params.report.bad(params.place(names[1]), message);
         return None;
     }
     let order = order as usize;
@@ -72,7 +72,7 @@ fn knots<'a>(params: &'a Params, names: [&'static str; 4], count: u32) -> Option
     let end = |name, usual: f64| params.float(name).map_or(usual, f64::from).clamp(first, last);
     let (from, to) = (end(names[2], first), end(names[3], last));
     if from >= to {
-        params.said.bad(params.at, "this NURBS surface is empty: its parameter range has no length");
+        params.report.bad(params.at, "this NURBS surface is empty: its parameter range has no length");
         return None;
     }
     Some(NurbsSide { knots: all, order, from, to })

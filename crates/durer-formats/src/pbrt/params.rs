@@ -1,10 +1,10 @@
 //! Parameter lists, such as `"float radius" [ 2 ]`.
 
 use super::language::Language;
-use super::lexer::{Found, Lexer, Token};
+use super::lexer::{Lexer, SpannedToken, Token};
 use crate::model::Input;
 use crate::report::counted;
-use crate::said::{Said, meant};
+use crate::shared_report::{SharedReport, suggest};
 use durer_diag::{Diagnostic, Span};
 use durer_scene::math::{Vec2, Vec3};
 use durer_scene::spectrum::space::RgbSpace;
@@ -127,28 +127,28 @@ pub(super) struct Params<'s> {
     own: usize,
     /// Place of the directive's word, or of the string after it.
     pub at: Span,
-    pub said: &'s Said,
+    pub report: &'s SharedReport,
     pub input: &'s Input<'s>,
     /// Colour space of RGB values.
     pub space: RgbSpace,
     pub language: Language,
-    asked: RefCell<Vec<&'static str>>,
+    queried: RefCell<Vec<&'static str>>,
 }
 
 /// Reads parameters while strings follow.
-pub(super) fn read(text: &mut Lexer, language: Language, said: &Said) -> Vec<Rc<Param>> {
+pub(super) fn read(text: &mut Lexer, language: Language, report: &SharedReport) -> Vec<Rc<Param>> {
     let mut list: Vec<Rc<Param>> = Vec::new();
-    while !said.is_full() {
-        let Some(Found { token: Token::Text(_), .. }) = text.peek(said) else { break };
-        let Some(Found { token: Token::Text(head), at }) = text.next(said) else { break };
-        let Some((values, values_at)) = values(text, at, said) else { continue };
-        let Some((kind, name)) = declared(&head, at, language, said) else { continue };
+    while !report.is_full() {
+        let Some(SpannedToken { token: Token::Text(_), .. }) = text.peek(report) else { break };
+        let Some(SpannedToken { token: Token::Text(head), at }) = text.next(report) else { break };
+        let Some((values, values_at)) = values(text, at, report) else { continue };
+        let Some((kind, name)) = declared(&head, at, language, report) else { continue };
         if let Some(first) = list.iter().find(|param| param.name == name) {
             let error = Diagnostic::error(format!("`{name}` is given twice")).code("bad-value").at(at);
-            said.push(error.related(first.at, "first here"));
+            report.push(error.related(first.at, "first here"));
             continue;
         }
-        if fits(kind, &name, &values, values_at, said) {
+        if fits(kind, &name, &values, values_at, report) {
             list.push(Rc::new(Param { kind, name, values, at, values_at, used: Cell::new(false) }));
         }
     }
@@ -156,10 +156,10 @@ pub(super) fn read(text: &mut Lexer, language: Language, said: &Said) -> Vec<Rc<
 }
 
 /// Type and name of a parameter such as `"float radius"`.
-fn declared(head: &str, at: Span, language: Language, said: &Said) -> Option<(Kind, String)> {
+fn declared(head: &str, at: Span, language: Language, report: &SharedReport) -> Option<(Kind, String)> {
     let mut words = head.split_ascii_whitespace();
     let (Some(kind), Some(name), None) = (words.next(), words.next(), words.next()) else {
-        said.bad_with(
+        report.bad_with(
             at,
             "expected the type and the name of a parameter",
             Some("for example `\"float radius\" [ 2 ]`".into()),
@@ -168,25 +168,25 @@ fn declared(head: &str, at: Span, language: Language, said: &Said) -> Option<(Ki
     };
     let found = KINDS.iter().find(|row| row.0 == kind);
     if found.is_none() {
-        let help = meant(kind, KINDS.iter().map(|row| row.0));
-        said.bad_with(at, format!("`{kind}` is not a type of a parameter"), help);
+        let help = suggest(kind, KINDS.iter().map(|row| row.0));
+        report.bad_with(at, format!("`{kind}` is not a type of a parameter"), help);
     }
     if kind == "xyz" && language == Language::Fourth {
-        said.bad_with(at, "`xyz` colours are only in pbrt-v3", Some("write `rgb`".into()));
+        report.bad_with(at, "`xyz` colours are only in pbrt-v3", Some("write `rgb`".into()));
         return None;
     }
     Some((found?.1, name.to_string()))
 }
 
 /// Reads the values after a parameter's name: one value, or several in brackets.
-fn values(text: &mut Lexer, head: Span, said: &Said) -> Option<(Values, Span)> {
-    let Some(first) = text.peek(said).cloned() else {
-        said.bad(head, "this parameter has no value");
+fn values(text: &mut Lexer, head: Span, report: &SharedReport) -> Option<(Values, Span)> {
+    let Some(first) = text.peek(report).cloned() else {
+        report.bad(head, "this parameter has no value");
         return None;
     };
     let (mut numbers, mut texts, mut bools) = (Vec::new(), Vec::new(), Vec::new());
     let (mut sound, mut kinds) = (true, 0);
-    let mut add = |found: Found, text: &Lexer| match found.token {
+    let mut add = |found: SpannedToken, text: &Lexer| match found.token {
         Token::Text(value) => {
             texts.push(value);
             true
@@ -195,7 +195,7 @@ fn values(text: &mut Lexer, head: Span, said: &Said) -> Option<(Values, Span)> {
             bools.push(text.bytes(found.at) == b"true");
             true
         }
-        Token::Word => match number(text, found.at, said) {
+        Token::Word => match number(text, found.at, report) {
             Some(value) => {
                 numbers.push(value);
                 true
@@ -206,33 +206,33 @@ fn values(text: &mut Lexer, head: Span, said: &Said) -> Option<(Values, Span)> {
     };
     let mut end = first.at;
     if first.token == Token::Open {
-        text.next(said);
+        text.next(report);
         loop {
-            let Some(found) = text.next(said) else {
+            let Some(found) = text.next(report) else {
                 let error = Diagnostic::error("these brackets are not closed").code("unclosed").at(first.at);
-                said.push(error.help("a `]` is missing"));
+                report.push(error.help("a `]` is missing"));
                 return None;
             };
             end = found.at;
             match found.token {
                 Token::Close => break,
                 Token::Open => {
-                    said.bad(found.at, "brackets cannot be nested: a `]` is missing before this");
+                    report.bad(found.at, "brackets cannot be nested: a `]` is missing before this");
                     sound = false;
                 }
                 _ => sound &= add(found, text),
             }
-            if said.is_full() {
+            if report.is_full() {
                 return None;
             }
         }
     } else {
         if first.token == Token::Close {
-            said.bad(first.at, "this `]` has no value before it");
-            text.next(said);
+            report.bad(first.at, "this `]` has no value before it");
+            text.next(report);
             return None;
         }
-        text.next(said);
+        text.next(report);
         sound = add(first.clone(), text);
     }
     let at = first.at.to(end);
@@ -240,7 +240,7 @@ fn values(text: &mut Lexer, head: Span, said: &Said) -> Option<(Values, Span)> {
         kinds += u32::from(filled);
     }
     if kinds > 1 {
-        said.bad(at, "numbers, strings and booleans cannot be mixed");
+        report.bad(at, "numbers, strings and booleans cannot be mixed");
         return None;
     }
     sound.then_some(match (texts.is_empty(), bools.is_empty()) {
@@ -251,11 +251,11 @@ fn values(text: &mut Lexer, head: Span, said: &Said) -> Option<(Values, Span)> {
 }
 
 /// Parses a word as a number.
-pub(super) fn number(text: &Lexer, at: Span, said: &Said) -> Option<f64> {
+pub(super) fn number(text: &Lexer, at: Span, report: &SharedReport) -> Option<f64> {
     let word = text.word(at);
     match word.parse::<f64>() {
         Ok(value) if value.abs() <= f64::from(f32::MAX) => return Some(value),
-        Ok(_) => said.bad_with(
+        Ok(_) => report.bad_with(
             at,
             format!("expected a finite number, found {}", text.shown(at)),
             Some("numbers must lie within the range of 32-bit floating point, about ±3.4e38".into()),
@@ -264,20 +264,20 @@ pub(super) fn number(text: &Lexer, at: Span, said: &Said) -> Option<f64> {
             let point = word.replace(',', ".");
             let help = (point != word && point.parse::<f32>().is_ok())
                 .then(|| format!("decimals are written with a point: `{point}`"));
-            said.bad_with(at, format!("expected a number, found {}", text.shown(at)), help);
+            report.bad_with(at, format!("expected a number, found {}", text.shown(at)), help);
         }
     }
     None
 }
 
 /// Checks that the values fit the type.
-fn fits(kind: Kind, name: &str, values: &Values, at: Span, said: &Said) -> bool {
+fn fits(kind: Kind, name: &str, values: &Values, at: Span, report: &SharedReport) -> bool {
     let complain = |wanted: &str| {
         let found = match values.len() {
             0 => "nothing".to_string(),
             _ => values.counted(),
         };
-        said.bad(at, format!("`{name}` needs {wanted}, found {found}"));
+        report.bad(at, format!("`{name}` needs {wanted}, found {found}"));
         false
     };
     let rows = |size: usize| match values {
@@ -312,17 +312,17 @@ impl<'s> Params<'s> {
         own: Vec<Rc<Param>>,
         others: &[Rc<Param>],
         at: Span,
-        (input, said): (&'s Input<'s>, &'s Said),
+        (input, report): (&'s Input<'s>, &'s SharedReport),
         (language, space): (Language, RgbSpace),
     ) -> Self {
         let count = own.len();
         let list = own.into_iter().chain(others.iter().cloned()).collect();
-        Params { list, own: count, at, said, input, space, language, asked: RefCell::default() }
+        Params { list, own: count, at, report, input, space, language, queried: RefCell::default() }
     }
 
     /// Parameter by name; marks it as used.
     pub fn get(&self, name: &'static str) -> Option<&Param> {
-        self.asked.borrow_mut().push(name);
+        self.queried.borrow_mut().push(name);
         let found = self.list.iter().find(|param| param.name == name)?;
         found.used.set(true);
         Some(found)
@@ -332,11 +332,11 @@ impl<'s> Params<'s> {
     pub(super) fn of(&self, name: &'static str, kinds: &[Kind], wanted: &str) -> Option<&Param> {
         let found = self.get(name)?;
         if !kinds.contains(&found.kind) {
-            self.said.bad(found.at, format!("`{name}` must be {wanted}"));
+            self.report.bad(found.at, format!("`{name}` must be {wanted}"));
             return None;
         }
         if found.values.len() == 0 {
-            self.said.bad(found.values_at, format!("`{name}` has no value"));
+            self.report.bad(found.values_at, format!("`{name}` has no value"));
             return None;
         }
         Some(found)
@@ -355,7 +355,7 @@ impl<'s> Params<'s> {
     pub fn positive(&self, name: &'static str) -> Option<f32> {
         let value = self.float(name)?;
         if value <= 0.0 {
-            self.said.bad(self.place(name), format!("`{name}` must be more than 0"));
+            self.report.bad(self.place(name), format!("`{name}` must be more than 0"));
             return None;
         }
         Some(value)
@@ -407,7 +407,7 @@ impl<'s> Params<'s> {
     pub fn left_out(&self, names: &[&'static str], what: &str) {
         for name in names {
             if let Some(param) = self.get(name) {
-                self.said.once(param.at, format!("`{name}` has no counterpart: {what}"));
+                self.report.once(param.at, format!("`{name}` has no counterpart: {what}"));
             }
         }
     }
@@ -416,8 +416,8 @@ impl<'s> Params<'s> {
     pub fn finish(&self, what: &str) {
         for param in self.list[..self.own].iter().filter(|param| !param.used.get()) {
             let warning = Diagnostic::warning(format!("{what} has no parameter `{}`: it is ignored", param.name));
-            let help = meant(&param.name, self.asked.borrow().iter().copied());
-            self.said.push(Diagnostic { help, ..warning.code("unknown-word").at(param.at) });
+            let help = suggest(&param.name, self.queried.borrow().iter().copied());
+            self.report.push(Diagnostic { help, ..warning.code("unknown-word").at(param.at) });
         }
     }
 }

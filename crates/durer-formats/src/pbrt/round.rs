@@ -11,7 +11,7 @@ use glam::DVec3;
 pub(super) fn turn(params: &Params) -> f32 {
     let degrees = params.float("phimax").unwrap_or(360.0);
     if degrees <= 0.0 {
-        params.said.bad(params.place("phimax"), "`phimax` must be more than 0 degrees");
+        params.report.bad(params.place("phimax"), "`phimax` must be more than 0 degrees");
     }
     degrees.clamp(1e-3, 360.0)
 }
@@ -30,7 +30,7 @@ pub(super) fn ends(params: &Params, [low, high]: [f32; 2]) -> [f32; 2] {
 pub(super) fn sphere(params: &Params, radius: f32, [low, high]: [f32; 2], flipped: bool) -> Option<MeshData> {
     let (low, high, radius) = (low.max(-radius), high.min(radius), f64::from(radius));
     if low >= high {
-        params.said.bad(params.place("zmin"), "no part of this sphere is between `zmin` and `zmax`");
+        params.report.bad(params.place("zmin"), "no part of this sphere is between `zmin` and `zmax`");
         return None;
     }
     Some(revolution::sphere(radius, [low, high], degrees(params)).oriented(flipped))
@@ -54,7 +54,7 @@ pub(super) fn paraboloid(params: &Params, flipped: bool) -> Option<MeshData> {
     let radius = f64::from(params.positive("radius").unwrap_or(1.0));
     let [low, high] = ends(params, [0.0, 1.0]).map(f64::from);
     if low < 0.0 || low >= high {
-        params.said.bad(params.at, "a paraboloid needs 0 <= `zmin` < `zmax`");
+        params.report.bad(params.at, "a paraboloid needs 0 <= `zmin` < `zmax`");
         return None;
     }
     Some(revolution::paraboloid(radius, [low, high], degrees(params)).oriented(flipped))
@@ -65,7 +65,7 @@ pub(super) fn hyperboloid(params: &Params, flipped: bool) -> Option<MeshData> {
     let end = |name: &'static str, usual: DVec3| params.triple(name).map_or(usual, |p| p.as_dvec3());
     let (from, to) = (end("p1", DVec3::ZERO), end("p2", DVec3::ONE));
     if from.x * from.x + from.y * from.y + to.x * to.x + to.y * to.y == 0.0 || from == to {
-        params.said.bad(params.at, "a hyperboloid needs two different points, `p1` and `p2`, not both on the z axis");
+        params.report.bad(params.at, "a hyperboloid needs two different points, `p1` and `p2`, not both on the z axis");
         return None;
     }
     Some(revolution::hyperboloid([from, to], degrees(params)).oriented(flipped))

@@ -1,12 +1,12 @@
 //! Shapes and their lights.
 
+use super::defs::{AreaLight, Opacity};
 use super::language::Language;
-use super::made::{AreaLight, Opacity};
 use super::params::{Kind, Param, Params};
 use super::state::{Reader, SHAPE};
 use super::{curve, mesh, net, round};
 use crate::files::mesh_file;
-use crate::said::meant;
+use crate::shared_report::suggest;
 use durer_diag::Span;
 use durer_scene::math::{Color, Vec3};
 use durer_scene::scene::{Node, Object};
@@ -22,7 +22,7 @@ const MAX_GROWN: usize = if cfg!(test) { 1 << 18 } else { 1 << 24 };
 const MANY: usize = 1 << 20;
 
 /// Shape before it has a material.
-struct Made {
+struct MaterialDef {
     node: Node,
     /// Total area in world space, and the number of lights that it counts as.
     area: f32,
@@ -89,11 +89,11 @@ impl Reader<'_> {
                 if third {
                     known.extend(["cone", "hyperboloid", "paraboloid", "heightfield", "nurbs"]);
                 }
-                let mut help = meant(other, known);
+                let mut help = suggest(other, known);
                 if ["cone", "hyperboloid", "paraboloid", "heightfield", "nurbs"].contains(&other) {
                     help = Some("this shape is of pbrt-v3, not of pbrt-v4".into());
                 }
-                return self.said.bad_with(at, format!("unknown shape `{other}`"), help);
+                return self.report.bad_with(at, format!("unknown shape `{other}`"), help);
             }
         };
         params.known(&["alpha"]);
@@ -107,12 +107,12 @@ impl Reader<'_> {
     }
 
     /// Adds a shape with its material and light to the scene.
-    fn show(&mut self, made: Made, opacity: &Opacity, at: Span) {
+    fn show(&mut self, made: MaterialDef, opacity: &Opacity, at: Span) {
         let light = self.state.area.clone();
         let light = light.filter(|light| {
             let inside = self.defining.is_some();
             if inside {
-                self.said.once(light.at, "instanced objects do not emit light, as in pbrt");
+                self.report.once(light.at, "instanced objects do not emit light, as in pbrt");
             }
             !inside
         });
@@ -124,11 +124,11 @@ impl Reader<'_> {
         let radiance = light.as_ref().map(|(light, radiance)| (&**light, *radiance));
         let Some(material) = self.number(material, radiance, opacity) else {
             if light.is_some() {
-                self.said.once(at, "an `interface` surface does not emit light");
+                self.report.once(at, "an `interface` surface does not emit light");
             }
             return;
         };
-        if self.growth.has_objects(1, self.said, at) {
+        if self.growth.has_objects(1, self.report, at) {
             let inner = Object { node: made.node, material: Some(material), span: at };
             self.add(inner.placed(made.map));
         }
@@ -139,7 +139,7 @@ impl Reader<'_> {
         Opacity { share, picture }
     }
 
-    fn sphere(&mut self, params: &Params, map: DAffine3, flipped: bool) -> Option<Made> {
+    fn sphere(&mut self, params: &Params, map: DAffine3, flipped: bool) -> Option<MaterialDef> {
         let radius = params.positive("radius").unwrap_or(1.0);
         let ends = round::ends(params, [-radius, radius]);
         if round::turn(params) < 360.0 || ends[0] > -radius || ends[1] < radius {
@@ -147,7 +147,7 @@ impl Reader<'_> {
             return self.grown(data, map, params.at);
         }
         if flipped && self.state.area.as_ref().is_some_and(|light| !light.two_sided) {
-            self.said.once(params.at, "a sphere that emits inwards has no counterpart: it emits on both sides");
+            self.report.once(params.at, "a sphere that emits inwards has no counterpart: it emits on both sides");
         }
         let world = radius * map.transform_vector3(DVec3::X).length() as f32;
         let (center, map) = match map.matrix3 == DAffine3::IDENTITY.matrix3 {
@@ -160,15 +160,15 @@ impl Reader<'_> {
             false => (Vec3::ZERO, map),
         };
         let node = Node::Primitive(Sphere { center, radius }.into());
-        Some(Made { node, area: 4.0 * PI * world * world, lights: 1, map, inside_out: flipped })
+        Some(MaterialDef { node, area: 4.0 * PI * world * world, lights: 1, map, inside_out: flipped })
     }
 
-    fn disk(&mut self, params: &Params, map: DAffine3, flipped: bool) -> Option<Made> {
+    fn disk(&mut self, params: &Params, map: DAffine3, flipped: bool) -> Option<MaterialDef> {
         let radius = params.positive("radius").unwrap_or(1.0);
         let inner_radius = params.float("innerradius").unwrap_or(0.0).max(0.0);
         let height = params.float("height").unwrap_or(0.0);
         if inner_radius >= radius {
-            self.said.bad(params.place("innerradius"), "`innerradius` must be less than `radius`");
+            self.report.bad(params.place("innerradius"), "`innerradius` must be less than `radius`");
             return None;
         }
         if round::turn(params) < 360.0 {
@@ -179,42 +179,42 @@ impl Reader<'_> {
         let stretch = map.transform_vector3(DVec3::X).cross(map.transform_vector3(DVec3::Y)).length() as f32;
         let area = PI * (radius * radius - inner_radius * inner_radius) * stretch;
         let node = Node::Primitive(Disc { center: height * Vec3::Z, normal, radius, inner_radius }.into());
-        Some(Made { node, area, lights: 1, map, inside_out: false })
+        Some(MaterialDef { node, area, lights: 1, map, inside_out: false })
     }
 
     /// Tessellated mesh. All of them together have at most `MAX_GROWN` triangles.
-    fn grown(&mut self, data: MeshData, map: DAffine3, at: Span) -> Option<Made> {
+    fn grown(&mut self, data: MeshData, map: DAffine3, at: Span) -> Option<MaterialDef> {
         self.grown = self.grown.saturating_add(data.triangles.len());
         if self.grown > MAX_GROWN {
             self.grown = MAX_GROWN;
             let what = format!("tessellated shapes beyond {MAX_GROWN} triangles are left out");
-            self.said.once(at, what);
+            self.report.once(at, what);
             return None;
         }
         self.mesh(None, Arc::new(data), map, at)
     }
 
     /// Mesh with a name shared by shapes, or with a new name.
-    fn mesh(&mut self, name: Option<String>, data: Arc<MeshData>, map: DAffine3, at: Span) -> Option<Made> {
+    fn mesh(&mut self, name: Option<String>, data: Arc<MeshData>, map: DAffine3, at: Span) -> Option<MaterialDef> {
         if data.triangles.is_empty() {
             return None;
         }
         let corner = |i: u32| map.transform_point3(data.positions[i as usize].as_dvec3());
         let twice = |[a, b, c]: &[u32; 3]| (corner(*b) - corner(*a)).cross(corner(*c) - corner(*a)).length();
         // The area is only needed for a light with a power.
-        let asked = self.state.area.as_ref().is_some_and(|light| light.power.is_some());
-        let area = if asked { 0.5 * data.triangles.iter().map(twice).sum::<f64>() as f32 } else { 1.0 };
+        let has_power = self.state.area.as_ref().is_some_and(|light| light.power.is_some());
+        let area = if has_power { 0.5 * data.triangles.iter().map(twice).sum::<f64>() as f32 } else { 1.0 };
         let name = name.unwrap_or_else(|| format!("{}#{}", self.input.name, self.scene.assets.meshes.len()));
         let lights = data.triangles.len();
         let node = self.scene.add_mesh(&name, data, at);
-        Some(Made { node, area, lights, map, inside_out: false })
+        Some(MaterialDef { node, area, lights, map, inside_out: false })
     }
 
-    fn ply(&mut self, params: &Params, map: DAffine3, at: Span) -> Option<Made> {
+    fn ply(&mut self, params: &Params, map: DAffine3, at: Span) -> Option<MaterialDef> {
         params.left_out(&["displacement"], "the surface is not displaced");
         params.known(&["edgelength"]);
         let Some(name) = params.text("filename").map(str::to_string) else {
-            self.said.bad(at, "a `plymesh` needs a `filename`");
+            self.report.bad(at, "a `plymesh` needs a `filename`");
             return None;
         };
         let reversed = self.state.reversed;
@@ -223,7 +223,7 @@ impl Reader<'_> {
             Some(known) => known.clone(),
             None => {
                 let place = params.get("filename").map_or(at, |param| param.values_at);
-                let data = Arc::new(mesh_file(self.input, self.said, &name, place)?.oriented(reversed));
+                let data = Arc::new(mesh_file(self.input, self.report, &name, place)?.oriented(reversed));
                 self.meshes.insert(key, data.clone());
                 data
             }
@@ -235,7 +235,7 @@ impl Reader<'_> {
 
 /// Radiance of an area light. A power is divided over the shape's lights; a mesh has one per
 /// triangle.
-fn radiance(light: &AreaLight, made: &Made) -> Color {
+fn radiance(light: &AreaLight, made: &MaterialDef) -> Color {
     let Some(power) = light.power else { return light.radiance };
     let sides = if light.two_sided { 2.0 } else { 1.0 };
     let strength = power / (sides * PI * made.area / made.lights as f32);

@@ -5,7 +5,7 @@ use super::named;
 use super::params::{Kind, Param, Params, Values};
 use crate::number::parse_f32;
 use crate::packed::read_unpacked;
-use crate::said::meant;
+use crate::shared_report::suggest;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::math::Vec3;
 use durer_scene::spectrum::SpectrumSource;
@@ -34,7 +34,7 @@ fn spectrum_of(param: &Param, params: &Params) -> Option<SpectrumSource> {
 }
 
 fn written(param: &Param, params: &Params) -> Option<SpectrumSource> {
-    let said = params.said;
+    let report = params.report;
     match (param.kind, &param.values) {
         (Kind::Xyz, _) => {
             let xyz = *param.triples().first()?;
@@ -44,7 +44,7 @@ fn written(param: &Param, params: &Params) -> Option<SpectrumSource> {
         (Kind::Blackbody, _) => {
             let kelvin = param.number();
             if !(kelvin > 0.0 && kelvin < 1e6) {
-                said.bad(
+                report.bad(
                     param.values_at,
                     "the temperature of a blackbody must be more than 0 and less than 1000000 kelvin",
                 );
@@ -67,7 +67,7 @@ fn rising(mut curve: Vec<[f32; 2]>, at: Span, params: &Params) -> Option<Spectru
     }
     if let Some(pair) = curve.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
         let message = format!("the wavelengths of a spectrum must increase: {} comes after {}", pair[1][0], pair[0][0]);
-        params.said.bad(at, message);
+        params.report.bad(at, message);
         return None;
     }
     Some(SpectrumSource::Curve(curve))
@@ -83,17 +83,17 @@ fn named(name: &str, at: Span, params: &Params) -> Option<SpectrumSource> {
     let bytes = match read_unpacked(params.input.source, name) {
         Ok(bytes) if bytes.len() < u32::MAX as usize => bytes,
         Ok(_) => {
-            params.said.bad(at, format!("`{name}` is too large for a spectrum"));
+            params.report.bad(at, format!("`{name}` is too large for a spectrum"));
             return None;
         }
         Err(error) => {
             let (help, message) = match params.language {
                 Language::Third => (error.help(), format!("cannot read the spectrum: {error}")),
                 Language::Fourth => {
-                    (meant(name, named::names()), format!("pbrt has no spectrum of that name, and {error}"))
+                    (suggest(name, named::names()), format!("pbrt has no spectrum of that name, and {error}"))
                 }
             };
-            params.said.push(Diagnostic { help, ..Diagnostic::error(message).code("missing-file").at(at) });
+            params.report.push(Diagnostic { help, ..Diagnostic::error(message).code("missing-file").at(at) });
             return None;
         }
     };
@@ -109,7 +109,7 @@ fn named(name: &str, at: Span, params: &Params) -> Option<SpectrumSource> {
                     let word_at = Span { file, start: place as u32, end: (place + word.len()) as u32 };
                     let found = crate::report::shown(word);
                     let error = Diagnostic::error(format!("expected a number, found {found}"));
-                    params.said.push(error.code("bad-file").at(word_at).related(at, "asked for here"));
+                    params.report.push(error.code("bad-file").at(word_at).related(at, "asked for here"));
                     return None;
                 }
             }
@@ -117,7 +117,7 @@ fn named(name: &str, at: Span, params: &Params) -> Option<SpectrumSource> {
         start += line.len();
     }
     if numbers.is_empty() || numbers.len() % 2 != 0 {
-        params.said.bad(at, format!("`{name}` must hold pairs of wavelength and value"));
+        params.report.bad(at, format!("`{name}` must hold pairs of wavelength and value"));
         return None;
     }
     rising(numbers.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect(), at, params)

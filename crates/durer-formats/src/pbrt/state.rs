@@ -1,14 +1,14 @@
 //! State of the reader: the graphics state that directives change, and the scene built so far.
 
-use super::language::{Decided, Language};
+use super::defs::{AreaLight, InfiniteLight, MaterialDef, Texture};
+use super::language::{DetectedLanguage, Language};
 use super::lexer::Lexer;
-use super::made::{AreaLight, Infinite, Made, Texture};
 use super::params::{Param, Params};
 use super::transform::Transforms;
 use crate::growth::Growth;
 use crate::medium::Medium;
 use crate::model::Input;
-use crate::said::Said;
+use crate::shared_report::SharedReport;
 use durer_diag::Span;
 use durer_scene::scene::{Group, Object, Scene};
 use durer_scene::shape::MeshData;
@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Targets of `Attribute`: indices into [`State::given`].
+/// Targets of `Attribute`: indices into [`State::attributes`].
 pub(super) const SHAPE: usize = 0;
 pub(super) const LIGHT: usize = 1;
 pub(super) const MATERIAL: usize = 2;
@@ -37,7 +37,7 @@ pub(super) struct State {
     pub inside: Option<String>,
     pub outside: Option<String>,
     /// Parameters from `Attribute` for shapes, lights, materials, media and textures.
-    pub given: [Vec<Rc<Param>>; 5],
+    pub attributes: [Vec<Rc<Param>>; 5],
     pub space: RgbSpace,
 }
 
@@ -52,7 +52,7 @@ pub(super) enum Scope {
 }
 
 /// Directive that is evaluated after the file is read.
-pub(super) struct Asked {
+pub(super) struct DeferredDirective {
     pub kind: String,
     pub list: Vec<Rc<Param>>,
     pub at: Span,
@@ -61,7 +61,7 @@ pub(super) struct Asked {
 }
 
 /// File being read.
-pub(super) struct Open {
+pub(super) struct OpenFile {
     pub text: Lexer,
     pub name: String,
     /// Place of the directive that includes it.
@@ -73,15 +73,15 @@ pub(super) struct Open {
 /// Reader of a scene file.
 pub(super) struct Reader<'a> {
     pub input: &'a Input<'a>,
-    pub said: &'a Said,
+    pub report: &'a SharedReport,
     pub language: Language,
     /// Word that decided the language.
     pub decided_by: Option<Span>,
-    pub texts: Vec<Open>,
+    pub texts: Vec<OpenFile>,
     pub state: State,
     pub stack: Vec<(Scope, State, Span)>,
     pub systems: BTreeMap<String, [DAffine3; 2]>,
-    pub materials: Vec<Made>,
+    pub materials: Vec<MaterialDef>,
     pub named_materials: BTreeMap<String, usize>,
     /// Indices in the scene of the materials as used by shapes, with emission and opacity.
     pub numbers: BTreeMap<(usize, String), Option<u32>>,
@@ -98,12 +98,12 @@ pub(super) struct Reader<'a> {
     pub grown: usize,
     /// Number of files included so far.
     pub included: usize,
-    pub camera: Option<Asked>,
-    pub film: Option<Asked>,
+    pub camera: Option<DeferredDirective>,
+    pub film: Option<DeferredDirective>,
     /// First directive before `WorldBegin` that must come after it.
     pub early: Option<Span>,
     pub in_world: bool,
-    pub infinite: Vec<Infinite>,
+    pub infinite: Vec<InfiniteLight>,
     /// True if scattered light is not rendered (`maxdepth` 0).
     pub emitters_only: bool,
     pub meshes: BTreeMap<(String, bool), Arc<MeshData>>,
@@ -111,19 +111,19 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    pub fn new(input: &'a Input<'a>, decided: Decided, said: &'a Said) -> Self {
+    pub fn new(input: &'a Input<'a>, decided: DetectedLanguage, report: &'a SharedReport) -> Self {
         let text = Lexer::new(input.bytes.clone(), input.file);
         let at = Span { file: input.file, start: 0, end: 0 };
         Reader {
             input,
-            said,
+            report,
             language: decided.language,
             decided_by: decided.by,
-            texts: vec![Open { text, name: input.name.to_string(), at, imported: false }],
+            texts: vec![OpenFile { text, name: input.name.to_string(), at, imported: false }],
             state: State::default(),
             stack: Vec::new(),
             systems: BTreeMap::new(),
-            materials: vec![Made::usual()],
+            materials: vec![MaterialDef::usual()],
             named_materials: BTreeMap::new(),
             numbers: BTreeMap::new(),
             textures: BTreeMap::new(),
@@ -146,20 +146,26 @@ impl<'a> Reader<'a> {
     }
 
     /// Parameters of a directive, with those that `Attribute` sets for its kind.
-    pub fn params(&self, list: Vec<Rc<Param>>, given: Option<usize>, at: Span) -> Params<'a> {
-        let given = given.map_or(&[][..], |kind| &self.state.given[kind]);
-        Params::new(list, given, at, (self.input, self.said), (self.language, self.state.space))
+    pub fn params(&self, list: Vec<Rc<Param>>, attributes: Option<usize>, at: Span) -> Params<'a> {
+        let attributes = attributes.map_or(&[][..], |kind| &self.state.attributes[kind]);
+        Params::new(list, attributes, at, (self.input, self.report), (self.language, self.state.space))
     }
 
     /// Parameters of a deferred directive.
-    pub fn params_of(&self, asked: &Asked) -> Params<'a> {
-        Params::new(asked.list.clone(), &[], asked.at, (self.input, self.said), (self.language, asked.space))
+    pub fn params_of(&self, directive: &DeferredDirective) -> Params<'a> {
+        Params::new(
+            directive.list.clone(),
+            &[],
+            directive.at,
+            (self.input, self.report),
+            (self.language, directive.space),
+        )
     }
 
     /// Map from the current space to world space when the shutter opens.
     pub fn map(&self, at: Span) -> DAffine3 {
         if self.state.transforms.moves() {
-            self.said.once(at, "motion has no counterpart: everything stays where it is when the shutter opens");
+            self.report.once(at, "motion has no counterpart: everything stays where it is when the shutter opens");
         }
         self.state.transforms.maps[0]
     }

@@ -24,16 +24,16 @@ fn read(text: &str) -> (Option<Scene>, Vec<String>) {
 
 /// Reads a scene and expects no diagnostics.
 fn clean(text: &str) -> Scene {
-    let (scene, told) = read(text);
-    assert_eq!(told, [""; 0], "{text}");
+    let (scene, messages) = read(text);
+    assert_eq!(messages, [""; 0], "{text}");
     scene.unwrap()
 }
 
 /// Layers and diagnostics of a sphere's material.
 fn material(text: &str) -> (PrincipledMaterial, Vec<String>) {
-    let (scene, told) = read(&format!("Camera \"perspective\" WorldBegin {text} Shape \"sphere\""));
-    let scene = scene.unwrap_or_else(|| panic!("{text}: {told:?}")); // prose: keep
+    let (scene, messages) = read(&format!("Camera \"perspective\" WorldBegin {text} Shape \"sphere\""));
+    let scene = scene.unwrap_or_else(|| panic!("{text}: {messages:?}")); // prose: keep
     let number = scene.root.as_ref().unwrap().objects[0].material.unwrap() as usize;
     let Material::Principled(layers) = &scene.materials[number].value else { panic!("no layers: {text}") };
-    ((**layers).clone(), told)
+    ((**layers).clone(), messages)
 }

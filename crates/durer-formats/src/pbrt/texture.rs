@@ -1,11 +1,11 @@
 //! Textures: a constant or a picture.
 
+use super::defs::Texture;
 use super::language::Language;
-use super::made::Texture;
 use super::params::{Kind, Param, Params};
 use super::state::{Reader, TEXTURE};
 use crate::pictures::{self, Pictures};
-use crate::said::meant;
+use crate::shared_report::suggest;
 use durer_diag::Span;
 use durer_image::{decode_srgb, linear_from_srgb};
 use durer_scene::describe::FileName;
@@ -37,12 +37,12 @@ impl Reader<'_> {
     ) {
         let third = self.language == Language::Third;
         if kind != "float" && kind != "spectrum" && !(third && kind == "color") {
-            let help = meant(kind, ["float", "spectrum"]);
-            return self.said.bad_with(kind_at, format!("textures are `float` or `spectrum`, not `{kind}`"), help);
+            let help = suggest(kind, ["float", "spectrum"]);
+            return self.report.bad_with(kind_at, format!("textures are `float` or `spectrum`, not `{kind}`"), help);
         }
         let params = self.params(list, Some(TEXTURE), at);
-        let (is_color, said) = (kind != "float", self.said);
-        let instead = |what: &str| said.once(at, format!("the texture `{class}` has no counterpart: {what}"));
+        let (is_color, report) = (kind != "float", self.report);
+        let instead = |what: &str| report.once(at, format!("the texture `{class}` has no counterpart: {what}"));
         let of = |name: &'static str, usual: f32| self.pattern(&params, name, is_color, Vec3::splat(usual));
         let both = |texture: &Texture, other: &Texture, share: f32| match (texture.even(), other.even()) {
             (Some(a), Some(b)) => Some(Texture::Even(a.lerp(b, share))),
@@ -130,7 +130,7 @@ impl Reader<'_> {
                     "windy",
                     "wrinkled",
                 ];
-                return self.said.bad_with(at, format!("unknown texture `{other}`"), meant(other, known));
+                return self.report.bad_with(at, format!("unknown texture `{other}`"), suggest(other, known));
             }
         };
         if third {
@@ -151,7 +151,7 @@ impl Reader<'_> {
             let known = self.textures.keys().filter(|key| key.0 == is_color).map(|key| key.1.as_str());
             let what = if is_color { "spectrum" } else { "float" };
             let message = format!("unknown texture `{}` of type `{what}`", param.text());
-            self.said.bad_with(param.values_at, message, meant(param.text(), known));
+            self.report.bad_with(param.values_at, message, suggest(param.text(), known));
             return Texture::Even(usual);
         }
         Texture::Even(match is_color {
@@ -173,7 +173,7 @@ impl Reader<'_> {
     /// Mean of the picture of a parameter for which only a number has a counterpart.
     pub fn mean_of(&self, params: &Params, name: &'static str, picture: &Picture) -> Option<f32> {
         let at = params.place(name);
-        self.said.once(at, format!("a picture for `{name}` has no counterpart: its mean is used"));
+        self.report.once(at, format!("a picture for `{name}` has no counterpart: its mean is used"));
         self.pictures().mean(picture, at)
     }
 
@@ -222,7 +222,7 @@ impl Reader<'_> {
     }
 
     fn pictures(&self) -> Pictures<'_> {
-        Pictures { input: self.input, said: self.said }
+        Pictures { input: self.input, report: self.report }
     }
 
     /// Returns a file as a picture of 8 bits per channel. Converts other formats.
@@ -232,7 +232,7 @@ impl Reader<'_> {
 
     fn imagemap(&self, params: &Params, is_color: bool) -> Option<Texture> {
         let Some(name) = params.text("filename") else {
-            self.said.bad(params.at, "an `imagemap` needs a `filename`");
+            self.report.bad(params.at, "an `imagemap` needs a `filename`");
             return None;
         };
         let at = params.get("filename").map_or(params.at, |param| param.values_at);
@@ -241,12 +241,12 @@ impl Reader<'_> {
             "repeat" => {}
             "clamp" => mapping.wrap = [Wrap::Clamp; 2],
             "black" => {
-                self.said.once(params.place("wrap"), "the wrap mode `black` has no counterpart: `clamp` is used");
+                self.report.once(params.place("wrap"), "the wrap mode `black` has no counterpart: `clamp` is used");
                 mapping.wrap = [Wrap::Clamp; 2];
             }
             other => {
-                let help = meant(other, ["repeat", "clamp", "black"]);
-                self.said.bad_with(params.place("wrap"), format!("unknown wrap mode `{other}`"), help);
+                let help = suggest(other, ["repeat", "clamp", "black"]);
+                self.report.bad_with(params.place("wrap"), format!("unknown wrap mode `{other}`"), help);
             }
         }
         mapping.nearest = params.text("filter") == Some("point");
@@ -287,7 +287,7 @@ impl Reader<'_> {
         let gamma = if let ["gamma", x] = words[..] { x.parse::<f32>().ok().filter(|x| *x > 0.0) } else { None };
         if gamma.is_none() {
             let message = format!("unknown encoding `{text}`: use `sRGB`, `linear`, or `gamma` with a number");
-            self.said.bad(params.place("encoding"), message);
+            self.report.bad(params.place("encoding"), message);
         }
         gamma
     }
@@ -295,7 +295,7 @@ impl Reader<'_> {
     fn mapping(&self, params: &Params) -> Mapping {
         if let Some(other) = params.text("mapping").filter(|mapping| *mapping != "uv") {
             let what = format!("the mapping `{other}` has no counterpart: the surface's uv coordinates are used");
-            self.said.once(params.place("mapping"), what);
+            self.report.once(params.place("mapping"), what);
         }
         let number = |name: &'static str, usual: f32| params.float(name).unwrap_or(usual);
         let (su, sv) = (number("uscale", 1.0), number("vscale", 1.0));

@@ -2,7 +2,7 @@
 
 use super::lexer::{Lexer, Token};
 use super::params::number;
-use crate::said::Said;
+use crate::shared_report::SharedReport;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::math::fp;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
@@ -43,48 +43,48 @@ impl Transforms {
 }
 
 /// Reads `N` numbers after a directive, with or without brackets.
-pub(super) fn numbers<const N: usize>(text: &mut Lexer, directive: Span, said: &Said) -> Option<[f64; N]> {
-    let open = text.peek(said).filter(|found| found.token == Token::Open).map(|found| found.at);
+pub(super) fn numbers<const N: usize>(text: &mut Lexer, directive: Span, report: &SharedReport) -> Option<[f64; N]> {
+    let open = text.peek(report).filter(|found| found.token == Token::Open).map(|found| found.at);
     if open.is_some() {
-        text.next(said);
+        text.next(report);
     }
     let mut all = [0.0; N];
     for (i, value) in all.iter_mut().enumerate() {
-        let Some(found) = text.peek(said).filter(|found| found.token == Token::Word).cloned() else {
+        let Some(found) = text.peek(report).filter(|found| found.token == Token::Word).cloned() else {
             let message = format!("{} needs {N} numbers, found {i}", text.shown(directive));
-            said.push(Diagnostic::error(message).code("bad-value").at(directive));
+            report.push(Diagnostic::error(message).code("bad-value").at(directive));
             return None;
         };
-        text.next(said);
-        *value = number(text, found.at, said)?;
+        text.next(report);
+        *value = number(text, found.at, report)?;
     }
     if let Some(open) = open
-        && text.next(said).is_none_or(|found| found.token != Token::Close)
+        && text.next(report).is_none_or(|found| found.token != Token::Close)
     {
         let message = format!("these brackets must hold {N} numbers and be closed");
-        said.push(Diagnostic::error(message).code("unclosed").at(open));
+        report.push(Diagnostic::error(message).code("unclosed").at(open));
         return None;
     }
     Some(all)
 }
 
 /// Affine map of a matrix of 16 numbers in column-major order.
-pub(super) fn matrix(m: [f64; 16], at: Span, said: &Said) -> Option<DAffine3> {
+pub(super) fn matrix(m: [f64; 16], at: Span, report: &SharedReport) -> Option<DAffine3> {
     let matrix = DMat4::from_cols_array(&m);
     let [a, b, c, d] = [m[3], m[7], m[11], m[15]];
     if d == 0.0 || [a, b, c].iter().any(|x| (x / d).abs() > 1e-9) {
-        said.bad(at, "this matrix is not affine: its columns must end in 0 0 0 1");
+        report.bad(at, "this matrix is not affine: its columns must end in 0 0 0 1");
         return None;
     }
     let map = DAffine3::from_mat4(matrix * (1.0 / d));
-    sound(map, at, said)
+    sound(map, at, report)
 }
 
 /// Returns an invertible map, or reports it as singular.
-pub(super) fn sound(map: DAffine3, at: Span, said: &Said) -> Option<DAffine3> {
+pub(super) fn sound(map: DAffine3, at: Span, report: &SharedReport) -> Option<DAffine3> {
     let determinant = map.matrix3.determinant();
     if determinant == 0.0 || !determinant.is_finite() || !map.inverse().is_finite() {
-        said.push(
+        report.push(
             Diagnostic::error("this transform flattens space, or leaves the range of numbers")
                 .code("flat-transform")
                 .at(at),

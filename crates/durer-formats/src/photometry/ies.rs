@@ -257,7 +257,7 @@ mod tests {
 
     #[test]
     fn warning_has_line_and_column() {
-        for (text, told) in [
+        for (text, expected) in [
             ("TILT=NONE\n1 1 1 2 1 1 2 0 0 0 1 1 1\n0 90\n0\n7 8\n9", "6:1 more numbers follow"),
             ("TILT=NONE\n1 1 1 2 1 1 2 0 0 0 1 1 1\n0 90\n0\n0 0", "4:1 this luminaire is dark"),
             (
@@ -272,10 +272,10 @@ mod tests {
             let [warning] = &diagnostics.iter().collect::<Vec<_>>()[..] else { panic!("{text}: {diagnostics:?}") };
             let (line, column) = files.position(warning.span.unwrap()).unwrap();
             assert!(
-                format!("{line}:{column} {}", warning.message).starts_with(told), // prose: keep
+                format!("{line}:{column} {}", warning.message).starts_with(expected), // prose: keep
                 "{text}: {line}:{column} {warning:?}"
             );
-            if told.contains("360") {
+            if expected.contains("360") {
                 // Halfway from 270 to 360.
                 let (sin, cos) = durer_scene::math::fp::sin_cos_degrees(315.0);
                 let dir = durer_scene::math::Vec3::new(cos as f32, sin as f32, 0.0);

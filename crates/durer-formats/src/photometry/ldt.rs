@@ -35,7 +35,7 @@ struct Lines<'t> {
     file: u32,
 }
 
-type Found<T> = Result<T, Box<Diagnostic>>;
+type LdtResult<T> = Result<T, Box<Diagnostic>>;
 
 impl<'t> Lines<'t> {
     fn error(&self, start: usize, end: usize, message: impl Into<String>) -> Box<Diagnostic> {
@@ -44,7 +44,7 @@ impl<'t> Lines<'t> {
     }
 
     /// Returns the next line, trimmed, and its offset.
-    fn next(&mut self, what: &str) -> Found<(&'t str, usize)> {
+    fn next(&mut self, what: &str) -> LdtResult<(&'t str, usize)> {
         if self.at >= self.text.len() {
             return Err(self.error(self.at, self.at, format!("the file ends where the {what} should be")));
         }
@@ -55,12 +55,12 @@ impl<'t> Lines<'t> {
         Ok((line.trim(), start))
     }
 
-    fn skip(&mut self, lines: usize, what: &str) -> Found<()> {
+    fn skip(&mut self, lines: usize, what: &str) -> LdtResult<()> {
         (0..lines).try_for_each(|_| self.next(what).map(drop))
     }
 
     /// Reads a number; the decimal separator may be a comma.
-    fn number(&mut self, what: &str) -> Found<(f64, usize, usize)> {
+    fn number(&mut self, what: &str) -> LdtResult<(f64, usize, usize)> {
         let (line, start) = self.next(what)?;
         let end = start + line.len();
         match line.replace(',', ".").parse::<f64>() {
@@ -69,7 +69,7 @@ impl<'t> Lines<'t> {
         }
     }
 
-    fn whole(&mut self, what: &str, from: usize, to: usize) -> Found<usize> {
+    fn whole(&mut self, what: &str, from: usize, to: usize) -> LdtResult<usize> {
         let (number, start, end) = self.number(what)?;
         match number.fract() == 0.0 && (from as f64..=to as f64).contains(&number) {
             true => Ok(number as usize),
@@ -77,7 +77,7 @@ impl<'t> Lines<'t> {
         }
     }
 
-    fn not_negative(&mut self, what: &str) -> Found<f64> {
+    fn not_negative(&mut self, what: &str) -> LdtResult<f64> {
         let (number, start, end) = self.number(what)?;
         if number < 0.0 {
             return Err(self.error(start, end, format!("the {what} must not be less than 0")));
@@ -86,7 +86,7 @@ impl<'t> Lines<'t> {
     }
 
     /// Reads ascending angles from 0 to `most` degrees.
-    fn angles(&mut self, count: usize, what: &str, most: f64) -> Found<Vec<f32>> {
+    fn angles(&mut self, count: usize, what: &str, most: f64) -> LdtResult<Vec<f32>> {
         let mut angles: Vec<f32> = Vec::with_capacity(count);
         for _ in 0..count {
             let (angle, start, end) = self.number(what)?;
@@ -114,7 +114,7 @@ pub fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<Prof
     parse(text, file, diagnostics).map_err(|error| diagnostics.push(*error)).ok()
 }
 
-fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Found<Profile> {
+fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<Profile> {
     let mut lines = Lines { text, at: 0, file };
     lines.skip(2, "manufacturer and file type")?;
     let symmetry = match lines.whole("symmetry", 0, 4)? {
@@ -180,7 +180,7 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Found<Profile>
 
 impl Lines<'_> {
     /// Selects the planes that the file has intensities for.
-    fn kept(&self, symmetry: Symmetry, planes: Vec<f32>, at: std::ops::Range<usize>) -> Found<Vec<f32>> {
+    fn kept(&self, symmetry: Symmetry, planes: Vec<f32>, at: std::ops::Range<usize>) -> LdtResult<Vec<f32>> {
         let within = |from: f32, to: f32| planes.iter().copied().filter(|c| (from..=to).contains(c)).collect();
         let (kept, ends): (Vec<f32>, _) = match symmetry {
             Symmetry::Axis => return Ok(planes[..1].to_vec()),
@@ -241,13 +241,13 @@ mod tests {
         let file = files.add("lamp.ldt", text.as_bytes().into());
         let mut diagnostics = Diagnostics::default();
         let profile = super::super::read(text.as_bytes(), file, &mut diagnostics);
-        let told = diagnostics.iter().next().map(|told| {
-            let (line, column) = files.position(told.span.unwrap()).unwrap();
-            format!("{line}:{column} {}", told.message) // prose: keep
+        let messages = diagnostics.iter().next().map(|messages| {
+            let (line, column) = files.position(messages.span.unwrap()).unwrap();
+            format!("{line}:{column} {}", messages.message) // prose: keep
         });
-        match (profile, told) {
+        match (profile, messages) {
             (Some(profile), None) => Ok(profile),
-            (_, told) => Err(told.unwrap()),
+            (_, messages) => Err(messages.unwrap()),
         }
     }
 
@@ -302,7 +302,7 @@ mod tests {
             lines.join("\n")
         };
         assert!(parsed(&good).is_ok());
-        for (text, told) in [
+        for (text, expected) in [
             (line(3, "5"), "3:1 the symmetry must be a whole number from 0 to 4"),
             (line(4, "four"), "4:1 expected the number of C planes, found `four`"),
             (line(4, "1e9"), "4:1 the number of C planes must be a whole number from 1 to 721"),
@@ -317,7 +317,7 @@ mod tests {
                 "100:4 the file ends where the intensity number 18 of 74 should be",
             ),
         ] {
-            assert_eq!(parsed(&text).unwrap_err(), told);
+            assert_eq!(parsed(&text).unwrap_err(), expected);
         }
     }
 }

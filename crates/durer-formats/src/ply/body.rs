@@ -9,7 +9,7 @@ use durer_scene::shape::mesh::MeshData;
 use std::ops::Range;
 
 /// Signals that reading cannot continue; the error has been reported.
-pub(super) struct Stop;
+pub(super) struct ErrorReported;
 
 /// Reader of the rows of all elements.
 pub(super) struct Body<'a, 'r, V> {
@@ -34,7 +34,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         Some(self.mesh)
     }
 
-    fn read_elements(&mut self, elements: &[Element]) -> Result<(), Stop> {
+    fn read_elements(&mut self, elements: &[Element]) -> Result<(), ErrorReported> {
         let mut has_vertices = false;
         // Faces that precede the vertices are skipped and read at the end.
         let mut later: Vec<(&Element, V)> = Vec::new();
@@ -43,7 +43,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
             match &self.bytes[element.name.clone()] {
                 b"vertex" if has_vertices => {
                     self.report.error(element.name.clone(), "a second element `vertex`");
-                    return Err(Stop);
+                    return Err(ErrorReported);
                 }
                 b"vertex" => {
                     self.read_vertices(element)?;
@@ -60,7 +60,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         if !has_vertices {
             let first = elements.first().map_or(0..0, |element| element.name.clone());
             self.report.error(first, "the file has no element `vertex`");
-            return Err(Stop);
+            return Err(ErrorReported);
         }
         self.check_remainder();
         for (element, values) in later {
@@ -79,7 +79,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
     }
 
     /// Reports an element whose rows exceed the rest of the file.
-    fn check_rows(&mut self, element: &Element) -> Result<(), Stop> {
+    fn check_rows(&mut self, element: &Element) -> Result<(), ErrorReported> {
         let sizes = element.properties.iter().map(|p| p.count.map_or(V::fixed_size(p.scalar), |_| None));
         let Some(size) = sizes.sum::<Option<usize>>() else { return Ok(()) };
         let left = self.values.remainder().len();
@@ -92,7 +92,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
             let end = self.bytes.len();
             let here = self.report.span(element.name.clone());
             self.report.error(end..end, message).related = Some((here, "promised here".into()));
-            return Err(Stop);
+            return Err(ErrorReported);
         }
         Ok(())
     }
@@ -105,7 +105,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         element.rows.min((self.values.remainder().len() / row + 1) as u64) as usize
     }
 
-    fn skip_rows(&mut self, element: &Element) -> Result<(), Stop> {
+    fn skip_rows(&mut self, element: &Element) -> Result<(), ErrorReported> {
         // Rows without properties take no bytes, so the header may promise any number of them.
         if element.properties.is_empty() {
             return Ok(());
@@ -118,7 +118,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         Ok(())
     }
 
-    pub fn skip_property(&mut self, element: &Element, row: u64, property: &Property) -> Result<(), Stop> {
+    pub fn skip_property(&mut self, element: &Element, row: u64, property: &Property) -> Result<(), ErrorReported> {
         let count = match property.count {
             Some(_) => self.list_length(element, row, property)?,
             None => 1,
@@ -127,7 +127,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
     }
 
     /// Reads the length of a list, which never exceeds the values that can follow.
-    pub fn list_length(&mut self, element: &Element, row: u64, property: &Property) -> Result<usize, Stop> {
+    pub fn list_length(&mut self, element: &Element, row: u64, property: &Property) -> Result<usize, ErrorReported> {
         let Some(scalar) = property.count else { return Ok(1) };
         let length = self.values.integer(scalar).map_err(|error| self.fail(error, element, row))?;
         let most = self.values.most_left(property.scalar);
@@ -136,17 +136,17 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
             Ok(_) => {
                 let message = format!("the list should have {length} values, but the file ends before");
                 self.report.error(self.values.last(), message);
-                Err(Stop)
+                Err(ErrorReported)
             }
             Err(_) => {
                 self.report.error(self.values.last(), format!("a list cannot have {length} values"));
-                Err(Stop)
+                Err(ErrorReported)
             }
         }
     }
 
     /// Reports a missing or invalid value. The caller must stop, unless it can skip the value.
-    pub fn fail(&mut self, error: ValueError, element: &Element, row: u64) -> Stop {
+    pub fn fail(&mut self, error: ValueError, element: &Element, row: u64) -> ErrorReported {
         let at = self.values.last();
         match error {
             ValueError::End => {
@@ -158,11 +158,11 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
             }
             ValueError::Number(error) => self.wrong_number(error, at),
         }
-        Stop
+        ErrorReported
     }
 
     /// Reports an invalid value and continues, unless the file ended or the report is full.
-    pub fn tolerate(&mut self, error: ValueError, element: &Element, row: u64) -> Result<(), Stop> {
+    pub fn tolerate(&mut self, error: ValueError, element: &Element, row: u64) -> Result<(), ErrorReported> {
         let stop = self.fail(error, element, row);
         if error == ValueError::End || self.report.is_full() { Err(stop) } else { Ok(()) }
     }

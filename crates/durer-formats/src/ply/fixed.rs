@@ -37,11 +37,11 @@ macro_rules! column {
 }
 
 /// Type of a number and its byte offset in a row.
-type Place = (Scalar, usize);
+type NumberLayout = (Scalar, usize);
 
 impl Rows<'_> {
     /// Reads `N` numbers of each row; `None` if one is not finite.
-    fn gather<const N: usize>(&self, places: [Place; N]) -> Option<Vec<[f32; N]>> {
+    fn gather<const N: usize>(&self, places: [NumberLayout; N]) -> Option<Vec<[f32; N]>> {
         let mut all = vec![[0.0; N]; self.bytes.len() / self.size];
         let blocks = all.par_chunks_mut(BLOCK).zip(self.bytes.par_chunks(BLOCK * self.size));
         let sound = blocks.map(|(block, bytes)| {
@@ -52,8 +52,8 @@ impl Rows<'_> {
     }
 
     /// Reads `N` numbers of each row; an empty list if the rows lack one of the columns.
-    fn all<const N: usize>(&self, places: &[Option<Place>]) -> Option<Vec<[f32; N]>> {
-        let places: Option<Vec<Place>> = places.iter().copied().collect();
+    fn all<const N: usize>(&self, places: &[Option<NumberLayout>]) -> Option<Vec<[f32; N]>> {
+        let places: Option<Vec<NumberLayout>> = places.iter().copied().collect();
         match places.and_then(|places| places.try_into().ok()) {
             Some(places) => self.gather::<N>(places),
             None => Some(Vec::new()),
@@ -61,7 +61,7 @@ impl Rows<'_> {
     }
 
     /// Passes one number of each row to `put`; true if all are finite.
-    fn each(&self, (scalar, at): Place, mut put: impl FnMut(usize, f32)) -> bool {
+    fn each(&self, (scalar, at): NumberLayout, mut put: impl FnMut(usize, f32)) -> bool {
         macro_rules! read {
             ($number:ty) => {
                 column!(self, at, $number, |i, number| {
@@ -85,7 +85,7 @@ impl Rows<'_> {
 
     /// Reads three corners of each row, whose list starts at a given place; `None` if a list has
     /// another length or a corner is not below `vertices`.
-    fn triangles(&self, count: Place, corners: Scalar, vertices: usize) -> Option<Vec<[u32; 3]>> {
+    fn triangles(&self, count: NumberLayout, corners: Scalar, vertices: usize) -> Option<Vec<[u32; 3]>> {
         let mut all = vec![[0; 3]; self.bytes.len() / self.size];
         let first = count.1 + count.0.size();
         let blocks = all.par_chunks_mut(BLOCK).zip(self.bytes.par_chunks(BLOCK * self.size));
@@ -103,7 +103,7 @@ impl Rows<'_> {
     }
 
     /// Passes one whole number of each row to `is_good`; true if all are good.
-    fn whole(&self, (scalar, at): Place, mut is_good: impl FnMut(usize, i64) -> bool) -> bool {
+    fn whole(&self, (scalar, at): NumberLayout, mut is_good: impl FnMut(usize, i64) -> bool) -> bool {
         macro_rules! read {
             ($number:ty) => {
                 column!(self, at, $number, |i, number| is_good(i, number.into()))

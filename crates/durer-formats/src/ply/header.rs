@@ -152,7 +152,7 @@ impl<'a> HeaderReader<'a, '_> {
     }
 
     fn unknown<'c>(&mut self, what: &str, at: Range<usize>, known: impl IntoIterator<Item = &'c str>) {
-        let help = did_you_mean(self.text(&at), known).map(|meant| format!("did you mean `{meant}`?"));
+        let help = did_you_mean(self.text(&at), known).map(|suggestion| format!("did you mean `{suggestion}`?"));
         self.report.error(at.clone(), format!("expected {what}, found {}", shown(&self.bytes[at]))).help = help;
     }
 

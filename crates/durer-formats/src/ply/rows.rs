@@ -1,6 +1,6 @@
 //! Vertices, faces and triangle strips of a PLY file.
 
-use super::body::{Body, Stop};
+use super::body::{Body, ErrorReported};
 use super::header::{Element, Property};
 use super::values::{ValueError, Values};
 use crate::number::NumberError;
@@ -46,7 +46,7 @@ const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 impl<V: Values> Body<'_, '_, V> {
     /// Column of a [`Row`] for each property; `None` if it is not read.
-    fn columns(&mut self, element: &Element) -> Result<Vec<Option<usize>>, Stop> {
+    fn columns(&mut self, element: &Element) -> Result<Vec<Option<usize>>, ErrorReported> {
         let mut columns = vec![None; element.properties.len()];
         let mut found: [Option<usize>; COLUMNS.len()] = [None; COLUMNS.len()];
         for (i, property) in element.properties.iter().enumerate() {
@@ -76,10 +76,10 @@ impl<V: Values> Body<'_, '_, V> {
         for (names, _) in COLUMNS[..3].iter().zip(found).filter(|(_, found)| found.is_none()) {
             self.report.error(element.name.clone(), format!("the vertices have no property `{}`", names[0]));
         }
-        if self.report.has_errors() { Err(Stop) } else { Ok(columns) }
+        if self.report.has_errors() { Err(ErrorReported) } else { Ok(columns) }
     }
 
-    pub(super) fn read_vertices(&mut self, element: &Element) -> Result<(), Stop> {
+    pub(super) fn read_vertices(&mut self, element: &Element) -> Result<(), ErrorReported> {
         let columns = self.columns(element)?;
         if self.fixed_vertices(element, &columns).is_some() {
             return Ok(());
@@ -141,7 +141,7 @@ impl<V: Values> Body<'_, '_, V> {
     }
 
     /// Reads faces or triangle strips, depending on the element's name.
-    pub(super) fn read_faces(&mut self, element: &Element) -> Result<(), Stop> {
+    pub(super) fn read_faces(&mut self, element: &Element) -> Result<(), ErrorReported> {
         if element.rows == 0 {
             return Ok(());
         }
@@ -172,7 +172,7 @@ impl<V: Values> Body<'_, '_, V> {
     }
 
     /// Index of the property that lists the corners.
-    fn corner_list(&mut self, element: &Element) -> Result<usize, Stop> {
+    fn corner_list(&mut self, element: &Element) -> Result<usize, ErrorReported> {
         let named = |i: &usize| {
             CORNER_LISTS.iter().any(|list| list.as_bytes() == &self.bytes[element.properties[*i].name.clone()])
         };
@@ -184,18 +184,18 @@ impl<V: Values> Body<'_, '_, V> {
             let message =
                 format!("the element {} has no list `vertex_indices`", shown(&self.bytes[element.name.clone()]));
             self.report.error(near.map_or(element.name.clone(), |p| p.name.clone()), message).help = help;
-            return Err(Stop);
+            return Err(ErrorReported);
         };
         let property = &element.properties[list];
         if property.count.is_none() || !property.scalar.is_integer() {
             self.report.error(property.name.clone(), "the corners must be a list of an integer type");
-            return Err(Stop);
+            return Err(ErrorReported);
         }
         Ok(list)
     }
 
     /// Reads one list of corners; `false` if one is invalid.
-    fn read_corners(&mut self, element: &Element, row: u64, list: usize, strips: bool) -> Result<bool, Stop> {
+    fn read_corners(&mut self, element: &Element, row: u64, list: usize, strips: bool) -> Result<bool, ErrorReported> {
         let property = &element.properties[list];
         let length = self.list_length(element, row, property)?;
         let length_at = self.values.last();
@@ -213,7 +213,7 @@ impl<V: Values> Body<'_, '_, V> {
                     let message = format!("vertex {index} does not exist: the file has {has}, counted from 0");
                     self.report.error(self.values.last(), message);
                     if self.report.is_full() {
-                        return Err(Stop);
+                        return Err(ErrorReported);
                     }
                 }
                 Err(error) => {
@@ -224,19 +224,19 @@ impl<V: Values> Body<'_, '_, V> {
         }
         if length < 3 && !strips {
             self.report.error(length_at, format!("a face needs at least 3 corners, found {length}"));
-            return if self.report.is_full() { Err(Stop) } else { Ok(false) };
+            return if self.report.is_full() { Err(ErrorReported) } else { Ok(false) };
         }
         Ok(all_good)
     }
 
-    fn cut_face(&mut self) -> Result<(), Stop> {
+    fn cut_face(&mut self) -> Result<(), ErrorReported> {
         let (corners, positions, triangles) = (&self.corners, &self.mesh.positions, &mut self.mesh.triangles);
         let position = |i: usize| positions[corners[i] as usize];
         let cut = self.cutter.cut(corners.len(), position, |triangle| triangles.push(triangle.map(|i| corners[i])));
         cut.map_err(|_| {
             let message = format!("a face of {} corners is too complex to triangulate", self.corners.len());
             self.report.error(self.values.last(), message).help = Some("triangulate it in a modelling program".into());
-            Stop
+            ErrorReported
         })
     }
 

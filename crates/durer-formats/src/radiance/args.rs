@@ -1,14 +1,14 @@
 //! A primitive of a scene file: its modifier, type, name and arguments.
 
 use super::words::{Word, Words};
-use crate::said::Said;
+use crate::shared_report::SharedReport;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::math::Vec3;
 use glam::DVec3;
 
 /// A primitive as stored in the file.
 #[derive(Debug)]
-pub(super) struct Thing {
+pub(super) struct RadPrimitive {
     pub modifier: Word,
     pub kind: Word,
     pub name: Word,
@@ -16,35 +16,35 @@ pub(super) struct Thing {
     pub numbers: Vec<f64>,
 }
 
-impl Thing {
+impl RadPrimitive {
     /// Reads a primitive after its first word. `None` after an error, since the position of the
     /// next primitive is unknown.
-    pub fn read(modifier: Word, words: &mut Words, said: &Said) -> Option<Thing> {
+    pub fn read(modifier: Word, words: &mut Words, report: &SharedReport) -> Option<RadPrimitive> {
         let start = modifier.at;
         let mut next = || {
             let word = words.next();
             if word.is_none() {
                 let error = Diagnostic::error("the file ends within this primitive").code("incomplete");
-                said.push(error.at(start.to(words.end())));
+                report.push(error.at(start.to(words.end())));
             }
             word
         };
         let (kind, name) = (next()?, next()?);
         if kind.text == "alias" {
-            return Some(Thing { modifier, kind, name, texts: vec![next()?], numbers: Vec::new() });
+            return Some(RadPrimitive { modifier, kind, name, texts: vec![next()?], numbers: Vec::new() });
         }
-        let texts = (0..next()?.count(said)?).map(|_| next()).collect::<Option<_>>()?;
+        let texts = (0..next()?.count(report)?).map(|_| next()).collect::<Option<_>>()?;
         let wholes = next()?;
-        if wholes.count(said)? != 0 {
-            said.bad(wholes.at, "primitives have no integer arguments: this must be 0");
+        if wholes.count(report)? != 0 {
+            report.bad(wholes.at, "primitives have no integer arguments: this must be 0");
             return None;
         }
-        let count = next()?.count(said)?;
+        let count = next()?.count(report)?;
         let mut numbers = Vec::new();
         for _ in 0..count {
-            numbers.push(next()?.number(said)?);
+            numbers.push(next()?.number(report)?);
         }
-        Some(Thing { modifier, kind, name, texts, numbers })
+        Some(RadPrimitive { modifier, kind, name, texts, numbers })
     }
 
     /// Span of the type and the name.
@@ -53,13 +53,13 @@ impl Thing {
     }
 
     /// Returns true if the number of real arguments is one of `counts`; reports an error otherwise.
-    pub fn has(&self, counts: &[usize], said: &Said) -> bool {
+    pub fn has(&self, counts: &[usize], report: &SharedReport) -> bool {
         let right = counts.contains(&self.numbers.len());
         if !right {
             let counts = counts.iter().map(usize::to_string).collect::<Vec<_>>().join(" or ");
             let message =
                 format!("a {} needs {counts} numbers, but this one has {}", self.kind.text, self.numbers.len());
-            said.bad(self.at(), message);
+            report.bad(self.at(), message);
         }
         right
     }

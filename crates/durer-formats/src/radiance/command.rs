@@ -3,7 +3,7 @@
 
 use super::body::Facets;
 use super::gensky;
-use super::place::Place;
+use super::place::PrimitiveContext;
 use super::state::Reader;
 use super::words::{Word, Words};
 use super::xform::Transform;
@@ -13,11 +13,11 @@ use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
 /// Transforms and settings, one for each copy of a command's output.
-type Places = Vec<Place>;
+type Places = Vec<PrimitiveContext>;
 
 impl Reader<'_> {
     /// Executes a command.
-    pub(super) fn command(&mut self, mut words: Words, place: &Place) {
+    pub(super) fn command(&mut self, mut words: Words, place: &PrimitiveContext) {
         let mut stages: Vec<Vec<Word>> = vec![Vec::new()];
         while let Some(word) = words.next() {
             match word.text.as_str() {
@@ -29,7 +29,7 @@ impl Reader<'_> {
             let what =
                 if stages.len() == 1 { "a command is missing after `!`" } else { "a command is missing beside `|`" };
             let at = stages.iter().skip(empty).flatten().next().map_or(words.end(), |word| word.at);
-            return self.said.bad(at, what);
+            return self.report.bad(at, what);
         }
         // The output passes the last stage last, so its transform is the outermost.
         let mut places = vec![place.clone()];
@@ -39,7 +39,7 @@ impl Reader<'_> {
             }
             let Some((next, files, _)) = xform(self, &stage[1..], &places) else { return };
             if let Some(file) = files.first() {
-                return self.said.bad(file.at, "`xform` after a `|` reads the piped text and takes no files");
+                return self.report.bad(file.at, "`xform` after a `|` reads the piped text and takes no files");
             }
             places = next;
         }
@@ -48,7 +48,7 @@ impl Reader<'_> {
             "xform" => {
                 let Some((places, files, beside)) = xform(self, args, &places) else { return };
                 if files.is_empty() {
-                    self.said.bad(name.at, "`xform` needs a file here");
+                    self.report.bad(name.at, "`xform` needs a file here");
                 }
                 places.iter().for_each(|place| files.iter().for_each(|file| self.file(file, place, beside)));
             }
@@ -62,7 +62,7 @@ impl Reader<'_> {
                 build(self, facets, args, &places);
             }
             "gensky" => {
-                let Some(text) = gensky::text(self.said, name, args) else { return };
+                let Some(text) = gensky::text(self.report, name, args) else { return };
                 let bytes: Arc<[u8]> = text.into_bytes().into();
                 let file = self.input.files.borrow_mut().add("output of gensky", bytes.clone());
                 places.iter().for_each(|place| self.text(&bytes, file, place));
@@ -80,17 +80,17 @@ fn refuse(reader: &Reader, name: &Word) {
         name.text
     );
     let error = Diagnostic::error(format!("the command {} is not supported", name.shown())).code("no-command");
-    reader.said.push(Diagnostic { help: Some(help), ..error.at(name.at) });
+    reader.report.push(Diagnostic { help: Some(help), ..error.at(name.at) });
 }
 
 /// Applies an `xform` to outer places; returns the new places, the files that it names, and whether
 /// commands in these files run in the files' own folders.
-fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[Place]) -> Option<(Places, &'w [Word], bool)> {
+fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[PrimitiveContext]) -> Option<(Places, &'w [Word], bool)> {
     let (mut transform, mut modifier, mut inverted) = (Transform::default(), None, false);
     let mut beside = true;
     let mut rest = words;
     while let Some(option) = rest.first().filter(|word| word.text.starts_with('-')) {
-        if transform.option(&mut rest, reader.said) {
+        if transform.option(&mut rest, reader.report) {
             continue;
         }
         let takes = match option.text.as_str() {
@@ -105,13 +105,13 @@ fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[Place]) -> Option<(Pla
                 0
             }
             _ => {
-                reader.said.bad(option.at, format!("`xform` has no option {}", option.shown()));
+                reader.report.bad(option.at, format!("`xform` has no option {}", option.shown()));
                 return None;
             }
         };
         if rest.len() <= takes {
             let needs = if takes == 1 { "needs a name" } else { "needs a file after it" };
-            reader.said.bad(option.at, format!("{} {needs}", option.shown()));
+            reader.report.bad(option.at, format!("{} {needs}", option.shown()));
             return None;
         }
         if option.text == "-m" {
@@ -120,10 +120,10 @@ fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[Place]) -> Option<(Pla
         rest = &rest[1 + takes..];
     }
     let Some(maps) = transform.places().filter(|maps| maps.len().saturating_mul(outer.len()) <= 1 << 20) else {
-        reader.said.bad(words[0].at, "these arrays make too many copies");
+        reader.report.bad(words[0].at, "these arrays make too many copies");
         return None;
     };
-    let place = |outer: &Place, map: &DAffine3| Place {
+    let place = |outer: &PrimitiveContext, map: &DAffine3| PrimitiveContext {
         map: outer.map * *map,
         modifier: outer.modifier.clone().or_else(|| modifier.clone()),
         inverted: outer.inverted != inverted,
@@ -133,7 +133,7 @@ fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[Place]) -> Option<(Pla
 }
 
 /// Adds polygons with the material of a generator's first argument.
-fn build(reader: &mut Reader, facets: Option<Facets>, args: &[Word], places: &[Place]) {
+fn build(reader: &mut Reader, facets: Option<Facets>, args: &[Word], places: &[PrimitiveContext]) {
     let Some(facets) = facets else { return };
     for place in places {
         let modifier = place.modifier.as_ref().unwrap_or(&args[0]);
@@ -145,12 +145,12 @@ fn build(reader: &mut Reader, facets: Option<Facets>, args: &[Word], places: &[P
 
 /// Reads the first `count` arguments of a generator as numbers.
 fn numbers(reader: &Reader, args: &[Word], count: usize) -> Option<Vec<f64>> {
-    args[..count].iter().map(|word| word.number(reader.said)).collect()
+    args[..count].iter().map(|word| word.number(reader.report)).collect()
 }
 
 fn genbox(reader: &Reader, name: &Word, args: &[Word]) -> Option<Facets> {
     if args.len() < 5 {
-        reader.said.bad(name.at, "`genbox` needs a material, a name and three sizes");
+        reader.report.bad(name.at, "`genbox` needs a material, a name and three sizes");
         return None;
     }
     let size = numbers(reader, &args[2..], 3)?;
@@ -163,13 +163,13 @@ fn genbox(reader: &Reader, name: &Word, args: &[Word]) -> Option<Facets> {
             "-o" => {}
             "-b" | "-r" | "-n" => {
                 reader
-                    .said
+                    .report
                     .once(option.at, "bevelled and rounded edges of `genbox` have no counterpart: they are sharp");
                 rest = rest.get(1..).unwrap_or_default();
             }
             "-s" => {}
             _ => {
-                reader.said.bad(option.at, format!("`genbox` has no option {}", option.shown()));
+                reader.report.bad(option.at, format!("`genbox` has no option {}", option.shown()));
                 return None;
             }
         }
@@ -194,9 +194,9 @@ fn turned(mut corners: Vec<DVec3>, other: bool) -> Vec<DVec3> {
     corners
 }
 
-fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &Place) -> Option<Facets> {
+fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &PrimitiveContext) -> Option<Facets> {
     if args.len() < 3 {
-        reader.said.bad(name.at, "`genprism` needs a material, a name and the corners of its base");
+        reader.report.bad(name.at, "`genprism` needs a material, a name and the corners of its base");
         return None;
     }
     let (corners, mut rest) = match args[2].text.parse::<usize>() {
@@ -204,7 +204,7 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &Place) -> O
             (numbers(reader, &args[3..], 2 * count)?, &args[3 + 2 * count..])
         }
         Ok(_) => {
-            reader.said.bad(args[2].at, "the base needs at least 3 corners of two numbers each");
+            reader.report.bad(args[2].at, "the base needs at least 3 corners of two numbers each");
             return None;
         }
         Err(_) => {
@@ -212,11 +212,11 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &Place) -> O
             let mut words = Words::new(&bytes, file, 0..bytes.len());
             let mut list = Vec::new();
             while let Some(word) = words.next() {
-                list.push(word.number(reader.said)?);
+                list.push(word.number(reader.report)?);
             }
             if list.len() < 6 || list.len() % 2 != 0 {
-                let told = shown(args[2].text.as_bytes());
-                reader.said.bad(args[2].at, format!("{told} needs pairs of numbers for at least 3 corners")); // prose: keep
+                let messages = shown(args[2].text.as_bytes());
+                reader.report.bad(args[2].at, format!("{messages} needs pairs of numbers for at least 3 corners")); // prose: keep
                 return None;
             }
             (list, &args[3..])
@@ -233,11 +233,11 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &Place) -> O
             "-c" => closed = false,
             "-e" => ends = false,
             "-r" if !more.is_empty() => {
-                reader.said.once(option.at, "rounded edges of `genprism` have no counterpart: they are sharp");
+                reader.report.once(option.at, "rounded edges of `genprism` have no counterpart: they are sharp");
                 rest = &more[1..];
             }
             _ => {
-                reader.said.bad(
+                reader.report.bad(
                     option.at,
                     format!("`genprism` has no option {}, or its arguments are missing", option.shown()),
                 );

@@ -1,7 +1,7 @@
 //! Data files: tables of numbers over one or more coordinates.
 
 use super::words::{Start, Words};
-use crate::said::Said;
+use crate::shared_report::SharedReport;
 
 /// Maximum number of coordinates.
 const MOST_DIMENSIONS: usize = 8;
@@ -16,7 +16,7 @@ pub(super) struct Table {
 
 impl Table {
     /// Reads a data file.
-    pub fn read(bytes: &[u8], file: u32, said: &Said) -> Option<Table> {
+    pub fn read(bytes: &[u8], file: u32, report: &SharedReport) -> Option<Table> {
         let mut words = Words::new(bytes, file, 0..bytes.len());
         let end = words.end();
         let mut next = || {
@@ -25,35 +25,35 @@ impl Table {
                 _ => None,
             };
             if word.is_none() {
-                said.bad(end, "the table ends before its last number");
+                report.bad(end, "the table ends before its last number");
             }
             word
         };
         let first = next()?;
-        let dimensions = first.count(said)?;
+        let dimensions = first.count(report)?;
         if !(1..=MOST_DIMENSIONS).contains(&dimensions) {
-            said.bad(first.at, "a table has 1 to 8 coordinates");
+            report.bad(first.at, "a table has 1 to 8 coordinates");
             return None;
         }
         let mut axes = Vec::new();
         let mut total: usize = 1;
         for _ in 0..dimensions {
-            let (from, to, count) = (next()?.number(said)?, next()?.number(said)?, next()?);
-            let places = count.count(said)?;
+            let (from, to, count) = (next()?.number(report)?, next()?.number(report)?, next()?);
+            let places = count.count(report)?;
             total = total.saturating_mul(places);
             if places == 0 || total > bytes.len() {
-                said.bad(count.at, format!("the file is too short for {places} values of this coordinate"));
+                report.bad(count.at, format!("the file is too short for {places} values of this coordinate"));
                 return None;
             }
             axes.push(match from == to {
-                true => (0..places).map(|_| next()?.number(said)).collect::<Option<_>>()?,
+                true => (0..places).map(|_| next()?.number(report)).collect::<Option<_>>()?,
                 false => {
                     let step = (to - from) / (places.max(2) - 1) as f64;
                     (0..places).map(|i| from + step * i as f64).collect()
                 }
             });
         }
-        let values = (0..total).map(|_| next()?.number(said)).collect::<Option<_>>()?;
+        let values = (0..total).map(|_| next()?.number(report)).collect::<Option<_>>()?;
         Some(Table { axes, values })
     }
 

@@ -8,7 +8,7 @@
 //! compare with the output of Radiance 6.0's own program.
 
 use super::words::Word;
-use crate::said::Said;
+use crate::shared_report::SharedReport;
 use durer_scene::math::fp;
 use durer_scene::texture::almanac::{self, Moment};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
@@ -28,7 +28,7 @@ enum Kind {
 }
 
 /// Parsed arguments. Angles are in degrees, radiances in W/(sr m²).
-struct Asked {
+struct SkyArgs {
     kind: Kind,
     sunny: bool,
     latitude: f64,
@@ -77,14 +77,14 @@ const ZONES: [(&str, f64); 28] = [
 ];
 
 /// Returns the text that `gensky` prints; `None` after reporting an error.
-pub(super) fn text(said: &Said, name: &Word, args: &[Word]) -> Option<String> {
+pub(super) fn text(report: &SharedReport, name: &Word, args: &[Word]) -> Option<String> {
     let by_angles = args.first().is_some_and(|word| word.text == "-ang");
     let fixed = 3;
     if args.len() < fixed {
-        said.bad(name.at, "`gensky` needs month, day and hour, or `-ang` with altitude and azimuth");
+        report.bad(name.at, "`gensky` needs month, day and hour, or `-ang` with altitude and azimuth");
         return None;
     }
-    let mut asked = Asked {
+    let mut sky = SkyArgs {
         kind: Kind::Clear,
         sunny: true,
         latitude: 37.815_214,
@@ -98,16 +98,16 @@ pub(super) fn text(said: &Said, name: &Word, args: &[Word]) -> Option<String> {
         sun: None,
         sun_horizontal: None,
     };
-    asked.options(said, &args[fixed..])?;
+    sky.options(report, &args[fixed..])?;
     let [altitude, azimuth] = match by_angles {
-        true => [args[1].number(said)?, args[2].number(said)?],
-        false => asked.sun_by_clock(said, &args[..fixed])?,
+        true => [args[1].number(report)?, args[2].number(report)?],
+        false => sky.sun_by_clock(report, &args[..fixed])?,
     };
-    Some(asked.print(altitude, azimuth))
+    Some(sky.print(altitude, azimuth))
 }
 
-impl Asked {
-    fn options(&mut self, said: &Said, mut rest: &[Word]) -> Option<()> {
+impl SkyArgs {
+    fn options(&mut self, report: &SharedReport, mut rest: &[Word]) -> Option<()> {
         while let Some((option, more)) = rest.split_first() {
             rest = more;
             match option.text.as_str() {
@@ -117,10 +117,10 @@ impl Asked {
                 "-u" => (self.kind, self.sunny) = (Kind::Uniform, false),
                 "-y" | "-g" | "-t" | "-b" | "-B" | "-r" | "-R" | "-a" | "-o" | "-m" => {
                     let Some((value, more)) = more.split_first() else {
-                        said.bad(option.at, format!("{} needs a number", option.shown()));
+                        report.bad(option.at, format!("{} needs a number", option.shown()));
                         return None;
                     };
-                    let number = value.number(said)?;
+                    let number = value.number(report)?;
                     rest = more;
                     match option.text.as_str() {
                         "-y" => self.year = Some(number.clamp(1.0, 9999.0) as i32),
@@ -136,7 +136,7 @@ impl Asked {
                     }
                 }
                 _ => {
-                    said.bad(option.at, format!("`gensky` has no option {}", option.shown()));
+                    report.bad(option.at, format!("`gensky` has no option {}", option.shown()));
                     return None;
                 }
             }
@@ -146,18 +146,18 @@ impl Asked {
 
     /// Altitude and azimuth of the sun in degrees, by month, day and hour. The azimuth grows from
     /// south to west.
-    fn sun_by_clock(&mut self, said: &Said, args: &[Word]) -> Option<[f64; 2]> {
+    fn sun_by_clock(&mut self, report: &SharedReport, args: &[Word]) -> Option<[f64; 2]> {
         let whole = |word: &Word, most: f64, what: &str| {
-            let number = word.number(said)?;
+            let number = word.number(report)?;
             if !(1.0..=most).contains(&number) {
-                said.bad(word.at, format!("the {what} must be from 1 to {most}"));
+                report.bad(word.at, format!("the {what} must be from 1 to {most}"));
                 return None;
             }
             Some(number as i32)
         };
         let month = whole(&args[0], 12.0, "month")?;
         let day = whole(&args[1], 31.0, "day")?;
-        let (hours, is_solar) = self.hour(said, &args[2])?;
+        let (hours, is_solar) = self.hour(report, &args[2])?;
         // Without a year, the formulas use an average year.
         const BEFORE: [i32; 12] = [0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 304, 334];
         let date = f64::from(BEFORE[month as usize - 1] + day);
@@ -178,10 +178,10 @@ impl Asked {
     }
 
     /// Hours of the day from 14.5, 14:30 or 14:30EST; the flag is true for solar time (+14.5).
-    fn hour(&mut self, said: &Said, word: &Word) -> Option<(f64, bool)> {
+    fn hour(&mut self, report: &SharedReport, word: &Word) -> Option<(f64, bool)> {
         let wrong = || {
             let what = "the hour must be of the form 14.5, 14:30, 14:30EST or, in solar time, +14.5";
-            said.bad(word.at, what);
+            report.bad(word.at, what);
         };
         let (solar, text) = match word.text.strip_prefix('+') {
             Some(text) => (true, text),
@@ -192,7 +192,7 @@ impl Asked {
         if !zone.is_empty() {
             let Some((_, meridian)) = ZONES.iter().find(|(name, _)| *name == zone) else {
                 let known = ZONES.map(|(name, _)| name).join(" ");
-                said.bad(word.at, format!("unknown time zone in {}: known are {known}", word.shown()));
+                report.bad(word.at, format!("unknown time zone in {}: known are {known}", word.shown()));
                 return None;
             };
             self.meridian = *meridian;

@@ -4,8 +4,8 @@
 //! 1992, whose roughness is the mean slope of the surface, like GGX's alpha. Alpha is the square of
 //! OpenPBR's roughness.
 
-use super::args::Thing;
-use super::made::{Below, Kind, Made};
+use super::args::RadPrimitive;
+use super::converted::{ConvertedModifier, Kind, PatternEffect};
 use super::spread::Spread;
 use super::state::Reader;
 use durer_diag::Span;
@@ -104,7 +104,7 @@ fn body(left: Color, index: f32) -> PrincipledMaterial {
 }
 
 /// A black emitter.
-fn shining(radiance: Color) -> PrincipledMaterial {
+fn emissive(radiance: Color) -> PrincipledMaterial {
     let most = radiance.max_element();
     let emission_color = if most > 0.0 { radiance / most } else { Vec3::ONE };
     PrincipledMaterial { emission_luminance: most, emission_color, ..matte(Vec3::ZERO) }
@@ -117,8 +117,8 @@ impl Reader<'_> {
     }
 
     /// Converts a material below the patterns that modify it.
-    pub fn material(&mut self, number: usize, thing: &Thing, above: &Below) -> Made {
-        let (kind, at, said) = (thing.kind.text.as_str(), thing.at(), self.said);
+    pub fn material(&mut self, number: usize, primitive: &RadPrimitive, above: &PatternEffect) -> ConvertedModifier {
+        let (kind, at, report) = (primitive.kind.text.as_str(), primitive.at(), self.report);
         let counts: &[usize] = match kind {
             "plastic" | "metal" | "dielectric" => &[5],
             "plastic2" | "metal2" => &[6],
@@ -131,17 +131,17 @@ impl Reader<'_> {
             "mist" => &[0, 3, 6, 7],
             _ => &[],
         };
-        if !counts.is_empty() && !thing.has(counts, said) {
-            return Made::nothing();
+        if !counts.is_empty() && !primitive.has(counts, report) {
+            return ConvertedModifier::nothing();
         }
-        let value = |i: usize| thing.number(i).unwrap_or(0.0).max(0.0);
+        let value = |i: usize| primitive.number(i).unwrap_or(0.0).max(0.0);
         let both = |i: usize| [value(i); 2];
-        let color = thing.color(0) * above.tint;
-        let instead = |what: &str| said.once(at, format!("`{kind}` has no counterpart: {what}"));
+        let color = primitive.color(0) * above.tint;
+        let instead = |what: &str| report.once(at, format!("`{kind}` has no counterpart: {what}"));
         if matches!(kind, "plastic" | "plastic2") && value(3) > 0.0 {
             let roughness = if kind == "plastic" { both(4) } else { [value(4), value(5)] };
             if roughness[0] != roughness[1] {
-                said.once(at, TURNED);
+                report.once(at, TURNED);
             }
             if roughness != [0.0; 2] {
                 return self.rough_plastic(color, value(3).min(1.0), roughness, at);
@@ -157,7 +157,7 @@ impl Reader<'_> {
             "ashik2" => {
                 // A cosine power of the half vector corresponds to the slope sqrt(2 / (power + 2)).
                 let slope = |power: f32| (2.0 / (power + 2.0)).sqrt();
-                let specular = thing.color(3);
+                let specular = primitive.color(3);
                 plastic(color, specular.element_sum() / 3.0, [slope(value(6)), slope(value(7))])
             }
             "plasfunc" | "plasdata" => {
@@ -184,27 +184,37 @@ impl Reader<'_> {
                 instead("a clear sheet without deflection is used");
                 sheet(Vec3::ONE, 1.0)
             }
-            "mirror" if thing.texts.is_empty() => metal(color, 1.0, [0.0; 2]),
-            "glass" => sheet(color, thing.number(3).unwrap_or(1.52)),
+            "mirror" if primitive.texts.is_empty() => metal(color, 1.0, [0.0; 2]),
+            "glass" => sheet(color, primitive.number(3).unwrap_or(1.52)),
             "dielectric" => {
-                if thing.number(4) != Some(0.0) {
-                    said.once(at, "Hartmann's constant has no counterpart: dispersion is left out");
+                if primitive.number(4) != Some(0.0) {
+                    report.once(at, "Hartmann's constant has no counterpart: dispersion is left out");
                 }
                 let inside = self.add_material(body(color, value(3)), at);
                 let bubble = self.add_material(body(Vec3::ONE, 1.0), at);
-                return Made { number: Some(inside), kind: Kind::Glass { outside: Some(bubble) }, ..Made::nothing() };
+                return ConvertedModifier {
+                    number: Some(inside),
+                    kind: Kind::Glass { outside: Some(bubble) },
+                    ..ConvertedModifier::nothing()
+                };
             }
             "interface" => {
                 let inside = self.add_material(body(color, value(3)), at);
-                let outside = self.add_material(body(thing.color(4), value(7)), at);
-                return Made { number: Some(inside), kind: Kind::Glass { outside: Some(outside) }, ..Made::nothing() };
+                let outside = self.add_material(body(primitive.color(4), value(7)), at);
+                return ConvertedModifier {
+                    number: Some(inside),
+                    kind: Kind::Glass { outside: Some(outside) },
+                    ..ConvertedModifier::nothing()
+                };
             }
-            "mist" => return self.mist(thing),
+            "mist" => return self.mist(primitive),
             "antimatter" => {
                 instead("it is left out and removes nothing");
-                return Made::nothing();
+                return ConvertedModifier::nothing();
             }
-            "illum" | "mirror" if thing.texts.first().is_some_and(|name| kind == "mirror" || name.text != "void") => {
+            "illum" | "mirror"
+                if primitive.texts.first().is_some_and(|name| kind == "mirror" || name.text != "void") =>
+            {
                 instead(match kind {
                     "illum" => "its substitute is used, which transmits light itself",
                     _ => "its substitute is used, which does not mirror lights",
@@ -213,65 +223,71 @@ impl Reader<'_> {
                 return match other {
                     Some(other) => {
                         let made = self.made(other);
-                        Made { number: made.number, ..Made::nothing() }
+                        ConvertedModifier { number: made.number, ..ConvertedModifier::nothing() }
                     }
-                    None => Made::nothing(),
+                    None => ConvertedModifier::nothing(),
                 };
             }
             "light" | "glow" | "illum" => {
                 if kind == "illum" {
                     instead("it becomes a visible emitter");
                 }
-                if kind == "glow" && thing.number(3).is_some_and(|reach| reach != 0.0) {
-                    said.once(
+                if kind == "glow" && primitive.number(3).is_some_and(|reach| reach != 0.0) {
+                    report.once(
                         at,
                         "the maximum radius of a `glow` has no counterpart: it illuminates surfaces at any distance",
                     );
                 }
                 if let Some(spread) = above.spread.clone() {
-                    return Made { kind: Kind::Aimed { radiance: color, spread, at }, ..Made::nothing() };
+                    return ConvertedModifier {
+                        kind: Kind::Aimed { radiance: color, spread, at },
+                        ..ConvertedModifier::nothing()
+                    };
                 }
-                let number = Some(self.add_material(shining(color), at));
-                let patterns = Below { sky: above.sky.clone(), ..Below::default() };
-                return Made { number, kind: Kind::Shining { radiance: color }, patterns };
+                let number = Some(self.add_material(emissive(color), at));
+                let patterns = PatternEffect { sky: above.sky.clone(), ..PatternEffect::default() };
+                return ConvertedModifier { number, kind: Kind::Shining { radiance: color }, patterns };
             }
             "spotlight" => {
-                let focus = self.modifiers[number].map.transform_vector3(thing.point(4));
+                let focus = self.modifiers[number].map.transform_vector3(primitive.point(4));
                 let direction = focus.normalize_or_zero();
                 if direction == glam::DVec3::ZERO {
-                    said.bad(at, "a spotlight needs a direction");
+                    report.bad(at, "a spotlight needs a direction");
                 }
                 let degrees = f64::from(0.5 * value(3).clamp(0.01, 360.0));
                 let spread = Spread::Cone { aim: direction, degrees, focus: focus.length() }.into();
-                return Made { kind: Kind::Aimed { radiance: color, spread, at }, ..Made::nothing() };
+                return ConvertedModifier {
+                    kind: Kind::Aimed { radiance: color, spread, at },
+                    ..ConvertedModifier::nothing()
+                };
             }
             _ => matte(color),
         };
         if matches!(kind, "plastic2" | "metal2" | "trans2" | "ashik2") && m.specular_anisotropy > 0.0 {
-            said.once(at, TURNED);
+            report.once(at, TURNED);
         }
-        Made { number: Some(self.add_material(m, at)), ..Made::nothing() }
+        ConvertedModifier { number: Some(self.add_material(m, at)), ..ConvertedModifier::nothing() }
     }
 
     /// Converts rough plastic: a white highlight with the same reflectance in all directions, and a
     /// matte rest. Only smooth plastic reflects more at grazing angles.
-    fn rough_plastic(&mut self, color: Color, share: f32, roughness: [f32; 2], at: Span) -> Made {
+    fn rough_plastic(&mut self, color: Color, share: f32, roughness: [f32; 2], at: Span) -> ConvertedModifier {
         let material1 = self.add_material(metal(Vec3::ONE, 1.0, roughness), at);
         let material2 = self.add_material(matte(color), at);
         let mix = Material::Solid(Mix { material1, material2, share, share_texture: None }.into(), Vec::new());
         self.scene.materials.push(Spanned { value: mix, span: at });
-        Made { number: Some((self.scene.materials.len() - 1) as u32), ..Made::nothing() }
+        ConvertedModifier { number: Some((self.scene.materials.len() - 1) as u32), ..ConvertedModifier::nothing() }
     }
 
     /// Mist fills a body without refraction.
-    fn mist(&mut self, thing: &Thing) -> Made {
-        let extinction = thing.color(0);
+    fn mist(&mut self, primitive: &RadPrimitive) -> ConvertedModifier {
+        let extinction = primitive.color(0);
         let most = extinction.max_element();
-        if thing.numbers.is_empty() || most <= 0.0 {
-            return Made::nothing();
+        if primitive.numbers.is_empty() || most <= 0.0 {
+            return ConvertedModifier::nothing();
         }
-        let albedo = if thing.numbers.len() >= 6 { thing.color(3).min(Vec3::ONE) } else { Vec3::ZERO };
-        let anisotropy = thing.number(6).unwrap_or(0.0).clamp(-0.99, 0.99);
+        let albedo = if primitive.numbers.len() >= 6 { primitive.color(3).min(Vec3::ONE) } else { Vec3::ZERO };
+        let anisotropy = primitive.number(6).unwrap_or(0.0).clamp(-0.99, 0.99);
         let depth = 1.0 / most;
         let m = PrincipledMaterial {
             transmission_depth: depth,
@@ -280,13 +296,13 @@ impl Reader<'_> {
             transmission_scatter_anisotropy: anisotropy,
             ..body(Vec3::ONE, 1.0)
         };
-        let number = self.add_material(m, thing.at());
+        let number = self.add_material(m, primitive.at());
         // Fog attenuates all colours alike, by the luminance.
         let mean = extinction.dot(LUMINANCE);
         let color = (albedo * extinction / mean).min(Vec3::ONE);
         self.mists.insert(number, Fog { extinction: mean, color, anisotropy, ..Fog::default() });
         let number = Some(number);
-        Made { number, kind: Kind::Glass { outside: None }, ..Made::nothing() }
+        ConvertedModifier { number, kind: Kind::Glass { outside: None }, ..ConvertedModifier::nothing() }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Mixtures of two materials.
 
-use super::args::Thing;
-use super::made::{Below, Kind, Made};
+use super::args::RadPrimitive;
+use super::converted::{ConvertedModifier, Kind, PatternEffect};
 use super::state::Reader;
 use crate::number::parse_f32;
 use durer_scene::material::Solid;
@@ -11,22 +11,22 @@ use std::collections::BTreeMap;
 
 impl Reader<'_> {
     /// Converts a mixture; its proportion is constant.
-    pub fn mixture(&mut self, number: usize, thing: &Thing, patterns: &Below) -> Made {
-        let (at, kind) = (thing.at(), thing.kind.text.as_str());
-        if thing.texts.len() < 4 {
-            self.said.bad(at, format!("a `{kind}` needs two modifiers and a mixing function"));
-            return Made::nothing();
+    pub fn mixture(&mut self, number: usize, primitive: &RadPrimitive, patterns: &PatternEffect) -> ConvertedModifier {
+        let (at, kind) = (primitive.at(), primitive.kind.text.as_str());
+        if primitive.texts.len() < 4 {
+            self.report.bad(at, format!("a `{kind}` needs two modifiers and a mixing function"));
+            return ConvertedModifier::nothing();
         }
-        let constant = parse_f32(thing.texts[2].text.as_bytes()).ok().filter(|_| kind == "mixfunc");
+        let constant = parse_f32(primitive.texts[2].text.as_bytes()).ok().filter(|_| kind == "mixfunc");
         let share = match (kind, constant) {
             (_, Some(share)) => share.clamp(0.0, 1.0),
             // Letters cover little of the surface.
             ("mixtext", _) => {
-                self.said.once(at, "text has no counterpart: the modifier around it is used");
+                self.report.once(at, "text has no counterpart: the modifier around it is used");
                 0.0
             }
             _ => {
-                self.said.once(at, format!("`{kind}` has no counterpart: both modifiers are mixed in equal parts"));
+                self.report.once(at, format!("`{kind}` has no counterpart: both modifiers are mixed in equal parts"));
                 0.5
             }
         };
@@ -37,7 +37,7 @@ impl Reader<'_> {
             [_, second] if share == 0.0 => second,
             [first, _] if share == 1.0 => first,
             [Some(_), Some(_)] if glass => {
-                self.said.once(at, "glass bodies cannot be mixed: the first modifier is used");
+                self.report.once(at, "glass bodies cannot be mixed: the first modifier is used");
                 numbers[0]
             }
             [Some(material1), Some(material2)] => {
@@ -46,7 +46,7 @@ impl Reader<'_> {
                 Some((self.scene.materials.len() - 1) as u32)
             }
             [first, second] if glass => {
-                self.said.once(at, "glass bodies cannot be partly transparent: they are shown in full");
+                self.report.once(at, "glass bodies cannot be partly transparent: they are shown in full");
                 first.or(second)
             }
             // A missing part makes the material partly transparent.
@@ -56,7 +56,7 @@ impl Reader<'_> {
             }
         };
         let kind = if glass { Kind::Glass { outside: None } } else { Kind::Plain };
-        Made { number, kind, ..Made::nothing() }
+        ConvertedModifier { number, kind, ..ConvertedModifier::nothing() }
     }
 
     /// Returns a copy of a material whose opacity is multiplied by `share`.

@@ -9,10 +9,10 @@ mod args;
 mod body;
 mod chain;
 mod command;
+mod converted;
 mod data;
+mod directional;
 mod gensky;
-mod lamp;
-mod made;
 mod material;
 mod mixture;
 mod outline;
@@ -34,12 +34,12 @@ mod xform;
 mod tests;
 
 use super::model::{Input, SceneFormat};
-use super::said::Said;
+use super::shared_report::SharedReport;
 use super::too_large;
 use durer_diag::{Diagnostic, Diagnostics};
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Axis, Scene};
-use place::Place;
+use place::PrimitiveContext;
 use state::Reader;
 
 /// The Radiance scene format.
@@ -52,7 +52,7 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     write: None,
     up: Axis::Z,
     whole: true,
-    shines: Some("give a surface the material `light`, or a `source` with `glow`"),
+    light_hint: Some("give a surface the material `light`, or a `source` with `glow`"),
 };
 
 /// Reads a file; see [`read_model`](super::scene::read_model).
@@ -61,26 +61,26 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
         diagnostics.push(Diagnostic { message: error.message.replace("mesh file", "scene"), help: None, ..error });
         return None;
     }
-    let said = Said::default();
-    let mut reader = Reader::new(input, &said);
+    let report = SharedReport::default();
+    let mut reader = Reader::new(input, &report);
     match input.name.to_lowercase().ends_with(".rif") {
         true => reader.rif(),
-        false => reader.text(input.bytes, input.file, &Place::default()),
+        false => reader.text(input.bytes, input.file, &PrimitiveContext::default()),
     }
     let mut scene = reader.finish();
     // From the manual of rtrace: 179 lm/W, and its weights of the colours.
     scene.lumens = Some(179.0 * Vec3::new(0.265, 0.670, 0.065));
-    let sound = !said.has_errors() && !diagnostics.has_errors();
-    diagnostics.extend(said.finish());
+    let sound = !report.has_errors() && !diagnostics.has_errors();
+    diagnostics.extend(report.finish());
     sound.then_some(scene)
 }
 
 /// Sets a scene's camera to the last view in a file.
 pub(super) fn look(scene: &mut Scene, input: &Input, (name, bytes): (&str, &std::sync::Arc<[u8]>)) -> Diagnostics {
-    let said = Said::default();
+    let report = SharedReport::default();
     let file = input.files.borrow_mut().add(name, bytes.clone());
-    if let Some(view) = view::of_file(bytes, file, &said) {
-        view.place(scene, view::USUAL_SIZE, &said);
+    if let Some(view) = view::of_file(bytes, file, &report) {
+        view.place(scene, view::USUAL_SIZE, &report);
     }
-    said.finish()
+    report.finish()
 }

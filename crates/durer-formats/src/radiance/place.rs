@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 /// Transform and settings that apply to all primitives of a text.
 #[derive(Clone, Default)]
-pub(super) struct Place {
+pub(super) struct PrimitiveContext {
     pub map: DAffine3,
     /// Modifier that replaces the modifiers of all surfaces.
     pub modifier: Option<Word>,
@@ -17,7 +17,7 @@ pub(super) struct Place {
     pub folder: Rc<str>,
 }
 
-impl Place {
+impl PrimitiveContext {
     /// Path of a command's file relative to the scene's folder.
     pub fn seen(&self, name: &Word) -> Word {
         match self.folder.is_empty() || name.text.starts_with(['/', '\\']) {
@@ -27,9 +27,9 @@ impl Place {
     }
 
     /// Returns this context with the folder of a file that a command names.
-    pub fn beside(&self, name: &Word) -> Place {
+    pub fn beside(&self, name: &Word) -> PrimitiveContext {
         let text = self.seen(name).text;
         let folder = text.rfind(['/', '\\']).map_or("", |slash| &text[..=slash]);
-        Place { folder: folder.into(), ..self.clone() }
+        PrimitiveContext { folder: folder.into(), ..self.clone() }
     }
 }

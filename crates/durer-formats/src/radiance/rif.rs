@@ -1,11 +1,11 @@
 //! Reader of `rad` input files, which list the files of a scene and its views.
 
-use super::place::Place;
+use super::place::PrimitiveContext;
 use super::standard::{Zone, standard};
 use super::state::Reader;
 use super::view::{USUAL_SIZE, View, of_file};
 use super::words::{Word, Words};
-use crate::said::meant;
+use crate::shared_report::suggest;
 use durer_diag::Diagnostic;
 use durer_scene::math::fp;
 
@@ -52,7 +52,7 @@ impl Reader<'_> {
     pub fn rif(&mut self) {
         let (bytes, file) = (self.input.bytes.clone(), self.input.file);
         let settings = self.settings(&bytes, file);
-        let place = Place::default();
+        let place = PrimitiveContext::default();
         for name in ["materials", "illum", "scene"] {
             for value in settings.iter().filter(|setting| setting.name == name).flat_map(|setting| &setting.values) {
                 match value.text.starts_with('!') {
@@ -67,12 +67,12 @@ impl Reader<'_> {
         if !settings.iter().any(|setting| matches!(setting.name, "scene" | "illum")) {
             let at = durer_diag::Span { file, start: 0, end: bytes.len().min(1) as u32 };
             let help = "octrees are not supported: name their source with `scene = FILE.rad`";
-            self.said.bad_with(at, "this file names no scene", Some(help.into()));
+            self.report.bad_with(at, "this file names no scene", Some(help.into()));
         }
         let options = settings.iter().filter(|setting| setting.name == "render").flat_map(|setting| &setting.values);
         for option in options.filter(|option| option.text == "-bv-") {
             let what = "back-face culling (-bv-) has no counterpart: surfaces are visible from both sides";
-            self.said.once(option.at, what);
+            self.report.once(option.at, what);
         }
         let last = |name: &str| settings.iter().rfind(|setting| setting.name == name).and_then(|s| s.values.first());
         let larger = last("RESOLUTION").and_then(|word| word.text.parse().ok()).filter(|r| (1..=1 << 16).contains(r));
@@ -87,24 +87,24 @@ impl Reader<'_> {
     /// Selects the view by name or number; the default is the first.
     fn view(&mut self, views: &[&Setting], zone: &Zone, larger: u32) {
         let name = |i: usize| views[i].values.first().filter(|word| !word.text.starts_with('-'));
-        let wanted = match &self.input.staging.camera {
+        let wanted = match &self.input.scene_defaults.camera {
             None => (!views.is_empty()).then_some(0),
             Some(wanted) => {
                 let named = (0..views.len()).find(|&i| name(i).is_some_and(|word| word.text == *wanted));
                 let found = named.or_else(|| wanted.parse().ok().filter(|i| *i < views.len()));
                 if let (None, Some(seen)) = (found, standard(wanted)) {
-                    return zone.view(seen, Default::default()).place(&mut self.scene, larger, self.said);
+                    return zone.view(seen, Default::default()).place(&mut self.scene, larger, self.report);
                 }
                 if found.is_none() {
                     let known: Vec<&str> =
                         (0..views.len()).filter_map(|i| name(i).map(|word| word.text.as_str())).collect();
-                    let help = match meant(wanted, known.iter().copied()) {
-                        Some(meant) => meant,
+                    let help = match suggest(wanted, known.iter().copied()) {
+                        Some(suggestion) => suggestion,
                         None if known.is_empty() => "the file names no views".into(),
                         None => format!("known views are {}", known.join(", ")),
                     };
                     let error = Diagnostic::error(format!("unknown view `{wanted}`")).code("no-camera");
-                    self.said.push(Diagnostic { help: Some(help), ..error });
+                    self.report.push(Diagnostic { help: Some(help), ..error });
                 }
                 found
             }
@@ -118,10 +118,10 @@ impl Reader<'_> {
         let mut view = seen.map_or_else(|| View::new(at), |seen| zone.view(seen, at));
         if let Some(i) = words.iter().position(|word| word.text == "-vf") {
             let Some(path) = words.get(i + 1) else {
-                return self.said.bad(words[i].at, "`-vf` needs a file");
+                return self.report.bad(words[i].at, "`-vf` needs a file");
             };
             let Some((bytes, file)) = self.open(path) else { return };
-            let Some(found) = of_file(&bytes, file, self.said) else { return };
+            let Some(found) = of_file(&bytes, file, self.report) else { return };
             view = found;
         }
         let own: Vec<Word> = words
@@ -130,13 +130,14 @@ impl Reader<'_> {
             .filter(|(i, word)| word.text != "-vf" && (*i == 0 || words[i - 1].text != "-vf"))
             .map(|(_, word)| word.clone())
             .collect();
-        view.options(&own, false, self.said);
-        view.place(&mut self.scene, larger, self.said);
+        view.options(&own, false, self.report);
+        view.place(&mut self.scene, larger, self.report);
     }
 
     /// Notes an exposure: stops if it has a sign, else a factor.
     fn exposure(&self, word: Option<Word>) {
-        let Some((word, value)) = word.and_then(|word| word.number(self.said).map(|value| (word, value as f32))) else {
+        let Some((word, value)) = word.and_then(|word| word.number(self.report).map(|value| (word, value as f32)))
+        else {
             return;
         };
         let stops = match word.text.starts_with(['+', '-']) {
@@ -145,7 +146,7 @@ impl Reader<'_> {
         };
         if stops != 0.0 {
             let note = Diagnostic::note(format!("the file sets an exposure: use `--exposure {stops:.2}`"));
-            self.said.push(note.code("exposure").at(word.at));
+            self.report.push(note.code("exposure").at(word.at));
         }
     }
 
@@ -170,12 +171,12 @@ impl Reader<'_> {
             }
             let all = Words::new(bytes, file, line.clone());
             let Some(equals) = bytes[line.clone()].iter().position(|byte| *byte == b'=') else {
-                self.said.bad(all.span(line.start, line.end), "a line must have the form `VARIABLE = values`");
+                self.report.bad(all.span(line.start, line.end), "a line must have the form `VARIABLE = values`");
                 continue;
             };
             let mut words = Words::new(bytes, file, line.start..line.start + equals);
             let Some(name) = words.next() else {
-                self.said.bad(all.span(line.start, line.start + equals + 1), "a variable is missing before this `=`");
+                self.report.bad(all.span(line.start, line.start + equals + 1), "a variable is missing before this `=`");
                 continue;
             };
             let mut words = Words::new(bytes, file, line.start + equals + 1..line.end);
@@ -188,8 +189,8 @@ impl Reader<'_> {
             match VARIABLES.iter().chain(&MORE).find(is) {
                 Some(full) => settings.push(Setting { name: full, values }),
                 None => {
-                    let help = meant(&name.text, VARIABLES);
-                    self.said.bad_with(name.at, format!("`rad` has no variable {}", name.shown()), help);
+                    let help = suggest(&name.text, VARIABLES);
+                    self.report.bad_with(name.at, format!("`rad` has no variable {}", name.shown()), help);
                 }
             }
         }

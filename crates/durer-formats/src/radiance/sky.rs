@@ -6,8 +6,8 @@
 //! pages of gensky and gendaylit for the order of the arguments, which are meant for Radiance's
 //! `skybright.cal` and `perezlum.cal`.
 
-use super::args::Thing;
-use crate::said::Said;
+use super::args::RadPrimitive;
+use crate::shared_report::SharedReport;
 use durer_scene::math::fp;
 use glam::{DMat3, DVec3};
 use std::f32::consts::FRAC_PI_2;
@@ -37,27 +37,27 @@ enum Cover {
 impl Sky {
     /// Creates a sky from its arguments: kind, zenith, ground, factor, direction to the sun. `map`
     /// is a similarity from the sky's axes to world space.
-    pub fn of(thing: &Thing, map: DMat3, said: &Said) -> Option<Sky> {
-        let number = |i: usize| thing.number(i).unwrap_or(0.0);
+    pub fn of(primitive: &RadPrimitive, map: DMat3, report: &SharedReport) -> Option<Sky> {
+        let number = |i: usize| primitive.number(i).unwrap_or(0.0);
         let kind = match number(0).round() as i32 {
             1 => Cover::Clear,
             2 => Cover::Overcast,
             3 => Cover::Uniform,
             4 => Cover::Intermediate,
             _ => {
-                said.bad(
-                    thing.at(),
+                report.bad(
+                    primitive.at(),
                     "the first number of a sky must be 1 (clear), 2 (overcast), 3 (uniform) or 4 (intermediate)",
                 );
                 return None;
             }
         };
-        if !thing.has(&[3, 4, 7], said) {
+        if !primitive.has(&[3, 4, 7], report) {
             return None;
         }
-        let sun = thing.point(4).normalize_or_zero();
+        let sun = primitive.point(4).normalize_or_zero();
         if matches!(kind, Cover::Clear | Cover::Intermediate) && (sun == DVec3::ZERO || number(3) <= 0.0) {
-            said.bad(thing.at(), "a sky with a sun needs a factor above 0 and the direction to the sun");
+            report.bad(primitive.at(), "a sky with a sun needs a factor above 0 and the direction to the sun");
             return None;
         }
         let factor = if number(3) > 0.0 { number(3) } else { 1.0 };
@@ -67,15 +67,15 @@ impl Sky {
 
     /// Creates a Perez sky from its arguments: brightness, ground, five coefficients, direction to
     /// the sun. `map` is a similarity from the sky's axes to world space.
-    pub fn perez(thing: &Thing, map: DMat3, said: &Said) -> Option<Sky> {
-        if !thing.has(&[10], said) {
+    pub fn perez(primitive: &RadPrimitive, map: DMat3, report: &SharedReport) -> Option<Sky> {
+        if !primitive.has(&[10], report) {
             return None;
         }
-        let number = |i: usize| thing.number(i).unwrap_or(0.0);
+        let number = |i: usize| primitive.number(i).unwrap_or(0.0);
         let kind = Cover::Perez(std::array::from_fn(|i| number(2 + i)));
         let turn = map.inverse() * map.x_axis.length();
         let (zenith, ground) = (number(0).max(0.0), number(1).max(0.0));
-        Some(Sky { kind, zenith, ground, factor: 1.0, sun: thing.point(7).normalize_or_zero(), turn })
+        Some(Sky { kind, zenith, ground, factor: 1.0, sun: primitive.point(7).normalize_or_zero(), turn })
     }
 
     /// Radiance in a unit direction of world space.

@@ -1,8 +1,8 @@
 //! Sources: light from infinitely far away.
 
-use super::args::Thing;
-use super::made::{Distant, Kind};
-use super::place::Place;
+use super::args::RadPrimitive;
+use super::converted::{Distant, Kind};
+use super::place::PrimitiveContext;
 use super::state::Reader;
 use crate::panorama;
 use crate::pictures::unusable;
@@ -19,22 +19,24 @@ const SMALL: f32 = 5.0;
 const ROWS: u32 = 256;
 
 impl Reader<'_> {
-    pub fn source(&mut self, thing: &Thing, modifier: Option<usize>, place: &Place) {
-        let at = thing.at();
-        if !thing.has(&[4], self.said) {
+    pub fn source(&mut self, primitive: &RadPrimitive, modifier: Option<usize>, place: &PrimitiveContext) {
+        let at = primitive.at();
+        if !primitive.has(&[4], self.report) {
             return;
         }
-        let direction = place.map.transform_vector3(thing.point(0)).normalize_or_zero();
-        let degrees = thing.numbers[3].abs() as f32;
+        let direction = place.map.transform_vector3(primitive.point(0)).normalize_or_zero();
+        let degrees = primitive.numbers[3].abs() as f32;
         if direction == DVec3::ZERO || degrees == 0.0 || degrees > 360.0 {
-            return self.said.bad(at, "a source needs a direction and an angle of more than 0 and at most 360 degrees");
+            return self
+                .report
+                .bad(at, "a source needs a direction and an angle of more than 0 and at most 360 degrees");
         }
         let Some(made) = modifier.map(|modifier| self.made(modifier)) else { return };
         let (radiance, sky) = match &made.kind {
             Kind::Shining { radiance } => (*radiance, made.patterns.sky.clone()),
             // All its light has one direction.
             Kind::Aimed { radiance, spread, .. } => (*radiance * spread.at(-direction, 1.0) as f32, None),
-            _ => return self.said.once(at, "a source without emission is left out"),
+            _ => return self.report.once(at, "a source without emission is left out"),
         };
         let cosine = fp::sin_cos_degrees(0.5 * f64::from(degrees)).1;
         if degrees <= SMALL && sky.is_none() {
@@ -64,7 +66,7 @@ impl Reader<'_> {
         };
         let (name, memory) = (self.input.name, self.input.memory);
         if let Err(error) = panorama::surround(&mut self.scene, (name, at), ROWS, memory, light) {
-            self.said.push(unusable(name, &error).at(at));
+            self.report.push(unusable(name, &error).at(at));
         }
     }
 }

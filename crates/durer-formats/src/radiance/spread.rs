@@ -3,7 +3,7 @@
 //!
 //! Source: `source.cal` of Radiance, for the functions and the angles; the manual for spotlights.
 
-use super::args::Thing;
+use super::args::RadPrimitive;
 use super::data::Table;
 use super::words::Word;
 use durer_scene::light::photometric::{Profile, ProfileKind};
@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 /// Factor of a light's radiance that depends on the direction of emission.
 #[derive(Debug, PartialEq)]
 pub(super) enum Spread {
-    Table(Lamp),
+    Table(IntensityTable),
     /// Constant inside a cone of a half angle in degrees about a unit direction, 0 outside.
     Cone {
         aim: DVec3,
@@ -26,7 +26,7 @@ pub(super) enum Spread {
 
 /// A table over the angles of a light.
 #[derive(Debug, PartialEq)]
-pub(super) struct Lamp {
+pub(super) struct IntensityTable {
     table: Table,
     correction: Correction,
     factor: f64,
@@ -102,20 +102,20 @@ impl Angle {
 
 /// Number of coordinates in a pattern's arguments, after its function and files; 0 if one of them
 /// is not an angle of a light.
-pub(super) fn coordinates(thing: &Thing) -> usize {
-    let names = || thing.texts.iter().skip(3).take_while(|word| !word.text.starts_with('-'));
+pub(super) fn coordinates(primitive: &RadPrimitive) -> usize {
+    let names = || primitive.texts.iter().skip(3).take_while(|word| !word.text.starts_with('-'));
     if names().all(|word| Angle::of(&word.text).is_some()) { names().count() } else { 0 }
 }
 
-impl Lamp {
+impl IntensityTable {
     /// Creates the distribution from the function and coordinates of a pattern; `None` for
     /// functions other than those of `source.cal`. `turn` rotates from world space to the light's
     /// axes.
-    pub fn new(thing: &Thing, table: Table, turn: DMat3) -> Option<Lamp> {
-        let number = |i: usize| thing.numbers.get(i).copied();
+    pub fn new(primitive: &RadPrimitive, table: Table, turn: DMat3) -> Option<IntensityTable> {
+        let number = |i: usize| primitive.numbers.get(i).copied();
         let factor = number(0).unwrap_or(1.0).max(0.0);
         let side = |i: usize| number(i).unwrap_or(0.0).abs();
-        let correction = match thing.texts.first()?.text.as_str() {
+        let correction = match primitive.texts.first()?.text.as_str() {
             "corr" => Correction::Nothing,
             "flatcorr" => Correction::Flat,
             // Both are equal at a distance.
@@ -123,9 +123,9 @@ impl Lamp {
             "cylcorr" => Correction::Cylinder(side(1), side(2)),
             _ => return None,
         };
-        let texts: &[Word] = &thing.texts;
+        let texts: &[Word] = &primitive.texts;
         let angles = texts[3..].iter().map_while(|word| Angle::of(&word.text)).collect::<Vec<_>>();
-        (angles.len() == table.dimensions()).then_some(Lamp { table, correction, factor, angles, turn })
+        (angles.len() == table.dimensions()).then_some(IntensityTable { table, correction, factor, angles, turn })
     }
 
     /// Factor in a unit direction of world space; `cosine` is that to the surface normal.
@@ -149,7 +149,7 @@ impl Spread {
     /// surface normal.
     pub fn at(&self, dir: DVec3, cosine: f64) -> f64 {
         match self {
-            Spread::Table(lamp) => lamp.at(dir, cosine),
+            Spread::Table(light) => light.at(dir, cosine),
             Spread::Cone { aim, degrees, .. } => f64::from(aim.dot(dir) >= fp::sin_cos_degrees(*degrees).1),
         }
     }
@@ -164,8 +164,8 @@ impl Spread {
     /// Axis from which the angles are measured, and a direction perpendicular to it.
     pub fn axes(&self) -> [DVec3; 2] {
         match self {
-            Spread::Table(lamp) => {
-                let back = lamp.turn.transpose();
+            Spread::Table(light) => {
+                let back = light.turn.transpose();
                 [-back.z_axis, back.x_axis].map(DVec3::normalize_or_zero)
             }
             Spread::Cone { aim, .. } => [*aim, aim.any_orthonormal_vector()],
@@ -194,7 +194,7 @@ impl Spread {
             // Compares angles at the edge of a cone, which is more exact than the cosine of a
             // direction.
             let strength = match self {
-                Spread::Table(lamp) => lamp.at(dir, facing),
+                Spread::Table(light) => light.at(dir, facing),
                 Spread::Cone { degrees, .. } => f64::from(from <= *degrees),
             };
             // Avoids NaN where the surface is not visible and the factor is infinite.

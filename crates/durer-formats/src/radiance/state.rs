@@ -1,15 +1,15 @@
 //! State of the Radiance reader.
 
-use super::args::Thing;
+use super::args::RadPrimitive;
 use super::body::Body;
-use super::made::{Distant, Made};
+use super::converted::{ConvertedModifier, Distant};
 use super::outline::Facing;
-use super::place::Place;
+use super::place::PrimitiveContext;
 use super::spread::Spread;
 use super::words::{Start, Word, Words};
 use crate::model::Input;
 use crate::polygon::Cutter;
-use crate::said::{Said, meant};
+use crate::shared_report::{SharedReport, suggest};
 use durer_diag::{Diagnostic, Span};
 use durer_scene::camera::Projection;
 use durer_scene::medium::Fog;
@@ -29,7 +29,7 @@ const MAX_THINGS: usize = 1 << 26;
 
 /// A material or pattern as stored in the file.
 pub(super) struct Modifier {
-    pub thing: Rc<Thing>,
+    pub primitive: Rc<RadPrimitive>,
     /// Index of the modifier that applies to it.
     pub parent: Option<usize>,
     /// Indices of other modifiers that it names.
@@ -90,12 +90,12 @@ pub(super) const SURFACES: [&str; 11] =
 /// State of reading a scene.
 pub(super) struct Reader<'a> {
     pub input: &'a Input<'a>,
-    pub said: &'a Said,
+    pub report: &'a SharedReport,
     pub modifiers: Vec<Modifier>,
     pub names: BTreeMap<String, usize>,
     /// Converted modifiers, by index and the bits of the colour by which patterns before them
     /// multiply.
-    pub made: BTreeMap<(usize, [u32; 3]), Rc<Made>>,
+    pub made: BTreeMap<(usize, [u32; 3]), Rc<ConvertedModifier>>,
     /// True if the limit of materials has been reached.
     full: bool,
     /// Merged surfaces by material.
@@ -114,10 +114,10 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    pub fn new(input: &'a Input<'a>, said: &'a Said) -> Self {
+    pub fn new(input: &'a Input<'a>, report: &'a SharedReport) -> Self {
         Reader {
             input,
-            said,
+            report,
             modifiers: Vec::new(),
             names: BTreeMap::new(),
             made: BTreeMap::new(),
@@ -135,17 +135,17 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads a scene text.
-    pub fn text(&mut self, bytes: &[u8], file: u32, place: &Place) {
+    pub fn text(&mut self, bytes: &[u8], file: u32, place: &PrimitiveContext) {
         let mut words = Words::new(bytes, file, 0..bytes.len());
         while let Some(start) = words.start() {
-            if self.said.is_full() {
+            if self.report.is_full() {
                 return;
             }
             match start {
                 Start::Command(range) => self.command(Words::new(bytes, file, range), place),
                 Start::Word(modifier) => {
-                    let Some(thing) = Thing::read(modifier, &mut words, self.said) else { return };
-                    self.thing(thing, place);
+                    let Some(primitive) = RadPrimitive::read(modifier, &mut words, self.report) else { return };
+                    self.primitive(primitive, place);
                 }
             }
         }
@@ -156,7 +156,7 @@ impl<'a> Reader<'a> {
     pub fn is_full(&mut self, at: Span) -> bool {
         if !self.full && self.scene.materials.len() > 3 * self.modifiers.len() + MOST_COPIES {
             self.full = true;
-            self.said
+            self.report
                 .bad(at, format!("more than {MOST_COPIES} materials result from patterns and mixtures with `void`"));
         }
         self.full
@@ -164,18 +164,18 @@ impl<'a> Reader<'a> {
 
     /// Reads a file that a command names. Commands in it run in the folder of that file if
     /// `beside`, else in the current folder, as for piped output.
-    pub fn file(&mut self, name: &Word, place: &Place, beside: bool) {
+    pub fn file(&mut self, name: &Word, place: &PrimitiveContext, beside: bool) {
         self.files += 1;
         if place.depth >= DEEPEST || self.files > MAX_FILES {
             let message = match place.depth >= DEEPEST {
                 true => format!("files are nested more than {DEEPEST} deep: does one include itself?"),
                 false => format!("more than {MAX_FILES} files are included"),
             };
-            return self.said.bad(name.at, message);
+            return self.report.bad(name.at, message);
         }
         let Some((bytes, file)) = self.open(&place.seen(name)) else { return };
         let place = if beside { place.beside(name) } else { place.clone() };
-        self.text(&bytes, file, &Place { depth: place.depth + 1, ..place });
+        self.text(&bytes, file, &PrimitiveContext { depth: place.depth + 1, ..place });
     }
 
     /// Bytes and index of a file that another file names.
@@ -187,40 +187,40 @@ impl<'a> Reader<'a> {
             }
             Err(error) => {
                 let help = error.help();
-                self.said
+                self.report
                     .push(Diagnostic { help, ..Diagnostic::error(error.to_string()).code("missing-file").at(name.at) });
                 None
             }
         }
     }
 
-    fn thing(&mut self, thing: Thing, place: &Place) {
-        let kind = thing.kind.text.as_str();
+    fn primitive(&mut self, primitive: RadPrimitive, place: &PrimitiveContext) {
+        let kind = primitive.kind.text.as_str();
         if SURFACES.contains(&kind) {
-            let modifier = place.modifier.as_ref().unwrap_or(&thing.modifier);
+            let modifier = place.modifier.as_ref().unwrap_or(&primitive.modifier);
             if let Some(modifier) = self.find(modifier) {
-                self.surface(&thing, modifier, place);
+                self.surface(&primitive, modifier, place);
             }
         } else if kind == "alias" {
-            self.alias(thing);
+            self.alias(primitive);
         } else if [&MATERIALS[..], &OTHERS, &PATTERNS, &MIXTURES].iter().any(|kinds| kinds.contains(&kind)) {
-            let Some(parent) = self.find(&thing.modifier) else { return };
+            let Some(parent) = self.find(&primitive.modifier) else { return };
             let mut others = [None; 2];
             let named = match kind {
                 "illum" | "mirror" => 1,
                 _ if MIXTURES.contains(&kind) => 2,
                 _ => 0,
             };
-            for (other, name) in others.iter_mut().zip(thing.texts.iter().take(named)) {
+            for (other, name) in others.iter_mut().zip(primitive.texts.iter().take(named)) {
                 let Some(found) = self.find(name) else { return };
                 *other = found;
             }
-            let modifier = Modifier { thing: thing.into(), parent, others, map: place.map, depth: 0 };
-            self.define(modifier.thing.name.clone(), modifier);
+            let modifier = Modifier { primitive: primitive.into(), parent, others, map: place.map, depth: 0 };
+            self.define(modifier.primitive.name.clone(), modifier);
         } else {
             let known = SURFACES.into_iter().chain(MATERIALS).chain(PATTERNS).chain(MIXTURES);
-            let help = meant(kind, known);
-            self.said.bad_with(thing.kind.at, format!("unknown type {}", thing.kind.shown()), help);
+            let help = suggest(kind, known);
+            self.report.bad_with(primitive.kind.at, format!("unknown type {}", primitive.kind.shown()), help);
         }
     }
 
@@ -228,14 +228,14 @@ impl<'a> Reader<'a> {
         let below = [modifier.parent, modifier.others[0], modifier.others[1]].into_iter().flatten();
         modifier.depth = below.map(|other| 1 + self.modifiers[other].depth).max().unwrap_or(0);
         if modifier.depth > DEEPEST {
-            return self.said.bad(name.at, format!("modifiers are nested more than {DEEPEST} deep"));
+            return self.report.bad(name.at, format!("modifiers are nested more than {DEEPEST} deep"));
         }
         self.modifiers.push(modifier);
         self.names.insert(name.text, self.modifiers.len() - 1);
     }
 
     /// Defines an alias: another name for a modifier, which may change its own modifier.
-    fn alias(&mut self, alias: Thing) {
+    fn alias(&mut self, alias: RadPrimitive) {
         let Some(Some(real)) = self.find(&alias.texts[0]) else { return };
         let parent = match alias.modifier.text.as_str() {
             "inherit" => self.modifiers[real].parent,
@@ -244,8 +244,8 @@ impl<'a> Reader<'a> {
                 None => return,
             },
         };
-        let Modifier { thing, others, map, .. } = &self.modifiers[real];
-        let modifier = Modifier { thing: thing.clone(), parent, others: *others, map: *map, depth: 0 };
+        let Modifier { primitive, others, map, .. } = &self.modifiers[real];
+        let modifier = Modifier { primitive: primitive.clone(), parent, others: *others, map: *map, depth: 0 };
         self.define(alias.name, modifier);
     }
 
@@ -257,9 +257,9 @@ impl<'a> Reader<'a> {
         }
         let found = self.names.get(&name.text).copied();
         if found.is_none() {
-            let help = meant(&name.text, self.names.keys().map(String::as_str));
+            let help = suggest(&name.text, self.names.keys().map(String::as_str));
             let help = help.or_else(|| Some("files of materials must precede the files that use them".into()));
-            self.said.bad_with(name.at, format!("no modifier {} is defined before this", name.shown()), help);
+            self.report.bad_with(name.at, format!("no modifier {} is defined before this", name.shown()), help);
         }
         found.map(Some)
     }
@@ -269,7 +269,7 @@ impl<'a> Reader<'a> {
         let before = self.count;
         self.count = self.count.saturating_add(more);
         if before <= MAX_THINGS && self.count > MAX_THINGS {
-            self.said.bad(at, format!("the scene has more than {MAX_THINGS} corners and shapes, including arrays"));
+            self.report.bad(at, format!("the scene has more than {MAX_THINGS} corners and shapes, including arrays"));
         }
         self.count <= MAX_THINGS
     }
@@ -291,7 +291,7 @@ impl<'a> Reader<'a> {
                 continue;
             }
             let span = body.at;
-            self.said
+            self.report
                 .once(span, "the mist around the camera fills its bounding box, and attenuates all colours equally");
             self.bodies.remove(&number);
             self.scene.fog = Some(Spanned { value: Fog { min: Some(min), max: Some(max), ..fog }, span });

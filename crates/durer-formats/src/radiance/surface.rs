@@ -1,10 +1,10 @@
 //! Conversion of surfaces.
 
-use super::args::Thing;
+use super::args::RadPrimitive;
 use super::body::Body;
-use super::made::{Kind, Made};
+use super::converted::{ConvertedModifier, Kind};
 use super::outline::Outline;
-use super::place::Place;
+use super::place::PrimitiveContext;
 use super::state::Reader;
 use super::words::Word;
 use durer_diag::Span;
@@ -14,41 +14,41 @@ use durer_scene::shape::{Disc, Sphere};
 use glam::DVec3;
 
 impl Reader<'_> {
-    pub fn surface(&mut self, thing: &Thing, modifier: Option<usize>, place: &Place) {
-        let at = thing.at();
+    pub fn surface(&mut self, primitive: &RadPrimitive, modifier: Option<usize>, place: &PrimitiveContext) {
+        let at = primitive.at();
         if !self.room_for(1, at) {
             return;
         }
         let map = place.map;
         // Radiance's transforms are similarities: they scale all lengths alike.
         let scale = map.matrix3.x_axis.length();
-        match thing.kind.text.as_str() {
+        match primitive.kind.text.as_str() {
             "instance" | "mesh" => {
-                let name = thing.texts.first().map_or(String::new(), Word::shown);
-                let help = match thing.kind.text.as_str() {
+                let name = primitive.texts.first().map_or(String::new(), Word::shown);
+                let help = match primitive.kind.text.as_str() {
                     "mesh" => "Radiance meshes are not supported: convert the original OBJ to polygons with `obj2rad`",
                     _ => "octrees are not supported: write `!xform OPTIONS FILE.rad` with the octree's source file",
                 };
-                self.missing(thing);
+                self.missing(primitive);
                 let message = format!("{name} is left out: {help}");
-                self.said.once(at, message);
+                self.report.once(at, message);
             }
-            "source" => self.source(thing, modifier, place),
+            "source" => self.source(primitive, modifier, place),
             "sphere" | "bubble" => {
-                if !thing.has(&[4], self.said) {
+                if !primitive.has(&[4], self.report) {
                     return;
                 }
-                let radius = thing.numbers[3];
-                let inward = ((thing.kind.text == "bubble") != (radius < 0.0)) != place.inverted;
-                let (center, radius) = (map.transform_point3(thing.point(0)), scale * radius.abs());
+                let radius = primitive.numbers[3];
+                let inward = ((primitive.kind.text == "bubble") != (radius < 0.0)) != place.inverted;
+                let (center, radius) = (map.transform_point3(primitive.point(0)), scale * radius.abs());
                 if radius == 0.0 {
-                    return self.said.warn_once("bad-value", at, "a sphere of radius 0 is left out");
+                    return self.report.warn_once("bad-value", at, "a sphere of radius 0 is left out");
                 }
                 let Some((made, number)) = self.shown(modifier, &Outline::Ball { center, radius }, at) else { return };
                 let number = match &made.kind {
                     Kind::Glass { outside: Some(outside), .. } if inward => *outside,
                     Kind::Shining { .. } if inward => {
-                        self.said.once(at, "a sphere that emits inwards has no counterpart: it emits outwards");
+                        self.report.once(at, "a sphere that emits inwards has no counterpart: it emits outwards");
                         number
                     }
                     _ => number,
@@ -57,28 +57,33 @@ impl Reader<'_> {
                 self.add(Node::Primitive(sphere.into()), number, at);
             }
             "polygon" => {
-                if thing.numbers.len() < 9 || !thing.numbers.len().is_multiple_of(3) {
+                if primitive.numbers.len() < 9 || !primitive.numbers.len().is_multiple_of(3) {
                     let message = format!(
                         "a polygon needs three numbers for each of at least 3 corners, but this one has {} numbers",
-                        thing.numbers.len()
+                        primitive.numbers.len()
                     );
-                    return self.said.bad(at, message);
+                    return self.report.bad(at, message);
                 }
-                let corners: Vec<DVec3> = (0..thing.numbers.len() / 3).map(|i| thing.point(3 * i)).collect();
+                let corners: Vec<DVec3> = (0..primitive.numbers.len() / 3).map(|i| primitive.point(3 * i)).collect();
                 self.polygon(modifier, &corners, place, at);
             }
             "ring" => {
-                if !thing.has(&[8], self.said) {
+                if !primitive.has(&[8], self.report) {
                     return;
                 }
-                let radii = [thing.numbers[6], thing.numbers[7]].map(|r| scale * r.abs());
+                let radii = [primitive.numbers[6], primitive.numbers[7]].map(|r| scale * r.abs());
                 let (inner, outer) = (radii[0].min(radii[1]), radii[0].max(radii[1]));
                 let side = if place.inverted { -1.0 } else { 1.0 };
-                let Some(normal) = map.transform_vector3(side * thing.point(3)).try_normalize().filter(|_| outer > 0.0)
+                let Some(normal) =
+                    map.transform_vector3(side * primitive.point(3)).try_normalize().filter(|_| outer > 0.0)
                 else {
-                    return self.said.warn_once("bad-value", at, "a ring without a direction or a radius is left out");
+                    return self.report.warn_once(
+                        "bad-value",
+                        at,
+                        "a ring without a direction or a radius is left out",
+                    );
                 };
-                let center = map.transform_point3(thing.point(0));
+                let center = map.transform_point3(primitive.point(0));
                 let outline = Outline::Ring { center, normal, radii: [inner, outer] };
                 let Some((made, number)) = self.shown(modifier, &outline, at) else { return };
                 if made.is_glass() {
@@ -92,15 +97,15 @@ impl Reader<'_> {
             }
             kind @ ("cone" | "cup" | "cylinder" | "tube") => {
                 let straight = matches!(kind, "cylinder" | "tube");
-                if !thing.has(if straight { &[7] } else { &[8] }, self.said) || !self.room_for(256, at) {
+                if !primitive.has(if straight { &[7] } else { &[8] }, self.report) || !self.room_for(256, at) {
                     return;
                 }
-                let radii = [thing.numbers[6], thing.numbers[if straight { 6 } else { 7 }]];
-                let ends = [thing.point(0), thing.point(3)];
+                let radii = [primitive.numbers[6], primitive.numbers[if straight { 6 } else { 7 }]];
+                let ends = [primitive.point(0), primitive.point(3)];
                 let length = ends[0].distance(ends[1]);
                 if radii[0] * radii[1] < 0.0 || radii == [0.0; 2] || (length == 0.0 && radii[0] == radii[1]) {
                     let what = "without a length, or with radii that are all 0 or differ in sign, is left out";
-                    return self.said.warn_once("bad-value", at, format!("a {kind} {what}"));
+                    return self.report.warn_once("bad-value", at, format!("a {kind} {what}"));
                 }
                 let inward = (matches!(kind, "cup" | "tube") != (radii[0] + radii[1] < 0.0)) != place.inverted;
                 let radii = radii.map(f64::abs);
@@ -116,7 +121,7 @@ impl Reader<'_> {
     }
 
     /// Adds a face from a generator. Only the first face of its output reports an unknown material.
-    pub fn facet(&mut self, modifier: &Word, corners: &[DVec3], name: &Word, place: &Place, first: bool) {
+    pub fn facet(&mut self, modifier: &Word, corners: &[DVec3], name: &Word, place: &PrimitiveContext, first: bool) {
         let known = modifier.text == "void" || self.names.contains_key(&modifier.text);
         if !known && !first {
             return;
@@ -126,7 +131,7 @@ impl Reader<'_> {
         }
     }
 
-    fn polygon(&mut self, modifier: Option<usize>, corners: &[DVec3], place: &Place, at: Span) {
+    fn polygon(&mut self, modifier: Option<usize>, corners: &[DVec3], place: &PrimitiveContext, at: Span) {
         if !self.room_for(corners.len(), at) {
             return;
         }
@@ -138,7 +143,7 @@ impl Reader<'_> {
         let corners: Vec<Vec3> = corners.iter().map(|p| p.as_vec3()).collect();
         let mut triangles = Vec::with_capacity(corners.len() - 2);
         if self.cutter.cut(corners.len(), |i| corners[i], |triangle| triangles.push(triangle)).is_err() {
-            return self.said.bad(at, "this polygon is too complex to triangulate");
+            return self.report.bad(at, "this polygon is too complex to triangulate");
         }
         self.body(number, at).facet(&corners, &triangles);
     }
@@ -150,12 +155,17 @@ impl Reader<'_> {
 
     /// Material of a surface and its number; `None` if the surface is not shown. Adds the lights of
     /// surfaces with a directional distribution.
-    fn shown(&mut self, modifier: Option<usize>, outline: &Outline, at: Span) -> Option<(std::rc::Rc<Made>, u32)> {
+    fn shown(
+        &mut self,
+        modifier: Option<usize>,
+        outline: &Outline,
+        at: Span,
+    ) -> Option<(std::rc::Rc<ConvertedModifier>, u32)> {
         // Surfaces with the modifier `void` only serve other programs.
         let made = self.made(modifier?);
         match made.kind {
             Kind::Aimed { .. } => {
-                self.lamp(&made, outline, at);
+                self.point_lights(&made, outline, at);
                 None
             }
             _ => made.number.map(|number| (made, number)),

@@ -3,7 +3,7 @@
 
 mod conventions;
 mod gensky;
-mod lamps;
+mod lights;
 mod measured;
 
 use crate::testing::{folder, read_in};
@@ -19,8 +19,8 @@ fn read(text: &str) -> (Option<Scene>, Vec<String>) {
 
 /// Reads a text without findings.
 fn clean(text: &str) -> Scene {
-    let (scene, told) = read(text);
-    assert_eq!(told, [""; 0], "{text}");
+    let (scene, messages) = read(text);
+    assert_eq!(messages, [""; 0], "{text}");
     scene.unwrap()
 }
 
@@ -38,10 +38,10 @@ fn corners(scene: &Scene) -> Vec<Vec3> {
 const MATTE: &str = "void plastic white 0 0 5 .7 .6 .5 0 0\n";
 
 fn sphere(material: &str) -> (PrincipledMaterial, Vec<String>) {
-    let (scene, told) = read(&format!("{material} m sphere s 0 0 4 1 2 3 .5"));
-    let scene = scene.unwrap_or_else(|| panic!("{material}: {told:?}")); // prose: keep
+    let (scene, messages) = read(&format!("{material} m sphere s 0 0 4 1 2 3 .5"));
+    let scene = scene.unwrap_or_else(|| panic!("{material}: {messages:?}")); // prose: keep
     let number = scene.root.as_ref().unwrap().objects[0].material.unwrap();
-    (layers(&scene, number).clone(), told)
+    (layers(&scene, number).clone(), messages)
 }
 
 #[test]
@@ -94,9 +94,9 @@ fn commands_are_emulated() {
         ("part.rad", b"white sphere s 0 0 4 1 0 0 .25\n"),
         ("red.rad", b"void plastic red 0 0 5 1 0 0 0 0\n!xform -m red part.rad"),
     ]);
-    let (scene, told) =
+    let (scene, messages) =
         read_in(files.path(), "scene.rad", &format!("{MATTE}!xform -i 3 -t 1 0 0 -i 1 -rz 90 red.rad\n"));
-    assert_eq!(told, [""; 0]);
+    assert_eq!(messages, [""; 0]);
     let scene = scene.unwrap();
     let object = &scene.root.as_ref().unwrap().objects[0];
     let Node::Primitive(durer_scene::shape::Primitive::Sphere(sphere)) = &object.node else { panic!() };
@@ -106,8 +106,8 @@ fn commands_are_emulated() {
 
 #[test]
 fn materials_become_layers() {
-    let (m, told) = sphere("void plastic m 0 0 5 .8 .4 .2 .04 0");
-    assert_eq!((m.base_color, told.len()), (Vec3::new(0.8, 0.4, 0.2), 0));
+    let (m, messages) = sphere("void plastic m 0 0 5 .8 .4 .2 .04 0");
+    assert_eq!((m.base_color, messages.len()), (Vec3::new(0.8, 0.4, 0.2), 0));
     // An index of 1.5 reflects 4 %.
     assert!((m.specular_ior - 1.5).abs() < 1e-5 && m.specular_roughness == 0.0);
     // In rough plastic the specular part is white in all directions; its roughness is the root of
@@ -117,8 +117,8 @@ fn materials_become_layers() {
         panic!("no mixture")
     };
     assert_eq!((mix.material1, mix.material2, mix.share), (0, 1, 0.04));
-    let (shine, matte) = (layers(&scene, 0), layers(&scene, 1));
-    assert!((shine.specular_roughness - 0.3).abs() < 1e-6 && shine.base_metalness == 1.0);
+    let (glossy, matte) = (layers(&scene, 0), layers(&scene, 1));
+    assert!((glossy.specular_roughness - 0.3).abs() < 1e-6 && glossy.base_metalness == 1.0);
     assert_eq!((matte.base_color, matte.specular_weight), (Vec3::new(0.8, 0.4, 0.2), 0.0));
     assert_eq!(sphere("void plastic m 0 0 5 .8 .4 .2 0 0").0.specular_weight, 0.0);
     let (m, _) = sphere("void metal m 0 0 5 .9 .5 .1 .95 .04");
@@ -146,7 +146,7 @@ fn materials_become_layers() {
 
 #[test]
 fn missing_counterpart_gives_one_warning_with_position() {
-    for (text, told) in [
+    for (text, expected) in [
         (
             "void antimatter m 1 void 0 0",
             "1:6 warning `antimatter` has no counterpart: it is left out and removes nothing",
@@ -163,7 +163,7 @@ fn missing_counterpart_gives_one_warning_with_position() {
     ] {
         let (scene, found) = read(&format!("{text}\nm sphere a 0 0 4 0 0 0 1\nm sphere b 0 0 4 3 0 0 1"));
         assert!(scene.is_some());
-        assert_eq!(found, [format!("scene.rad:{told}")], "{text}");
+        assert_eq!(found, [format!("scene.rad:{expected}")], "{text}");
     }
     // Unused materials are not reported.
     clean("void BSDF m 1 a.xml 0 0");
@@ -172,7 +172,7 @@ fn missing_counterpart_gives_one_warning_with_position() {
 #[test]
 fn errors_have_positions() {
     let cycle = folder(&[("a.rad", b"\n!xform a.rad"), ("far.rad", b"!cat ../a.rad")]);
-    for (text, told) in [
+    for (text, expected) in [
         ("void plastik m 0 0 5 1 1 1 0 0", "1:6 error unknown type `plastik` (did you mean `plastic`?)"),
         (
             "void plastic m 0 0 4 1 1 1 0\nm sphere s 0 0 4 0 0 0 1",
@@ -206,7 +206,7 @@ fn errors_have_positions() {
     ] {
         let (scene, found) = read_in(cycle.path(), "scene.rad", text);
         assert!(scene.is_none(), "{text}");
-        assert_eq!(found[0], format!("scene.rad:{told}"), "{text}");
+        assert_eq!(found[0], format!("scene.rad:{expected}"), "{text}");
     }
     let (_, found) = read_in(cycle.path(), "scene.rad", "!cat a.rad");
     assert_eq!(found, ["a.rad:2:8 error files are nested more than 32 deep: does one include itself?"]);
@@ -231,8 +231,8 @@ fn number_of_materials_is_limited() {
     let seen_through = |i| format!("void mixfunc v{i} 4 p0_0 void .5 . 0 0 v{i} sphere s 0 0 4 {i} 0 0 .4\n");
     let tinted = |i| format!("p0_0 brightfunc v{i} 2 .{i} . 0 0 v{i} sphere s 0 0 4 {i} 0 0 .4\n");
     for text in [all(&seen_through), all(&tinted)] {
-        let (scene, told) = read(&text);
-        let errors: Vec<&String> = told.iter().filter(|line| line.contains("error")).collect();
+        let (scene, messages) = read(&text);
+        let errors: Vec<&String> = messages.iter().filter(|line| line.contains("error")).collect();
         assert!(scene.is_none() && errors.len() == 1 && errors[0].contains("more than 65536 materials"), "{errors:?}");
     }
 }
@@ -245,14 +245,14 @@ fn rif_reads_files_and_views() {
         ("a.vf", b"# comment\nVIEW= -vtl -vp 0 0 0 -vd 0 1 0 -vh 4 -vv 2\n"),
     ]);
     let text = "# rad\nmat = m.rad\nscene = s.rad \\\n \"!xform -t 2 0 0 s.rad\"\nRES = 100\nEXP = +2\nview = one -vf a.vf\nview= two -vp 1 2 3 -vh 90 -vv 90\n";
-    let (scene, told) = read_in(files.path(), "x.rif", text);
-    assert_eq!(told, ["x.rif:6:7 note the file sets an exposure: use `--exposure 2.00`"]);
+    let (scene, expected) = read_in(files.path(), "x.rif", text);
+    assert_eq!(expected, ["x.rif:6:7 note the file sets an exposure: use `--exposure 2.00`"]);
     let scene = scene.unwrap();
-    assert_eq!(scene.wishes.size, Some((100, 50)));
+    assert_eq!(scene.render_defaults.size, Some((100, 50)));
     assert_eq!(scene.root.as_ref().unwrap().objects.len(), 2);
     let Some(durer_scene::camera::Camera::Orthographic(camera)) = &scene.camera else { panic!() };
     assert_eq!((camera.size, camera.direction, camera.up), (4.0, Vec3::Y, Vec3::Z));
-    for (line, told) in [
+    for (line, expected) in [
         ("scene = s.rad", "x.rif:1:9 error the file `s.rad` does not exist"),
         ("view = a -vp 1 2", "x.rif:1:10 error `-vp` needs 3 numbers"),
         ("banana = 1", "x.rif:1:1 error `rad` has no variable `banana`"),
@@ -264,6 +264,6 @@ fn rif_reads_files_and_views() {
     ] {
         let (scene, found) = read_in(Path::new("/nonexistent"), "x.rif", line);
         assert!(scene.is_none());
-        assert!(found.iter().any(|found| found.starts_with(told)), "{line}: {found:?}");
+        assert!(found.iter().any(|found| found.starts_with(expected)), "{line}: {found:?}");
     }
 }

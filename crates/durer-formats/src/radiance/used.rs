@@ -1,6 +1,6 @@
 //! Removal of unused materials, and warnings about missing files that are not read.
 
-use super::args::Thing;
+use super::args::RadPrimitive;
 use super::state::Reader;
 use durer_scene::material::{Pattern, Solid};
 use durer_scene::scene::{Material, Scene};
@@ -19,13 +19,13 @@ const LIBRARY: &str = "Ashikhmin LaFortune LaFortune1 WGMDaniso WGMDiso WalterBS
 
 impl Reader<'_> {
     /// Warns about files that a primitive names, that are not read, and that do not exist.
-    pub fn missing(&self, thing: &Thing) {
-        for word in &thing.texts {
+    pub fn missing(&self, primitive: &RadPrimitive) {
+        for word in &primitive.texts {
             let Some((name, kind)) = word.text.rsplit_once('.') else { continue };
             let library = kind == "cal" && LIBRARY.split_whitespace().any(|known| known == name);
             if matches!(kind, "cal" | "xml" | "rtm" | "oct") && !library && !self.input.source.contains(&word.text) {
                 let message = format!("missing file {}", word.shown());
-                self.said.warn_once("missing-file", word.at, message);
+                self.report.warn_once("missing-file", word.at, message);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Radiance's views, such as `-vtv -vp 0 0 0 -vd 0 1 0 -vu 0 0 1 -vh 45 -vv 45`.
 
 use super::words::{Word, Words};
-use crate::said::Said;
+use crate::shared_report::SharedReport;
 use durer_diag::Span;
 use durer_scene::camera::cylindrical::CylindricalCamera;
 use durer_scene::camera::fisheye::{FisheyeCamera, FisheyeProjection};
@@ -48,7 +48,7 @@ impl Default for View {
 
 /// Returns the last view in a file. A view is a line that starts with `VIEW=` or the name of a
 /// program. In a picture only the header is searched, and its lines may contain other options.
-pub(super) fn of_file(bytes: &[u8], file: u32, said: &Said) -> Option<View> {
+pub(super) fn of_file(bytes: &[u8], file: u32, report: &SharedReport) -> Option<View> {
     let (mut view, mut start) = (None, 0);
     let picture = bytes.starts_with(b"#?");
     for line in bytes.split_inclusive(|byte| *byte == b'\n') {
@@ -66,13 +66,13 @@ pub(super) fn of_file(bytes: &[u8], file: u32, said: &Said) -> Option<View> {
         let program = first.text.rsplit('/').next().unwrap_or_default();
         if PROGRAMS.contains(&program) {
             let mut found = View { at: first.at, ..view.unwrap_or_default() };
-            found.options(&own, true, said);
+            found.options(&own, true, report);
             view = Some(found);
         }
     }
     if view.is_none() {
         let at = Span { file, start: 0, end: bytes.len().min(1) as u32 };
-        said.bad_with(at, "the file has no view", Some("add a line that begins with `VIEW=`".into()));
+        report.bad_with(at, "the file has no view", Some("add a line that begins with `VIEW=`".into()));
     }
     view
 }
@@ -84,17 +84,17 @@ impl View {
 
     /// Applies view options. Skips all other options with their arguments and, if `others`, also
     /// unknown options that begin with `-v`.
-    pub fn options(&mut self, words: &[Word], others: bool, said: &Said) {
+    pub fn options(&mut self, words: &[Word], others: bool, report: &SharedReport) {
         let mut rest = words;
         while let Some((option, more)) = rest.split_first() {
             rest = more;
             let Some(name) = option.text.strip_prefix("-v") else { continue };
             let mut numbers = |count: usize| -> Option<Vec<f64>> {
                 if rest.len() < count {
-                    said.bad(option.at, format!("{} needs {count} numbers", option.shown()));
+                    report.bad(option.at, format!("{} needs {count} numbers", option.shown()));
                     return None;
                 }
-                let list = rest[..count].iter().map(|word| word.number(said)).collect();
+                let list = rest[..count].iter().map(|word| word.number(report)).collect();
                 rest = &rest[count..];
                 list
             };
@@ -107,7 +107,7 @@ impl View {
                         _ => self.up = v,
                     }
                     if name != "p" && v.try_normalize().is_none() {
-                        said.bad(option.at, "a direction must not be 0");
+                        report.bad(option.at, "a direction must not be 0");
                     }
                 }
                 "h" | "v" | "s" | "l" | "o" | "a" => {
@@ -119,22 +119,22 @@ impl View {
                         "l" => self.shift[1] = value,
                         "o" => self.fore = value,
                         _ if value != 0.0 => {
-                            said.once(option.at, "the aft clipping plane has no counterpart");
+                            report.once(option.at, "the aft clipping plane has no counterpart");
                         }
                         _ => {}
                     }
                 }
                 "tv" | "tl" | "ta" | "th" | "ts" | "tc" => self.kind = name.chars().last().unwrap_or('v'),
                 _ if others => {}
-                _ => said.bad(option.at, format!("unknown view option {}", option.shown())),
+                _ => report.bad(option.at, format!("unknown view option {}", option.shown())),
             }
         }
     }
 
     /// Sets the camera and the picture size of a scene.
-    pub fn place(&self, scene: &mut Scene, larger: u32, said: &Said) {
+    pub fn place(&self, scene: &mut Scene, larger: u32, report: &SharedReport) {
         if self.kind != 'l' && self.fore != 0.0 {
-            said.once(self.at, "the fore clipping plane has a counterpart only in parallel views (`-vtl`)");
+            report.once(self.at, "the fore clipping plane has a counterpart only in parallel views (`-vtl`)");
         }
         let half = |degrees: f64| 0.5 * degrees.to_radians();
         let [across, upwards] = self.size;
@@ -147,10 +147,10 @@ impl View {
         };
         let above = if self.kind == 'c' { 179.9 } else { most };
         if !(across > 0.0 && across <= most && upwards > 0.0 && upwards <= above) {
-            return said.bad(self.at, "a view's sizes (-vh, -vv) must be above 0 and within the range of its type");
+            return report.bad(self.at, "a view's sizes (-vh, -vv) must be above 0 and within the range of its type");
         }
         if self.direction.cross(self.up).try_normalize().is_none() {
-            return said.bad(self.at, "the up vector (-vu) must not be parallel to the view direction (-vd)");
+            return report.bad(self.at, "the up vector (-vu) must not be parallel to the view direction (-vd)");
         }
         let tan = |degrees: f64| fp::tan_f64(half(degrees));
         let sides = match self.kind {
@@ -206,7 +206,7 @@ impl View {
             .into(),
             kind => {
                 if across != upwards {
-                    said.once(self.at, "a fisheye view shows the full disc: its picture is square");
+                    report.once(self.at, "a fisheye view shows the full disc: its picture is square");
                 }
                 let projection = match kind {
                     'h' => FisheyeProjection::Orthographic,
@@ -217,11 +217,11 @@ impl View {
             }
         };
         if shifted && !matches!(self.kind, 'v' | 'l') {
-            said.once(self.at, "views of this type cannot be shifted (-vs, -vl): the centre is used");
+            report.once(self.at, "views of this type cannot be shifted (-vs, -vl): the centre is used");
         }
         let side = |length: f64| ((f64::from(larger) * length / longest).round() as u32).max(1);
         scene.camera = Some(camera);
         scene.camera_span = self.at;
-        scene.wishes.size = Some((side(sides[0]), side(sides[1])));
+        scene.render_defaults.size = Some((side(sides[0]), side(sides[1])));
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::number::parse_f32;
 use crate::report::shown;
-use crate::said::Said;
+use crate::shared_report::SharedReport;
 use durer_diag::Span;
 
 /// A word without its quotes, and its span.
@@ -19,19 +19,19 @@ impl Word {
     }
 
     /// Parses the word as a number; reports an error if it is not one.
-    pub fn number(&self, said: &Said) -> Option<f64> {
+    pub fn number(&self, report: &SharedReport) -> Option<f64> {
         let number = parse_f32(self.text.as_bytes()).ok().and_then(|_| self.text.parse::<f64>().ok());
         if number.is_none() {
-            said.bad(self.at, format!("expected a number, found {}", self.shown()));
+            report.bad(self.at, format!("expected a number, found {}", self.shown()));
         }
         number
     }
 
     /// Parses the word as a non-negative integer; reports an error if it is not one.
-    pub fn count(&self, said: &Said) -> Option<usize> {
+    pub fn count(&self, report: &SharedReport) -> Option<usize> {
         let count = self.text.parse().ok();
         if count.is_none() {
-            said.bad(self.at, format!("expected a whole number of 0 or more, found {}", self.shown()));
+            report.bad(self.at, format!("expected a whole number of 0 or more, found {}", self.shown()));
         }
         count
     }

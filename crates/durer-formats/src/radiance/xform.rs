@@ -1,7 +1,7 @@
 //! Transforms of `xform` and of instances: sequences, repetitions and arrays.
 
 use super::words::Word;
-use crate::said::Said;
+use crate::shared_report::SharedReport;
 use durer_scene::math::fp;
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -43,15 +43,15 @@ fn turn(axis: usize, degrees: f64) -> DAffine3 {
 impl Transform {
     /// Parses an option with its arguments from the front of `words`; returns false if it is not a
     /// transform.
-    pub fn option(&mut self, words: &mut &[Word], said: &Said) -> bool {
+    pub fn option(&mut self, words: &mut &[Word], report: &SharedReport) -> bool {
         let Some((option, rest)) = words.split_first() else { return false };
         let numbers = |count: usize| -> Option<Vec<f64>> {
             if rest.len() < count {
                 let message = format!("{} needs {count} number{}", option.shown(), if count == 1 { "" } else { "s" });
-                said.bad(option.at, message);
+                report.bad(option.at, message);
                 return None;
             }
-            rest[..count].iter().map(|word| word.number(said)).collect()
+            rest[..count].iter().map(|word| word.number(report)).collect()
         };
         let (count, map) = match option.text.as_str() {
             "-t" => (3, numbers(3).map(|v| DAffine3::from_translation(DVec3::new(v[0], v[1], v[2])))),
@@ -61,7 +61,7 @@ impl Transform {
             "-s" => {
                 let factor = numbers(1).map(|v| v[0]);
                 if factor == Some(0.0) {
-                    said.bad(option.at, "the scale factor must not be 0");
+                    report.bad(option.at, "the scale factor must not be 0");
                 }
                 (1, factor.filter(|s| *s != 0.0).map(|s| DAffine3::from_scale(DVec3::splat(s))))
             }
@@ -69,9 +69,9 @@ impl Transform {
             "-my" => (0, Some(DAffine3::from_scale(DVec3::new(1.0, -1.0, 1.0)))),
             "-mz" => (0, Some(DAffine3::from_scale(DVec3::new(1.0, 1.0, -1.0)))),
             "-i" | "-a" => {
-                let count = rest.first().and_then(|word| word.count(said)).unwrap_or(1).min(MAX_PLACES);
+                let count = rest.first().and_then(|word| word.count(report)).unwrap_or(1).min(MAX_PLACES);
                 if rest.is_empty() {
-                    said.bad(option.at, format!("{} needs a number", option.shown()));
+                    report.bad(option.at, format!("{} needs a number", option.shown()));
                 }
                 let times = if option.text == "-i" { Times::Just(count as i32) } else { Times::Array(count) };
                 self.parts.push((times, DAffine3::IDENTITY));

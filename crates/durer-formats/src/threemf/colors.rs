@@ -1,7 +1,7 @@
 //! Property resources: colours, mixtures of them, and texture coordinates.
 
 use super::model::{Color, Group, Model, Properties};
-use super::parser::{Broken, Parser};
+use super::parser::{ErrorReported, Parser};
 use crate::xml::Tag;
 use durer_image::decode_srgb;
 use durer_scene::math::Vec2;
@@ -28,7 +28,7 @@ impl Model {
 
 impl Parser<'_, '_> {
     /// Reads a property list.
-    pub fn properties(&mut self, tag: &Tag) -> Result<(), Broken> {
+    pub fn properties(&mut self, tag: &Tag) -> Result<(), ErrorReported> {
         let id = self.new_id(tag);
         let group = match tag.name {
             "basematerials" => self.colors("base", "displaycolor")?,
@@ -47,7 +47,7 @@ impl Parser<'_, '_> {
     /// Reads an sRGB colour, `#RRGGBB` or `#RRGGBBAA`, as linear values.
     fn color(&self, tag: &Tag, name: &str) -> Option<Color> {
         let Some(attribute) = tag.get(name) else {
-            self.said.bad(tag.at, format!("`<{}>` needs `{name}=\"#RRGGBB\"`", tag.name));
+            self.report.bad(tag.at, format!("`<{}>` needs `{name}=\"#RRGGBB\"`", tag.name));
             return None;
         };
         let digits = attribute.value.strip_prefix('#').filter(|digits| digits.is_ascii());
@@ -58,12 +58,12 @@ impl Parser<'_, '_> {
             Some([r, g, b, f32::from(alpha) / 255.0])
         });
         if color.is_none() {
-            self.said.bad(attribute.at, format!("expected a colour as #RRGGBB, found `{}`", attribute.value));
+            self.report.bad(attribute.at, format!("expected a colour as #RRGGBB, found `{}`", attribute.value));
         }
         color
     }
 
-    fn colors(&mut self, name: &str, attribute: &str) -> Result<Option<Group>, Broken> {
+    fn colors(&mut self, name: &str, attribute: &str) -> Result<Option<Group>, ErrorReported> {
         let mut colors = Vec::new();
         while let Some(tag) = self.next()? {
             if tag.name == name {
@@ -74,17 +74,17 @@ impl Parser<'_, '_> {
         Ok(Some(Group::Colors(colors)))
     }
 
-    fn picture(&mut self, tag: &Tag) -> Result<Option<Group>, Broken> {
+    fn picture(&mut self, tag: &Tag) -> Result<Option<Group>, ErrorReported> {
         self.skip()?;
         let Some(path) = tag.get("path") else {
-            self.said.bad(tag.at, "`<texture2d>` needs `path=\"...\"`");
+            self.report.bad(tag.at, "`<texture2d>` needs `path=\"...\"`");
             return Ok(None);
         };
         let styles = ["tilestyleu", "tilestylev"].map(|name| tag.get(name).map(|style| style.value.to_string()));
         Ok(Some(Group::Picture { part: path.value.trim_start_matches('/').to_string(), styles, at: path.at }))
     }
 
-    fn texture(&mut self, tag: &Tag) -> Result<Option<Group>, Broken> {
+    fn texture(&mut self, tag: &Tag) -> Result<Option<Group>, ErrorReported> {
         let picture = self.whole_number(tag, "texid");
         let mut uvs = Vec::new();
         while let Some(place) = self.next()? {
@@ -100,26 +100,26 @@ impl Parser<'_, '_> {
     /// Reads whole numbers separated by blanks.
     fn list(&self, tag: &Tag, name: &str) -> Vec<u32> {
         let Some(attribute) = tag.get(name) else {
-            self.said.bad(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
+            self.report.bad(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
             return Vec::new();
         };
         let numbers: Option<Vec<u32>> = attribute.value.split_whitespace().map(|word| word.parse().ok()).collect();
         numbers.unwrap_or_else(|| {
-            self.said.bad(attribute.at, format!("expected whole numbers, found `{}`", attribute.value));
+            self.report.bad(attribute.at, format!("expected whole numbers, found `{}`", attribute.value));
             Vec::new()
         })
     }
 
     /// Reads composite materials: mixtures of base materials by proportion.
-    fn composites(&mut self, tag: &Tag) -> Result<Option<Group>, Broken> {
+    fn composites(&mut self, tag: &Tag) -> Result<Option<Group>, ErrorReported> {
         let (base, indices) = (self.whole_number(tag, "matid"), self.list(tag, "matindices"));
         let known = base.and_then(|base| self.model.count(base));
         if let (Some(base), None) = (base, known) {
-            self.said.bad(tag.at, format!("no list of base materials {base} is defined before this"));
+            self.report.bad(tag.at, format!("no list of base materials {base} is defined before this"));
         }
         let parts: Vec<Color> = indices.iter().filter_map(|index| self.model.color(base?, *index)).collect();
         if known.is_some() && parts.len() < indices.len() {
-            self.said.bad(tag.at, "`matindices` refers to base materials that do not exist");
+            self.report.bad(tag.at, "`matindices` refers to base materials that do not exist");
         }
         let mut colors = Vec::new();
         while let Some(mixture) = self.next()? {
@@ -140,16 +140,16 @@ impl Parser<'_, '_> {
     }
 
     /// Reads multiproperties: layers over each other, the last on top.
-    fn several(&mut self, tag: &Tag) -> Result<Option<Group>, Broken> {
+    fn several(&mut self, tag: &Tag) -> Result<Option<Group>, ErrorReported> {
         let pids = self.list(tag, "pids");
         if let Some(missing) = pids.iter().find(|pid| !self.model.properties.contains_key(pid)) {
-            self.said.bad(tag.at, format!("no list of properties {missing} is defined before this"));
+            self.report.bad(tag.at, format!("no list of properties {missing} is defined before this"));
         }
         if pids
             .iter()
             .any(|pid| matches!(self.model.properties.get(pid).map(|p| &p.group), Some(Group::Texture { .. })))
         {
-            self.said.once(tag.at, "pictures in multiproperties have no counterpart: only the colours are shown");
+            self.report.once(tag.at, "pictures in multiproperties have no counterpart: only the colours are shown");
         }
         let mut colors = Vec::new();
         while let Some(several) = self.next()? {

@@ -1,12 +1,12 @@
 //! Parsing of meshes, of the properties of their corners, and of beam lattices.
 
 use super::model::{Mesh, Property};
-use super::parser::{Broken, Parser};
+use super::parser::{ErrorReported, Parser};
 use crate::xml::Tag;
 use durer_scene::math::Vec3;
 
 impl Parser<'_, '_> {
-    pub fn mesh(&mut self, usual: Option<Property>) -> Result<Mesh, Broken> {
+    pub fn mesh(&mut self, usual: Option<Property>) -> Result<Mesh, ErrorReported> {
         let mut mesh = Mesh { usual, ..Mesh::default() };
         while let Some(tag) = self.next()? {
             match tag.name {
@@ -22,12 +22,12 @@ impl Parser<'_, '_> {
         Ok(mesh)
     }
 
-    fn vertices(&mut self, mesh: &mut Mesh) -> Result<(), Broken> {
+    fn vertices(&mut self, mesh: &mut Mesh) -> Result<(), ErrorReported> {
         while let Some(tag) = self.next()? {
             if tag.name == "vertex" {
                 let coordinate = |name| {
                     if tag.get(name).is_none() {
-                        self.said.bad(tag.at, format!("a vertex needs `{name}=\"...\"`"));
+                        self.report.bad(tag.at, format!("a vertex needs `{name}=\"...\"`"));
                     }
                     self.number(&tag, name).unwrap_or(0.0)
                 };
@@ -43,13 +43,13 @@ impl Parser<'_, '_> {
         let number = self.whole_number(tag, name)?;
         if number as usize >= count {
             let at = tag.get(name).map_or(tag.at, |attribute| attribute.at);
-            self.said.bad(at, format!("vertex {number} does not exist: there are {count} vertices, counted from 0"));
+            self.report.bad(at, format!("vertex {number} does not exist: there are {count} vertices, counted from 0"));
             return None;
         }
         Some(number)
     }
 
-    fn triangles(&mut self, mesh: &mut Mesh) -> Result<(), Broken> {
+    fn triangles(&mut self, mesh: &mut Mesh) -> Result<(), ErrorReported> {
         let count = mesh.positions.len();
         while let Some(tag) = self.next()? {
             self.skip()?;
@@ -76,18 +76,18 @@ impl Parser<'_, '_> {
         let p1 = self.optional_number(tag, "p1")?;
         let Some(pid) = self.optional_number(tag, "pid").or(usual.map(|usual| usual.0)) else {
             let at = tag.get("p1").map_or(tag.at, |attribute| attribute.at);
-            self.said.bad(at, "`p1` needs a `pid`, of the triangle or of its object");
+            self.report.bad(at, "`p1` needs a `pid`, of the triangle or of its object");
             return None;
         };
         let Some(count) = self.model.count(pid) else {
             let at = tag.get("pid").map_or(tag.at, |attribute| attribute.at);
-            self.said.bad(at, format!("no list of properties {pid} is defined before this"));
+            self.report.bad(at, format!("no list of properties {pid} is defined before this"));
             return None;
         };
         let corners = [Some(p1), self.optional_number(tag, "p2"), self.optional_number(tag, "p3")];
         let corners = corners.map(|corner| corner.unwrap_or(p1));
         if let Some(wrong) = corners.iter().find(|corner| **corner as usize >= count) {
-            self.said.bad(
+            self.report.bad(
                 tag.at,
                 format!("property {wrong} does not exist: the list {pid} has {count} properties, counted from 0"),
             );
@@ -96,7 +96,7 @@ impl Parser<'_, '_> {
         Some((pid, corners))
     }
 
-    fn lattice(&mut self, tag: &Tag, mesh: &mut Mesh) -> Result<(), Broken> {
+    fn lattice(&mut self, tag: &Tag, mesh: &mut Mesh) -> Result<(), ErrorReported> {
         let usual = self.number(tag, "radius").unwrap_or(1.0);
         let count = mesh.positions.len();
         while let Some(part) = self.next()? {
@@ -109,7 +109,7 @@ impl Parser<'_, '_> {
                 let radii = [first, self.number(&beam, "r2").unwrap_or(first)];
                 let [a, b] = ["v1", "v2"].map(|name| self.corner(&beam, name, count));
                 if radii.iter().any(|radius| *radius <= 0.0) {
-                    self.said.bad(beam.at, "the radius of a beam must be more than 0");
+                    self.report.bad(beam.at, "the radius of a beam must be more than 0");
                 } else if let (Some(a), Some(b)) = (a, b) {
                     mesh.beams.push(([a, b], radii));
                 }

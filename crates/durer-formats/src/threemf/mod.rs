@@ -15,7 +15,7 @@ mod show;
 mod tests;
 
 use super::model::{Input, SceneFormat};
-use super::said::Said;
+use super::shared_report::SharedReport;
 use super::{too_large, zip};
 use durer_diag::Diagnostics;
 use durer_scene::scene::{Axis, Scene};
@@ -29,7 +29,7 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     write: None,
     up: Axis::Z,
     whole: false,
-    shines: None,
+    light_hint: None,
 };
 
 /// Returns true for ZIP archives; no other supported format is one.
@@ -43,9 +43,9 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
         diagnostics.push(error);
         return None;
     }
-    let said = Said::default();
-    let scene = package::Package::open(input, &said).and_then(|package| show::scene(package, &said));
-    let sound = !said.has_errors() && !diagnostics.has_errors();
-    diagnostics.extend(said.finish());
+    let report = SharedReport::default();
+    let scene = package::Package::open(input, &report).and_then(|package| show::scene(package, &report));
+    let sound = !report.has_errors() && !diagnostics.has_errors();
+    diagnostics.extend(report.finish());
     scene.filter(|_| sound)
 }

@@ -6,7 +6,7 @@ use glam::DAffine3;
 use std::collections::BTreeMap;
 
 /// A build item or component: an object of a part with a transform.
-pub(super) struct Place {
+pub(super) struct ObjectRef {
     /// Name of the object's part if it is another one.
     pub part: Option<String>,
     pub id: u32,
@@ -17,7 +17,7 @@ pub(super) struct Place {
 /// An object: a mesh, or components.
 pub(super) enum Object {
     Mesh(Box<Mesh>),
-    Components(Vec<Place>),
+    Components(Vec<ObjectRef>),
 }
 
 /// Content of a model part.
@@ -25,7 +25,7 @@ pub(super) enum Object {
 pub(super) struct Model {
     pub objects: BTreeMap<u32, (Object, Span)>,
     pub properties: BTreeMap<u32, Properties>,
-    pub items: Vec<Place>,
+    pub items: Vec<ObjectRef>,
     /// Length of its unit in millimetres.
     pub unit: f64,
 }

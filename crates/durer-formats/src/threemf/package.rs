@@ -2,7 +2,7 @@
 
 use crate::files::unescaped;
 use crate::model::Input;
-use crate::said::{Said, meant};
+use crate::shared_report::{SharedReport, suggest};
 use crate::xml::{Piece, Xml, utf8};
 use crate::zip::Zip;
 use durer_diag::{Diagnostic, Span};
@@ -15,7 +15,7 @@ const RELATIONS: &str = "_rels/.rels";
 /// An opened archive and its diagnostics.
 pub(super) struct Package<'a> {
     pub input: &'a Input<'a>,
-    said: &'a Said,
+    report: &'a SharedReport,
     zip: Zip<'a>,
     /// Name of the model part.
     pub root: String,
@@ -23,16 +23,17 @@ pub(super) struct Package<'a> {
 
 impl<'a> Package<'a> {
     /// Opens an archive and finds its model part.
-    pub fn open(input: &'a Input<'a>, said: &'a Said) -> Option<Self> {
+    pub fn open(input: &'a Input<'a>, report: &'a SharedReport) -> Option<Self> {
         let at = Span { file: input.file, start: 0, end: 0 };
         let zip = match Zip::open(input.bytes) {
             Ok(zip) => zip,
             Err(problem) => {
-                said.push(Diagnostic::error(format!("the archive cannot be read: {problem}")).code("bad-file").at(at));
+                report
+                    .push(Diagnostic::error(format!("the archive cannot be read: {problem}")).code("bad-file").at(at));
                 return None;
             }
         };
-        let mut package = Package { input, said, zip, root: String::new() };
+        let mut package = Package { input, report, zip, root: String::new() };
         package.root = package.found(at)?;
         Some(package)
     }
@@ -45,7 +46,7 @@ impl<'a> Package<'a> {
             let mut xml = match Xml::new(&bytes, file) {
                 Ok(xml) => xml,
                 Err(error) => {
-                    self.said.push(*error);
+                    self.report.push(*error);
                     return None;
                 }
             };
@@ -62,7 +63,7 @@ impl<'a> Package<'a> {
                     Ok(Piece::End) => break,
                     Ok(_) => {}
                     Err(error) => {
-                        self.said.push(*error);
+                        self.report.push(*error);
                         broken = true;
                         break;
                     }
@@ -71,13 +72,13 @@ impl<'a> Package<'a> {
         }
         if let [_, (name, second), ..] = roots.as_slice() {
             let message = format!("an archive has one model: `{name}` is a second");
-            self.said.push(Diagnostic::error(message).code("bad-file").at(*second));
+            self.report.push(Diagnostic::error(message).code("bad-file").at(*second));
             return None;
         }
         if let Some((name, at)) = roots.into_iter().next() {
             if self.known(&name).is_none() {
-                let help = meant(&name, self.zip.names());
-                self.said.bad_with(at, format!("the archive has no part `{name}`"), help);
+                let help = suggest(&name, self.zip.names());
+                self.report.bad_with(at, format!("the archive has no part `{name}`"), help);
                 return None;
             }
             return Some(name);
@@ -88,7 +89,7 @@ impl<'a> Package<'a> {
             [only] => Some(only.to_string()),
             _ => {
                 let message = "the archive has no model: it is not a 3MF file";
-                self.said.push(Diagnostic::error(message).code("bad-file").at(at));
+                self.report.push(Diagnostic::error(message).code("bad-file").at(at));
                 None
             }
         }
@@ -109,7 +110,7 @@ impl<'a> Package<'a> {
             Ok(bytes) => Some(bytes.into()),
             Err(problem) => {
                 let message = format!("the part `{name}` cannot be read: {problem}");
-                self.said.push(Diagnostic::error(message).code("bad-file").at(at));
+                self.report.push(Diagnostic::error(message).code("bad-file").at(at));
                 None
             }
         }
@@ -119,7 +120,7 @@ impl<'a> Package<'a> {
     pub fn part(&mut self, name: &str, at: Span) -> Option<(Arc<[u8]>, u32)> {
         let bytes = utf8(self.bytes(name, at)?);
         if bytes.len() >= u32::MAX as usize {
-            self.said.bad(at, format!("the part `{name}` is too large"));
+            self.report.bad(at, format!("the part `{name}` is too large"));
             return None;
         }
         let file = self.input.files.borrow_mut().add(format!("{}/{name}", self.input.name), bytes.clone());

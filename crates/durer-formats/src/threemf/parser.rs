@@ -1,8 +1,8 @@
 //! Parser of the XML of a model part: resources and build items.
 
-use super::model::{Group, Model, Object, Place};
+use super::model::{Group, Model, Object, ObjectRef};
 use super::package::Package;
-use crate::said::{Said, meant};
+use crate::shared_report::{SharedReport, suggest};
 use crate::xml::{Piece, Tag, Xml};
 use durer_diag::{Diagnostic, Span};
 use glam::DAffine3;
@@ -16,18 +16,18 @@ const TYPES: [&str; 5] = ["model", "solidsupport", "support", "surface", "other"
 /// Parser of one model part.
 pub(super) struct Parser<'a, 'x> {
     pub xml: Xml<'x>,
-    pub said: &'a Said,
+    pub report: &'a SharedReport,
     pub model: Model,
 }
 
 /// Signals that parsing cannot continue; the error has been reported.
-pub(super) struct Broken;
+pub(super) struct ErrorReported;
 
 /// Reads a model part of an archive.
-pub fn read(package: &mut Package, name: &str, at: Span, said: &Said) -> Option<Model> {
+pub fn read(package: &mut Package, name: &str, at: Span, report: &SharedReport) -> Option<Model> {
     let Some((bytes, file)) = package.part(name, at) else {
-        if !said.has_errors() {
-            said.bad(at, format!("the archive has no part `{name}`"));
+        if !report.has_errors() {
+            report.bad(at, format!("the archive has no part `{name}`"));
         }
         return None;
     };
@@ -35,31 +35,31 @@ pub fn read(package: &mut Package, name: &str, at: Span, said: &Said) -> Option<
     let xml = match Xml::new(&bytes, file) {
         Ok(xml) => xml,
         Err(error) => {
-            said.push(*error);
+            report.push(*error);
             return None;
         }
     };
-    let mut parser = Parser { xml, said, model: Model { unit: 1.0, ..Model::default() } };
+    let mut parser = Parser { xml, report, model: Model { unit: 1.0, ..Model::default() } };
     parser.whole().ok()?;
     Some(parser.model)
 }
 
 impl<'x> Parser<'_, 'x> {
     /// Next child of the open element; `None` at its end.
-    pub fn next(&mut self) -> Result<Option<Tag<'x>>, Broken> {
+    pub fn next(&mut self) -> Result<Option<Tag<'x>>, ErrorReported> {
         match self.xml.next() {
-            _ if self.said.is_full() => Err(Broken),
+            _ if self.report.is_full() => Err(ErrorReported),
             Ok(Piece::Open(tag)) => Ok(Some(tag)),
             Ok(_) => Ok(None),
             Err(error) => {
-                self.said.push(*error);
-                Err(Broken)
+                self.report.push(*error);
+                Err(ErrorReported)
             }
         }
     }
 
     /// Skips to the end of the open element.
-    pub fn skip(&mut self) -> Result<(), Broken> {
+    pub fn skip(&mut self) -> Result<(), ErrorReported> {
         let mut depth = 1;
         while depth > 0 {
             match self.next()? {
@@ -70,18 +70,18 @@ impl<'x> Parser<'_, 'x> {
         Ok(())
     }
 
-    fn whole(&mut self) -> Result<(), Broken> {
-        let Some(tag) = self.next()? else { return Err(Broken) };
+    fn whole(&mut self) -> Result<(), ErrorReported> {
+        let Some(tag) = self.next()? else { return Err(ErrorReported) };
         if tag.name != "model" {
-            self.said.bad(tag.at, format!("expected `<model>`, found `<{}>`", tag.name));
-            return Err(Broken);
+            self.report.bad(tag.at, format!("expected `<model>`, found `<{}>`", tag.name));
+            return Err(ErrorReported);
         }
         if let Some(unit) = tag.get("unit") {
             match UNITS.iter().find(|row| row.0 == unit.value) {
                 Some(row) => self.model.unit = row.1,
                 None => {
-                    let help = meant(&unit.value, UNITS.map(|row| row.0));
-                    self.said.bad_with(unit.at, format!("unknown unit `{}`", unit.value), help);
+                    let help = suggest(&unit.value, UNITS.map(|row| row.0));
+                    self.report.bad_with(unit.at, format!("unknown unit `{}`", unit.value), help);
                 }
             }
         }
@@ -94,8 +94,8 @@ impl<'x> Parser<'_, 'x> {
                     self.build()?;
                 }
                 "model" => {
-                    self.said.bad(part.at, "a file has one model: this is a second");
-                    return Err(Broken);
+                    self.report.bad(part.at, "a file has one model: this is a second");
+                    return Err(ErrorReported);
                 }
                 _ => self.skip()?,
             }
@@ -103,12 +103,12 @@ impl<'x> Parser<'_, 'x> {
         // No element may follow the model.
         self.next()?;
         if built.is_none() {
-            self.said.bad(tag.at, "a model needs a `<build>` that lists the objects to show");
+            self.report.bad(tag.at, "a model needs a `<build>` that lists the objects to show");
         }
         Ok(())
     }
 
-    fn resources(&mut self) -> Result<(), Broken> {
+    fn resources(&mut self) -> Result<(), ErrorReported> {
         while let Some(tag) = self.next()? {
             match tag.name {
                 "object" => self.object(&tag)?,
@@ -125,7 +125,7 @@ impl<'x> Parser<'_, 'x> {
         let known = self.model.objects.get(&id).map(|known| known.1);
         if let Some(first) = known.or(self.model.properties.get(&id).map(|known| known.at)) {
             let error = Diagnostic::error(format!("two resources have the id {id}")).code("bad-value").at(tag.at);
-            self.said.push(error.related(first, "the first is here"));
+            self.report.push(error.related(first, "the first is here"));
             return None;
         }
         Some(id)
@@ -134,12 +134,12 @@ impl<'x> Parser<'_, 'x> {
     /// Reads a required whole number.
     pub fn whole_number(&self, tag: &Tag, name: &str) -> Option<u32> {
         let Some(attribute) = tag.get(name) else {
-            self.said.bad(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
+            self.report.bad(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
             return None;
         };
         let number = attribute.value.trim().parse::<u32>().ok();
         if number.is_none() {
-            self.said.bad(attribute.at, format!("expected a whole number, found `{}`", attribute.value));
+            self.report.bad(attribute.at, format!("expected a whole number, found `{}`", attribute.value));
         }
         number
     }
@@ -155,20 +155,20 @@ impl<'x> Parser<'_, 'x> {
         let attribute = tag.get(name)?;
         let number = attribute.value.trim().parse::<f32>().ok().filter(|number| number.is_finite());
         if number.is_none() {
-            self.said.bad(attribute.at, format!("expected a number, found `{}`", attribute.value));
+            self.report.bad(attribute.at, format!("expected a number, found `{}`", attribute.value));
         }
         number
     }
 
-    fn object(&mut self, tag: &Tag) -> Result<(), Broken> {
+    fn object(&mut self, tag: &Tag) -> Result<(), ErrorReported> {
         let id = self.new_id(tag);
         if let Some(kind) = tag.get("type").filter(|kind| !TYPES.contains(&&*kind.value)) {
-            let help = meant(&kind.value, TYPES);
-            self.said.bad_with(kind.at, format!("unknown object type `{}`", kind.value), help);
+            let help = suggest(&kind.value, TYPES);
+            self.report.bad_with(kind.at, format!("unknown object type `{}`", kind.value), help);
         }
         let (pid, pindex) = (self.optional_number(tag, "pid"), self.optional_number(tag, "pindex"));
         if let (None, Some(_), Some(attribute)) = (pid, pindex, tag.get("pindex")) {
-            self.said.bad(attribute.at, "`pindex` needs a `pid`");
+            self.report.bad(attribute.at, "`pindex` needs a `pid`");
         }
         let mut object = None;
         while let Some(part) = self.next()? {
@@ -182,26 +182,26 @@ impl<'x> Parser<'_, 'x> {
             (Some(id), Some(object)) => {
                 self.model.objects.insert(id, (object, tag.at));
             }
-            (_, None) => self.said.bad(tag.at, "an object needs a `<mesh>` or `<components>`"),
+            (_, None) => self.report.bad(tag.at, "an object needs a `<mesh>` or `<components>`"),
             _ => {}
         }
         Ok(())
     }
 
-    fn build(&mut self) -> Result<(), Broken> {
+    fn build(&mut self) -> Result<(), ErrorReported> {
         self.model.items = self.places("item")?;
         Ok(())
     }
 
     /// Reads build items or components.
-    fn places(&mut self, name: &str) -> Result<Vec<Place>, Broken> {
+    fn places(&mut self, name: &str) -> Result<Vec<ObjectRef>, ErrorReported> {
         let mut places = Vec::new();
         while let Some(tag) = self.next()? {
             if tag.name == name
                 && let Some(id) = self.whole_number(&tag, "objectid")
             {
                 let part = tag.get("path").map(|path| path.value.trim_start_matches('/').to_string());
-                places.push(Place { part, id, map: self.map(&tag), at: tag.at });
+                places.push(ObjectRef { part, id, map: self.map(&tag), at: tag.at });
             }
             self.skip()?;
         }
@@ -219,7 +219,7 @@ impl<'x> Parser<'_, 'x> {
             Some(map) if map.matrix3.determinant() != 0.0 => map,
             found => {
                 let what = if found.is_some() { "an invertible transform" } else { "twelve numbers" };
-                self.said.bad(attribute.at, format!("expected {what}, found `{}`", attribute.value));
+                self.report.bad(attribute.at, format!("expected {what}, found `{}`", attribute.value));
                 DAffine3::IDENTITY
             }
         }

@@ -1,11 +1,11 @@
 //! Conversion of a model into a scene: meshes by material, and components with their transforms.
 
-use super::model::{Group, Mesh, Model, Object, Place};
+use super::model::{Group, Mesh, Model, Object, ObjectRef};
 use super::package::Package;
 use super::parser;
 use crate::growth::MAX_OBJECTS;
 use crate::pictures::asset;
-use crate::said::{Said, meant};
+use crate::shared_report::{SharedReport, suggest};
 use crate::sticks::{ball, stick};
 use durer_diag::Span;
 use durer_scene::material::PrincipledMaterial;
@@ -23,9 +23,9 @@ const DEEPEST: u32 = 32;
 const MAX_PARTS: usize = 4096;
 
 /// Builder of the scene.
-struct Show<'a> {
+struct SceneMaker<'a> {
     package: Package<'a>,
-    said: &'a Said,
+    report: &'a SharedReport,
     models: BTreeMap<String, Option<Rc<Model>>>,
     /// Converted objects by part and identifier, with the number of scene objects in each.
     shown: BTreeMap<(String, u32), (Rc<scene::Group>, usize)>,
@@ -38,12 +38,12 @@ struct Show<'a> {
 }
 
 /// Builds the scene of a package.
-pub(super) fn scene(package: Package, said: &Said) -> Option<Scene> {
+pub(super) fn scene(package: Package, report: &SharedReport) -> Option<Scene> {
     let root = package.root.clone();
     let at = Span { file: package.input.file, start: 0, end: 0 };
-    let mut show = Show {
+    let mut show = SceneMaker {
         package,
-        said,
+        report,
         models: BTreeMap::new(),
         shown: BTreeMap::new(),
         pictures: BTreeMap::new(),
@@ -54,29 +54,29 @@ pub(super) fn scene(package: Package, said: &Said) -> Option<Scene> {
     let model = show.model(&root, at)?;
     let items = show.places(&root, &model.items, 0);
     show.scene.root = Some(scene::Group { objects: items });
-    if show.count == 0 && !said.has_errors() {
+    if show.count == 0 && !report.has_errors() {
         let warning = durer_diag::Diagnostic::warning("the file has no visible shapes");
-        said.push(warning.code("no-objects").at(at));
+        report.push(warning.code("no-objects").at(at));
     }
     Some(show.scene)
 }
 
-impl Show<'_> {
+impl SceneMaker<'_> {
     fn model(&mut self, part: &str, at: Span) -> Option<Rc<Model>> {
         if let Some(known) = self.models.get(part) {
             return known.clone();
         }
         if self.models.len() >= MAX_PARTS {
-            self.said.bad(at, format!("more than {MAX_PARTS} parts in an archive"));
+            self.report.bad(at, format!("more than {MAX_PARTS} parts in an archive"));
             return None;
         }
-        let model = parser::read(&mut self.package, part, at, self.said).map(Rc::new);
+        let model = parser::read(&mut self.package, part, at, self.report).map(Rc::new);
         self.models.insert(part.to_string(), model.clone());
         model
     }
 
     /// Converts build items or components.
-    fn places(&mut self, part: &str, places: &[Place], depth: u32) -> Vec<scene::Object> {
+    fn places(&mut self, part: &str, places: &[ObjectRef], depth: u32) -> Vec<scene::Object> {
         let mut objects = Vec::new();
         for place in places {
             let other = place.part.clone().unwrap_or(part.to_string());
@@ -85,7 +85,7 @@ impl Show<'_> {
             if self.count > MAX_OBJECTS {
                 let message =
                     format!("the model has more than {MAX_OBJECTS} objects, counting each use of a component");
-                self.said.bad(place.at, message);
+                self.report.bad(place.at, message);
                 return objects;
             }
             let inner = scene::Object { node: Node::Group((*group).clone()), material: None, span: place.at };
@@ -97,20 +97,20 @@ impl Show<'_> {
     }
 
     /// Converts an object of a part, once.
-    fn object(&mut self, part: &str, place: &Place, depth: u32) -> Option<(Rc<scene::Group>, usize)> {
+    fn object(&mut self, part: &str, place: &ObjectRef, depth: u32) -> Option<(Rc<scene::Group>, usize)> {
         let key = (part.to_string(), place.id);
         if let Some(known) = self.shown.get(&key) {
             return Some(known.clone());
         }
         if depth > DEEPEST {
-            self.said.bad(place.at, format!("objects are nested more than {DEEPEST} deep: does one contain itself?"));
+            self.report.bad(place.at, format!("objects are nested more than {DEEPEST} deep: does one contain itself?"));
             return None;
         }
         let model = self.model(part, place.at)?;
         let Some((object, at)) = model.objects.get(&place.id) else {
             let ids: Vec<String> = model.objects.keys().map(u32::to_string).collect();
-            let help = meant(&place.id.to_string(), ids.iter().map(String::as_str));
-            self.said.bad_with(place.at, format!("object {} does not exist", place.id), help);
+            let help = suggest(&place.id.to_string(), ids.iter().map(String::as_str));
+            self.report.bad_with(place.at, format!("object {} does not exist", place.id), help);
             return None;
         };
         let before = self.count;
@@ -151,7 +151,7 @@ impl Show<'_> {
                 },
                 Some((None, _)) => {
                     let list = mesh.usual.map_or(0, |usual| usual.0);
-                    self.said.bad(at, format!("no list of properties {list} is defined before this"));
+                    self.report.bad(at, format!("no list of properties {list} is defined before this"));
                     return Vec::new();
                 }
                 None => skin(None),
@@ -199,12 +199,12 @@ impl Show<'_> {
             return *known;
         }
         let Some(Group::Picture { part: name, styles, at: named }) = model.properties.get(&id).map(|p| &p.group) else {
-            self.said.bad(at, format!("`<texture2d>` {id} does not exist"));
+            self.report.bad(at, format!("`<texture2d>` {id} does not exist"));
             return None;
         };
         let bytes = self.package.bytes(name, *named);
-        if bytes.is_none() && !self.said.has_errors() {
-            self.said.bad(*named, format!("the archive has no part `{name}`"));
+        if bytes.is_none() && !self.report.has_errors() {
+            self.report.bad(*named, format!("the archive has no part `{name}`"));
         }
         let mut mapping = Mapping::default();
         for (wrap, style) in mapping.wrap.iter_mut().zip(styles) {

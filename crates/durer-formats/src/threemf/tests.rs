@@ -36,14 +36,14 @@ fn archive(parts: &[(&str, &[u8])]) -> Vec<u8> {
 fn read_file(path: &Path) -> (Option<Scene>, Vec<String>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let loaded = load(path, &LoadOptions::default(), &mut files, &mut diagnostics).unwrap();
-    let told = diagnostics.iter().map(|found| {
+    let messages = diagnostics.iter().map(|found| {
         let place = found.span.and_then(|span| {
             let (line, column) = files.position(span)?;
             Some(format!("{}:{line}:{column} ", files.name(span.file)?.rsplit('/').next()?))
         });
         format!("{}{:?} {}", place.unwrap_or_default(), found.severity, found.message)
     });
-    (loaded.map(|loaded| loaded.scene), told.collect())
+    (loaded.map(|loaded| loaded.scene), messages.collect())
 }
 
 fn read_parts(parts: &[(&str, &[u8])]) -> (Option<Scene>, Vec<String>) {
@@ -74,8 +74,8 @@ fn read(model: &str) -> (Option<Scene>, Vec<String>) {
 }
 
 fn clean(model: &str) -> Scene {
-    let (scene, told) = read(model);
-    assert_eq!(told, [""; 0], "{model}");
+    let (scene, messages) = read(model);
+    assert_eq!(messages, [""; 0], "{model}");
     scene.unwrap()
 }
 
@@ -133,8 +133,8 @@ fn colours_mixtures_and_pictures() {
     let text = model(picture, "", ["pid='9' p1='0' p2='1' p3='1'", "", "", ""], ITEM);
     let parts: [(&str, &[u8]); 3] =
         [("_rels/.rels", RELATIONS.as_bytes()), ("3D/a.model", text.as_bytes()), ("3D/p.png", b"x")];
-    let (scene, told) = read_parts(&parts);
-    assert_eq!(told, [""; 0]);
+    let (scene, messages) = read_parts(&parts);
+    assert_eq!(messages, [""; 0]);
     let scene = scene.unwrap();
     let pictured = |m: &PrincipledMaterial| m.base_color_texture.is_some();
     let count = scene.materials.iter().filter(|m| matches!(&m.value, Material::Principled(m) if pictured(m))).count();
@@ -161,26 +161,26 @@ fn errors_have_positions() {
         (model("<basematerials id='1'/>", "", [""; 4], ITEM), "two resources have the id 1"),
         (usual().replace("</mesh>", "</mash>"), "Error `</mash>` closes an element that is not open"),
     ] {
-        let (scene, told) = read(&text);
-        assert!(scene.is_none() && told.iter().any(|line| line.contains(expected)), "{expected}: {told:?}"); // prose: keep
+        let (scene, messages) = read(&text);
+        assert!(scene.is_none() && messages.iter().any(|line| line.contains(expected)), "{expected}: {messages:?}"); // prose: keep
     }
-    let (_, told) = read_parts(&[("a.txt", b"x")]);
-    assert!(told[0].contains("the archive has no model"), "{told:?}");
-    let (_, told) = read_parts(&[("_rels/.rels", RELATIONS.as_bytes())]);
-    assert!(told[0].contains("the archive has no part `3D/a.model`"), "{told:?}");
+    let (_, messages) = read_parts(&[("a.txt", b"x")]);
+    assert!(messages[0].contains("the archive has no model"), "{messages:?}");
+    let (_, messages) = read_parts(&[("_rels/.rels", RELATIONS.as_bytes())]);
+    assert!(messages[0].contains("the archive has no part `3D/a.model`"), "{messages:?}");
 }
 
 #[test]
 fn bombs_and_cycles_are_errors() {
     let blanks = vec![b' '; 96 << 20];
-    let (scene, told) = read_parts(&[("_rels/.rels", RELATIONS.as_bytes()), ("3D/a.model", &blanks)]);
-    assert!(scene.is_none() && told[0].contains("unpacks to 100663296 bytes"), "{told:?}");
+    let (scene, messages) = read_parts(&[("_rels/.rels", RELATIONS.as_bytes()), ("3D/a.model", &blanks)]);
+    assert!(scene.is_none() && messages[0].contains("unpacks to 100663296 bytes"), "{messages:?}");
     let circle = model("", "", [""; 4], "<item objectid='2'/>").replace(
         "</resources>",
         "<object id='2'><components><component objectid='2'/></components></object></resources>",
     );
-    let (scene, told) = read(&circle);
-    assert!(scene.is_none() && told[0].contains("nested more than"), "{told:?}");
+    let (scene, messages) = read(&circle);
+    assert!(scene.is_none() && messages[0].contains("nested more than"), "{messages:?}");
     let mut laughs = String::new();
     for i in 2..30 {
         let inner = format!("<component objectid='{}'/>", i - 1).repeat(10);
@@ -188,8 +188,8 @@ fn bombs_and_cycles_are_errors() {
     }
     let text =
         model("", "", [""; 4], "<item objectid='29'/>").replace("</resources>", &format!("{laughs}</resources>"));
-    let (scene, told) = read(&text);
-    assert!(scene.is_none() && told[0].contains("counting each use"), "{told:?}");
+    let (scene, messages) = read(&text);
+    assert!(scene.is_none() && messages[0].contains("counting each use"), "{messages:?}");
 }
 
 #[test]
@@ -268,8 +268,8 @@ fn consortium_files_are_accepted_or_rejected() {
     let Some(corpus) = corpus() else { return };
     let sound = entries(&corpus).into_iter().chain(entries(&corpus.join("mustpass")));
     for path in sound {
-        let (scene, told) = read_file(&path);
-        let scene = scene.unwrap_or_else(|| panic!("{}: {told:?}", path.display())); // prose: keep
+        let (scene, messages) = read_file(&path);
+        let scene = scene.unwrap_or_else(|| panic!("{}: {messages:?}", path.display())); // prose: keep
         assert!(!shown(&scene).is_empty(), "{}", path.display());
     }
     let read = entries(&corpus.join("mustfail")).into_iter().filter(|path| read_file(path).0.is_some());
@@ -286,8 +286,8 @@ fn part_names_ignore_case_and_escapes() {
     for (target, part) in
         [("/3D/A.model", "3D/a.model"), ("/3D/a%20b.model", "3D/a b.model"), ("/3D/a%20b.model", "3D/a%20b.model")]
     {
-        let (scene, told) = read_parts(&[("_rels/.rels", relation(target).as_bytes()), (part, text.as_bytes())]);
-        assert!(scene.is_some() && told.is_empty(), "{target} {part}: {told:?}"); // prose: keep
+        let (scene, messages) = read_parts(&[("_rels/.rels", relation(target).as_bytes()), (part, text.as_bytes())]);
+        assert!(scene.is_some() && messages.is_empty(), "{target} {part}: {messages:?}"); // prose: keep
     }
 }
 
@@ -296,7 +296,7 @@ fn models_may_be_in_utf_16() {
     let text = model("", "", [""; 4], ITEM);
     for number in [u16::to_le_bytes, u16::to_be_bytes] {
         let bytes: Vec<u8> = "\u{feff}".encode_utf16().chain(text.encode_utf16()).flat_map(number).collect();
-        let (scene, told) = read_parts(&[("_rels/.rels", RELATIONS.as_bytes()), ("3D/a.model", &bytes)]);
-        assert!(scene.is_some() && told.is_empty(), "{told:?}");
+        let (scene, messages) = read_parts(&[("_rels/.rels", RELATIONS.as_bytes()), ("3D/a.model", &bytes)]);
+        assert!(scene.is_some() && messages.is_empty(), "{messages:?}");
     }
 }

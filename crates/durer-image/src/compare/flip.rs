@@ -90,7 +90,7 @@ fn gauss(x: f64, deviation: f64) -> f64 {
 }
 
 /// Perceived colour and features of a pixel.
-struct Seen {
+struct PixelFeatures {
     /// Colour in Hunt-adjusted L*a*b*.
     color: Vec3,
     /// Strengths of edges and of points.
@@ -155,12 +155,12 @@ fn picture_filters(filters: &Filters) -> [Filter<'_>; 8] {
 }
 
 #[inline(always)]
-fn seen(filters: &Filters, rows: &[Vec<f32>], x: usize) -> Seen {
+fn seen(filters: &Filters, rows: &[Vec<f32>], x: usize) -> PixelFeatures {
     let [l, rg, wide, narrow, edge_x, edge_y, point_x, point_y] = std::array::from_fn(|filter| rows[filter][x]);
     let by = filters.blue_yellow[0].0 * wide + filters.blue_yellow[1].0 * narrow;
     // Clip colours that a screen cannot show.
     let rgb = rgb_from_xyz(Vec3::new(l + rg, l, l - by) * WHITE).clamp(Vec3::ZERO, Vec3::ONE);
-    Seen {
+    PixelFeatures {
         color: hunt_lab(xyz_from_rgb(rgb) / WHITE),
         edge: (edge_x * edge_x + edge_y * edge_y).sqrt(),
         point: (point_x * point_x + point_y * point_y).sqrt(),
@@ -168,7 +168,7 @@ fn seen(filters: &Filters, rows: &[Vec<f32>], x: usize) -> Seen {
 }
 
 #[inline(always)]
-fn error(filters: &Filters, a: &Seen, b: &Seen) -> f32 {
+fn error(filters: &Filters, a: &PixelFeatures, b: &PixelFeatures) -> f32 {
     let distance = hyab(a.color, b.color);
     if distance == 0.0 {
         return 0.0;

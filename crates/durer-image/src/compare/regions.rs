@@ -36,7 +36,7 @@ impl Region {
 const CELLS: usize = 64;
 
 #[derive(Clone, Copy)]
-struct Found {
+struct RegionSums {
     low: (usize, usize),
     high: (usize, usize),
     pixels: usize,
@@ -45,8 +45,8 @@ struct Found {
     worst: (f32, usize),
 }
 
-impl Found {
-    const NONE: Found = Found {
+impl RegionSums {
+    const NONE: RegionSums = RegionSums {
         low: (usize::MAX, usize::MAX),
         high: (0, 0),
         pixels: 0,
@@ -55,7 +55,7 @@ impl Found {
         worst: (-1.0, 0),
     };
 
-    fn add(&mut self, other: &Found) {
+    fn add(&mut self, other: &RegionSums) {
         self.low = (self.low.0.min(other.low.0), self.low.1.min(other.low.1));
         self.high = (self.high.0.max(other.high.0), self.high.1.max(other.high.1));
         self.pixels += other.pixels;
@@ -71,7 +71,7 @@ impl Found {
 pub(super) fn worst(pair: &Pair, tolerance: f32) -> Vec<Region> {
     let side = pair.width.max(pair.height).div_ceil(CELLS).max(2);
     let (columns, rows) = (pair.width.div_ceil(side), pair.height.div_ceil(side));
-    let mut cells = vec![Found::NONE; columns * rows];
+    let mut cells = vec![RegionSums::NONE; columns * rows];
     let mut total = 0.0;
     for index in 0..pair.reference.len() {
         let (a, b) = (pair.reference[index], pair.test[index]);
@@ -83,7 +83,7 @@ pub(super) fn worst(pair: &Pair, tolerance: f32) -> Vec<Region> {
         total += squared;
         if over(a, b, tolerance) {
             let place = (index % pair.width, index / pair.width);
-            let one = Found {
+            let one = RegionSums {
                 low: place,
                 high: place,
                 pixels: 1,
@@ -98,7 +98,7 @@ pub(super) fn worst(pair: &Pair, tolerance: f32) -> Vec<Region> {
     regions.sort_by(|a, b| b.squared.total_cmp(&a.squared).then(a.worst.1.cmp(&b.worst.1)));
     regions.truncate(Region::LIMIT);
     let place = |index: usize| ((index % pair.width) as u32, (index / pair.width) as u32);
-    let region = |found: Found| Region {
+    let region = |found: RegionSums| Region {
         x: found.low.0 as u32,
         y: found.low.1 as u32,
         width: (found.high.0 - found.low.0 + 1) as u32,
@@ -112,13 +112,13 @@ pub(super) fn worst(pair: &Pair, tolerance: f32) -> Vec<Region> {
 }
 
 /// Joins cells that touch, including at corners, and clears them.
-fn joined(cells: &mut [Found], columns: usize, rows: usize) -> Vec<Found> {
+fn joined(cells: &mut [RegionSums], columns: usize, rows: usize) -> Vec<RegionSums> {
     let mut regions = Vec::new();
     for start in 0..cells.len() {
-        let mut region = Found::NONE;
+        let mut region = RegionSums::NONE;
         let mut stack = vec![start];
         while let Some(cell) = stack.pop() {
-            let found = std::mem::replace(&mut cells[cell], Found::NONE);
+            let found = std::mem::replace(&mut cells[cell], RegionSums::NONE);
             if found.pixels == 0 {
                 continue;
             }

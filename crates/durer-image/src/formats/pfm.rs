@@ -27,7 +27,7 @@ static ROWS: RowFormat = RowFormat {
 };
 
 /// Parsed header and sample data.
-struct Opened<'a> {
+struct PfmFile<'a> {
     width: u32,
     height: u32,
     channels: usize,
@@ -35,7 +35,7 @@ struct Opened<'a> {
     samples: &'a [u8],
 }
 
-fn open(bytes: &[u8]) -> Result<Opened<'_>, ImageError> {
+fn open(bytes: &[u8]) -> Result<PfmFile<'_>, ImageError> {
     let mut rest = bytes;
     let mut number = |what: &str| {
         let word = next_word(&mut rest).and_then(|word| std::str::from_utf8(word).ok());
@@ -46,17 +46,17 @@ fn open(bytes: &[u8]) -> Result<Opened<'_>, ImageError> {
     let width = number("width")?.parse().map_err(|_| invalid("width"))?;
     let height = number("height")?.parse().map_err(|_| invalid("height"))?;
     let scale: f32 = number("scale")?.parse().map_err(|_| invalid("scale"))?;
-    Ok(Opened { width, height, channels, little_endian: scale < 0.0, samples: rest })
+    Ok(PfmFile { width, height, channels, little_endian: scale < 0.0, samples: rest })
 }
 
 fn head(bytes: &[u8]) -> Result<Head, ImageError> {
-    let Opened { width, height, .. } = open(bytes)?;
+    let PfmFile { width, height, .. } = open(bytes)?;
     let bytes_per_pixel = size_of::<Vec3>() as u64;
     Ok(Head { width: width.into(), height: height.into(), eight: false, bytes_per_pixel, spare: 0 })
 }
 
 fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
-    let Opened { width, height, channels, little_endian, samples } = open(bytes)?;
+    let PfmFile { width, height, channels, little_endian, samples } = open(bytes)?;
     // The declared size is accepted only if all samples are present.
     let count = width as usize * height as usize;
     let (samples, _) = samples.as_chunks::<4>();

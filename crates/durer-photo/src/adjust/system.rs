@@ -26,7 +26,7 @@ pub struct State {
 }
 
 /// An observation by a photograph with a known pose: pixel, pose, and lens.
-struct Seen {
+struct SystemObservation {
     pixel: Vector2<f64>,
     pose: usize,
     lens: usize,
@@ -35,7 +35,7 @@ struct Seen {
 /// Observations and the layout of the parameters.
 pub struct System {
     options: Options,
-    seen: Vec<Seen>,
+    seen: Vec<SystemObservation>,
     /// Start of each point's observations, and the end.
     starts: Vec<usize>,
     /// Runs of points with similar numbers of observations. The number of runs depends only on the
@@ -83,7 +83,7 @@ impl System {
         let (mut seen, mut starts) = (Vec::new(), vec![0]);
         for point in &all.points {
             let known = point.track.iter().filter(|seen| number[seen.view] != usize::MAX);
-            seen.extend(known.map(|seen| Seen {
+            seen.extend(known.map(|seen| SystemObservation {
                 pixel: seen.pixel,
                 pose: number[seen.view],
                 lens: all.views[seen.view].lens,
@@ -103,11 +103,11 @@ impl System {
 
     /// Ranges of an observation's nine columns: for each, start in the row, count, and start in the
     /// system; first for the pose, then for the lens.
-    fn columns(&self, seen: &Seen) -> [(usize, usize, usize); 2] {
+    fn columns(&self, seen: &SystemObservation) -> [(usize, usize, usize); 2] {
         [(0, 6, 6 * seen.pose), (6, 3, 6 * self.poses + 3 * seen.lens)]
     }
 
-    fn seen(&self, point: usize) -> &[Seen] {
+    fn seen(&self, point: usize) -> &[SystemObservation] {
         &self.seen[self.starts[point]..self.starts[point + 1]]
     }
 
@@ -115,7 +115,7 @@ impl System {
     pub fn cost(&self, state: &State) -> f64 {
         let run = |run: &std::ops::Range<usize>| {
             let one = |i: usize| {
-                let residual = |seen: &Seen| {
+                let residual = |seen: &SystemObservation| {
                     let p = state.poses[seen.pose].apply(&state.points[i]);
                     (state.lenses[seen.lens].project(&p) - seen.pixel).norm_squared()
                 };
@@ -140,7 +140,7 @@ impl System {
         PointBlock { rows, inverse, gradient, damping: diagonal }
     }
 
-    fn row(&self, state: &State, point: usize, seen: &Seen) -> Row {
+    fn row(&self, state: &State, point: usize, seen: &SystemObservation) -> Row {
         let (lens, pose) = (&state.lenses[seen.lens], &state.poses[seen.pose]);
         let (pixel, mut by_camera, by_point) = project(lens, pose, &state.points[point]);
         let residual = pixel - seen.pixel;
@@ -199,7 +199,7 @@ impl System {
     }
 
     /// Adds a block for the columns of two observations.
-    fn add(&self, to: &mut DMatrix<f64>, a: &Seen, b: &Seen, block: &SMatrix<f64, 9, 9>) {
+    fn add(&self, to: &mut DMatrix<f64>, a: &SystemObservation, b: &SystemObservation, block: &SMatrix<f64, 9, 9>) {
         let [(_, _, pose), (_, _, lens)] = self.columns(a);
         let (size, all) = (self.size, to.as_mut_slice());
         for (from, count, start) in self.columns(b) {

@@ -6,8 +6,8 @@ mod colmap;
 mod colmap_binary;
 mod colmap_text;
 mod fspy;
-mod given;
 mod gltf;
+mod handwritten;
 mod opensfm;
 mod packed;
 mod ply;
@@ -23,7 +23,7 @@ use text::Words;
 
 pub use crate::known::Control;
 pub use fspy::read_project;
-pub use given::{read_control, read_lines, read_points};
+pub use handwritten::{read_control, read_lines, read_points};
 pub use scene::projective_camera;
 
 /// Conventions of a format.

@@ -106,7 +106,7 @@ pub const GUESS: &str = "a guess";
 pub const FORMAT: &str = "durer matches 1";
 
 /// Features of a photograph.
-pub struct Described {
+pub struct ImageFeatures {
     picture: Picture,
     camera: String,
     features: Vec<Feature>,
@@ -116,7 +116,7 @@ pub struct Described {
 }
 
 /// Finds the features of a photograph. The photograph is then no longer needed.
-pub fn describe(photo: &Photo, options: &Options) -> Described {
+pub fn describe(photo: &Photo, options: &Options) -> ImageFeatures {
     let (gray, scale) = photo.gray(options.side);
     let mut found = features(&gray, options.features);
     for (feature, _) in &mut found {
@@ -128,7 +128,7 @@ pub fn describe(photo: &Photo, options: &Options) -> Described {
     let (focal, focal_from) = photo.exif.focal.clone().filter(|_| !options.ignore_exif).unwrap_or_else(guessed);
     let colors = found.iter().map(|(f, _)| photo.color(f64::from(f.x), f64::from(f.y))).collect();
     let (name, size) = (photo.name.clone(), [width, height]);
-    Described {
+    ImageFeatures {
         picture: Picture { name, size, focal, focal_from, lens: 0, features: found.len() },
         camera: photo.exif.camera.clone(),
         descriptors: Descriptors::new(found.iter().map(|(_, descriptor)| descriptor)),
@@ -145,7 +145,7 @@ pub fn describe(photo: &Photo, options: &Options) -> Described {
 /// If there are fewer than two photographs, or if no two of them show the same scene from different
 /// positions.
 pub fn match_all(
-    mut photos: Vec<Described>,
+    mut photos: Vec<ImageFeatures>,
     options: &Options,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Matches, Error> {

@@ -55,7 +55,7 @@ impl Default for Options {
 }
 
 /// A track that may become a point.
-struct Growing {
+struct CandidateTrack {
     color: [u8; 3],
     seen: Vec<Observation>,
     /// Flags of the observations that fit.
@@ -70,13 +70,13 @@ struct Solver<'o> {
     lenses: Vec<Lens>,
     /// Initial lenses, to reset lenses that diverge.
     first: Vec<Lens>,
-    tracks: Vec<Growing>,
+    tracks: Vec<CandidateTrack>,
     /// Tracks of each photograph, with the index of its observation in the track.
     of_view: Vec<Vec<(usize, usize)>>,
 }
 
 /// Result of the solver.
-pub struct Solved {
+pub struct Solution {
     /// Cameras and points.
     pub all: Reconstruction,
     /// Notes for the user: photographs that were left out and the reason, and focal lengths far
@@ -93,7 +93,7 @@ pub struct Solved {
 /// # Errors
 ///
 /// If no two photographs are suitable to start with.
-pub fn solve(matches: &Matches, options: &Options, progress: &dyn Fn(usize)) -> Result<Solved, Error> {
+pub fn solve(matches: &Matches, options: &Options, progress: &dyn Fn(usize)) -> Result<Solution, Error> {
     let first = attempt(matches, matches, options, progress);
     let usual = |size: [u32; 2]| 1.2 * f64::from(size[0].max(size[1]));
     let mut again = matches.clone();
@@ -112,7 +112,7 @@ pub fn solve(matches: &Matches, options: &Options, progress: &dyn Fn(usize)) -> 
         return first;
     }
     let second = attempt(&again, matches, options, progress);
-    let worth = |solved: &Solved| (solved.all.registered(), solved.all.fit().observations);
+    let worth = |solved: &Solution| (solved.all.registered(), solved.all.fit().observations);
     match (first, second) {
         (Ok(one), Ok(two)) => Ok(if worth(&two) > worth(&one) { two } else { one }),
         (one, two) => one.or(two),
@@ -124,7 +124,7 @@ fn moved(ratio: f64) -> bool {
     !(0.75..=1.33).contains(&ratio)
 }
 
-impl Solved {
+impl Solution {
     /// Focal length of a photograph's lens.
     fn focal(&self, view: usize) -> f64 {
         self.all.lenses[self.all.views[view].lens].focal
@@ -132,7 +132,12 @@ impl Solved {
 }
 
 /// Solves once. Notes compare focal lengths with the ones in `written`.
-fn attempt(matches: &Matches, written: &Matches, options: &Options, progress: &dyn Fn(usize)) -> Result<Solved, Error> {
+fn attempt(
+    matches: &Matches,
+    written: &Matches,
+    options: &Options,
+    progress: &dyn Fn(usize),
+) -> Result<Solution, Error> {
     let mut solver = Solver::new(matches, options);
     let mut notes = Vec::new();
     let first = solver.initial(matches)?.map(|i| &matches.pictures[i].name);
@@ -177,7 +182,7 @@ fn attempt(matches: &Matches, written: &Matches, options: &Options, progress: &d
     }
     let mut all = solver.reconstruction(true).0;
     upright(&mut all);
-    Ok(Solved { all, notes })
+    Ok(Solution { all, notes })
 }
 
 impl<'o> Solver<'o> {
@@ -198,7 +203,7 @@ impl<'o> Solver<'o> {
                 .map(|s| Observation { view: s.0, feature: s.1, pixel: Vector2::new(s.2, s.3) })
                 .collect();
             seen.iter().enumerate().for_each(|(k, seen)| of_view[seen.view].push((t, k)));
-            tracks.push(Growing { color: track.color, fits: vec![true; seen.len()], seen, position: None });
+            tracks.push(CandidateTrack { color: track.color, fits: vec![true; seen.len()], seen, position: None });
         }
         Solver { options, views, first: lenses.clone(), lenses, tracks, of_view }
     }

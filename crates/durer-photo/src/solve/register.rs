@@ -8,13 +8,13 @@ use crate::{Lens, Observation, Point, Pose, Reconstruction, View};
 use nalgebra::{Vector2, Vector3};
 
 /// World points and their pixels, including outliers, with a known lens.
-struct Known<'k> {
+struct PosePairs<'k> {
     lens: &'k Lens,
     pairs: &'k [(Vector3<f64>, Vector2<f64>)],
     directions: Vec<Option<Vector3<f64>>>,
 }
 
-impl Estimate<4> for Known<'_> {
+impl Estimate<4> for PosePairs<'_> {
     type Model = Pose;
 
     fn count(&self) -> usize {
@@ -71,7 +71,7 @@ pub fn pose_of(
     seed: u64,
 ) -> Option<(Pose, Vec<usize>)> {
     let directions = pairs.iter().map(|pair| lens.unproject(&pair.1)).collect();
-    ransac(&Known { lens, pairs, directions }, &Search { threshold, samples: 3000, seed })
+    ransac(&PosePairs { lens, pairs, directions }, &Search { threshold, samples: 3000, seed })
 }
 
 impl Solver<'_> {

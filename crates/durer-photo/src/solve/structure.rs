@@ -1,6 +1,6 @@
 //! Triangulation of points and selection of observations that fit.
 
-use super::{Growing, Solver};
+use super::{CandidateTrack, Solver};
 use crate::geometry::triangulate::nearest_to_rays;
 use crate::{Observation, Pose};
 use nalgebra::Vector3;
@@ -45,7 +45,7 @@ impl Solver<'_> {
     }
 
     /// Rays of the registered photographs to a track's point.
-    fn rays(&self, track: &Growing) -> Vec<(Vector3<f64>, Vector3<f64>)> {
+    fn rays(&self, track: &CandidateTrack) -> Vec<(Vector3<f64>, Vector3<f64>)> {
         let ray = |seen: &Observation| {
             let view = &self.views[seen.view];
             let pose: &Pose = view.pose.as_ref()?;
@@ -57,7 +57,7 @@ impl Solver<'_> {
 
     /// Triangulates a track from the pair of rays whose point agrees with the most observations, at
     /// a sufficient angle.
-    fn triangulated(&self, track: &Growing) -> Option<Vector3<f64>> {
+    fn triangulated(&self, track: &CandidateTrack) -> Option<Vector3<f64>> {
         let rays = self.rays(track);
         let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
         for i in 0..rays.len() {

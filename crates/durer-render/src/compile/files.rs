@@ -1,15 +1,15 @@
 //! Files that a scene names. Each is read and decoded once.
 
 use super::Resources;
+use super::cache::Origin;
 use super::decoded::{Encoding, decode, mend, used};
-use super::kept::Origin;
 use crate::world::MeshTree;
 use durer_bvh::BuildQuality;
 use durer_diag::{Diagnostic, Diagnostics, Severity, at_least, at_most};
 use durer_image::{self as image, Encoded};
 use durer_scene::describe::FileName;
-use durer_scene::dialect::{Compat, MeshNormals, Rules};
-use durer_scene::light::{Emitter as _, Light, Profile};
+use durer_scene::dialect::{MeshNormals, Quirk, Rules};
+use durer_scene::light::{Illuminate as _, Light, Profile};
 use durer_scene::math::Aabb;
 use durer_scene::medium::DensityGrid;
 use durer_scene::scene::{Assets, Background, PictureBytes};
@@ -82,16 +82,16 @@ impl<'r> Loader<'r> {
         }
         let asset = self.assets.meshes.get(&name.path);
         let origin = self.origin(&name.path, || asset.map(|data| data.digest()));
-        let known = origin.as_ref().and_then(|origin| self.resources.kept?.mesh(origin));
+        let known = origin.as_ref().and_then(|origin| self.resources.cache?.mesh(origin));
         if let Some(known) = known {
             self.remember(&name.path, origin.as_ref(), known.digest);
-            let mesh = &known.thing.mesh;
+            let mesh = &known.value.mesh;
             let needed = mesh.bytes() as u64 + TREE_BYTES * mesh.len() as u64;
-            let tree = self.charge(name, needed, diagnostics).then_some(known.thing);
+            let tree = self.charge(name, needed, diagnostics).then_some(known.value);
             self.meshes.insert(name.path.clone(), tree.clone());
             return tree;
         }
-        let said = diagnostics.iter().count();
+        let count_before = diagnostics.iter().count();
         let mesh = match asset {
             Some(data) => Some(Arc::clone(data)),
             None => self.mesh_file(name, diagnostics).map(Arc::new),
@@ -101,26 +101,25 @@ impl<'r> Loader<'r> {
             self.charge(name, needed, diagnostics)
         });
         let tree = mesh.map(|mut data| {
-            if self.rules.has(Compat::LooseTriangles) {
+            if self.rules.has(Quirk::LooseTriangles) {
                 Arc::make_mut(&mut data).loosen();
             }
-            let by_vertex =
-                self.rules.has(Compat::NormalsByVertex) && Arc::make_mut(&mut data).give_normals_by_vertex();
+            let by_vertex = self.rules.has(Quirk::NormalsByVertex) && Arc::make_mut(&mut data).give_normals_by_vertex();
             let normals = match self.rules.mesh_normals {
-                MeshNormals::SmoothByFace if self.rules.has(Compat::SpoiledNormals) => MeshNormals::SpoiledByFace,
+                MeshNormals::SmoothByFace if self.rules.has(Quirk::SpoiledNormals) => MeshNormals::SpoiledByFace,
                 rule => rule,
             };
             let mesh = Mesh::new(data, normals, self.rules.file_normals || by_vertex);
             let mesh = self.centered(mesh);
             // The official program treats smaller determinants as zero.
-            let least_volume = if self.rules.has(Compat::ThinTriangles) { 1e-6 } else { 0.0 };
+            let least_volume = if self.rules.has(Quirk::ThinTriangles) { 1e-6 } else { 0.0 };
             Arc::new(self.tree(mesh).least_volume(least_volume))
         });
         // Cache only meshes without diagnostics, which must be reported each time.
-        if let (Some(kept), Some(origin), Some(tree), true) =
-            (self.resources.kept, origin, &tree, diagnostics.iter().count() == said)
+        if let (Some(cache), Some(origin), Some(tree), true) =
+            (self.resources.cache, origin, &tree, diagnostics.iter().count() == count_before)
         {
-            kept.keep_mesh(origin, tree, self.resources.source.record().digest_of(&name.path));
+            cache.keep_mesh(origin, tree, self.resources.source.record().digest_of(&name.path));
         }
         self.meshes.insert(name.path.clone(), tree.clone());
         tree
@@ -129,7 +128,7 @@ impl<'r> Loader<'r> {
     /// Returns the cache key of an asset if caching is on: the hash of data in memory, or the stamp
     /// of a file.
     pub(super) fn origin(&self, path: &str, memory: impl FnOnce() -> Option<Digest>) -> Option<Origin> {
-        self.resources.kept?;
+        self.resources.cache?;
         memory().map(Origin::Memory).or_else(|| self.resources.source.stamp(path).map(Origin::File))
     }
 
@@ -209,7 +208,7 @@ impl<'r> Loader<'r> {
 
     /// Moves a distant mesh to the origin, except in official programs.
     fn centered(&self, mesh: Mesh) -> Mesh {
-        if self.rules.is_official() { mesh } else { mesh.centered() }
+        if self.rules.is_bit_compatible() { mesh } else { mesh.centered() }
     }
 
     /// Returns the index of a picture's texture.
@@ -292,12 +291,12 @@ impl<'r> Loader<'r> {
             diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span).help(help));
             return None;
         }
-        let lamp = Curve::light(self.curve(name, diagnostics)?);
-        if lamp.is_none() {
+        let emitter = Curve::light(self.curve(name, diagnostics)?);
+        if emitter.is_none() {
             let message = format!("the spectrum `{}` is black", name.path);
             diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
         }
-        lamp.map(Arc::new)
+        emitter.map(Arc::new)
     }
 
     /// Returns the rows of a file's only spectrum, or of the one named after a colon.
@@ -386,7 +385,7 @@ impl<'r> Loader<'r> {
         diagnostics.extend(unread);
         let bytes = faces.iter().map(|face: &Texture| face.bytes() as u64).sum();
         let affordable = self.charge(name, bytes, diagnostics);
-        let mirrored_back = self.rules.has(Compat::MirroredBack);
+        let mirrored_back = self.rules.has(Quirk::MirroredBack);
         Some(CubeMap { faces: faces.try_into().ok()?, mirrored_back }).filter(|_| affordable)
     }
 

@@ -7,7 +7,7 @@ use crate::world::{Emission, HighlightModel, Material, Phong, Principled};
 use durer_diag::Diagnostics;
 use durer_scene::bsdf::Tables;
 use durer_scene::bsdf::lobe::hair::Fibre;
-use durer_scene::dialect::{Compat, Highlight, Rules, Secondary};
+use durer_scene::dialect::{Highlight, Quirk, Rules, Secondary};
 use durer_scene::material::principled::{Switch, Walls};
 use durer_scene::material::{ColorNoise, Parameters, PhongMaterial, PrincipledMaterial, Solid};
 use durer_scene::math::Color;
@@ -83,7 +83,7 @@ fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, 
     let (reflective, transparent, ior) = secondary(m, rules);
     let diffuse = m.diffuse_color.unwrap_or(Color::ONE);
     let ambient = match m.diffuse_color {
-        None if rules.has(Compat::WrittenAmbient) => Some(Color::ZERO),
+        None if rules.has(Quirk::WrittenAmbient) => Some(Color::ZERO),
         _ => (!rules.ambient_textured).then_some(diffuse),
     };
     Phong {
@@ -93,7 +93,7 @@ fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, 
         noise,
         ambient,
         // A long normal may give an infinite highlight, and infinity times 0 is NaN.
-        highlight: highlight(m, rules).filter(|(color, ..)| rules.has(Compat::RawNormals) || *color != Color::ZERO),
+        highlight: highlight(m, rules).filter(|(color, ..)| rules.has(Quirk::RawNormals) || *color != Color::ZERO),
         reflective,
         transparent,
         ior: ior.unwrap_or(1.0),
@@ -133,7 +133,7 @@ fn plain(m: &PrincipledMaterial) -> Phong {
 fn highlight(m: &PhongMaterial, rules: &Rules) -> Option<(Color, f32, HighlightModel)> {
     let blinn = |exponent: f32| Some((m.specular_color, exponent, HighlightModel::Blinn));
     let phong = |shininess: f32| {
-        let behind = rules.has(Compat::HighlightBehind);
+        let behind = rules.has(Quirk::HighlightBehind);
         Some((m.specular_color, shininess, HighlightModel::Phong { behind }))
     };
     match (rules.highlight, m.exponent, m.shininess) {
@@ -143,7 +143,7 @@ fn highlight(m: &PhongMaterial, rules: &Rules) -> Option<(Color, f32, HighlightM
             let shininess = shininess.or(exponent).unwrap_or(0.0);
             // An exponent of 0 gives no highlight, except in programs that evaluate 0 to the power
             // of 0.
-            if shininess > 0.0 || rules.has(Compat::PowZero) { phong(shininess) } else { None }
+            if shininess > 0.0 || rules.has(Quirk::PowZero) { phong(shininess) } else { None }
         }
         (Highlight::ByKeyword, Some(exponent), _) => blinn(exponent),
         (Highlight::ByKeyword, None, Some(shininess)) => phong(shininess).filter(|_| shininess > 0.0),

@@ -5,7 +5,7 @@ use durer_diag::{Diagnostic, Diagnostics};
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Walls;
 use durer_scene::math::{Aabb, Affine, Color, Vec3, fp};
-use durer_scene::medium::{Fog, HenyeyGreenstein, Medium, Place};
+use durer_scene::medium::{Fog, HenyeyGreenstein, Medium, MediumRegion};
 use glam::{DAffine3, DMat3, DVec3};
 
 /// Returns the interior medium of a material, if it absorbs or scatters.
@@ -38,10 +38,10 @@ fn transmission(m: &PrincipledMaterial) -> Option<Medium> {
 }
 
 /// Returns the density field of an interior, if it is not uniform.
-fn density(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &mut Diagnostics) -> Option<Place> {
+fn density(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &mut Diagnostics) -> Option<MediumRegion> {
     let name = m.transmission_density.as_ref()?;
     let (bounds, grid) = loader.density(name, diagnostics)?;
-    let place = Place { bounds, placed: None, density: Some(grid) };
+    let place = MediumRegion { bounds, placed: None, density: Some(grid) };
     let rows = m.transmission_density_box.len();
     if rows == 0 {
         return Some(place);
@@ -58,7 +58,7 @@ fn density(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &mut Diagno
     let Some(placed) = Affine::new(map) else {
         return refuse("the edges of `transmissionDensityBox` must span a volume");
     };
-    Some(Place { bounds: Aabb { min: Vec3::ZERO, max: Vec3::ONE }, placed: Some(placed), ..place })
+    Some(MediumRegion { bounds: Aabb { min: Vec3::ZERO, max: Vec3::ONE }, placed: Some(placed), ..place })
 }
 
 fn medium(extinction: Color, scattering: Color, phase: HenyeyGreenstein) -> Medium {
@@ -109,9 +109,9 @@ pub(super) fn fog(written: &Fog, loader: &mut Loader, diagnostics: &mut Diagnost
     };
     let place = match (corners, density) {
         (None, None) => None,
-        (Some(bounds), None) => Some(Place { bounds, placed: None, density: None }),
+        (Some(bounds), None) => Some(MediumRegion { bounds, placed: None, density: None }),
         (corners, Some((bounds, density))) => {
-            Some(Place { bounds: corners.unwrap_or(bounds), placed: None, density: Some(density) })
+            Some(MediumRegion { bounds: corners.unwrap_or(bounds), placed: None, density: Some(density) })
         }
     };
     let albedo = written.color.clamp(Vec3::ZERO, Vec3::ONE);

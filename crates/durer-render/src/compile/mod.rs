@@ -1,8 +1,8 @@
 //! Compiles the scene description into the world. No later stage needs the description.
 
+mod cache;
 mod decoded;
 mod files;
-mod kept;
 mod materials;
 mod media;
 mod pictures;
@@ -12,13 +12,14 @@ mod solids;
 #[doc(hidden)]
 pub mod testing;
 
-use crate::world::{Accel, Assets, Contents, CourseHits, Few, Geometry, Matrix, Object, Phong, Vectors, World};
+use crate::world::{Accel, Assets, Contents, CourseHits, Geometry, Matrix, Object, Phong, SmallWorld, Vectors, World};
+pub use cache::{AssetCache, Reuse};
 use durer_bvh::{Bvh, Grid, PrimitivePacks};
 use durer_diag::{Diagnostic, Diagnostics, Files, Span};
 use durer_scene::asset::AssetDecoder;
 use durer_scene::camera::{CameraBasis, Projection};
-use durer_scene::dialect::{Compat, Dialect, MeshNormals, Rules};
-use durer_scene::light::{DirectionalLight, Emitter as _, Light};
+use durer_scene::dialect::{Dialect, MeshNormals, Quirk, Rules};
+use durer_scene::light::{DirectionalLight, Illuminate as _, Light};
 use durer_scene::math::{Aabb, Affine, Color, Vec3, fp};
 use durer_scene::scene::{self, Group, MatrixOp, Node, Scene};
 use durer_scene::shape::mesh::loosened;
@@ -27,7 +28,6 @@ use durer_scene::source::AssetSource;
 use durer_scene::texture::Sky;
 use durer_scene::texture::sky::SUN_RADIUS;
 use glam::{DAffine3, DVec3};
-pub use kept::{Kept, Reuse};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -58,13 +58,13 @@ pub struct Resources<'a> {
     /// Expected camera rays (`u64::MAX` if unknown): few rays get a faster BVH build.
     pub rays: u64,
     /// Cache of meshes and pictures from earlier compilations.
-    pub kept: Option<&'a Kept>,
+    pub cache: Option<&'a AssetCache>,
 }
 
 impl<'a> Resources<'a> {
     /// Unlimited memory, many rays, no cache.
     pub fn new(source: &'a dyn AssetSource, decoder: &'a dyn AssetDecoder, files: &'a mut Files) -> Self {
-        Resources { source, decoder, files, sky_optional: false, memory: u64::MAX, rays: u64::MAX, kept: None }
+        Resources { source, decoder, files, sky_optional: false, memory: u64::MAX, rays: u64::MAX, cache: None }
     }
 }
 
@@ -79,9 +79,9 @@ pub fn compile(
     diagnostics: &mut Diagnostics,
 ) -> Option<World> {
     let mut own = Diagnostics::default();
-    let kept = resources.kept;
-    if let Some(kept) = kept {
-        kept.begin(rules);
+    let cache = resources.cache;
+    if let Some(cache) = cache {
+        cache.begin(rules);
     }
     let mut loader = files::Loader::new(resources, rules, &scene.assets);
     let Some(camera) = scene.camera.clone() else {
@@ -140,8 +140,8 @@ pub fn compile(
     let illuminants = lights.iter_mut().map(&mut measured).collect();
     let profiles: Vec<_> = lights.iter().map(|light| loader.profile(light, &mut own)).collect();
     for (light, profile) in lights.iter_mut().zip(&profiles) {
-        if let (Light::Photometric(lamp), Some(profile)) = (light, profile) {
-            *lamp = lamp.with_flux(profile);
+        if let (Light::Photometric(emitter), Some(profile)) = (light, profile) {
+            *emitter = emitter.with_flux(profile);
         }
     }
     // Serialisation fails only for non-finite numbers, which valid scenes and rules do not have.
@@ -152,8 +152,8 @@ pub fn compile(
     if failed {
         return None;
     }
-    if let Some(kept) = kept {
-        kept.finish();
+    if let Some(cache) = cache {
+        cache.finish();
     }
     let contents = Contents {
         frame: CameraBasis::of(&camera, rules::camera_rules(rules)),
@@ -196,7 +196,7 @@ pub fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>
     let objects = world.objects();
     if let Some(rules) = world.hit_rules() {
         let accel = Accel::Course(CourseHits::new(rules, objects));
-        (world.packs, world.few, world.loose) = (PrimitivePacks::default(), None, Vec::new());
+        (world.packs, world.small_world, world.loose) = (PrimitivePacks::default(), None, Vec::new());
         (world.accel, world.spheres) = (accel, Vec::new());
         return Ok(());
     }
@@ -211,7 +211,7 @@ pub fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>
         packs
     };
     let is_few = kind == AccelKind::Bvh && others.len() <= FEW && work <= FEW_SIMPLE;
-    let few = is_few.then(|| Few { simple: packed(&simple), others });
+    let few = is_few.then(|| SmallWorld { simple: packed(&simple), others });
     let of_one_ray = || bounded().filter_map(|(object, _)| object.simple_for_one_ray());
     if kind == AccelKind::Bvh
         && bounded().count() - of_one_ray().count() <= FEW
@@ -234,7 +234,7 @@ pub fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>
         }
         _ => Vec::new(),
     };
-    (world.packs, world.few, world.loose, world.accel, world.spheres) = (packs, few, loose, accel, spheres);
+    (world.packs, world.small_world, world.loose, world.accel, world.spheres) = (packs, few, loose, accel, spheres);
     Ok(())
 }
 
@@ -391,8 +391,8 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
             ),
         };
         // The first assignments intentionally have no lights and ambient light of 1 1 1.
-        let meant = scene.background.ambient_light == Color::ONE;
-        let finding = if meant { Diagnostic::note(message) } else { Diagnostic::warning(message) };
+        let intended = scene.background.ambient_light == Color::ONE;
+        let finding = if intended { Diagnostic::note(message) } else { Diagnostic::warning(message) };
         diagnostics.push(finding.code("no-light"));
         return (Vec::new(), ambient);
     }
@@ -404,11 +404,11 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
     }
     let compiled: Vec<Light> = written.iter().map(|light| rules::light(&light.value, rules)).collect();
     for (light, written) in compiled.iter().zip(written) {
-        let Light::Point(lamp) = light else { continue };
-        if lamp.attenuation == Some(Vec3::ZERO) && rules.has(Compat::MissingFalloff) {
+        let Light::Point(emitter) = light else { continue };
+        if emitter.attenuation == Some(Vec3::ZERO) && rules.has(Quirk::MissingFalloff) {
             let word = if is_nodes(rules) { "attenuation" } else { "falloff" };
             let message = match &written.value {
-                Light::Point(lamp) if lamp.falloff.is_some() => format!("the `{word}` of this light is 0"),
+                Light::Point(emitter) if emitter.falloff.is_some() => format!("the `{word}` of this light is 0"),
                 _ => format!("this light has no `{word}`"),
             };
             let message = format!("{message}: this divides by zero, as the official program does");
@@ -498,7 +498,7 @@ impl SceneFlattener<'_, '_> {
     /// Places a shape or mesh in the world; `None` after an error.
     fn shape(&mut self, object: &scene::Object, to_world: DAffine3) -> Option<Object> {
         let geometry = match &object.node {
-            Node::Primitive(Primitive::Triangle(t)) if self.rules.has(Compat::LooseTriangles) => {
+            Node::Primitive(Primitive::Triangle(t)) if self.rules.has(Quirk::LooseTriangles) => {
                 let [vertex0, vertex1, vertex2] = loosened(t.corners());
                 Geometry::Primitive(Triangle { vertex0, vertex1, vertex2 }.into())
             }
@@ -513,7 +513,9 @@ impl SceneFlattener<'_, '_> {
         };
         // Move distant shapes to the origin, where they keep full precision.
         let (geometry, center) = match geometry {
-            Geometry::Primitive(shape) if !self.rules.is_official() && shape.bounds().is_some_and(Aabb::is_far) => {
+            Geometry::Primitive(shape)
+                if !self.rules.is_bit_compatible() && shape.bounds().is_some_and(Aabb::is_far) =>
+            {
                 let (shape, center) = shape.centered().unwrap_or((shape, Vec3::ZERO));
                 (Geometry::Primitive(shape), center)
             }
@@ -530,7 +532,7 @@ impl SceneFlattener<'_, '_> {
             false => match Affine::new(to_world) {
                 Some(affine) if affine.is_identity() => None,
                 Some(affine) => Some(affine),
-                None if self.rules.has(Compat::AnyValues) && !matrices.is_empty() => {
+                None if self.rules.has(Quirk::AnyValues) && !matrices.is_empty() => {
                     let message = "the transforms around this object are singular";
                     let warning = Diagnostic::warning(message).code("flat-transform").at(object.span);
                     self.diagnostics.push(warning.effect("rays are divided by zero, as the official program does"));
@@ -554,7 +556,7 @@ impl SceneFlattener<'_, '_> {
             }
         };
         let normal_length = match &object.node {
-            Node::Primitive(Primitive::Plane(plane)) if self.transforms == 0 && self.rules.has(Compat::RawNormals) => {
+            Node::Primitive(Primitive::Plane(plane)) if self.transforms == 0 && self.rules.has(Quirk::RawNormals) => {
                 plane.normal.length()
             }
             _ if to_world.is_none() && !matrices.iter().all(Matrix::is_regular) => f32::NAN,

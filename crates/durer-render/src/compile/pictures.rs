@@ -1,8 +1,8 @@
 //! Pictures of materials. Each is decoded once, however many textures use it.
 
+use super::cache::Origin;
 use super::decoded::{Encoding, decode};
 use super::files::{Loader, PictureKey};
-use super::kept::Origin;
 use crate::world::{Map, Maps};
 use durer_diag::Diagnostics;
 use durer_image::Encoded;
@@ -63,7 +63,7 @@ impl Loader<'_> {
                 continue;
             }
             let origin = self.picture_origin(&bytes);
-            if origin.and_then(|origin| self.resources.kept?.picture(&origin, encoding)).is_some() {
+            if origin.and_then(|origin| self.resources.cache?.picture(&origin, encoding)).is_some() {
                 continue;
             }
             let bytes = match bytes {
@@ -132,9 +132,9 @@ impl Loader<'_> {
             return known.clone();
         }
         let origin = self.picture_origin(&bytes);
-        if let Some(known) = origin.as_ref().and_then(|origin| self.resources.kept?.picture(origin, encoding)) {
+        if let Some(known) = origin.as_ref().and_then(|origin| self.resources.cache?.picture(origin, encoding)) {
             self.remember(&path, origin.as_ref(), known.digest);
-            let texture = Some(known.thing).filter(|texture| self.charge(name, texture.bytes() as u64, diagnostics));
+            let texture = Some(known.value).filter(|texture| self.charge(name, texture.bytes() as u64, diagnostics));
             self.decoded.insert(key, texture.clone());
             return texture;
         }
@@ -150,8 +150,8 @@ impl Loader<'_> {
             }
         };
         let texture = texture.filter(|texture| self.charge(name, texture.bytes() as u64, diagnostics));
-        if let (Some(kept), Some(origin), Some(texture)) = (self.resources.kept, origin, &texture) {
-            kept.keep_picture(origin, encoding, texture, self.resources.source.record().digest_of(&path));
+        if let (Some(cache), Some(origin), Some(texture)) = (self.resources.cache, origin, &texture) {
+            cache.keep_picture(origin, encoding, texture, self.resources.source.record().digest_of(&path));
         }
         self.decoded.insert(key, texture.clone());
         texture

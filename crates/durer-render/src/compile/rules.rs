@@ -3,38 +3,38 @@
 
 use crate::world::{Contents, DisplayRules, Epsilon, HitRules, ShadingRules, Vectors};
 use durer_scene::camera::{Aim, CameraRules, UpRule};
-use durer_scene::dialect::{Arithmetic, Compat, Falloff, Rules};
-use durer_scene::light::{DirectionalLight, Emitter as _, Light, PointLight};
+use durer_scene::dialect::{Arithmetic, Falloff, Quirk, Rules};
+use durer_scene::light::{DirectionalLight, Illuminate as _, Light, PointLight};
 use durer_scene::math::Vec3;
 use durer_scene::scene::MatrixRules;
 
 /// Rules of cameras and pictures.
 pub fn camera_rules(rules: &Rules) -> CameraRules {
     let up = match () {
-        () if rules.has(Compat::RawUp) => UpRule::Raw,
-        () if rules.has(Compat::SkewUp) => UpRule::Skew,
+        () if rules.has(Quirk::RawUp) => UpRule::Raw,
+        () if rules.has(Quirk::SkewUp) => UpRule::Skew,
         () => UpRule::Perpendicular,
     };
     CameraRules {
         up,
         aim: match rules.arithmetic {
-            Arithmetic::Own if rules.has(Compat::ScreenPoint) => Aim::ScreenPoint,
+            Arithmetic::Own if rules.has(Quirk::ScreenPoint) => Aim::ScreenPoint,
             Arithmetic::Own => Aim::Own,
             Arithmetic::Of2012 => Aim::Of2012,
             Arithmetic::Of2016 => Aim::Of2016,
             Arithmetic::Of2020 => Aim::Of2020,
         },
-        border_pixels: rules.has(Compat::BorderPixels),
-        stretch: rules.has(Compat::Stretch),
+        border_pixels: rules.has(Quirk::BorderPixels),
+        stretch: rules.has(Quirk::Stretch),
     }
 }
 
 /// Rules of products of matrices.
 pub fn matrix_rules(rules: &Rules) -> MatrixRules {
     MatrixRules {
-        matrix_on_left: rules.has(Compat::MatrixOnLeft),
-        dropped_shear: rules.has(Compat::DroppedShear),
-        dropped_tiny: rules.has(Compat::TinyTransforms),
+        matrix_on_left: rules.has(Quirk::MatrixOnLeft),
+        dropped_shear: rules.has(Quirk::DroppedShear),
+        dropped_tiny: rules.has(Quirk::TinyTransforms),
     }
 }
 
@@ -48,39 +48,39 @@ pub fn hit_rules(rules: &Rules) -> Option<HitRules> {
     Some(HitRules {
         vectors,
         triangle_matrix: rules.arithmetic == Arithmetic::Of2012,
-        tied_triangles: rules.has(Compat::TiedTriangles),
-        closed_planes: rules.has(Compat::ClosedPlanes),
+        tied_triangles: rules.has(Quirk::TiedTriangles),
+        closed_planes: rules.has(Quirk::ClosedPlanes),
         closed_spheres: vectors == Vectors::Glm,
-        raw_normals: rules.has(Compat::RawNormals),
-        octree: rules.has(Compat::OctreeHoles),
+        raw_normals: rules.has(Quirk::RawNormals),
+        octree: rules.has(Quirk::OctreeHoles),
     })
 }
 
 /// Rules of hits and of Whitted's integrator.
 pub fn shading_rules(rules: &Rules) -> ShadingRules {
-    let official = rules.is_official();
+    let official = rules.is_bit_compatible();
     ShadingRules {
-        epsilon: rules.epsilon.map(match rules.has(Compat::MovedStarts) {
+        epsilon: rules.epsilon.map(match rules.has(Quirk::MovedStarts) {
             true => Epsilon::Along,
             false => Epsilon::Least,
         }),
         points_on_ray: official,
         one_medium: official,
         weight_by_length: official,
-        shaded_sides: rules.has(Compat::ShadedSides),
-        black_backs: rules.has(Compat::BlackBacks),
-        spoiled_normals: rules.has(Compat::SpoiledNormals),
-        unit_light: rules.has(Compat::UnitLight),
-        raw_normals: rules.has(Compat::RawNormals),
-        raw_refraction: rules.has(Compat::RawRefraction),
-        long_mirrors: rules.has(Compat::LongMirrors),
-        exit_r0: rules.has(Compat::ExitR0),
-        shadow_fronts: rules.has(Compat::ShadowFronts),
-        air_at_eye: rules.has(Compat::AirAtEye),
-        mesh_textures: rules.has(Compat::MeshTextures),
-        moved_normals: rules.has(Compat::MovedNormals),
-        conic_rings: rules.has(Compat::ConicRings),
-        stale_texels: rules.has(Compat::StaleTexels),
+        shaded_sides: rules.has(Quirk::ShadedSides),
+        black_backs: rules.has(Quirk::BlackBacks),
+        spoiled_normals: rules.has(Quirk::SpoiledNormals),
+        unit_light: rules.has(Quirk::UnitLight),
+        raw_normals: rules.has(Quirk::RawNormals),
+        raw_refraction: rules.has(Quirk::RawRefraction),
+        long_mirrors: rules.has(Quirk::LongMirrors),
+        exit_r0: rules.has(Quirk::ExitR0),
+        shadow_fronts: rules.has(Quirk::ShadowFronts),
+        air_at_eye: rules.has(Quirk::AirAtEye),
+        mesh_textures: rules.has(Quirk::MeshTextures),
+        moved_normals: rules.has(Quirk::MovedNormals),
+        conic_rings: rules.has(Quirk::ConicRings),
+        stale_texels: rules.has(Quirk::StaleTexels),
     }
 }
 
@@ -89,10 +89,10 @@ pub fn display_rules(rules: &Rules, lumens: Option<Vec3>) -> DisplayRules {
     DisplayRules {
         normals: rules.normals_picture,
         depth: rules.depth_picture,
-        whole_depths: rules.has(Compat::WholeDepths),
-        black_sky: rules.has(Compat::BlackSky),
-        stale_normals: rules.has(Compat::StaleNormals),
-        clamped_depths: rules.has(Compat::ClampedDepths),
+        whole_depths: rules.has(Quirk::WholeDepths),
+        black_sky: rules.has(Quirk::BlackSky),
+        stale_normals: rules.has(Quirk::StaleNormals),
+        clamped_depths: rules.has(Quirk::ClampedDepths),
         lumens,
     }
 }
@@ -112,8 +112,8 @@ impl Contents {
 /// defines.
 pub(super) fn light(light: &Light, rules: &Rules) -> Light {
     match light {
-        Light::Point(lamp) if lamp.candela.or(lamp.lumens).is_none() => {
-            PointLight { attenuation: attenuation(lamp, rules), falloff: None, ..lamp.clone() }.into()
+        Light::Point(emitter) if emitter.candela.or(emitter.lumens).is_none() => {
+            PointLight { attenuation: attenuation(emitter, rules), falloff: None, ..emitter.clone() }.into()
         }
         // The direction normalizes to NaN, and so does all light from it.
         Light::Directional(sun) if sun.direction == Vec3::ZERO => {
@@ -124,12 +124,12 @@ pub(super) fn light(light: &Light, rules: &Rules) -> Light {
 }
 
 /// Divisor of a point light at distance d, as a0 + a1 d + a2 d^2.
-fn attenuation(lamp: &PointLight, rules: &Rules) -> Option<Vec3> {
-    let divides_by_zero = rules.has(Compat::MissingFalloff);
-    match (rules.falloff, lamp.falloff) {
+fn attenuation(light: &PointLight, rules: &Rules) -> Option<Vec3> {
+    let divides_by_zero = rules.has(Quirk::MissingFalloff);
+    match (rules.falloff, light.falloff) {
         (Falloff::None, _) => None,
         (Falloff::OnePlus, Some(f)) => Some(Vec3::new(1.0, 0.0, f)),
-        (Falloff::OnePlus, None) => lamp.attenuation,
+        (Falloff::OnePlus, None) => light.attenuation,
         (Falloff::Bare(_), Some(f)) if f > 0.0 || divides_by_zero => Some(Vec3::new(0.0, 0.0, f)),
         (Falloff::Bare(Some(default)), None) => Some(Vec3::new(0.0, 0.0, default)),
         (Falloff::Bare(None), None) if divides_by_zero => Some(Vec3::ZERO),

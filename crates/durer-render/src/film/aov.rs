@@ -5,7 +5,7 @@
 
 use super::false_color::LightScale;
 use super::{Film, luminance_of};
-use crate::world::{DisplayRules, Interaction};
+use crate::world::{DisplayRules, SurfaceInteraction};
 use durer_bvh::TraversalStats;
 use durer_scene::dialect::{DepthPicture, NormalsPicture};
 use durer_scene::math::{Aabb, Color, Vec3};
@@ -18,7 +18,7 @@ pub struct AovInput {
     /// True if the camera sees anything through this pixel.
     pub covered: bool,
     /// The first hit.
-    pub hit: Option<Interaction>,
+    pub hit: Option<SurfaceInteraction>,
     /// Diffuse colour at the hit.
     pub albedo: Color,
     /// Traversal cost of the pixel, with all secondary rays.
@@ -76,7 +76,7 @@ pub fn brightness(light: Color, lumens: Option<Vec3>) -> f64 {
 #[derive(Clone, Copy, Debug)]
 pub struct Display {
     /// Display rules of the dialect.
-    pub look: DisplayRules,
+    pub rules: DisplayRules,
     /// Depths shown as black and white; `None`: minimum and maximum of the picture.
     pub depth_range: Option<(f32, f32)>,
     /// Scale of false colours.
@@ -258,7 +258,7 @@ pub static AOVS: &[Aov] = &[
 ];
 
 fn normal_picture(n: Vec3, _: bool, display: &Display) -> Color {
-    match display.look.normals {
+    match display.rules.normals {
         NormalsPicture::Abs => n.abs(),
         NormalsPicture::Half => (n + 1.0) * 0.5,
     }
@@ -277,24 +277,24 @@ fn of_surface(seen: &AovInput, value: impl Fn(&Surface) -> Vec3) -> Vec3 {
 }
 
 fn depth_picture(depth: Vec3, hit: bool, display: &Display) -> Color {
-    let look = display.look;
+    let rules = display.rules;
     let (least, greatest) = (display.hits.min.x, display.hits.max.x);
     let (min, max) = match display.depth_range {
         // Keep a range whose ends truncate to the same integer.
-        Some((min, max)) if look.whole_depths && min.trunc() != max.trunc() => (min.trunc(), max.trunc()),
+        Some((min, max)) if rules.whole_depths && min.trunc() != max.trunc() => (min.trunc(), max.trunc()),
         Some(range) => range,
         None => (least, if greatest > least { greatest } else { least + 1.0 }),
     };
     let depth = match display.depth_range {
-        Some((min, _)) if look.clamped_depths && depth.x < min => Vec3::splat(min),
-        Some((_, max)) if look.clamped_depths && depth.x > max => Vec3::splat(max),
+        Some((min, _)) if rules.clamped_depths && depth.x < min => Vec3::splat(min),
+        Some((_, max)) if rules.clamped_depths && depth.x > max => Vec3::splat(max),
         _ => depth,
     };
-    Vec3::splat(match look.depth {
+    Vec3::splat(match rules.depth {
         DepthPicture::NearWhite if !hit => 0.0,
         DepthPicture::NearWhite => ((max - depth.x) / (max - min)).clamp(0.0, 1.0),
         DepthPicture::NearBlack if !hit => {
-            if look.black_sky {
+            if rules.black_sky {
                 0.0
             } else {
                 1.0

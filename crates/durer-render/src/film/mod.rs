@@ -13,4 +13,4 @@ mod packed;
 
 pub use film::{Film, Rejected, WrongWindow, luminance, luminance_of};
 pub use filter::{Filter, FilterSampler};
-pub use packed::Packed;
+pub use packed::PackedFilm;

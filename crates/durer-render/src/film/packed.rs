@@ -5,11 +5,11 @@ use durer_scene::math::Color;
 
 /// A film in compact form, while nothing is added. Unpacking returns exactly the same film.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Packed {
+pub enum PackedFilm {
     /// Each pixel has one covering sample of weight 1, which its colour determines.
     Single(Box<[Color]>),
-    /// [`Packed::Small`] with samples of weight 1, as from filters without negative lobes.
-    Even(Box<[Even]>),
+    /// [`PackedFilm::Small`] with samples of weight 1, as from filters without negative lobes.
+    Even(Box<[EqualWeights]>),
     /// Sums fit in 64 bits, and all samples hit something.
     Small(Box<[Small]>),
     /// Everything a film can hold.
@@ -59,20 +59,25 @@ impl Small {
 
 /// Sums without the weight, in words, to avoid padding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Even {
+pub struct EqualWeights {
     color: [[u32; 2]; 3],
     squares: [u32; 3],
     luminance: [u32; 2],
     samples: u32,
 }
 
-impl Even {
+impl EqualWeights {
     fn of(pixel: &Pixel) -> Option<Self> {
         let Small { color, squares: [low, high], luminance, weight, samples } = Small::of(pixel)?;
         let [low, middle] = halves(low);
         let squares = [low, middle, high.try_into().ok()?];
         (weight == i64::from(samples) * WEIGHT_ONE).then_some(())?;
-        Some(Even { color: color.map(|sum| halves(sum as u64)), squares, luminance: halves(luminance as u64), samples })
+        Some(EqualWeights {
+            color: color.map(|sum| halves(sum as u64)),
+            squares,
+            luminance: halves(luminance as u64),
+            samples,
+        })
     }
 
     fn pixel(&self) -> Pixel {
@@ -108,24 +113,24 @@ fn words(number: i128) -> [u64; 2] {
     [number as u64, (number >> 64) as u64]
 }
 
-impl Packed {
+impl PackedFilm {
     /// Packs a film; `samples` is the final number of samples a pixel. A format that stays wide
     /// enough avoids memory fragmentation.
     pub fn new(film: Film, samples: u32) -> Self {
         if film.rejected() > 0 {
-            return Packed::Whole(Box::new(film));
+            return PackedFilm::Whole(Box::new(film));
         }
         if samples == 1
             && let Some(singles) = all(&film, Pixel::single)
         {
-            return Packed::Single(singles.into());
+            return PackedFilm::Single(singles.into());
         }
-        if let Some(even) = all(&film, Even::of) {
-            return Packed::Even(even.into());
+        if let Some(even) = all(&film, EqualWeights::of) {
+            return PackedFilm::Even(even.into());
         }
         match all(&film, Small::of) {
-            Some(small) => Packed::Small(small.into()),
-            None => Packed::Whole(Box::new(film)),
+            Some(small) => PackedFilm::Small(small.into()),
+            None => PackedFilm::Whole(Box::new(film)),
         }
     }
 
@@ -137,10 +142,10 @@ impl Packed {
             film
         };
         match self {
-            Packed::Single(colors) => film(colors.iter().copied().map(Pixel::of_single).collect()),
-            Packed::Even(pixels) => film(pixels.iter().map(Even::pixel).collect()),
-            Packed::Small(pixels) => film(pixels.iter().map(Small::pixel).collect()),
-            Packed::Whole(film) => Film::clone(film),
+            PackedFilm::Single(colors) => film(colors.iter().copied().map(Pixel::of_single).collect()),
+            PackedFilm::Even(pixels) => film(pixels.iter().map(EqualWeights::pixel).collect()),
+            PackedFilm::Small(pixels) => film(pixels.iter().map(Small::pixel).collect()),
+            PackedFilm::Whole(film) => Film::clone(film),
         }
     }
 
@@ -149,26 +154,26 @@ impl Packed {
     pub fn means(&self, mut offer: impl FnMut(Color, f32)) {
         let mut offer_pixel = |pixel: &Pixel| offer(pixel.mean(), pixel.coverage());
         match self {
-            Packed::Single(colors) => colors.iter().for_each(|&color| offer(color, 1.0)),
-            Packed::Even(pixels) => pixels.iter().for_each(|even| offer_pixel(&even.pixel())),
-            Packed::Small(pixels) => pixels.iter().for_each(|small| offer_pixel(&small.pixel())),
-            Packed::Whole(film) => film.pixels.iter().for_each(offer_pixel),
+            PackedFilm::Single(colors) => colors.iter().for_each(|&color| offer(color, 1.0)),
+            PackedFilm::Even(pixels) => pixels.iter().for_each(|even| offer_pixel(&even.pixel())),
+            PackedFilm::Small(pixels) => pixels.iter().for_each(|small| offer_pixel(&small.pixel())),
+            PackedFilm::Whole(film) => film.pixels.iter().for_each(offer_pixel),
         }
     }
 
     /// Returns true if all pixels have full coverage.
     pub fn is_covered(&self) -> bool {
         match self {
-            Packed::Single(_) | Packed::Even(_) | Packed::Small(_) => true,
-            Packed::Whole(film) => film.pixels.iter().all(|pixel| pixel.coverage() == 1.0),
+            PackedFilm::Single(_) | PackedFilm::Even(_) | PackedFilm::Small(_) => true,
+            PackedFilm::Whole(film) => film.pixels.iter().all(|pixel| pixel.coverage() == 1.0),
         }
     }
 
     /// Returns the film if it has rejected samples.
     pub fn with_rejected(&self) -> Option<&Film> {
         match self {
-            Packed::Whole(film) => Some(film),
-            Packed::Single(..) | Packed::Even(_) | Packed::Small(_) => None,
+            PackedFilm::Whole(film) => Some(film),
+            PackedFilm::Single(..) | PackedFilm::Even(_) | PackedFilm::Small(_) => None,
         }
     }
 

@@ -5,10 +5,10 @@
 
 use super::spawn::spawn_ray;
 use super::trace::{HitRecord, NodeId, RayKind, TermKind, TraceListener};
-use super::{Integrate, Parameters, Setup};
+use super::{Integrate, IntegratorContext, Parameters};
 use crate::world::World;
 use durer_scene::bsdf::{Frame, warp};
-use durer_scene::describe::{Rule, described};
+use durer_scene::describe::{Constraint, described};
 use durer_scene::dialect::set;
 use durer_scene::math::{Color, Ray, Ray64};
 use durer_scene::sampler::SampleId;
@@ -17,7 +17,7 @@ described! {
     /// ambient occlusion
     AoParameters ["ao" in set::DURER] {
         /// Maximum distance of occluders, in world units [default: unlimited]
-        radius: Option<f32> = None, optional, Rule::Positive, ["ao-radius" in set::DURER];
+        radius: Option<f32> = None, optional, Constraint::Positive, ["ao-radius" in set::DURER];
     }
 }
 
@@ -26,7 +26,7 @@ impl Copy for AoParameters {}
 impl Parameters for AoParameters {
     type Integrator<'w> = AmbientOcclusion<'w>;
 
-    fn over(self, setup: Setup<'_>) -> AmbientOcclusion<'_> {
+    fn over(self, setup: IntegratorContext<'_>) -> AmbientOcclusion<'_> {
         AmbientOcclusion { world: setup.world, radius: self.radius.unwrap_or(f32::INFINITY) }
     }
 }

@@ -1,6 +1,6 @@
 //! Stack of objects that a ray is inside: air, or nested glass.
 
-use crate::world::{Interaction, World};
+use crate::world::{SurfaceInteraction, World};
 use durer_scene::math::Vec3;
 use smallvec::SmallVec;
 
@@ -142,7 +142,7 @@ impl Media {
     }
 
     /// Returns the transmission with nested and overlapping glass, as in Dürer's own dialect.
-    pub(crate) fn nested_passage(&self, world: &World, at: &Interaction, ior: f32, leaving: bool) -> Passage {
+    pub(crate) fn nested_passage(&self, world: &World, at: &SurfaceInteraction, ior: f32, leaving: bool) -> Passage {
         self.passage_into(world, (at.hit.object, at.ray.rounded.origin), ior, leaving)
     }
 

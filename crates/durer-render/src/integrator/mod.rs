@@ -1,4 +1,4 @@
-//! Integrators: estimators of the radiance along a ray. One file each; the list is [`Method`].
+//! Integrators: estimators of the radiance along a ray. One file each; the list is [`IntegratorKind`].
 
 pub mod ao;
 pub mod media;
@@ -14,10 +14,10 @@ use durer_scene::describe::{Describe, DescribedList, described_list};
 use durer_scene::math::{Color, Ray, Ray64};
 use durer_scene::sampler::SampleId;
 use durer_scene::spectrum::ColorMode;
-pub use path::{Direct, Path, PhotonParameters, Photons, Transport};
+pub use path::{Direct, Path, PathOptions, PhotonParameters, Photons};
 use std::sync::atomic::AtomicBool;
 pub use trace::{NodeId, TraceListener, TraceNode, TraceRecorder, Tree};
-pub use whitted::{Settings, Whitted, WhittedParameters, refract};
+pub use whitted::{Whitted, WhittedOptions, WhittedParameters, refract};
 
 /// Parameters of an integrator: a name and options, stated in a `described!` block. The command
 /// line derives its options from it.
@@ -32,21 +32,21 @@ pub trait Parameters: Describe + Copy {
     const PREPARES: bool = false;
 
     /// Creates the integrator.
-    fn over(self, setup: Setup<'_>) -> Self::Integrator<'_>;
+    fn over(self, setup: IntegratorContext<'_>) -> Self::Integrator<'_>;
 
     /// Returns the path tracing options, if the method traces paths.
-    fn transport(&self) -> Option<Transport> {
+    fn transport(&self) -> Option<PathOptions> {
         None
     }
 }
 
 /// Data for every integrator.
 #[derive(Clone, Copy, Debug)]
-pub struct Setup<'w> {
+pub struct IntegratorContext<'w> {
     /// The world.
     pub world: &'w World,
     /// Common settings.
-    pub settings: Settings,
+    pub settings: WhittedOptions,
     /// Footprint of a sample, if there are pixels.
     pub cone: Option<RayCone>,
     /// Seed of random numbers that do not belong to a sample.
@@ -91,27 +91,27 @@ fn one_by_one<T: TraceListener>(
 
 macro_rules! delegate {
     ($($variant:ident),+) => {
-        impl Method {
+        impl IntegratorKind {
             /// Returns the path tracing options, if the method traces paths.
-            pub fn transport(self) -> Option<Transport> {
-                match self { $(Method::$variant(it) => it.transport(),)+ }
+            pub fn transport(self) -> Option<PathOptions> {
+                match self { $(IntegratorKind::$variant(it) => it.transport(),)+ }
             }
 
             /// Returns true if the radiance depends on random numbers.
             pub fn is_random(self) -> bool {
                 fn of<P: Parameters>(_: P) -> bool { P::IS_RANDOM }
-                match self { $(Method::$variant(it) => of(it),)+ }
+                match self { $(IntegratorKind::$variant(it) => of(it),)+ }
             }
 
             /// Returns true if the method prepares samples in advance.
             pub fn prepares(self) -> bool {
                 fn of<P: Parameters>(_: P) -> bool { P::PREPARES }
-                match self { $(Method::$variant(it) => of(it),)+ }
+                match self { $(IntegratorKind::$variant(it) => of(it),)+ }
             }
 
             /// Creates the integrator of a world.
-            pub fn over(self, setup: Setup<'_>) -> Integrator<'_> {
-                match self { $(Method::$variant(it) => Integrator::$variant(it.over(setup)),)+ }
+            pub fn over(self, setup: IntegratorContext<'_>) -> Integrator<'_> {
+                match self { $(IntegratorKind::$variant(it) => Integrator::$variant(it.over(setup)),)+ }
             }
         }
 
@@ -139,7 +139,7 @@ macro_rules! integrators {
     ($($variant:ident($type:ty),)+) => {
         described_list! {
             /// Integrator of a picture, with its own options.
-            Method: Parameters => delegate { $($variant($type),)+ }
+            IntegratorKind: Parameters => delegate { $($variant($type),)+ }
         }
 
         /// An integrator of a world.
@@ -153,25 +153,26 @@ macro_rules! integrators {
 
 integrators! {
     Whitted(whitted::WhittedParameters),
-    Path(path::Transport),
+    Path(path::PathOptions),
     Photons(path::PhotonParameters),
     Ao(ao::AoParameters),
 }
 
-impl Copy for Method {}
+impl Copy for IntegratorKind {}
 
-impl Default for Method {
+impl Default for IntegratorKind {
     fn default() -> Self {
-        Method::WHITTED
+        IntegratorKind::WHITTED
     }
 }
 
-impl Method {
+impl IntegratorKind {
     /// Direct lighting, mirrors and glass.
-    pub const WHITTED: Method = Method::Whitted(WhittedParameters {});
+    pub const WHITTED: IntegratorKind = IntegratorKind::Whitted(WhittedParameters {});
 
     /// Path tracing with default options.
-    pub const PATH: Method = Method::Path(Transport { clamp: None, color: ColorMode::Rgb, direct: Direct::Both });
+    pub const PATH: IntegratorKind =
+        IntegratorKind::Path(PathOptions { clamp: None, color: ColorMode::Rgb, direct: Direct::Both });
 
     /// Returns the method's name.
     pub fn name(&self) -> &'static str {

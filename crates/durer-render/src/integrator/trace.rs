@@ -12,7 +12,7 @@
 //! [`Tree::sum`] is the colour of their sum.
 
 use crate::world::emitters::LightId;
-use crate::world::{HighlightModel, Interaction, World};
+use crate::world::{HighlightModel, SurfaceInteraction, World};
 use durer_bvh::{RayCount, TraversalCounter, TraversalStats};
 use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3};
 use durer_scene::spectrum::{Lanes, Spectrum};
@@ -282,8 +282,8 @@ pub struct HitRecord {
 
 impl HitRecord {
     /// Records a hit; `n` is the normal used for lighting.
-    pub(super) fn new(world: &World, at: &Interaction, n: Vec3, from_behind: bool, black: bool) -> Self {
-        let Interaction { ray, hit, surface, material, .. } = at;
+    pub(super) fn new(world: &World, at: &SurfaceInteraction, n: Vec3, from_behind: bool, black: bool) -> Self {
+        let SurfaceInteraction { ray, hit, surface, material, .. } = at;
         let object = &world.objects()[hit.object as usize];
         HitRecord {
             object: hit.object,

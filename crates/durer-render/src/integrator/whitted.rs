@@ -9,12 +9,12 @@
 
 use super::media::Passage;
 use super::trace::{HitRecord, NodeId, RayKind, TermKind, TraceListener};
-use super::{Integrate, Parameters, Setup};
-use crate::world::{Interaction, Material, TOGETHER, WeightedMaterial, World};
+use super::{Integrate, IntegratorContext, Parameters};
+use crate::world::{MAX_BATCH, Material, SurfaceInteraction, WeightedMaterial, World};
 use direct::{Direct, take_powers};
 use durer_scene::describe::described;
 use durer_scene::dialect::set;
-use durer_scene::light::Illumination;
+use durer_scene::light::LightLiSample;
 use durer_scene::math::{Color, Ray, Ray64, Vec3};
 use durer_scene::sampler::SampleId;
 use queue::Queue;
@@ -26,7 +26,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Settings of the light transport.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Settings {
+pub struct WhittedOptions {
     /// Maximum depth of secondary rays; 0 means direct light only.
     pub bounces: u32,
     /// Casts shadows.
@@ -44,7 +44,7 @@ pub struct Settings {
     pub least_weight: f32,
 }
 
-impl Settings {
+impl WhittedOptions {
     /// Largest maximum depth of a job.
     pub const MAX_BOUNCES: u32 = 256;
 }
@@ -61,7 +61,7 @@ impl Parameters for WhittedParameters {
 
     const IS_RANDOM: bool = false;
 
-    fn over(self, Setup { world, settings, cancel, .. }: Setup<'_>) -> Whitted<'_> {
+    fn over(self, IntegratorContext { world, settings, cancel, .. }: IntegratorContext<'_>) -> Whitted<'_> {
         Whitted { world, settings, cancel }
     }
 }
@@ -72,14 +72,14 @@ pub struct Whitted<'w> {
     /// The world.
     pub world: &'w World,
     /// Settings.
-    pub settings: Settings,
+    pub settings: WhittedOptions,
     /// Once set, no more rays are traced, and results are meaningless. A single pixel of many
     /// mirrors may take long.
     pub cancel: Option<&'w AtomicBool>,
 }
 
 /// A material of a shaded point.
-struct Lit<'w> {
+struct ShadedMaterial<'w> {
     part: WeightedMaterial<'w>,
     /// Diffuse colour, looked up once for all lights.
     diffuse: Color,
@@ -88,10 +88,10 @@ struct Lit<'w> {
 }
 
 /// A surface point to shade.
-struct Shaded {
+struct ShadingPoint {
     /// Index of its segment.
     segment: u32,
-    at: Interaction,
+    at: SurfaceInteraction,
     /// Transmission through the surface.
     passage: Passage,
     /// Normal used for lighting.
@@ -107,21 +107,21 @@ struct Shaded {
 }
 
 /// Materials of the points of a batch, point by point.
-type Parts<'w> = SmallVec<[Lit<'w>; TOGETHER]>;
+type Parts<'w> = SmallVec<[ShadedMaterial<'w>; MAX_BATCH]>;
 
 /// Thread-local buffers, reused for each batch of camera rays.
 struct Scratch {
     queue: Queue,
-    /// Buffer of [`TOGETHER`] points.
-    points: Vec<Shaded>,
-    rays: [Ray64; TOGETHER],
+    /// Buffer of [`MAX_BATCH`] points.
+    points: Vec<ShadingPoint>,
+    rays: [Ray64; MAX_BATCH],
 }
 
 impl Default for Scratch {
     fn default() -> Self {
-        let point = || Shaded {
+        let point = || ShadingPoint {
             segment: 0,
-            at: Interaction::NOWHERE,
+            at: SurfaceInteraction::NOWHERE,
             passage: Passage::default(),
             n: Vec3::ZERO,
             black: false,
@@ -131,8 +131,8 @@ impl Default for Scratch {
         };
         Scratch {
             queue: Queue::default(),
-            points: std::iter::repeat_with(point).take(TOGETHER).collect(),
-            rays: [Ray64::from(Ray::new(Vec3::ZERO, Vec3::X)); TOGETHER],
+            points: std::iter::repeat_with(point).take(MAX_BATCH).collect(),
+            rays: [Ray64::from(Ray::new(Vec3::ZERO, Vec3::X)); MAX_BATCH],
         }
     }
 }
@@ -193,7 +193,7 @@ impl<'w> Whitted<'w> {
                 });
                 queue.push_camera(ray, camera as u32, self.settings.bounces, node);
             }
-            let mut batch = [0; TOGETHER];
+            let mut batch = [0; MAX_BATCH];
             loop {
                 let count = queue.take(&mut batch);
                 if count == 0 {
@@ -218,13 +218,13 @@ impl<'w> Whitted<'w> {
     fn hit<T: TraceListener>(
         &self,
         batch: &[u32],
-        rays: &mut [Ray64; TOGETHER],
-        (queue, points, parts): (&mut Queue, &mut [Shaded], &mut Parts<'w>),
+        rays: &mut [Ray64; MAX_BATCH],
+        (queue, points, parts): (&mut Queue, &mut [ShadingPoint], &mut Parts<'w>),
         begin: &impl Fn(usize),
         colors: &mut [Color],
         tally: &mut T,
     ) -> usize {
-        let (rays, mut found) = (&mut rays[..batch.len()], [None; TOGETHER]);
+        let (rays, mut found) = (&mut rays[..batch.len()], [None; MAX_BATCH]);
         for (ray, &number) in rays.iter_mut().zip(batch) {
             let segment = queue.segment(number);
             *ray = segment.ray;
@@ -243,7 +243,7 @@ impl<'w> Whitted<'w> {
                 continue;
             };
             let point = &mut points[count];
-            self.world.meet(&segment.ray, hit, &mut point.at);
+            self.world.intersect_into(&segment.ray, hit, &mut point.at);
             match self.passage(&point.at, &segment.media) {
                 Some(Passage { hidden: true, behind, .. }) => {
                     (segment.media, segment.t_min) = (behind, hit.t);
@@ -259,7 +259,7 @@ impl<'w> Whitted<'w> {
             point.first_part = parts.len();
             let lit = |part: WeightedMaterial<'w>| {
                 let diffuse = self.world.diffuse_color(part.phong, &point.at.surface);
-                Lit { part, diffuse, direct: Direct::default() }
+                ShadedMaterial { part, diffuse, direct: Direct::default() }
             };
             match &self.world.materials()[point.at.material as usize] {
                 // Fast path: most points have one material.
@@ -276,9 +276,9 @@ impl<'w> Whitted<'w> {
     /// light.
     fn shade<T: TraceListener>(
         &self,
-        points: &mut [Shaded],
-        shadows: &mut [Ray64; TOGETHER],
-        parts: &mut [Lit],
+        points: &mut [ShadingPoint],
+        shadows: &mut [Ray64; MAX_BATCH],
+        parts: &mut [ShadedMaterial],
         queue: &mut Queue,
         tally: &mut T,
     ) {
@@ -288,7 +288,7 @@ impl<'w> Whitted<'w> {
                 continue;
             }
             let node = queue.segment(point.segment).node;
-            for Lit { part, diffuse, .. } in &parts[point.first_part..][..point.parts] {
+            for ShadedMaterial { part, diffuse, .. } in &parts[point.first_part..][..point.parts] {
                 let met = part.phong.ambient.unwrap_or(*diffuse);
                 let ambient = part.share * self.world.ambient();
                 let node = tally.begin(node, || TermKind::Ambient { share: part.share });
@@ -297,14 +297,14 @@ impl<'w> Whitted<'w> {
             }
         }
         // Points that a light may reach: index, and the light as seen from there.
-        let mut lit = [(0, Illumination { to_light: Vec3::ZERO, distance: 0.0, color: Color::ZERO }); TOGETHER];
+        let mut lit = [(0, LightLiSample { to_light: Vec3::ZERO, distance: 0.0, color: Color::ZERO }); MAX_BATCH];
         for number in 0..self.world.lights().len() {
             let mut count = 0;
             for (i, point) in points.iter_mut().enumerate().filter(|(_, point)| !point.black) {
-                let Interaction { ray, surface, .. } = &point.at;
+                let SurfaceInteraction { ray, surface, .. } = &point.at;
                 let seen = self.world.illuminate(number, surface.point());
                 let mut dark = true;
-                for Lit { part, diffuse, direct } in &mut parts[point.first_part..][..point.parts] {
+                for ShadedMaterial { part, diffuse, direct } in &mut parts[point.first_part..][..point.parts] {
                     *direct = Direct::of(part.phong, *diffuse, point.n, ray.dir(), &seen);
                     dark &= direct.is_dark(part.phong);
                 }
@@ -319,7 +319,7 @@ impl<'w> Whitted<'w> {
                 count += 1;
             }
             let lit = &lit[..count];
-            let mut shares = [Color::ONE; TOGETHER];
+            let mut shares = [Color::ONE; MAX_BATCH];
             if self.settings.shadows {
                 self.visible(&mut shadows[..count], &mut shares[..count], tally);
             }
@@ -337,13 +337,13 @@ impl<'w> Whitted<'w> {
     #[inline(always)]
     fn add_light<T: TraceListener>(
         &self,
-        point: &mut Shaded,
-        parts: &[Lit],
-        (number, seen, visible): (usize, &Illumination, Color),
+        point: &mut ShadingPoint,
+        parts: &[ShadedMaterial],
+        (number, seen, visible): (usize, &LightLiSample, Color),
         queue: &mut Queue,
         tally: &mut T,
     ) {
-        for Lit { part, diffuse, direct } in parts {
+        for ShadedMaterial { part, diffuse, direct } in parts {
             let share = part.share;
             // Skip the computation if no light arrives.
             let dark = visible == Color::ZERO;
@@ -356,7 +356,7 @@ impl<'w> Whitted<'w> {
                     TermKind::Light { light: number, to_light, distance, share, shadow }
                 });
                 if !dark {
-                    direct.tell(part.phong, *diffuse, node, tally);
+                    direct.report(part.phong, *diffuse, node, tally);
                 }
                 tally.end(node, share * visible, seen.color, color);
             }
@@ -371,7 +371,7 @@ impl<'w> Whitted<'w> {
 
     /// Determines the shaded side of a surface.
     #[inline]
-    fn side(&self, at: &Interaction) -> Side {
+    fn side(&self, at: &SurfaceInteraction) -> Side {
         let (rules, shade_back, n_shade) = (self.world.shading_rules(), self.settings.shade_back, at.surface.n_shade);
         let from_behind = self.sees_back(at);
         let n = if from_behind && shade_back { -n_shade } else { n_shade };
@@ -382,13 +382,13 @@ impl<'w> Whitted<'w> {
 
     /// Returns true if a ray hits the back of a surface.
     #[inline]
-    pub fn sees_back(&self, at: &Interaction) -> bool {
+    pub fn sees_back(&self, at: &SurfaceInteraction) -> bool {
         let shaded = self.world.shading_rules().shaded_sides;
         at.ray.dir().dot(if shaded { at.surface.n_shade } else { at.surface.n_geo }) > 0.0
     }
 
     /// Returns the diffuse colour at a hit, weighted over its materials: the albedo.
-    pub fn albedo(&self, at: &Interaction) -> Color {
+    pub fn albedo(&self, at: &SurfaceInteraction) -> Color {
         let parts = self.world.parts(at);
         parts.iter().map(|part| part.share * self.world.diffuse_color(part.phong, &at.surface)).sum()
     }

@@ -41,7 +41,7 @@ pub(super) struct Pixel {
 pub(super) const BATCH: usize = 8;
 
 /// A group of samples to generate together.
-pub(super) trait Several {
+pub(super) trait SampleGroup {
     /// Returns the number of samples, at most [`BATCH`].
     fn len(&self) -> usize;
 
@@ -76,7 +76,7 @@ impl Batch {
     }
 }
 
-impl Several for Batch {
+impl SampleGroup for Batch {
     #[inline(always)]
     fn len(&self) -> usize {
         self.len
@@ -99,7 +99,7 @@ pub(super) struct Row<'a> {
     pub(super) first: u32,
 }
 
-impl Several for Row<'_> {
+impl SampleGroup for Row<'_> {
     #[inline(always)]
     fn len(&self) -> usize {
         BATCH
@@ -166,7 +166,7 @@ impl<'a> Aim<'a> {
     }
 
     /// Generates ray and weight of several samples, with the same results as [`Aim::sample`].
-    pub(super) fn several(&self, of: &impl Several, mut take: impl FnMut(usize, Option<Ray>, f32)) {
+    pub(super) fn several(&self, of: &impl SampleGroup, mut take: impl FnMut(usize, Option<Ray>, f32)) {
         let mut take = |i: usize, ray, weight| {
             if i < of.len() {
                 take(i, ray, weight);
@@ -190,7 +190,7 @@ impl<'a> Aim<'a> {
     #[inline(always)]
     fn rays(
         &self,
-        of: &impl Several,
+        of: &impl SampleGroup,
         points: [[f32; BATCH]; 2],
         lenses: [[f32; BATCH]; 2],
         take: impl FnMut(usize, Option<Ray>),
@@ -232,7 +232,7 @@ struct AimKernel<'a, S, F> {
     take: F,
 }
 
-impl<S: Several, F: FnMut(usize, Option<Ray>, f32)> PlainKernel for AimKernel<'_, S, F> {
+impl<S: SampleGroup, F: FnMut(usize, Option<Ray>, f32)> PlainKernel for AimKernel<'_, S, F> {
     type Output = ();
 
     #[inline(always)]

@@ -16,7 +16,7 @@ use super::part::PartialRender;
 use super::run::whole;
 use super::{Control, Job, RenderError};
 use crate::film::aov::{Sums, heat};
-use crate::integrator::{Method, PhotonParameters};
+use crate::integrator::{IntegratorKind, PhotonParameters};
 use crate::world::World;
 use durer_image::{Image, Layer};
 use durer_scene::math::Vec3;
@@ -87,9 +87,11 @@ fn student(freedom: f64) -> f64 {
 }
 
 /// Returns the bias-corrected variant of a method, if it has a bias.
-pub(super) fn corrected(method: Method) -> Option<Method> {
+pub(super) fn corrected(method: IntegratorKind) -> Option<IntegratorKind> {
     match method {
-        Method::Photons(photons) => Some(Method::Photons(PhotonParameters { corrected: true, ..photons })),
+        IntegratorKind::Photons(photons) => {
+            Some(IntegratorKind::Photons(PhotonParameters { corrected: true, ..photons }))
+        }
         _ => None,
     }
 }

@@ -33,7 +33,7 @@ pub struct Control {
 
 /// End of a run.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Until {
+pub(super) enum RunLimit {
     /// Until everything is done.
     End,
     /// Until all passes with at most this many samples a pixel are done.

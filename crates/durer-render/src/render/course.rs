@@ -2,7 +2,7 @@
 
 use super::aim::PixelSample;
 use super::error::MAX_KEPT;
-use super::samples::{SampleCursor, Samples, Stopped};
+use super::samples::{Cancelled, SampleCursor, Samples};
 use super::sub_pixels::SubPixels;
 use super::{Control, Crop, Job, RenderError, Sampling};
 use crate::film::course::{CourseFilter, StoredSample, StoredSamples};
@@ -32,9 +32,9 @@ pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<Sto
     let work = || {
         let (at, mut rays) = (Cell::new((0, 0, None)), RayCount::default());
         let source = Samples::new(world, job, &control.cancel);
-        source.stored(&Show::default(), job.whole(), (sampler, samples), &at, |_, _| true, &mut rays)
+        source.stored(&SubPixelPicture::default(), job.whole(), (sampler, samples), &at, |_, _| true, &mut rays)
     };
-    threads::install(control.threads, work).map_err(|Stopped| RenderError::Cancelled)
+    threads::install(control.threads, work).map_err(|Cancelled| RenderError::Cancelled)
 }
 
 /// Returns the bytes of the samples stored at once for a tile, if samples affect other pixels.
@@ -54,7 +54,7 @@ pub(super) fn kept_bytes(job: &Job, side: u32) -> u64 {
 /// nothing at some sample, a second picture is rendered as a mask: white where the camera sees,
 /// black elsewhere.
 #[derive(Default)]
-struct Show {
+struct SubPixelPicture {
     mask: bool,
     /// True if the camera saw nothing at some sample.
     blind: Cell<bool>,
@@ -74,17 +74,28 @@ impl Samples<'_> {
         part: Crop,
         at: &SampleCursor,
         rays: &mut RayCount,
-    ) -> Result<Vec<(Color, f32)>, Stopped> {
-        let show = Show::default();
+    ) -> Result<Vec<(Color, f32)>, Cancelled> {
+        let show = SubPixelPicture::default();
         let colors = self.shown(&show, part, at, rays)?;
         if !show.blind.get() {
             return Ok(colors.into_iter().map(|color| (color, 1.0)).collect());
         }
-        let mask = self.shown(&Show { mask: true, ..Show::default() }, part, at, &mut RayCount::default())?;
+        let mask = self.shown(
+            &SubPixelPicture { mask: true, ..SubPixelPicture::default() },
+            part,
+            at,
+            &mut RayCount::default(),
+        )?;
         Ok(colors.into_iter().zip(mask).map(|(color, white)| (color, share(white))).collect())
     }
 
-    fn shown(&self, show: &Show, part: Crop, at: &SampleCursor, rays: &mut RayCount) -> Result<Vec<Color>, Stopped> {
+    fn shown(
+        &self,
+        show: &SubPixelPicture,
+        part: Crop,
+        at: &SampleCursor,
+        rays: &mut RayCount,
+    ) -> Result<Vec<Color>, Cancelled> {
         match self.job.sampling {
             Sampling::Course2004 { sampler, samples, filter: Some(filter) } => {
                 self.course_2004(show, part, (sampler, sampler.round_up(samples)), filter, at, rays)
@@ -95,7 +106,7 @@ impl Samples<'_> {
     }
 
     /// Returns the colour of a stored sample.
-    fn kept(&self, show: &Show, aim: &PixelSample, id: SampleId, rays: &mut RayCount) -> Color {
+    fn kept(&self, show: &SubPixelPicture, aim: &PixelSample, id: SampleId, rays: &mut RayCount) -> Color {
         show.blind.set(show.blind.get() || aim.ray.is_none());
         let light = |ray| if show.mask { Vec3::ONE } else { self.integrator.radiance(&ray, id, rays) };
         aim.ray.map_or(Vec3::ZERO, light)
@@ -103,13 +114,13 @@ impl Samples<'_> {
 
     fn course_2004(
         &self,
-        show: &Show,
+        show: &SubPixelPicture,
         part: Crop,
         sampling: (Sampler, u32),
         filter: CourseFilter,
         at: &SampleCursor,
         rays: &mut RayCount,
-    ) -> Result<Vec<Color>, Stopped> {
+    ) -> Result<Vec<Color>, Cancelled> {
         let around = part.grown(filter.support(), self.job.whole());
         let stored = self.stored(show, around, sampling, at, |x, y| part.holds(x, y), rays)?;
         let from = (part.left - around.left, part.top - around.top);
@@ -119,13 +130,13 @@ impl Samples<'_> {
     /// Takes all samples of a part of the picture; counts only rays of the requested pixels.
     fn stored(
         &self,
-        show: &Show,
+        show: &SubPixelPicture,
         part: Crop,
         sampling: (Sampler, u32),
         at: &SampleCursor,
         counted: impl Fn(u32, u32) -> bool,
         rays: &mut RayCount,
-    ) -> Result<StoredSamples, Stopped> {
+    ) -> Result<StoredSamples, Cancelled> {
         StoredSamples::try_take(part.width, part.height, sampling.1, |column, row, sample| {
             self.check()?;
             let (x, y) = (part.left + column, part.top + row);
@@ -142,12 +153,12 @@ impl Samples<'_> {
     /// picture.
     fn course_2012(
         &self,
-        show: &Show,
+        show: &SubPixelPicture,
         part: Crop,
         (jitter, blurred): (bool, bool),
         at: &SampleCursor,
         rays: &mut RayCount,
-    ) -> Result<Vec<Color>, Stopped> {
+    ) -> Result<Vec<Color>, Cancelled> {
         let grid = SubPixels::new(self.job, part, jitter, blurred);
         let raster = grid.raster(self.world);
         let mut pixels = Vec::with_capacity(grid.around.pixels() as usize);

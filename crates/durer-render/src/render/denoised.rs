@@ -13,7 +13,7 @@ const GUIDES: [&str; 3] = ["albedo", "normals", "position"];
 
 /// A noisy colour picture with auxiliary data for denoisers.
 #[derive(Clone, Debug)]
-pub struct Noisy {
+pub struct NoisyPicture {
     /// The picture, as rendered.
     pub picture: Image,
     /// Coverage of each pixel.
@@ -34,7 +34,7 @@ impl PartialRender {
     ///
     /// # Errors
     /// [`RenderError`], as for a picture with one ray a pixel.
-    pub fn noisy(&self, world: &World, threads: Option<usize>) -> Result<Noisy, RenderError> {
+    pub fn noisy(&self, world: &World, threads: Option<usize>) -> Result<NoisyPicture, RenderError> {
         let aovs = GUIDES.iter().filter_map(|name| Aov::from_name(name)).collect();
         let job = Job { color: false, aovs, noise: None, adaptive: false, ..self.job.clone() };
         let seen = render(world, &job, &Control { threads, ..Control::default() })?;
@@ -46,15 +46,15 @@ impl PartialRender {
         let (colors, coverage, variance) = self.colors_and_variance();
         let window = self.job.window();
         let picture = Image::from_pixels(window.width, window.height, colors)?;
-        Ok(Noisy { picture, coverage, albedo, normal, position, variance })
+        Ok(NoisyPicture { picture, coverage, albedo, normal, position, variance })
     }
 }
 
-impl Noisy {
+impl NoisyPicture {
     /// Denoises with Dürer's own denoiser: see [`denoise`]. The result has the same bits on any
     /// number of threads.
     pub fn denoised(self) -> Layer {
-        let Noisy { picture, albedo, normal, position, variance, .. } = &self;
+        let NoisyPicture { picture, albedo, normal, position, variance, .. } = &self;
         let clean = denoise(picture, &Guides { albedo, normal, position, variance });
         let clean = clean.unwrap_or_else(|| picture.clone());
         self.layer(clean)

@@ -10,7 +10,7 @@ mod text;
 use super::aim::PixelSample;
 use super::allocation::pilot;
 use super::confidence::{ErrorBound, corrected};
-use super::control::Until;
+use super::control::RunLimit;
 use super::samples::Samples;
 use super::stale;
 pub use super::sub_pixels::SubPixels;
@@ -24,7 +24,7 @@ use durer_scene::sampler::SampleId;
 pub use numbers::number;
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
-pub use text::{Names, Telling, TextLine, ray_text};
+pub use text::{ExplainOptions, Names, TextLine, ray_text};
 
 /// A pixel and everything that contributed to it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -104,10 +104,10 @@ impl Explanation {
 
 /// Returns the trace of any ray, with the random numbers of a sample.
 pub fn explain_ray(world: &World, job: &Job, ray: &Ray, id: SampleId) -> Option<Tree> {
-    told(&job.integrator(world, None), ray, id)
+    trace_tree(&job.integrator(world, None), ray, id)
 }
 
-fn told(integrator: &Integrator, ray: &Ray, id: SampleId) -> Option<Tree> {
+fn trace_tree(integrator: &Integrator, ray: &Ray, id: SampleId) -> Option<Tree> {
     let mut account = TraceRecorder::default();
     integrator.radiance(ray, id, &mut account);
     account.into_tree()
@@ -144,7 +144,7 @@ pub fn explain_of(
     let integrator = job.integrator(world, None);
     let account = |of, sample, aim: PixelSample| {
         let id = SampleId::new(job.seed, of, sample);
-        let light = aim.ray.and_then(|ray| told(&integrator, &ray, id));
+        let light = aim.ray.and_then(|ray| trace_tree(&integrator, &ray, id));
         SampleAccount { of, sample, place: aim.place, lens: aim.lens, weight: aim.weight, light }
     };
     let (mean, samples) = match job.sampling {
@@ -201,7 +201,7 @@ fn count(world: &World, job: &Job, (x, y): (u32, u32)) -> Result<u32, RenderErro
     let window = if job.window().holds(x, y) { job.window() } else { job.whole() };
     if job.adaptive {
         let part = PartialRender::new(world, &Job { crop: Some(window), ..job.clone() }, Shard::WHOLE)?;
-        part.render_to(world, &Control::default(), &mut |_, _| {}, Until::Samples(pilot(samples)))?;
+        part.render_to(world, &Control::default(), &mut |_, _| {}, RunLimit::Samples(pilot(samples)))?;
         part.allocate();
         return Ok(part.target(x, y).unwrap_or(samples));
     }

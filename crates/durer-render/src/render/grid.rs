@@ -5,7 +5,7 @@ use crate::threads;
 use crate::world::{Accel, Geometry, Object, World};
 use durer_bvh::Grid;
 use durer_image::{Image, checked_count};
-use durer_scene::light::Emitter;
+use durer_scene::light::Illuminate;
 use durer_scene::math::{Aabb, Color, Ray, Vec3};
 use durer_scene::shape::Primitive;
 use rayon::prelude::*;

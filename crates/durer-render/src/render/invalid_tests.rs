@@ -6,7 +6,7 @@ use crate::compile::{AccelKind, Resources, compile};
 use crate::film::Filter;
 use crate::film::course::CourseFilter;
 use crate::film::false_color::LightScale;
-use crate::integrator::{Method, Settings};
+use crate::integrator::{IntegratorKind, WhittedOptions};
 use durer_diag::{Diagnostics, Files};
 use durer_formats::Decoder;
 use durer_formats::folder::FolderSource;
@@ -62,14 +62,14 @@ fn refused(job: Job) -> String {
         Materials { Material { reflectiveColor 1 1 1 } }
         Group { MaterialIndex 0 Plane { normal 0 0 1 offset 0 } Plane { normal 0 0 -1 offset -10 } }";
     let world = read(mirrors);
-    let said = |error| match error {
+    let causes = |error| match error {
         RenderError::Job(message) => message,
         other => panic!("{other}"),
     };
     // Every entry point reports it.
     assert!(matches!(PartialRender::new(&world, &job, Shard::WHOLE), Err(RenderError::Job(_))));
     assert!(matches!(explain::explain(&world, &job, 0, 0), Err(RenderError::Job(_))));
-    said(render(&world, &job, &Control::default()).map(|_| ()).unwrap_err())
+    causes(render(&world, &job, &Control::default()).map(|_| ()).unwrap_err())
 }
 
 #[test]
@@ -92,7 +92,7 @@ fn invalid_jobs_are_rejected() {
     assert!(course(CourseFilter::Tent { radius: 0.0 }).validate().is_ok());
     let found = refused(course(CourseFilter::Box { radius: -1.0 }));
     assert_eq!(found, "the filter's radius -1 must be from 0 to 64");
-    let settings = |change: fn(&mut Settings)| {
+    let settings = |change: fn(&mut WhittedOptions)| {
         let mut job = small();
         change(&mut job.settings);
         job
@@ -103,7 +103,7 @@ fn invalid_jobs_are_rejected() {
     assert!(refused(Job { depth_range: Some((1.0, 1.0)), ..small() }).contains("two different"));
     let light_scale = Some(LightScale { low: 0.0, high: 1.0, logarithmic: true });
     assert!(refused(Job { light_scale, ..small() }).contains("from 0 to 1"));
-    let mut method = Method::PATH;
+    let mut method = IntegratorKind::PATH;
     let clamp = method.fields().iter().position(|field| field.name == "clamp").expect("path tracing has `clamp`");
     method.set(clamp, Value::Float(-1.0));
     assert_eq!(refused(Job { method, ..small() }), "clamp of path must be more than 0");

@@ -8,7 +8,7 @@ use crate::film::Filter;
 use crate::film::aov::{Aov, Value};
 use crate::film::course::CourseFilter;
 use crate::film::false_color::LightScale;
-use crate::integrator::{Integrator, Method, Settings, Setup};
+use crate::integrator::{Integrator, IntegratorContext, IntegratorKind, WhittedOptions};
 use crate::world::World;
 use durer_scene::camera::RayCone;
 use durer_scene::describe::DescribedList;
@@ -95,9 +95,9 @@ pub struct Job {
     pub adaptive: bool,
     /// Integrator.
     #[serde(default)]
-    pub method: Method,
+    pub method: IntegratorKind,
     /// Common settings of the integrators.
-    pub settings: Settings,
+    pub settings: WhittedOptions,
     /// Renders colour.
     pub color: bool,
     /// Other pictures to render.
@@ -124,7 +124,7 @@ fn named_aovs<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<&'static
 impl Default for Job {
     /// 512 x 512 pixels of colour, one ray each, with shadows and eight bounces.
     fn default() -> Self {
-        let settings = Settings {
+        let settings = WhittedOptions {
             bounces: 8,
             shadows: true,
             shade_back: true,
@@ -141,7 +141,7 @@ impl Default for Job {
             sampling: Sampling::Center,
             noise: None,
             adaptive: false,
-            method: Method::default(),
+            method: IntegratorKind::default(),
             settings,
             color: true,
             aovs: Vec::new(),
@@ -159,7 +159,7 @@ impl Job {
 
     /// Checks all values: size at least 1 x 1, samples from 1 to [`Job::MAX_SAMPLES`], the filter's
     /// radius more than 0 and at most [`Job::MAX_FILTER_RADIUS`], depth of recursion at most
-    /// [`Settings::MAX_BOUNCES`], thresholds and scales, and the integrator's options by their
+    /// [`WhittedOptions::MAX_BOUNCES`], thresholds and scales, and the integrator's options by their
     /// rules. [`PartialRender::new`](super::PartialRender::new) calls this first.
     ///
     /// # Errors
@@ -196,9 +196,9 @@ impl Job {
                 return refuse(format!("the filter's radius {size} must be from 0 to {}", Job::MAX_FILTER_RADIUS));
             }
         }
-        let Settings { bounces, least_weight, .. } = self.settings;
-        if bounces > Settings::MAX_BOUNCES {
-            return refuse(format!("bounces {bounces} must be at most {}", Settings::MAX_BOUNCES));
+        let WhittedOptions { bounces, least_weight, .. } = self.settings;
+        if bounces > WhittedOptions::MAX_BOUNCES {
+            return refuse(format!("bounces {bounces} must be at most {}", WhittedOptions::MAX_BOUNCES));
         }
         if !(least_weight >= 0.0 && least_weight.is_finite()) {
             return refuse(format!("the minimum throughput {least_weight} must not be less than 0"));
@@ -247,7 +247,7 @@ impl Job {
         let raster = raster(world, self.width, self.height);
         let area = raster.pixel_area() / self.sampling.samples() as f32;
         let cone = RayCone::new(world.camera(), world.camera_frame(), area);
-        self.method.over(Setup { world, settings: self.settings, cone, seed: self.seed, cancel })
+        self.method.over(IntegratorContext { world, settings: self.settings, cone, seed: self.seed, cancel })
     }
 
     /// Returns true if samples are needed, for colour or for an AOV.

@@ -3,7 +3,7 @@
 use super::blocks::{Shard, ShardBy};
 use super::part::{BlockSamples, PartialRender};
 use super::saved::PartError;
-use crate::film::Packed;
+use crate::film::PackedFilm;
 use std::fmt::Write;
 use std::sync::Arc;
 
@@ -57,7 +57,7 @@ pub fn merge(parts: &[(String, PartialRender)]) -> Result<PartialRender, MergeEr
         start.same_picture(part).map_err(foreign)?;
     }
     let whole =
-        PartialRender::empty(start.job.clone(), Shard::WHOLE, start.scene, start.look).map_err(PartError::from)?;
+        PartialRender::empty(start.job.clone(), Shard::WHOLE, start.scene, start.display).map_err(PartError::from)?;
     let mut missing = String::new();
     merge_samples(parts, &whole, &mut missing)?;
     merge_rays(parts, &whole, &mut missing)?;
@@ -102,7 +102,7 @@ fn merge_samples(
             match (merged.film(rect), piece.film(rect)) {
                 (Some(mut film), Some(other)) => {
                     film.merge(&other).expect("a block of the same picture has the same pixels");
-                    merged.film = Some(Arc::new(Packed::new(film, whole.packed_samples())));
+                    merged.film = Some(Arc::new(PackedFilm::new(film, whole.packed_samples())));
                 }
                 _ => merged.film = piece.film,
             }

@@ -41,7 +41,7 @@ pub use confidence::{CONFIDENCE, ErrorBound};
 pub use control::Control;
 pub use course::sample_diagram;
 pub use crop::Crop;
-pub use denoised::Noisy;
+pub use denoised::NoisyPicture;
 pub use error::{Panicked, RenderError};
 pub use eye::{camera_ray, center_ray, raster};
 pub use grid::grid_picture;

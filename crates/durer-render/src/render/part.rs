@@ -5,7 +5,7 @@ use super::blocks::{Blocks, Shard, ShardBy};
 use super::error::RenderError;
 use super::passes::{self, Passes};
 use super::{Crop, Job, Sampling};
-use crate::film::{Film, Packed, Rejected};
+use crate::film::{Film, PackedFilm, Rejected};
 use crate::world::{DisplayRules, World};
 use durer_image::{can_allocate, checked_count};
 use durer_scene::math::Vec3;
@@ -21,7 +21,7 @@ pub struct PartialRender {
     pub(super) job: Job,
     pub(super) shard: Shard,
     pub(super) scene: Digest,
-    pub(super) look: DisplayRules,
+    pub(super) display: DisplayRules,
     /// Blocks of the colour's window, and of the centre rays' window.
     pub(super) blocks: Blocks,
     pub(super) ray_blocks: Blocks,
@@ -50,7 +50,7 @@ pub(super) struct BlockSamples {
     pub(super) rays: u64,
     /// Their sums, if there are any. Shared, so that a reader holds the lock only to clone the
     /// pointer.
-    pub(super) film: Option<Arc<Packed>>,
+    pub(super) film: Option<Arc<PackedFilm>>,
     /// Variances of its pixels' means, once the pilot is complete.
     pub(super) variances: Option<Arc<[f32]>>,
     /// Final number of samples of each pixel, once decided; `to` and other counts are then averages
@@ -137,7 +137,7 @@ impl PartialRender {
         PartialRender::empty(job.clone(), shard, world.digest(), world.display_rules())
     }
 
-    pub(super) fn empty(job: Job, shard: Shard, scene: Digest, look: DisplayRules) -> Result<Self, RenderError> {
+    pub(super) fn empty(job: Job, shard: Shard, scene: Digest, display: DisplayRules) -> Result<Self, RenderError> {
         job.validate()?;
         let window = job.window();
         let inside =
@@ -167,7 +167,7 @@ impl PartialRender {
             job,
             shard,
             scene,
-            look,
+            display,
             blocks,
             ray_blocks,
             state,
@@ -325,7 +325,7 @@ impl PartialRender {
     pub fn bytes_needed(job: &Job, shard: Shard) -> u64 {
         let share = if shard.by == ShardBy::Tiles { u64::from(shard.count) } else { 1 };
         let (pixels, rays) = (job.window().pixels(), job.ray_window().pixels());
-        let sums = if job.wants_samples() { Packed::pixel_bytes(job.sampling.samples()) } else { 0 };
+        let sums = if job.wants_samples() { PackedFilm::pixel_bytes(job.sampling.samples()) } else { 0 };
         // Sample counts and variances of the pixels.
         let sums = if job.adaptive { sums + 24 } else { sums };
         let values = 12 * job.ray_aovs().count() as u64 + 1;

@@ -88,7 +88,7 @@ impl PartialRender {
     }
 
     /// Writes the colours so far, row by row, for formats that support it: the whole picture is
-    /// never in memory. `look` is called with all of them, some rows at a time.
+    /// never in memory. `display` is called with all of them, some rows at a time.
     ///
     /// # Errors
     /// Errors of the file, and [`BandsError::Image`] for formats that need all rows at once.
@@ -97,14 +97,14 @@ impl PartialRender {
         format: &Format,
         display: ImageDisplay,
         out: &mut dyn Write,
-        mut look: impl FnMut(&[Color]),
+        mut visit: impl FnMut(&[Color]),
     ) -> Result<(), BandsError> {
         let (Crop { width, height, .. }, alpha) = (self.job.window(), !self.is_all_seen(&self.state()));
         let strip = Strip { width, height, alpha, display };
         let bottom_up = format.rows.is_some_and(|rows| rows.bottom_up);
         format.write_rows(strip, out, |rows| {
             self.try_strips(bottom_up, |pixels, coverage| {
-                look(pixels);
+                visit(pixels);
                 Ok(rows.rows(pixels, coverage)?)
             })
         })
@@ -185,7 +185,7 @@ impl PartialRender {
 
     /// Returns the values of an AOV from samples.
     fn summed(&self, state: &State, value: fn(&Sums) -> Vec3) -> Vec<(Vec3, PrimaryHit)> {
-        let (gain, lumens) = (self.gain(), self.look.lumens);
+        let (gain, lumens) = (self.gain(), self.display.lumens);
         let none = value(&Sums { pixel: None, gain, lumens });
         let mut pixels = vec![(none, PrimaryHit::Blind); self.job.window().pixels() as usize];
         self.each_sampled(state, |index, film, x, y| {
@@ -228,7 +228,7 @@ impl PartialRender {
     fn shown(&self, aov: &Aov, values: &[(Vec3, PrimaryHit)]) -> (Vec<Color>, LightScale) {
         let light = aov.unit.map_or(&[][..], |_| values);
         let display = Display {
-            look: self.look,
+            rules: self.display,
             depth_range: self.job.depth_range,
             light_scale: self.job.light_scale.unwrap_or_else(|| LightScale::over(light.iter().map(|value| value.0.x))),
             hits: if aov.name == "depth" { seen_depths(values) } else { Aabb::around(of_hits(values)) },
@@ -239,7 +239,7 @@ impl PartialRender {
             _ => (aov.picture)(value, found == PrimaryHit::Hit, &display),
         };
         let mut picture: Vec<Color> = values.iter().map(color).collect();
-        if aov.name == "normals" && self.look.stale_normals {
+        if aov.name == "normals" && self.display.stale_normals {
             let hits: Vec<bool> = values.iter().map(|value| value.1 == PrimaryHit::Hit).collect();
             fill_from_last_hit(&mut picture, &hits, self.job.ray_window().width as usize);
         }

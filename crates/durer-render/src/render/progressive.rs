@@ -1,6 +1,6 @@
 //! Progressive rendering, for callers that display intermediate pictures.
 
-use super::control::Until;
+use super::control::RunLimit;
 use super::part::passes_of;
 use super::{Control, Job, PartialRender, RenderError, RenderOutcome, Shard};
 use crate::world::World;
@@ -61,7 +61,7 @@ impl ProgressiveRender {
             self.is_over = true;
             return Ok(None);
         };
-        let outcome = self.part.render_to(world, control, &mut |_, _| {}, Until::Pass(samples));
+        let outcome = self.part.render_to(world, control, &mut |_, _| {}, RunLimit::Pass(samples));
         let failed = match outcome? {
             RenderOutcome::Finished => {
                 let all_samples = self.part.job().sampling.samples();

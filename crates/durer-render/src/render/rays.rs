@@ -1,7 +1,7 @@
 //! AOVs from one ray through each pixel's centre.
 
 use super::part::{BlockAovs, PrimaryHit};
-use super::samples::{SampleCursor, Samples, Stopped};
+use super::samples::{Cancelled, SampleCursor, Samples};
 use super::{Crop, Job, center_ray, raster};
 use crate::film::aov::{AovInput, brightness};
 use crate::integrator::Path;
@@ -17,7 +17,7 @@ pub(super) fn trace(
     samples: &Samples,
     rect: Crop,
     at: &SampleCursor,
-) -> Result<BlockAovs, Stopped> {
+) -> Result<BlockAovs, Cancelled> {
     let raster = raster(world, job.width, job.height);
     let wanted = |name: &str| job.aovs.iter().any(|aov| aov.name == name);
     let (cost_wanted, illuminance_wanted) = (wanted("cost"), wanted("illuminance"));

@@ -1,14 +1,14 @@
 //! Execution: tiles on threads, pass after pass, until the end or a stop.
 
 use super::allocation::{half, pilot, variances};
-use super::control::Until;
+use super::control::RunLimit;
 use super::course::kept_bytes;
 use super::error::{Panicked, RenderError};
 use super::part::{BlockAovs, BlockSamples, PartialRender, film_of, passes_of};
-use super::samples::{SampleCursor, Samples, Stopped};
+use super::samples::{Cancelled, SampleCursor, Samples};
 use super::{BLOCK, Control, Job, Rendered, Shard, rays};
 use crate::clock::{Duration, Instant};
-use crate::film::Packed;
+use crate::film::PackedFilm;
 use crate::integrator::Integrate;
 use crate::threads;
 use crate::world::World;
@@ -35,7 +35,7 @@ fn usual_tile(job: &Job) -> u32 {
 }
 
 /// Poll interval for cancellation.
-const LOOK: Duration = Duration::from_millis(5);
+const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
 /// Reason why a render ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -80,11 +80,11 @@ pub(super) fn whole(world: &World, job: &Job, control: &Control) -> Result<Parti
 
 impl PartialRender {
     /// Returns the ends of the passes.
-    fn ends(&self, until: Until) -> Box<dyn Iterator<Item = u32>> {
+    fn ends(&self, until: RunLimit) -> Box<dyn Iterator<Item = u32>> {
         match until {
-            Until::End => Box::new(passes_of(&self.job, self.shard)),
-            Until::Samples(last) => Box::new(passes_of(&self.job, self.shard).take_while(move |&end| end <= last)),
-            Until::Pass(end) => Box::new(std::iter::once(end)),
+            RunLimit::End => Box::new(passes_of(&self.job, self.shard)),
+            RunLimit::Samples(last) => Box::new(passes_of(&self.job, self.shard).take_while(move |&end| end <= last)),
+            RunLimit::Pass(end) => Box::new(std::iter::once(end)),
         }
     }
 
@@ -101,7 +101,7 @@ impl PartialRender {
         control: &Control,
         watch: &mut dyn FnMut(&PartialRender, RenderEvent),
     ) -> Result<RenderOutcome, RenderError> {
-        self.render_to(world, control, watch, Until::End)
+        self.render_to(world, control, watch, RunLimit::End)
     }
 
     /// Continues the work up to some point: see [`PartialRender::render`].
@@ -110,9 +110,9 @@ impl PartialRender {
         world: &World,
         control: &Control,
         watch: &mut dyn FnMut(&PartialRender, RenderEvent),
-        until: Until,
+        until: RunLimit,
     ) -> Result<RenderOutcome, RenderError> {
-        if self.scene != world.digest() || self.look != world.display_rules() {
+        if self.scene != world.digest() || self.display != world.display_rules() {
             return Err(RenderError::OtherScene);
         }
         let (pool, tile) = (threads::pool(control.threads), control.tile.unwrap_or(usual_tile(&self.job)));
@@ -160,18 +160,18 @@ impl PartialRender {
                 });
                 // The last pass drops the sender.
                 loop {
-                    match passes.recv_timeout(LOOK) {
+                    match passes.recv_timeout(POLL_INTERVAL) {
                         Ok(()) => clock.passed(self, watch),
-                        Err(mpsc::RecvTimeoutError::Timeout) => clock.look(self, watch),
+                        Err(mpsc::RecvTimeoutError::Timeout) => clock.poll(self, watch),
                         Err(mpsc::RecvTimeoutError::Disconnected) => break,
                     }
                 }
             }),
             // Without threads, the calling thread does all work, and polls between tiles.
             None => {
-                work.rays(Some(&mut || clock.look(self, watch)));
+                work.rays(Some(&mut || clock.poll(self, watch)));
                 for end in self.ends(until) {
-                    work.pass(end, Some(&mut || clock.look(self, watch)));
+                    work.pass(end, Some(&mut || clock.poll(self, watch)));
                     clock.passed(self, watch);
                 }
             }
@@ -201,7 +201,7 @@ struct Clock<'a> {
 }
 
 impl Clock<'_> {
-    fn look(&mut self, part: &PartialRender, watch: &mut dyn FnMut(&PartialRender, RenderEvent)) {
+    fn poll(&mut self, part: &PartialRender, watch: &mut dyn FnMut(&PartialRender, RenderEvent)) {
         if self.control.cancel.load(Relaxed) {
             self.stop.store(true, Relaxed);
         }
@@ -216,7 +216,7 @@ impl Clock<'_> {
 
     fn passed(&mut self, part: &PartialRender, watch: &mut dyn FnMut(&PartialRender, RenderEvent)) {
         self.whole = true;
-        self.look(part, watch);
+        self.poll(part, watch);
         if self.last.elapsed() >= self.pause {
             self.call(part, watch, RenderEvent::PassDone);
         }
@@ -235,7 +235,7 @@ impl Clock<'_> {
 }
 
 /// Poll function to call between tiles if the caller's thread is the only one.
-type Alone<'a> = Option<&'a mut dyn FnMut()>;
+type PollFn<'a> = Option<&'a mut dyn FnMut()>;
 
 /// State shared by the working threads.
 struct Work<'a> {
@@ -252,7 +252,7 @@ struct Work<'a> {
 
 impl Work<'_> {
     /// Traces missing centre rays.
-    fn rays(&self, alone: Alone) {
+    fn rays(&self, alone: PollFn) {
         let part = self.part;
         let open = |(index, block): (usize, &Option<Box<BlockAovs>>)| {
             (block.is_none() && part.shard.has_rays(index)).then_some(index)
@@ -275,7 +275,7 @@ impl Work<'_> {
     }
 
     /// Takes samples until each pixel that needs more has this many.
-    fn pass(&self, end: u32, alone: Alone) {
+    fn pass(&self, end: u32, alone: PollFn) {
         if !self.stop.load(Relaxed) {
             self.samples.integrator.prepare(end - 1);
         }
@@ -295,7 +295,7 @@ impl Work<'_> {
     }
 
     /// Adds samples to the blocks of a tile.
-    fn sample(&self, tile: &[usize], end: u32, at: &SampleCursor) -> Result<(), Stopped> {
+    fn sample(&self, tile: &[usize], end: u32, at: &SampleCursor) -> Result<(), Cancelled> {
         let part = self.part;
         let (adaptive, samples) = (part.job.adaptive, part.job.sampling.samples());
         let mut made = Vec::with_capacity(tile.len());
@@ -313,7 +313,7 @@ impl Work<'_> {
             traced += rays.0;
             block.rays += rays.0;
             block.variances = before.map(|half| variances(&half, &film, rect)).or(block.variances);
-            (block.to, block.film) = (end, Some(Arc::new(Packed::new(film, part.packed_samples()))));
+            (block.to, block.film) = (end, Some(Arc::new(PackedFilm::new(film, part.packed_samples()))));
             made.push(block);
         }
         self.keep(tile, made, taken, traced);
@@ -322,7 +322,7 @@ impl Work<'_> {
 
     /// Computes finished pixels of a tile for samplings that affect several pixels: at once if it
     /// is a rectangle, otherwise block by block.
-    fn finish(&self, tile: &[usize], at: &SampleCursor) -> Result<(), Stopped> {
+    fn finish(&self, tile: &[usize], at: &SampleCursor) -> Result<(), Cancelled> {
         let blocks = &self.part.blocks;
         let rects: Vec<_> = tile.iter().map(|&index| blocks.rect(index)).collect();
         let around = rects.iter().skip(1).fold(rects[0], |a, b| a.around(*b));
@@ -341,7 +341,7 @@ impl Work<'_> {
             };
             let mut film = film_of(*rect);
             rect.places().zip(own).for_each(|((x, y), seen)| film.add_covering(x, y, 0, seen, 1.0));
-            let film = Some(Arc::new(Packed::new(film, 1)));
+            let film = Some(Arc::new(PackedFilm::new(film, 1)));
             made.push(BlockSamples { from: 0, to: 1, rays: rays.0 - before, film, ..BlockSamples::default() });
             before = rays.0;
         }
@@ -375,8 +375,8 @@ impl Work<'_> {
     fn each(
         &self,
         tiles: &[Vec<usize>],
-        alone: Alone,
-        make: impl Fn(&[usize], &SampleCursor) -> Result<(), Stopped> + Sync,
+        alone: PollFn,
+        make: impl Fn(&[usize], &SampleCursor) -> Result<(), Cancelled> + Sync,
     ) {
         let one = |tile: &Vec<usize>| {
             if self.control.most_tiles.is_some_and(|most| self.tiles.fetch_add(1, Relaxed) >= most) {
@@ -391,14 +391,14 @@ impl Work<'_> {
                 let mut panicked = self.panicked.lock().unwrap_or_else(PoisonError::into_inner);
                 panicked.get_or_insert(Panicked { x, y, sample, message });
                 self.stop.store(true, Relaxed);
-                Err(Stopped)
+                Err(Cancelled)
             })
         };
         // The error only ends the loop; its cause is stored elsewhere.
         let _ = match alone {
             None => tiles.par_iter().with_max_len(1).try_for_each(one),
-            Some(look) => tiles.iter().try_for_each(|tile| {
-                look();
+            Some(poll) => tiles.iter().try_for_each(|tile| {
+                poll();
                 one(tile)
             }),
         };

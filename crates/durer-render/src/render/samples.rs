@@ -1,12 +1,12 @@
 //! Sampling of a block, for each kind of sampling.
 
-use super::aim::{Aim, BATCH, Batch, Pixel, PixelSample, Row, Several};
+use super::aim::{Aim, BATCH, Batch, Pixel, PixelSample, Row, SampleGroup};
 use super::error::center;
 use super::stale;
 use super::{Crop, Job, Sampling};
 use crate::film::Film;
 use crate::integrator::{Integrate, Integrator, Whitted};
-use crate::world::{TOGETHER, World};
+use crate::world::{MAX_BATCH, World};
 use durer_bvh::RayCount;
 use durer_scene::camera::Projection;
 use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3};
@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// The work was stopped before it was finished.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Stopped;
+pub(super) struct Cancelled;
 
 /// Column, row and index of a thread's current sample.
 pub(super) type SampleCursor = Cell<(u32, u32, Option<u32>)>;
@@ -66,10 +66,10 @@ struct Run {
 }
 
 /// Maximum number of samples that are generated before they are traced.
-const ROOM: usize = TOGETHER + BATCH;
+const ROOM: usize = MAX_BATCH + BATCH;
 
 /// Generated samples.
-struct Aimed {
+struct SampleRays {
     runs: Vec<Run>,
     /// Number of samples, and their weights.
     count: usize,
@@ -81,10 +81,10 @@ struct Aimed {
     colors: [Color; ROOM],
 }
 
-impl Default for Aimed {
+impl Default for SampleRays {
     fn default() -> Self {
         let ray = Ray64::from(Ray::new(Vec3::ZERO, Vec3::X));
-        Aimed {
+        SampleRays {
             runs: Vec::new(),
             count: 0,
             weights: [0.0; ROOM],
@@ -96,7 +96,7 @@ impl Default for Aimed {
     }
 }
 
-impl Aimed {
+impl SampleRays {
     fn clear(&mut self) {
         self.runs.clear();
         (self.count, self.seen) = (0, 0);
@@ -114,7 +114,7 @@ impl Aimed {
 }
 
 thread_local! {
-    static AIMED: RefCell<Option<Box<Aimed>>> = RefCell::default();
+    static AIMED: RefCell<Option<Box<SampleRays>>> = RefCell::default();
 }
 
 /// Takes the samples of a job.
@@ -150,8 +150,8 @@ impl<'a> Samples<'a> {
         self.aim.gain()
     }
 
-    pub(super) fn check(&self) -> Result<(), Stopped> {
-        if self.stop.load(Relaxed) { Err(Stopped) } else { Ok(()) }
+    pub(super) fn check(&self) -> Result<(), Cancelled> {
+        if self.stop.load(Relaxed) { Err(Cancelled) } else { Ok(()) }
     }
 
     /// Adds samples to the pixels of a film's part, which are numbered row by row.
@@ -162,7 +162,7 @@ impl<'a> Samples<'a> {
         ranges: impl Fn(usize) -> Range<u32>,
         at: &SampleCursor,
         rays: &mut RayCount,
-    ) -> Result<(), Stopped> {
+    ) -> Result<(), Cancelled> {
         let mut batch = Batch::new(self.aim.pixel(part.left, part.top));
         let mut aimed = AIMED.take().unwrap_or_default();
         for (index, (x, y)) in part.places().enumerate() {
@@ -183,7 +183,7 @@ impl<'a> Samples<'a> {
                     self.aim_several(&batch, &mut aimed);
                     batch.clear();
                 }
-                if aimed.count >= TOGETHER {
+                if aimed.count >= MAX_BATCH {
                     self.add_aimed(film, &mut aimed, at, rays)?;
                 }
             }
@@ -196,7 +196,7 @@ impl<'a> Samples<'a> {
     }
 
     /// Generates camera rays for some samples.
-    fn aim_several(&self, of: &impl Several, aimed: &mut Aimed) {
+    fn aim_several(&self, of: &impl SampleGroup, aimed: &mut SampleRays) {
         let (start, mut runs) = (aimed.count, [0; BATCH]);
         for (i, run) in runs[..of.len()].iter_mut().enumerate() {
             *run = aimed.run_of(of.pixel(i), of.number(i), start + i);
@@ -216,12 +216,12 @@ impl<'a> Samples<'a> {
     fn add_aimed(
         &self,
         film: &mut Film,
-        aimed: &mut Aimed,
+        aimed: &mut SampleRays,
         at: &SampleCursor,
         rays: &mut RayCount,
-    ) -> Result<(), Stopped> {
+    ) -> Result<(), Cancelled> {
         self.check()?;
-        let Aimed { runs, count, weights, seen, rays: aims, of, colors } = &mut *aimed;
+        let SampleRays { runs, count, weights, seen, rays: aims, of, colors } = &mut *aimed;
         let (of, colors) = (&of[..*seen], &mut colors[..*seen]);
         let begin = |ray: usize| {
             let (run, sample) = of[ray];

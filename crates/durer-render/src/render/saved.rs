@@ -18,7 +18,7 @@
 use super::allocation::{half, most, pilot};
 use super::part::{BlockAovs, BlockSamples, PartialRender, PrimaryHit, film_of, job_text};
 use super::{Job, RenderError, Shard};
-use crate::film::Packed;
+use crate::film::PackedFilm;
 use crate::film::bytes::{Bytes, put};
 use durer_image::Content;
 use durer_scene::math::Vec3;
@@ -124,7 +124,7 @@ impl PartialRender {
         out.extend(self.scene.0);
         put_text(&mut out, &job_text(&self.job));
         put_text(&mut out, &serde_json::to_string(&self.shard).unwrap_or_default());
-        put_text(&mut out, &serde_json::to_string(&self.look).unwrap_or_default());
+        put_text(&mut out, &serde_json::to_string(&self.display).unwrap_or_default());
         out
     }
 
@@ -180,13 +180,13 @@ impl PartialRender {
         }
         let scene = rest.take(32).and_then(|scene| scene.try_into().ok()).ok_or(malformed("its header"))?;
         let mut json = || text(&mut rest).ok_or(malformed("its header"));
-        let (job, shard, look) = (json()?, json()?, json()?);
+        let (job, shard, display) = (json()?, json()?, json()?);
         let wrong = |error: serde_json::Error| PartError::Malformed(error.to_string());
         let job: Job = serde_json::from_str(job).map_err(wrong)?;
         let shard: Shard = serde_json::from_str(shard).map_err(wrong)?;
-        let look = serde_json::from_str(look).map_err(wrong)?;
+        let display = serde_json::from_str(display).map_err(wrong)?;
         // Reject jobs that would allocate far more than the bytes justify.
-        let part = PartialRender::empty(job, shard, Digest(scene), look)?;
+        let part = PartialRender::empty(job, shard, Digest(scene), display)?;
         part.read_blocks(rest).ok_or(malformed("its blocks"))?;
         if part.job.adaptive {
             part.allocate();
@@ -219,7 +219,7 @@ impl PartialRender {
                 };
             }
             let film = film_of(rect).read(&mut rest, most_samples)?;
-            let film = Some(Arc::new(Packed::new(film, self.packed_samples())));
+            let film = Some(Arc::new(PackedFilm::new(film, self.packed_samples())));
             *block = BlockSamples { from, to, rays, variances, film, targets: None };
         }
         let pictures = self.job.ray_aovs().count();
@@ -252,7 +252,7 @@ impl PartialRender {
 
     /// Checks that another part belongs to the same picture.
     pub(super) fn same_picture(&self, other: &PartialRender) -> Result<(), PartError> {
-        if self.scene != other.scene || self.look != other.look {
+        if self.scene != other.scene || self.display != other.display {
             return Err(PartError::OtherScene);
         }
         let (own, other) = (job_text(&self.job), job_text(&other.job));

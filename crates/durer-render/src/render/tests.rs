@@ -1,12 +1,12 @@
 //! Tests that the film does not depend on how it is rendered, and of errors.
 
-use super::verify::{Way, compare};
+use super::verify::{RenderVariant, compare};
 use super::*;
 use crate::compile::{AccelKind, testing};
 use crate::film::aov::{AOVS, Aov};
 use crate::film::course::CourseFilter;
 use crate::film::{Film, Filter};
-use crate::integrator::{Method, Settings};
+use crate::integrator::{IntegratorKind, WhittedOptions};
 use crate::world::World;
 use durer_bvh::RayCount;
 use durer_image::{Depth, FORMATS, WriteOptions, read};
@@ -64,7 +64,7 @@ fn jobs() -> Vec<Job> {
 }
 
 fn all(world: &World, job: &Job) -> PartialRender {
-    Way::PLAIN.make(world, job, &AtomicBool::new(false)).unwrap()
+    RenderVariant::PLAIN.make(world, job, &AtomicBool::new(false)).unwrap()
 }
 
 fn one_ray(x: u32) -> Digest {
@@ -78,7 +78,7 @@ fn film_does_not_depend_on_how_it_is_rendered() {
     for job in jobs() {
         let plain = all(&world, &job);
         for number in 0..8 {
-            let way = Way::numbered(number, &job, 1);
+            let way = RenderVariant::numbered(number, &job, 1);
             let other = way.make(&world, &job, &AtomicBool::new(false)).unwrap();
             let difference = compare(&plain, &other);
             assert!(difference.is_none(), "{:?}, {way}: {difference:?}", job.sampling);
@@ -118,37 +118,37 @@ fn film_equals_the_sum_of_single_samples() {
         format!("MaterialIndex {} Sphere {{ center {x} {y} 1 radius 0.4 }} ", i % 4)
     };
     let of_many = of_balls.replace(balls, &(0..20).map(many).collect::<String>());
-    let lamps = |count: u32| {
-        let lamp = |i| format!("PointLight {{ position {} 6 4 color 0.1 0.2 0.1 }} ", i as f32 - 9.0);
-        format!("Lights {{ {} ", (0..count).map(lamp).collect::<String>())
+    let lights = |count: u32| {
+        let light = |i| format!("PointLight {{ position {} 6 4 color 0.1 0.2 0.1 }} ", i as f32 - 9.0);
+        format!("Lights {{ {} ", (0..count).map(light).collect::<String>())
     };
-    let [lamps_3, lamps_17] = [3, 17].map(|count| of_mesh.replace("Lights { numLights 1", &lamps(count)));
+    let [lights_3, lights_17] = [3, 17].map(|count| of_mesh.replace("Lights { numLights 1", &lights(count)));
     let (mut through, mut mirrors) = (small().settings, small().settings);
     (through.transparent_shadows, mirrors.bounces, mirrors.shade_back) = (true, 3, true);
-    let mut deep = Settings { bounces: 7, ..through };
+    let mut deep = WhittedOptions { bounces: 7, ..through };
     (deep.reflection, deep.refraction) = (true, true);
-    let sane = || Dialect::Durer.rules();
+    let own_rules = || Dialect::Durer.rules();
     // No camera rays at the corners.
     let blind = TEXT.replace("PerspectiveCamera", "FisheyeCamera").replace("angle 40", "angle 180");
     let worlds = [
-        (TEXT.to_string(), sane(), small().settings),
-        (blind, sane(), mirrors),
+        (TEXT.to_string(), own_rules(), small().settings),
+        (blind, own_rules(), mirrors),
         (TEXT.to_string(), Dialect::F04.rules(), mirrors),
-        (of_mesh.clone(), sane(), mirrors),
-        (of_mesh.clone(), sane(), through),
-        (of_mesh, sane(), deep),
-        (of_balls.clone(), sane(), deep),
-        (of_balls.clone(), sane(), Settings { transparent_shadows: false, least_weight: 0.05, ..deep }),
+        (of_mesh.clone(), own_rules(), mirrors),
+        (of_mesh.clone(), own_rules(), through),
+        (of_mesh, own_rules(), deep),
+        (of_balls.clone(), own_rules(), deep),
+        (of_balls.clone(), own_rules(), WhittedOptions { transparent_shadows: false, least_weight: 0.05, ..deep }),
         (of_balls, Dialect::F04.rules(), deep),
-        (of_many, sane(), deep),
-        (lamps_3, sane(), small().settings),
-        (lamps_17, sane(), mirrors),
+        (of_many, own_rules(), deep),
+        (lights_3, own_rules(), small().settings),
+        (lights_17, own_rules(), mirrors),
     ];
     for (text, rules, settings) in worlds {
         let (world, found) = testing::try_read(&text, rules, AccelKind::Bvh, folder.path());
         let (world, stop) = (world.unwrap_or_else(|| panic!("{found:?}\n{text}")), AtomicBool::new(false));
-        let whitted = jobs().into_iter().map(|job| (job, Method::WHITTED));
-        let all_jobs = whitted.chain([(Job { sampling: filtered(5), ..small() }, Method::PATH)]);
+        let whitted = jobs().into_iter().map(|job| (job, IntegratorKind::WHITTED));
+        let all_jobs = whitted.chain([(Job { sampling: filtered(5), ..small() }, IntegratorKind::PATH)]);
         for (job, method) in all_jobs.filter(|(job, _)| job.sampling.is_local()) {
             let job = Job { settings, method, ..job };
             let samples = samples::Samples::new(&world, &job, &stop);
@@ -178,7 +178,7 @@ fn differences_are_found_and_described() {
     let world = world();
     let (a, b) = (all(&world, &small()), all(&world, &Job { seed: 1, ..small() }));
     assert!(compare(&a, &b).is_none(), "one ray through the centre uses no random numbers");
-    let b = all(&world, &Job { settings: Settings { shadows: false, ..small().settings }, ..small() });
+    let b = all(&world, &Job { settings: WhittedOptions { shadows: false, ..small().settings }, ..small() });
     let difference = compare(&a, &b).unwrap();
     assert!(difference.place.starts_with("pixel ") && difference.expected != difference.found, "{difference:?}");
 }
@@ -338,7 +338,7 @@ fn panic_is_an_error_with_its_sample_and_other_work_is_kept() {
     let mut boxes = vec![Aabb::EMPTY; 1000];
     boxes[999] = broken.objects()[0].bounds().unwrap();
     broken.accel = crate::world::Accel::Bvh(durer_bvh::Bvh::build(&boxes));
-    broken.few = None;
+    broken.small_world = None;
     let job = Job { sampling: filtered(4), width: 64, height: 64, ..Job::default() };
     let part = PartialRender::new(&broken, &job, Shard::WHOLE).unwrap();
     let control = Control { threads: Some(1), ..Control::default() };
@@ -436,8 +436,8 @@ fn files_have_attributes_of_job_and_scene() {
     let options = durer_image::WriteOptions { attributes: &rendered.attributes, ..Default::default() };
     let mut bytes = Vec::new();
     exr.write(&rendered.layers, &options, &mut bytes).unwrap();
-    for told in [world.digest().to_string(), serde_json::to_string(&small()).unwrap(), "\"samples\":1073".into()] {
-        assert!(bytes.windows(told.len()).any(|window| window == told.as_bytes()), "{told}");
+    for text in [world.digest().to_string(), serde_json::to_string(&small()).unwrap(), "\"samples\":1073".into()] {
+        assert!(bytes.windows(text.len()).any(|window| window == text.as_bytes()), "{text}");
     }
 }
 
@@ -515,7 +515,7 @@ fn writing_row_by_row_gives_the_same_file() {
 fn light_in_watts_is_converted_to_lumens() {
     let mut world = world();
     let aovs = AOVS.iter().filter(|aov| aov.unit.is_some()).collect();
-    let job = Job { aovs, method: Method::PATH, ..small() };
+    let job = Job { aovs, method: IntegratorKind::PATH, ..small() };
     let values = |world: &World| {
         let rendered = render(world, &job, &Control::default()).unwrap();
         rendered.layers[1..].iter().map(|layer| layer.image.pixels.clone()).collect::<Vec<_>>()

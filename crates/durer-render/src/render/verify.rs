@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// A way to render a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Way {
+pub struct RenderVariant {
     /// Index among worlds of the same scene with different acceleration structures.
     pub world: usize,
     /// Number of threads.
@@ -26,7 +26,7 @@ pub struct Way {
     pub seed: u64,
 }
 
-impl fmt::Display for Way {
+impl fmt::Display for RenderVariant {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let by = if self.by == ShardBy::Tiles { "tiles" } else { "samples" };
         write!(f, "{} threads, tiles of {}, ", self.threads, self.tile)?;
@@ -37,7 +37,7 @@ impl fmt::Display for Way {
 /// An error of rendering in some way.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum WayError {
+pub enum VariantError {
     /// The render failed.
     #[error(transparent)]
     Render(#[from] RenderError),
@@ -52,20 +52,20 @@ pub enum WayError {
     Cancelled,
 }
 
-impl Way {
+impl RenderVariant {
     /// Everything at once, on one thread.
-    pub const PLAIN: Way =
-        Way { world: 0, threads: 1, tile: 16, shards: 1, by: ShardBy::Tiles, interruptions: 0, seed: 0 };
+    pub const PLAIN: RenderVariant =
+        RenderVariant { world: 0, threads: 1, tile: 16, shards: 1, by: ShardBy::Tiles, interruptions: 0, seed: 0 };
 
     /// Returns a numbered way, determined by the job and the number of worlds.
-    pub fn numbered(number: u64, job: &Job, worlds: usize) -> Way {
+    pub fn numbered(number: u64, job: &Job, worlds: usize) -> RenderVariant {
         let pick = |dimension: u32, count: u64| hash(number, 0, 0, 0, dimension) % count.max(1);
         let samples = u64::from(job.sampling.samples());
         let blocks = (job.window().pixels() / 256).max(1);
         let by_samples = job.sampling.is_local() && job.noise.is_none() && !job.adaptive && pick(3, 2) == 1;
         let blocks = if job.adaptive { 1 } else { blocks };
         let (by, most) = if by_samples { (ShardBy::Samples, samples) } else { (ShardBy::Tiles, blocks) };
-        Way {
+        RenderVariant {
             world: pick(0, worlds as u64) as usize,
             threads: [1, 2, 3, 4, 7][pick(1, 5) as usize],
             tile: [8, 16, 24, 32, 64, 200][pick(2, 6) as usize],
@@ -80,8 +80,8 @@ impl Way {
     /// Renders the job's picture in this way.
     ///
     /// # Errors
-    /// [`WayError`].
-    pub fn make(&self, world: &World, job: &Job, cancel: &AtomicBool) -> Result<PartialRender, WayError> {
+    /// [`VariantError`].
+    pub fn make(&self, world: &World, job: &Job, cancel: &AtomicBool) -> Result<PartialRender, VariantError> {
         let mut parts = Vec::new();
         for index in 1..=self.shards {
             let shard = Shard { index, count: self.shards, by: self.by };
@@ -94,11 +94,17 @@ impl Way {
 
     /// Renders a shard with interruptions after some tiles, and continues each time from the saved
     /// part.
-    fn shard(&self, world: &World, job: &Job, shard: Shard, cancel: &AtomicBool) -> Result<PartialRender, WayError> {
+    fn shard(
+        &self,
+        world: &World,
+        job: &Job,
+        shard: Shard,
+        cancel: &AtomicBool,
+    ) -> Result<PartialRender, VariantError> {
         let mut part = PartialRender::new(world, job, shard)?;
         for round in (0..=self.interruptions).rev() {
             if cancel.load(Relaxed) {
-                return Err(WayError::Cancelled);
+                return Err(VariantError::Cancelled);
             }
             let some = hash(self.seed, 2, shard.index, round, 0) % 24;
             let control = Control {

@@ -7,7 +7,7 @@ use durer_scene::shape::{ShapeHit, Surface};
 
 /// Surface point hit by a ray, computed once by [`World::interaction`] for all shading.
 #[derive(Clone, Copy, Debug)]
-pub struct Interaction {
+pub struct SurfaceInteraction {
     /// Surface at the hit, in world space.
     pub surface: Surface,
     /// The ray.
@@ -20,9 +20,9 @@ pub struct Interaction {
     pub width: f32,
 }
 
-impl Interaction {
+impl SurfaceInteraction {
     /// Placeholder without a hit.
-    pub(crate) const NOWHERE: Interaction = Interaction {
+    pub(crate) const NOWHERE: SurfaceInteraction = SurfaceInteraction {
         surface: Surface::NOWHERE,
         ray: Ray64 {
             rounded: Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::ZERO) },
@@ -42,27 +42,27 @@ impl Interaction {
 
 impl World {
     /// Finds the first hit in the ray's interval, with its surface.
-    pub fn intersect<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> Option<Interaction> {
+    pub fn intersect<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> Option<SurfaceInteraction> {
         let ray = ray.into();
         self.closest(ray, counter).map(|hit| self.interaction(ray, hit))
     }
 
     /// Computes the interaction at `hit`. Official programs take the point from the rounded ray.
-    pub fn interaction(&self, ray: impl Into<Ray64>, hit: Hit) -> Interaction {
+    pub fn interaction(&self, ray: impl Into<Ray64>, hit: Hit) -> SurfaceInteraction {
         self.interaction_along(&ray.into(), hit)
     }
 
     /// Computes the interaction without copying the ray twice. See [`World::interaction`].
     #[inline]
-    pub(crate) fn interaction_along(&self, ray: &Ray64, hit: Hit) -> Interaction {
-        let mut at = Interaction::NOWHERE;
-        self.meet(ray, hit, &mut at);
+    pub(crate) fn interaction_along(&self, ray: &Ray64, hit: Hit) -> SurfaceInteraction {
+        let mut at = SurfaceInteraction::NOWHERE;
+        self.intersect_into(ray, hit, &mut at);
         at
     }
 
     /// Writes the interaction at a hit into `at`, without a copy. See [`World::interaction`].
     #[inline]
-    pub(crate) fn meet(&self, ray: &Ray64, hit: Hit, at: &mut Interaction) {
+    pub(crate) fn intersect_into(&self, ray: &Ray64, hit: Hit, at: &mut SurfaceInteraction) {
         let object = &self.objects()[hit.object as usize];
         let t = f64::from(hit.t);
         let point = match &object.to_world {

@@ -1,7 +1,7 @@
 //! Evaluation of the textures and vertex colours of layered materials.
 
 use super::material::{Maps, Principled};
-use super::{Geometry, Interaction, World};
+use super::{Geometry, SurfaceInteraction, World};
 use durer_scene::material::Parameters;
 use durer_scene::material::parameters::{Change, TEXTURED};
 use durer_scene::material::principled::Switch;
@@ -13,7 +13,7 @@ use std::borrow::Cow;
 impl World {
     /// Evaluates the parameters of a layered material at a hit. Without texture coordinates,
     /// textures are ignored.
-    pub fn parameters_at<'a>(&self, own: &'a Principled, at: &Interaction) -> Cow<'a, Parameters> {
+    pub fn parameters_at<'a>(&self, own: &'a Principled, at: &SurfaceInteraction) -> Cow<'a, Parameters> {
         let [r, g, b, _] = at.surface.color;
         if own.maps.parameters.is_empty() && [r, g, b] == [1.0; 3] {
             return Cow::Borrowed(&own.parameters);
@@ -40,21 +40,21 @@ impl World {
     }
 
     /// Returns the number from 0 to 1 of a texture at a hit; 1 without texture coordinates.
-    pub(super) fn number_at(&self, map: u32, at: &Interaction) -> f32 {
+    pub(super) fn number_at(&self, map: u32, at: &SurfaceInteraction) -> f32 {
         let Some(texel) = self.texel(Some(map), at) else { return 1.0 };
         let mapping = self.textures()[map as usize].mapping().copied().unwrap_or_default();
         mapping.ranged(mapping.channel.unwrap_or(Channel::Red).of(texel)).clamp(0.0, 1.0)
     }
 
     /// Returns the factor of a texture on the emission.
-    pub(super) fn emission_at(&self, own: &Principled, at: &Interaction) -> Color {
+    pub(super) fn emission_at(&self, own: &Principled, at: &SurfaceInteraction) -> Color {
         let picture = self.texel(own.maps.emission, at).map_or(Color::ONE, |[r, g, b, _]| Color::new(r, g, b));
         let [r, g, b, _] = at.surface.color;
         if own.written.emission_vertex_colors == Switch::On { picture * Color::new(r, g, b) } else { picture }
     }
 
     /// Returns the opacity of a surface, from parameter, vertices and texture.
-    pub(super) fn opacity_at(&self, own: &Principled, at: &Interaction) -> f32 {
+    pub(super) fn opacity_at(&self, own: &Principled, at: &SurfaceInteraction) -> f32 {
         let alpha = self.texel(own.maps.base_color, at).map_or(1.0, |texel| texel[3]);
         let share = own.maps.opacity.and_then(|map| {
             let texture = &self.textures()[map as usize];
@@ -77,7 +77,7 @@ impl World {
         own.maps.opacity.is_some() || own.maps.base_color.is_some_and(|map| self.textures()[map as usize].has_alpha())
     }
 
-    fn texel(&self, map: Option<u32>, at: &Interaction) -> Option<[f32; 4]> {
+    fn texel(&self, map: Option<u32>, at: &SurfaceInteraction) -> Option<[f32; 4]> {
         let texture = &self.textures()[map? as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
         Some(texture.texel(&mapping, self.coordinates(texture, at)?, self.texels_seen(texture, &mapping, at)))
@@ -85,7 +85,7 @@ impl World {
 
     /// Returns the width of a sample's footprint in texels, in its narrow direction. At grazing
     /// angles the other direction is wider, which is left to supersampling.
-    fn texels_seen(&self, texture: &Texture, mapping: &Mapping, at: &Interaction) -> f32 {
+    fn texels_seen(&self, texture: &Texture, mapping: &Mapping, at: &SurfaceInteraction) -> f32 {
         if at.width <= 0.0 || !texture.has_levels() {
             return 0.0;
         }
@@ -94,8 +94,8 @@ impl World {
     }
 
     /// Returns the texture coordinates of a hit for a texture.
-    fn coordinates(&self, texture: &Texture, at: &Interaction) -> Option<Vec2> {
-        let Interaction { hit, surface, .. } = at;
+    fn coordinates(&self, texture: &Texture, at: &SurfaceInteraction) -> Option<Vec2> {
+        let SurfaceInteraction { hit, surface, .. } = at;
         match (texture.mapping().is_some_and(|mapping| mapping.second), &self.objects()[hit.object as usize].geometry) {
             (true, Geometry::Mesh(tree)) => tree.mesh.second_uv(hit.part, surface.barycentric),
             (true, _) => None,
@@ -104,14 +104,14 @@ impl World {
     }
 
     /// Applies a bump map and then a normal map to the shading normal; `None` if there are none.
-    pub(super) fn mapped_normal(&self, maps: &Maps, at: &Interaction) -> Option<Vec3> {
+    pub(super) fn mapped_normal(&self, maps: &Maps, at: &SurfaceInteraction) -> Option<Vec3> {
         let bumped = maps.bump.and_then(|map| self.bumped(map, maps.bump_height, at));
         let normal = bumped.unwrap_or(at.surface.n_shade);
         maps.normal.and_then(|map| self.leaning(map, at, normal)).or(bumped)
     }
 
     /// Evaluates a normal map: x along increasing u of the picture, y along increasing v, upwards.
-    fn leaning(&self, map: u32, at: &Interaction, normal: Vec3) -> Option<Vec3> {
+    fn leaning(&self, map: u32, at: &SurfaceInteraction, normal: Vec3) -> Option<Vec3> {
         let texture = &self.textures()[map as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
         let object = &self.objects()[at.hit.object as usize];
@@ -140,7 +140,7 @@ impl World {
     ///
     /// Source: James Blinn, *Simulation of Wrinkled Surfaces*, SIGGRAPH 1978, with the gradient of
     /// the height along the surface.
-    fn bumped(&self, map: u32, height: f32, at: &Interaction) -> Option<Vec3> {
+    fn bumped(&self, map: u32, height: f32, at: &SurfaceInteraction) -> Option<Vec3> {
         let texture = &self.textures()[map as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
         let slope = height * texture.slope(&mapping, self.coordinates(texture, at)?);
@@ -150,8 +150,8 @@ impl World {
 
     /// Returns the derivatives of the world position by the texture coordinates: from the file for
     /// a mesh, otherwise by finite differences.
-    fn derivatives(&self, at: &Interaction, second: bool) -> Option<[Vec3; 2]> {
-        let Interaction { hit, surface, .. } = at;
+    fn derivatives(&self, at: &SurfaceInteraction, second: bool) -> Option<[Vec3; 2]> {
+        let SurfaceInteraction { hit, surface, .. } = at;
         let object = &self.objects()[hit.object as usize];
         let to_world = object.to_world.as_ref();
         let moved = |v: Vec3| to_world.map_or(v, |to_world| to_world.vector(v));
@@ -188,8 +188,8 @@ impl World {
     /// Returns the world-space direction of increasing u at a hit: from the texture coordinates of
     /// a mesh, around the axis of a round shape, along the first edge of a rectangle; otherwise
     /// horizontal.
-    pub(super) fn tangent(&self, at: &Interaction) -> Vec3 {
-        let Interaction { hit, surface, .. } = at;
+    pub(super) fn tangent(&self, at: &SurfaceInteraction) -> Vec3 {
+        let SurfaceInteraction { hit, surface, .. } = at;
         let object = &self.objects()[hit.object as usize];
         let to_world = object.to_world.as_ref();
         let normal = to_world.map_or(surface.n_geo, |to_world| to_world.local_normal(surface.n_geo));

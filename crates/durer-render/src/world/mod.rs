@@ -1,5 +1,6 @@
 //! The compiled scene: immutable, with indices instead of names, for queries from many threads.
 
+mod batch;
 mod contents;
 mod course;
 pub mod csg;
@@ -12,26 +13,25 @@ mod object;
 mod rules;
 pub mod shading;
 pub mod solid;
-mod together;
 
+pub(crate) use batch::{MAX_BATCH, SmallWorld};
 pub use contents::{Assets, Contents};
 pub use course::{CourseHits, HitRules, Matrix, Vectors};
 use durer_bvh::{Bvh, Grid, PrimitivePacks, TraversalCounter};
-use durer_scene::light::{Emitter as _, Illumination, Light};
+use durer_scene::light::{Illuminate as _, Light, LightLiSample};
 use durer_scene::material::{Pattern, Solid};
 use durer_scene::math::{Aabb, Color, Ray64, Vec2, Vec3};
 use durer_scene::shape::{Shape as _, ShapeHit, Sphere};
 use durer_scene::source::Digest;
 use durer_scene::texture::Texture;
-pub use emitters::Emitters;
+pub use emitters::LightSampler;
 use glam::DVec3;
-pub use interaction::Interaction;
+pub use interaction::SurfaceInteraction;
 pub use material::{Emission, HighlightModel, Map, Maps, Material, MaterialMix, Phong, Principled, WeightedMaterial};
 pub use object::{Geometry, MeshTree, Object};
 pub use rules::{DisplayRules, Epsilon, ShadingRules};
 pub use shading::Shading;
 use std::sync::OnceLock;
-pub(crate) use together::{Few, TOGETHER};
 
 /// A compiled scene, ready for ray tracing.
 #[derive(Clone, Debug)]
@@ -41,7 +41,7 @@ pub struct World {
     /// Hash of its sources, and true if it was edited since.
     source: Digest,
     edited: bool,
-    emitters: Emitters,
+    emitters: LightSampler,
     has_cutouts: bool,
     hides_backs: bool,
     has_interfaces: bool,
@@ -54,7 +54,7 @@ pub struct World {
     /// Simple shapes outside the structure, tested eight at a time.
     pub(crate) packs: PrimitivePacks,
     /// The whole world in a form for batches of rays, if it has few objects.
-    pub(crate) few: Option<Few>,
+    pub(crate) small_world: Option<SmallWorld>,
     /// Other objects outside the structure: unbounded ones, and all if they are so few that no tree
     /// pays.
     pub(crate) loose: Vec<u32>,
@@ -113,7 +113,7 @@ impl World {
             assets,
             source,
             edited: false,
-            emitters: Emitters::default(),
+            emitters: LightSampler::default(),
             has_cutouts: false,
             hides_backs: false,
             has_interfaces: false,
@@ -121,7 +121,7 @@ impl World {
             bodies: Vec::new(),
             extents: Vec::new(),
             packs: PrimitivePacks::default(),
-            few: None,
+            small_world: None,
             loose: Vec::new(),
             accel: Accel::None,
             spheres: Vec::new(),
@@ -132,7 +132,7 @@ impl World {
         world.has_sheets = world.finds_sheets();
         world.bodies = world.finds_bodies();
         world.extents = world.forgotten_extents();
-        world.emitters = Emitters::new(&world);
+        world.emitters = LightSampler::new(&world);
         world
     }
 
@@ -142,7 +142,7 @@ impl World {
     }
 
     /// Returns the emitters.
-    pub fn emitters(&self) -> &Emitters {
+    pub fn emitters(&self) -> &LightSampler {
         &self.emitters
     }
 
@@ -388,13 +388,13 @@ impl World {
 
     /// Returns the light of a light source that arrives at a point without occlusion.
     #[inline(always)]
-    pub fn illuminate(&self, light: usize, point: DVec3) -> Illumination {
-        let Illumination { to_light, distance, color } = match &self.lights()[light] {
+    pub fn illuminate(&self, light: usize, point: DVec3) -> LightLiSample {
+        let LightLiSample { to_light, distance, color } = match &self.lights()[light] {
             // Fast path: most lights are points; keeps the result in registers.
-            Light::Point(lamp) => lamp.illuminate(point),
-            lamp => lamp.illuminate(point),
+            Light::Point(emitter) => emitter.illuminate(point),
+            emitter => emitter.illuminate(point),
         };
-        let mut seen = Illumination { to_light, distance, color };
+        let mut seen = LightLiSample { to_light, distance, color };
         if let Some(Some(profile)) = self.profiles().get(light) {
             seen.color = profile.at(self.lights()[light].in_profile(-seen.to_light)) * seen.color;
         }
@@ -411,7 +411,7 @@ impl World {
 
     /// Returns the materials of a surface point with their shares.
     #[inline]
-    pub fn parts(&self, at: &Interaction) -> MaterialMix<'_> {
+    pub fn parts(&self, at: &SurfaceInteraction) -> MaterialMix<'_> {
         let mut parts = MaterialMix::new();
         match &self.materials()[at.material as usize] {
             // Fast path: most materials are not mixed.
@@ -421,7 +421,7 @@ impl World {
         parts
     }
 
-    fn mix<'w>(&'w self, material: u32, at: &Interaction, share: f32, parts: &mut MaterialMix<'w>) {
+    fn mix<'w>(&'w self, material: u32, at: &SurfaceInteraction, share: f32, parts: &mut MaterialMix<'w>) {
         match &self.materials()[material as usize] {
             Material::Phong(phong) => parts.push(WeightedMaterial { phong, share }),
             Material::Solid(solid, to_pattern, picture) => {

@@ -60,7 +60,7 @@ fn packs_return_the_hits_of_single_shapes() {
             shapes.push(Cuboid { min, max }.into());
         }
         assert_eq!(packs.len(), shapes.len());
-        let mut asked = Vec::new();
+        let mut requested = Vec::new();
         for _ in 0..100 {
             let dirs = [
                 Vec3::X,
@@ -86,9 +86,9 @@ fn packs_return_the_hits_of_single_shapes() {
             assert_eq!(packs.occluded(&ray, &mut ()), expected.is_some(), "{ray:?}");
             hits += usize::from(expected.is_some());
             rays += 1;
-            asked.push(ray);
+            requested.push(ray);
         }
-        for eight in asked.as_chunks::<8>().0 {
+        for eight in requested.as_chunks::<8>().0 {
             let alone = eight.each_ref().map(|ray| packs.closest(ray, &mut ()));
             assert_eq!(packs.closest_of_eight(eight.each_ref()), alone, "{eight:?}");
             let unsound = [

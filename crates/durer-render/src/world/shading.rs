@@ -1,6 +1,6 @@
 //! Scattering and emission of surface points for path tracing.
 
-use super::{Geometry, Interaction, Material, Object, Phong, WeightedMaterial, World};
+use super::{Geometry, Material, Object, Phong, SurfaceInteraction, WeightedMaterial, World};
 use crate::world::HighlightModel;
 use crate::world::emitters::LightId;
 use crate::world::material::Emission;
@@ -81,7 +81,7 @@ impl World {
 
     /// Computes the BSDF at a hit for light towards the ray's origin; `eta` is the index behind the
     /// surface over that in front.
-    pub fn shading(&self, at: &Interaction, eta: f32, lanes: &Lanes) -> Shading<'_> {
+    pub fn shading(&self, at: &SurfaceInteraction, eta: f32, lanes: &Lanes) -> Shading<'_> {
         let (dir, surface, inside) = (at.ray.dir(), &at.surface, at.inside());
         let parts = self.parts(at);
         // The first material of a mixture with a normal or bump map determines the normal of all.
@@ -123,7 +123,7 @@ impl World {
 
     /// Returns the frame around a normal; for anisotropic materials along u, rotated by their
     /// angle.
-    fn frame(&self, parts: &[WeightedMaterial], at: &Interaction, n: Vec3) -> Frame {
+    fn frame(&self, parts: &[WeightedMaterial], at: &SurfaceInteraction, n: Vec3) -> Frame {
         // A texture cannot change 0.
         if parts.iter().any(|part| part.phong.fibre.is_some()) {
             return Frame::along(n, self.tangent(at));
@@ -149,7 +149,7 @@ impl World {
     }
 
     /// Returns the radiance emitted by a surface towards the ray's origin.
-    pub fn emission(&self, at: &Interaction) -> Color {
+    pub fn emission(&self, at: &SurfaceInteraction) -> Color {
         let inside = at.inside();
         let own = |phong: &Phong| {
             let emission = phong.emission.as_ref().filter(|emission| emission.two_sided || !inside)?;
@@ -181,17 +181,17 @@ impl World {
     }
 
     /// Returns true if a material may emit.
-    pub fn may_shine(&self, material: u32) -> bool {
+    pub fn may_emit(&self, material: u32) -> bool {
         matches!(&self.materials()[material as usize], Material::Phong(phong) if phong.emission.is_some())
     }
 
     /// Returns true if an emissive material is two-sided; `None` if it does not emit.
-    pub fn shines_to_both_sides(&self, material: u32) -> Option<bool> {
+    pub fn emits_on_both_sides(&self, material: u32) -> Option<bool> {
         self.emission_of(material).map(|emission| emission.two_sided)
     }
 
     /// Returns true if a hit may emit: a fast test for most materials.
-    fn has_emission(&self, at: &Interaction) -> bool {
+    fn has_emission(&self, at: &SurfaceInteraction) -> bool {
         match &self.materials()[at.material as usize] {
             Material::Phong(phong) => phong.emission.is_some(),
             Material::Solid(..) => true,
@@ -200,7 +200,7 @@ impl World {
 
     /// Returns the index of refraction behind a surface that light can enter: that of the material
     /// with the largest share.
-    pub fn refracts(&self, at: &Interaction, lanes: &Lanes) -> Option<f32> {
+    pub fn refracts(&self, at: &SurfaceInteraction, lanes: &Lanes) -> Option<f32> {
         let of = |phong: &Phong| {
             let ior = || phong.principled.as_ref().map_or(phong.ior, |own| own.written.ior_at(lanes.hero()));
             phong.is_entered().then(ior)
@@ -218,7 +218,7 @@ impl World {
 
     /// Returns true if a hit glass uses its index of refraction relative to air, regardless of
     /// surrounding media.
-    pub fn ignores_surroundings(&self, at: &Interaction) -> bool {
+    pub fn ignores_surroundings(&self, at: &SurfaceInteraction) -> bool {
         let own = |phong: &Phong| {
             let principled = phong.principled.as_ref();
             principled.is_some_and(|own| own.written.surroundings == Surroundings::Ignored)
@@ -227,7 +227,7 @@ impl World {
     }
 
     /// Returns the opacity of a surface.
-    pub fn opacity(&self, at: &Interaction) -> f32 {
+    pub fn opacity(&self, at: &SurfaceInteraction) -> f32 {
         let own = |phong: &Phong| match (&phong.fibre, &phong.principled) {
             // The fibre's model computes all interior scattering at the entry point.
             (Some(_), _) => f32::from(u8::from(!at.inside())),
@@ -239,7 +239,7 @@ impl World {
 
     /// Returns true if a camera, or a light without extent, sees through a face from the direction
     /// `dir`, because it is a hidden back.
-    pub fn is_hidden(&self, dir: Vec3, at: &Interaction) -> bool {
+    pub fn is_hidden(&self, dir: Vec3, at: &SurfaceInteraction) -> bool {
         dir.dot(at.surface.n_geo) > 0.0 && self.parts(at).iter().all(|part| hides_backs(part.phong))
     }
 
@@ -276,7 +276,7 @@ impl World {
     }
 
     /// Returns true if a surface has no effect between equal indices of refraction.
-    pub fn is_interface(&self, at: &Interaction) -> bool {
+    pub fn is_interface(&self, at: &SurfaceInteraction) -> bool {
         self.has_interfaces() && self.has_no_skin(at.material)
     }
 
@@ -313,7 +313,7 @@ impl World {
 
     /// Returns true if light may enter an object at a hit: a fast test for most materials.
     #[inline]
-    pub fn may_enter(&self, at: &Interaction) -> bool {
+    pub fn may_enter(&self, at: &SurfaceInteraction) -> bool {
         match &self.materials()[at.material as usize] {
             Material::Phong(phong) => {
                 phong.transparent != Color::ZERO
@@ -324,7 +324,7 @@ impl World {
     }
 
     /// Returns true if the surface disperses light.
-    pub fn disperses(&self, at: &Interaction) -> bool {
+    pub fn disperses(&self, at: &SurfaceInteraction) -> bool {
         let of = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| own.written.disperses());
         self.may_enter(at) && self.parts(at).iter().any(|part| of(part.phong))
     }

@@ -272,7 +272,7 @@ fn batches_of_rays_match_single_rays() {
         let (plain, _) = testing::try_read(&text, Dialect::Durer.rules(), AccelKind::None, folder.path());
         let plain = plain.unwrap();
         for round in 0..rounds(200) {
-            let count = 1 + random.below(TOGETHER);
+            let count = 1 + random.below(MAX_BATCH);
             let (eye, toward) = (3.0 * random.point(), random.point());
             let spread = [1e-3, 0.05, 1.0][round % 3];
             let rays: Vec<Ray64> = (0..count)
@@ -287,8 +287,8 @@ fn batches_of_rays_match_single_rays() {
                 })
                 .collect();
             let (mut together, mut blocked) = (vec![None; count], vec![false; count]);
-            world.closest_together(&rays, &mut together);
-            world.occluded_together(&rays, &mut blocked);
+            world.closest_batch(&rays, &mut together);
+            world.occluded_batch(&rays, &mut blocked);
             for ((ray, hit), blocked) in rays.iter().zip(together).zip(blocked) {
                 assert_eq!(hit, world.closest(ray, &mut ()), "{group} {ray:?}");
                 assert_eq!(blocked, world.occluded(ray, &mut ()), "{group} {ray:?}");

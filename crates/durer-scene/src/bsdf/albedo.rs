@@ -195,14 +195,14 @@ impl Dielectric {
     }
 
     /// Reflectance from outside; Fresnel's value if the boundary is smooth.
-    pub fn given(&self, cosine: f32, roughness: f32) -> f32 {
+    pub fn reflectance(&self, cosine: f32, roughness: f32) -> f32 {
         match Ggx::new(roughness, 0.0).is_smooth() {
             true => fresnel::dielectric(cosine, self.ior),
             false => self.reflected(false, cosine, roughness),
         }
     }
 
-    /// Cosine-weighted mean of [`Dielectric::given`] over the hemisphere.
+    /// Cosine-weighted mean of [`Dielectric::reflectance`] over the hemisphere.
     pub fn mean(&self, roughness: f32) -> f32 {
         if Ggx::new(roughness, 0.0).is_smooth() {
             return self.smooth_mean;

@@ -77,7 +77,7 @@ impl Tables {
             (rough && !metal && !glass && (self.opaque.ior != 1.0 || m.thin_film_weight > 0.0), &self.opaque),
             (through && compensates && m.walls == Walls::Solid, &self.glass),
         ];
-        boundaries.into_iter().filter(|(asked, _)| *asked).for_each(|(_, boundary)| {
+        boundaries.into_iter().filter(|(requested, _)| *requested).for_each(|(_, boundary)| {
             boundary.gain(false, 1.0, 0.0);
             boundary.mean(1.0);
         });
@@ -168,17 +168,21 @@ impl<'t> Stack<'_, 't> {
         let mut below = Spectrum::splat(factor);
         if m.fuzz_weight > 0.0 && !view.inside {
             let roughness = m.fuzz_roughness;
-            let given = albedo::fuzz(mu, roughness);
+            let reflectance = albedo::fuzz(mu, roughness);
             // At grazing angles the fibres would reflect more light than arrives.
-            let scale = m.fuzz_weight * (1.0 / given).min(1.0);
-            bsdf.push(Fuzz { roughness }, below * scale * view.lanes.reflectance(m.fuzz_color), factor * scale * given);
-            below *= 1.0 - scale * given;
+            let scale = m.fuzz_weight * (1.0 / reflectance).min(1.0);
+            bsdf.push(
+                Fuzz { roughness },
+                below * scale * view.lanes.reflectance(m.fuzz_color),
+                factor * scale * reflectance,
+            );
+            below *= 1.0 - scale * reflectance;
         }
         let mut roughness = self.here.specular_roughness;
         if m.coat_weight > 0.0 && !view.inside {
             let weight = m.coat_weight;
-            let given = self.boundary(bsdf, &self.tables.coat, m.coat_roughness, weight * below, None);
-            below *= Spectrum::ONE - weight * given;
+            let reflectance = self.boundary(bsdf, &self.tables.coat, m.coat_roughness, weight * below, None);
+            below *= Spectrum::ONE - weight * reflectance;
             below *= Spectrum::ONE.lerp(self.coat(mu), weight);
             let fourth = |r: f32| r * r * r * r;
             let both = (fourth(roughness) + 2.0 * fourth(m.coat_roughness)).min(1.0);
@@ -201,13 +205,13 @@ impl<'t> Stack<'_, 't> {
             }
             let film = self.film(self.tables.opaque.ior);
             let specular = m.reflection * self.specular;
-            let given = self.boundary(bsdf, &self.tables.opaque, roughness, opaque * specular, film);
+            let reflectance = self.boundary(bsdf, &self.tables.opaque, roughness, opaque * specular, film);
             let dielectric = &*self.tables.opaque;
             let boundary = Boundary { dielectric, roughness, reflection: m.reflection };
             let boundary = (dielectric.ior != 1.0).then_some(boundary);
             let (color, roughness, normal) = (self.base, m.base_diffuse_roughness, view.normal);
             let diffuse = Diffuse { color, roughness, boundary, normal };
-            let weight = opaque * (Spectrum::ONE - m.reflection * given);
+            let weight = opaque * (Spectrum::ONE - m.reflection * reflectance);
             let matte = weight * (1.0 - m.subsurface_weight);
             bsdf.push(diffuse, matte, (matte * self.base).max_element());
             self.subsurface(bsdf, weight * m.subsurface_weight, boundary);
@@ -259,18 +263,18 @@ impl<'t> Stack<'_, 't> {
         let (ggx, mu) = (Ggx::new(roughness, 0.0), self.view.wo.z);
         if ggx.is_smooth() {
             let plain = || Spectrum::splat(fresnel::dielectric(mu, tables.ior));
-            let given = film.map_or_else(plain, |film| film.reflected(mu));
-            bsdf.push(Mirror, weight * given, (weight * given).max_element());
-            return given;
+            let reflectance = film.map_or_else(plain, |film| film.reflected(mu));
+            bsdf.push(Mirror, weight * reflectance, (weight * reflectance).max_element());
+            return reflectance;
         }
-        let (facet, given) = match film {
+        let (facet, reflectance) = match film {
             Some(film) => (Facet::Film(film), albedo::over_facets(ggx, self.view.wo, |cosine| film.reflected(cosine))),
             None => (Facet::Dielectric(tables.ior), Spectrum::splat(tables.reflected(false, mu, roughness))),
         };
         let rough = Rough { ggx: ggx.clamped(), facet, behind: false };
         let gain = if self.compensates() { tables.gain(false, mu, roughness) } else { 1.0 };
-        bsdf.push(rough, weight * gain, (weight * given).max_element());
-        given
+        bsdf.push(rough, weight * gain, (weight * reflectance).max_element());
+        reflectance
     }
 
     /// True if energy lost to multiple scattering between facets is restored.
@@ -315,9 +319,9 @@ impl<'t> Stack<'_, 't> {
                 let reflected = covered * film.reflected(mu);
                 bsdf.push(Mirror, reflected, reflected.max_element());
             } else {
-                let given = self.facets(ggx, roughness);
+                let reflectance = self.facets(ggx, roughness);
                 let color = albedo::over_facets(ggx, wo, |cosine| film.reflected(cosine));
-                let again = Spectrum::ONE + color * ((1.0 - given) / given);
+                let again = Spectrum::ONE + color * ((1.0 - reflectance) / reflectance);
                 let rough = Rough { ggx: ggx.clamped(), facet: Facet::Film(film), behind: false };
                 bsdf.push(rough, covered * again, (covered * color).max_element());
             }
@@ -326,9 +330,9 @@ impl<'t> Stack<'_, 't> {
             let reflected = weight * f82.at(mu);
             return bsdf.push(Mirror, reflected, reflected.max_element());
         }
-        let given = self.facets(ggx, roughness);
+        let reflectance = self.facets(ggx, roughness);
         // Every further reflection takes the metal's colour again.
-        let again = Spectrum::ONE + self.base * ((1.0 - given) / given);
+        let again = Spectrum::ONE + self.base * ((1.0 - reflectance) / reflectance);
         let rough = Rough { ggx: ggx.clamped(), facet: Facet::Metal(f82), behind: false };
         bsdf.push(rough, weight * again, (weight * f82.at(mu)).max_element());
     }

@@ -24,7 +24,7 @@ use smallvec::SmallVec;
 
 /// Lobe with its weight and its sampling probability.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Weighted<'a> {
+pub struct WeightedLobe<'a> {
     /// Lobe.
     pub lobe: Lobe<'a>,
     /// Factor of its value.
@@ -36,7 +36,7 @@ pub struct Weighted<'a> {
 /// Lobes of a surface point for one view direction.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bsdf<'a> {
-    lobes: SmallVec<[Weighted<'a>; 4]>,
+    lobes: SmallVec<[WeightedLobe<'a>; 4]>,
     /// Sum of the shares passed to [`Bsdf::push`].
     total: f32,
 }
@@ -58,14 +58,14 @@ impl<'a> Bsdf<'a> {
     /// Adds a lobe. Lobes are sampled in proportion to `share`, their approximate albedo.
     pub fn push(&mut self, lobe: impl Into<Lobe<'a>>, weight: Spectrum, share: f32) {
         if weight.max_element() > 0.0 && share > 0.0 {
-            self.lobes.push(Weighted { lobe: lobe.into(), weight, probability: share });
+            self.lobes.push(WeightedLobe { lobe: lobe.into(), weight, probability: share });
             self.total += share;
         }
     }
 
     /// Lobes with their sampling probabilities.
-    pub fn lobes(&self) -> impl Iterator<Item = Weighted<'a>> {
-        self.lobes.iter().map(|part| Weighted { probability: part.probability / self.total, ..*part })
+    pub fn lobes(&self) -> impl Iterator<Item = WeightedLobe<'a>> {
+        self.lobes.iter().map(|part| WeightedLobe { probability: part.probability / self.total, ..*part })
     }
 
     /// True if some lobe is not a delta lobe, so that light sampling is useful.

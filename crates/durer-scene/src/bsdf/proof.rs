@@ -208,11 +208,11 @@ impl<'a> Furnace<'a> {
     /// Albedo at a roughness and a cosine of the view, and its standard error. Light that enters
     /// glass counts by its flux, since its radiance grows with the square of the index.
     pub fn gives(&self, roughness: f32, cosine: f32, samples: u32) -> (f64, f64) {
-        self.gives_to(Seen { roughness, cosine, ..Seen::default() }, samples)
+        self.gives_to(FurnaceView { roughness, cosine, ..FurnaceView::default() }, samples)
     }
 
     /// Albedo for any view, and its standard error.
-    pub fn gives_to(&self, from: Seen, samples: u32) -> (f64, f64) {
+    pub fn gives_to(&self, from: FurnaceView, samples: u32) -> (f64, f64) {
         let here = Parameters {
             specular_roughness: from.roughness,
             specular_anisotropy: from.anisotropy,
@@ -220,13 +220,13 @@ impl<'a> Furnace<'a> {
         };
         let wo = warp::polar(from.cosine, from.turn);
         let eta = from.eta.unwrap_or(if from.inside { 1.0 / here.specular_ior } else { here.specular_ior });
-        given(&seen_through(&here, &self.tables, wo, from.inside, eta), wo, samples)
+        reflectance(&seen_through(&here, &self.tables, wo, from.inside, eta), wo, samples)
     }
 }
 
 /// View of a material in a furnace.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Seen {
+pub struct FurnaceView {
     /// Roughness.
     pub roughness: f32,
     /// Anisotropy.
@@ -255,7 +255,7 @@ fn seen_through<'a>(here: &Parameters, tables: &'a Tables, wo: Vec3, inside: boo
 }
 
 /// Albedo of a BSDF by sampling, and its standard error.
-pub(super) fn given(bsdf: &Bsdf, wo: Vec3, samples: u32) -> (f64, f64) {
+pub(super) fn reflectance(bsdf: &Bsdf, wo: Vec3, samples: u32) -> (f64, f64) {
     let eta = bsdf.lobes().find_map(|part| part.lobe.kind().eta);
     let denser = eta.map_or(1.0, |eta| eta * eta);
     let flux = |s: BsdfSample| f64::from(s.weight.x * if s.wi.z < 0.0 { denser } else { 1.0 });

@@ -1,7 +1,7 @@
 //! Tests of lobes and layers: albedo, reciprocity, and agreement of samples with pdf.
 
 use super::lobe::blinn::Blinn;
-use super::proof::{Cells, Furnace, Seen, broad, brushed, filmed, given, lossless, seen};
+use super::proof::{Cells, Furnace, FurnaceView, broad, brushed, filmed, lossless, reflectance, seen};
 use super::*;
 use crate::material::{Parameters, PrincipledMaterial};
 use crate::math::fp;
@@ -97,7 +97,7 @@ fn lossless_anisotropic_materials_are_white_in_a_furnace() {
         for (&inside, roughness) in sides.iter().flat_map(|side| [0.2, 0.5, 1.0].map(|roughness| (side, roughness))) {
             for (anisotropy, cosine) in [0.3, 0.9, 1.0].into_iter().flat_map(|a| [0.999, 0.6, 0.2].map(|c| (a, c))) {
                 for turn in [0.0, 0.07, 0.2, 0.25] {
-                    let from = Seen { roughness, anisotropy, cosine, turn, inside, eta: None };
+                    let from = FurnaceView { roughness, anisotropy, cosine, turn, inside, eta: None };
                     let (mean, error) = furnace.gives_to(from, 1 << 12);
                     assert!((mean - 1.0).abs() < 0.002 + 3.0 * error, "{name}, {from:?}: {mean} ± {error}");
                 }
@@ -112,7 +112,7 @@ fn rough_glass_in_another_medium_is_nearly_white() {
     let furnace = Furnace::new(&material);
     for (eta, inside) in [(1.5 / 1.33, false), (1.33 / 1.5, true), (1.0 / 1.8, false), (2.4, true)] {
         for (roughness, cosine) in [0.3, 0.6, 1.0].into_iter().flat_map(|r| [0.999, 0.6, 0.2].map(|c| (r, c))) {
-            let from = Seen { roughness, cosine, inside, eta: Some(eta), ..Seen::default() };
+            let from = FurnaceView { roughness, cosine, inside, eta: Some(eta), ..FurnaceView::default() };
             let (mean, error) = furnace.gives_to(from, 1 << 13);
             assert!((mean - 1.0).abs() < 0.01 + 3.0 * error, "{from:?}: {mean} ± {error}");
         }
@@ -144,7 +144,7 @@ fn materials_reflect_no_more_light_than_arrives() {
         let tables = TABLES.get_or_init(|| Tables::new(&material, None, &mut Vec::new()));
         let wo = warp::polar(share().max(0.02), share());
         let bsdf = seen(&Parameters::of(&material), tables, wo);
-        let (mean, error) = given(&bsdf, wo, 1 << 12);
+        let (mean, error) = reflectance(&bsdf, wo, 1 << 12);
         assert!(mean < 1.01 + 4.0 * error, "{round}: {mean} ± {error} from {material:?} at {wo}");
     }
 }
@@ -208,7 +208,7 @@ fn highlights_of_the_course_stay_below_their_bound() {
         for cosine in [1.0, 0.7, 0.3, 0.05] {
             let mut bsdf = Bsdf::default();
             bsdf.push(Blinn { color: Spectrum::ONE, exponent, phong }, Spectrum::ONE, 1.0);
-            let (mean, _) = given(&bsdf, warp::polar(cosine, 0.0), 1 << 14);
+            let (mean, _) = reflectance(&bsdf, warp::polar(cosine, 0.0), 1 << 14);
             assert!(mean <= f64::from(Blinn::bound(exponent)), "{exponent} {phong} {cosine}: {mean}");
         }
     }

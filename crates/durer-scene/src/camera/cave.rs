@@ -14,7 +14,7 @@
 use super::pose::world_ray;
 use super::sheet::Sheet;
 use super::{CameraBasis, CameraRules, CameraSample, Eyes, Pose, Projection};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DMat3, DVec2, DVec3};
@@ -23,18 +23,18 @@ described! {
     /// A camera that renders several walls around a viewer into one picture, for one eye or a pair.
     CaveCamera ["CaveCamera" in set::DURER] {
         /// Position of the viewer's eye, or the midpoint of both eyes.
-        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        center: Vec3 = Vec3::ZERO, required, Constraint::Any, ["center" in set::DURER];
         /// Direction that the viewer faces, which determines left and right; of any length.
-        direction: Vec3 = Vec3::NEG_Z, optional, Rule::NonZero, ["direction" in set::DURER];
+        direction: Vec3 = Vec3::NEG_Z, optional, Constraint::NonZero, ["direction" in set::DURER];
         /// Up direction of the viewer's head; need not be perpendicular to `direction`.
-        up: Vec3 = Vec3::Y, optional, Rule::NonZero, ["up" in set::DURER];
+        up: Vec3 = Vec3::Y, optional, Constraint::NonZero, ["up" in set::DURER];
         /// Three corners per wall, as seen from inside: lower left, lower right, upper left. Walls
         /// are ordered from left to right.
-        walls: Vec<[f32; 9]> = front_wall(), required, Rule::Rows(1, 64), ["walls" in set::DURER];
+        walls: Vec<[f32; 9]> = front_wall(), required, Constraint::Rows(1, 64), ["walls" in set::DURER];
         /// Eye to render, or layout of both eyes.
-        eyes: Eyes = Eyes::Middle, optional, Rule::Any, ["eyes" in set::DURER];
+        eyes: Eyes = Eyes::Middle, optional, Constraint::Any, ["eyes" in set::DURER];
         /// Distance between the eyes, in world units.
-        separation: f32 = 0.065, optional, Rule::NonNegative, ["separation" in set::DURER];
+        separation: f32 = 0.065, optional, Constraint::NonNegative, ["separation" in set::DURER];
     }
 }
 

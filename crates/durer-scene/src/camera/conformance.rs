@@ -2,7 +2,7 @@
 //! generated from its description.
 
 use super::*;
-use crate::describe::{DescribedList, Field, Kind, Rule, Value};
+use crate::describe::{Constraint, DescribedList, Field, Kind, Value};
 use crate::math::random::Random;
 
 /// Number of random cameras per kind; with `POINTS` samples each, 10^5 samples per kind.
@@ -16,19 +16,19 @@ fn value(field: &Field, random: &mut Random) -> Value {
     };
     match (field.kind, field.rule) {
         (Kind::Rows(9), _) => Value::Rows((0..1 + random.below(4)).map(|_| wall(random)).collect()),
-        (Kind::Rows(width), Rule::Rows(least, most)) => rows(if most > least { least + 3 } else { least }, width),
+        (Kind::Rows(width), Constraint::Rows(least, most)) => rows(if most > least { least + 3 } else { least }, width),
         (Kind::Word(words), _) => Value::Word(words[random.below(words.len())].into()),
         (Kind::Int, _) => Value::Int([0, 3, 5, 8][random.below(4)]),
-        (Kind::Vec3, Rule::NonZero) => Value::Vec3(random.direction() * random.between(0.5, 2.0)),
+        (Kind::Vec3, Constraint::NonZero) => Value::Vec3(random.direction() * random.between(0.5, 2.0)),
         (Kind::Vec3, _) => Value::Vec3(random.point() * 0.5),
-        (_, Rule::Between(low, high)) => Value::Float(low + (high - low) * random.between(0.1, 0.9)),
-        (_, Rule::UpTo(high)) => Value::Float(high * random.between(0.1, 1.0)),
-        (_, Rule::Positive) => Value::Float(random.between(0.3, 3.0)),
-        (_, Rule::NonNegative) => Value::Float(random.between(0.0, 0.3)),
+        (_, Constraint::Between(low, high)) => Value::Float(low + (high - low) * random.between(0.1, 0.9)),
+        (_, Constraint::UpTo(high)) => Value::Float(high * random.between(0.1, 1.0)),
+        (_, Constraint::Positive) => Value::Float(random.between(0.3, 3.0)),
+        (_, Constraint::NonNegative) => Value::Float(random.between(0.0, 0.3)),
         // Twice the distortion of bad lenses.
         _ if ["p1", "p2"].contains(&field.name) => Value::Float(random.between(-0.01, 0.01)),
         (kind, rule) => {
-            assert_eq!((kind, rule), (Kind::Float, Rule::Any), "{}", field.name);
+            assert_eq!((kind, rule), (Kind::Float, Constraint::Any), "{}", field.name);
             Value::Float(random.between(-0.2, 0.2))
         }
     }

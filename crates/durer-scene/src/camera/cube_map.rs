@@ -12,7 +12,7 @@
 use super::Pose;
 use super::central::Central;
 use super::sheet::Sheet;
-use crate::describe::{Rule, described, described_words};
+use crate::describe::{Constraint, described, described_words};
 use crate::dialect::set;
 use crate::math::{Vec2, Vec3};
 use glam::{DVec2, DVec3};
@@ -26,13 +26,13 @@ described! {
     /// A camera that sees all directions, on the six faces of a cube.
     CubeMapCamera ["CubeMapCamera" in set::DURER] {
         /// Position of the eye.
-        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        center: Vec3 = Vec3::ZERO, required, Constraint::Any, ["center" in set::DURER];
         /// Direction to the centre of the front face; of any length.
-        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
+        direction: Vec3 = Vec3::NEG_Z, required, Constraint::NonZero, ["direction" in set::DURER];
         /// Up direction of the front face; need not be perpendicular to `direction`.
-        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        up: Vec3 = Vec3::Y, required, Constraint::NonZero, ["up" in set::DURER];
         /// Layout of the faces in the picture.
-        layout: Layout = Layout::Cross, optional, Rule::Any, ["layout" in set::DURER];
+        layout: Layout = Layout::Cross, optional, Constraint::Any, ["layout" in set::DURER];
     }
 }
 

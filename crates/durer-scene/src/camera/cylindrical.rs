@@ -11,7 +11,7 @@ use super::eyes::EyeCircle;
 use super::perspective::half_width;
 use super::sheet::Sheet;
 use super::{CameraBasis, CameraSample, Eyes, Pose, Projection};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
@@ -20,19 +20,19 @@ described! {
     /// A camera that renders a cylindrical panorama, for one eye or a pair.
     CylindricalCamera ["CylindricalCamera" in set::DURER] {
         /// Position of the eye, or centre of the circle around which both eyes rotate.
-        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        center: Vec3 = Vec3::ZERO, required, Constraint::Any, ["center" in set::DURER];
         /// Direction to the centre of the picture; of any length.
-        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
+        direction: Vec3 = Vec3::NEG_Z, required, Constraint::NonZero, ["direction" in set::DURER];
         /// Axis of the cylinder; need not be perpendicular to `direction`.
-        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        up: Vec3 = Vec3::Y, required, Constraint::NonZero, ["up" in set::DURER];
         /// Field of view from left to right, in degrees.
-        angle: f32 = 360.0, optional, Rule::UpTo(360.0), ["angle" in set::DURER];
+        angle: f32 = 360.0, optional, Constraint::UpTo(360.0), ["angle" in set::DURER];
         /// Field of view from bottom to top, in degrees.
-        vertical_angle: f32 = 90.0, optional, Rule::Between(0.0, 180.0), ["verticalAngle" in set::DURER];
+        vertical_angle: f32 = 90.0, optional, Constraint::Between(0.0, 180.0), ["verticalAngle" in set::DURER];
         /// Eye to render, or layout of both eyes.
-        eyes: Eyes = Eyes::Middle, optional, Rule::Any, ["eyes" in set::DURER];
+        eyes: Eyes = Eyes::Middle, optional, Constraint::Any, ["eyes" in set::DURER];
         /// Distance between the eyes, in world units.
-        separation: f32 = 0.065, optional, Rule::NonNegative, ["separation" in set::DURER];
+        separation: f32 = 0.065, optional, Constraint::NonNegative, ["separation" in set::DURER];
     }
 }
 

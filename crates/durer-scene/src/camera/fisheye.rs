@@ -17,7 +17,7 @@
 
 use super::Pose;
 use super::central::Central;
-use crate::describe::{Rule, described, described_words};
+use crate::describe::{Constraint, described, described_words};
 use crate::dialect::set;
 use crate::math::{Vec2, Vec3, fp};
 use glam::{DVec2, DVec3};
@@ -33,16 +33,16 @@ described! {
     /// A camera that maps a cone of directions to a disc; the corners of the picture are empty.
     FisheyeCamera ["FisheyeCamera" in set::DURER] {
         /// Position of the eye.
-        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        center: Vec3 = Vec3::ZERO, required, Constraint::Any, ["center" in set::DURER];
         /// View direction, of any length.
-        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
+        direction: Vec3 = Vec3::NEG_Z, required, Constraint::NonZero, ["direction" in set::DURER];
         /// Up direction of the picture; need not be perpendicular to `direction`.
-        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        up: Vec3 = Vec3::Y, required, Constraint::NonZero, ["up" in set::DURER];
         /// Field of view across the disc, in degrees: at most 180 for `orthographic`, less than 360
         /// for `stereographic`.
-        angle: f32 = 180.0, optional, Rule::UpTo(360.0), ["angle" in set::DURER];
+        angle: f32 = 180.0, optional, Constraint::UpTo(360.0), ["angle" in set::DURER];
         /// Mapping from the angle off the axis to the radius in the picture.
-        projection: FisheyeProjection = FisheyeProjection::Equidistant, optional, Rule::Any, ["projection" in set::DURER];
+        projection: FisheyeProjection = FisheyeProjection::Equidistant, optional, Constraint::Any, ["projection" in set::DURER];
     }
 }
 

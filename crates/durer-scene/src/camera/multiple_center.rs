@@ -22,7 +22,7 @@ use super::perspective::half_width;
 use super::pose::world_ray;
 use super::sheet::Sheet;
 use super::{CameraBasis, CameraSample, Pose, Projection};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
@@ -32,13 +32,13 @@ described! {
     MultipleCenterCamera ["MultipleCenterCamera" in set::DURER] {
         /// One row per point of the path, from the left of the picture to the right: the eye and
         /// its target. If the last row equals the first, the path is a smooth loop.
-        path: Vec<[f32; 6]> = straight(), required, Rule::Rows(2, 1024), ["path" in set::DURER];
+        path: Vec<[f32; 6]> = straight(), required, Constraint::Rows(2, 1024), ["path" in set::DURER];
         /// Up direction of every column; need not be perpendicular to the view direction.
-        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        up: Vec3 = Vec3::Y, required, Constraint::NonZero, ["up" in set::DURER];
         /// Field of view from bottom to top, in degrees.
-        angle: f32 = 60.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
+        angle: f32 = 60.0, required, Constraint::Between(0.0, 180.0), ["angle" in set::DURER];
         /// Ratio of the picture's width to its height.
-        aspect: f32 = 2.0, optional, Rule::Positive, ["aspect" in set::DURER];
+        aspect: f32 = 2.0, optional, Constraint::Positive, ["aspect" in set::DURER];
     }
 }
 

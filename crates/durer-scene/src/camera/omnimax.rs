@@ -17,7 +17,7 @@
 use super::Pose;
 use super::central::Central;
 use super::fisheye::FisheyeProjection;
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::{Vec2, Vec3, fp};
 use glam::{DMat3, DVec2, DVec3};
@@ -27,22 +27,22 @@ described! {
     /// the corners are black.
     OmnimaxCamera ["OmnimaxCamera" in set::DURER] {
         /// Position of the viewer in the scene.
-        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        center: Vec3 = Vec3::ZERO, required, Constraint::Any, ["center" in set::DURER];
         /// Horizontal direction that the audience faces; of any length.
-        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
+        direction: Vec3 = Vec3::NEG_Z, required, Constraint::NonZero, ["direction" in set::DURER];
         /// Up direction of the audience; need not be perpendicular to `direction`.
-        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        up: Vec3 = Vec3::Y, required, Constraint::NonZero, ["up" in set::DURER];
         /// Forward tilt of the dome, in degrees: 0 puts its pole overhead, 90 puts it straight
         /// ahead.
-        tilt: f32 = 30.0, optional, Rule::Any, ["tilt" in set::DURER];
+        tilt: f32 = 30.0, optional, Constraint::Any, ["tilt" in set::DURER];
         /// Angle of the sphere that the dome covers, in degrees: 180 is a hemisphere.
-        dome: f32 = 180.0, optional, Rule::UpTo(360.0), ["dome" in set::DURER];
+        dome: f32 = 180.0, optional, Constraint::UpTo(360.0), ["dome" in set::DURER];
         /// Field of view of the projector, in degrees.
-        angle: f32 = 180.0, optional, Rule::UpTo(360.0), ["angle" in set::DURER];
+        angle: f32 = 180.0, optional, Constraint::UpTo(360.0), ["angle" in set::DURER];
         /// Offset of the projector from the dome's centre: right, up and forwards, in dome radii.
-        projector: Vec3 = Vec3::ZERO, optional, Rule::Any, ["projector" in set::DURER];
+        projector: Vec3 = Vec3::ZERO, optional, Constraint::Any, ["projector" in set::DURER];
         /// Offset of the viewer from the dome's centre: right, up and forwards, in dome radii.
-        viewer: Vec3 = Vec3::ZERO, optional, Rule::Any, ["viewer" in set::DURER];
+        viewer: Vec3 = Vec3::ZERO, optional, Constraint::Any, ["viewer" in set::DURER];
     }
 }
 

@@ -3,7 +3,7 @@
 //! origin = center + x size/2 right + y size/2 up.
 
 use super::{CameraBasis, CameraSample, Handedness, Pose, Projection};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::DVec2;
@@ -12,18 +12,18 @@ described! {
     /// An orthographic camera.
     OrthographicCamera ["OrthographicCamera" in set::OLD | set::DURER] {
         /// Centre of the picture.
-        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::ALL];
+        center: Vec3 = Vec3::ZERO, required, Constraint::Any, ["center" in set::ALL];
         /// View direction, of any length.
-        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::ALL];
+        direction: Vec3 = Vec3::NEG_Z, required, Constraint::NonZero, ["direction" in set::ALL];
         /// Up direction of the picture; need not be perpendicular to `direction`.
-        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::ALL];
+        up: Vec3 = Vec3::Y, required, Constraint::NonZero, ["up" in set::ALL];
         /// Length of the picture's larger side, in world units.
-        size: f32 = 2.0, required, Rule::Positive, ["size" in set::ALL];
+        size: f32 = 2.0, required, Constraint::Positive, ["size" in set::ALL];
         /// Distance from `center` to the near plane, for plans and sections. Without it, objects
         /// behind `center` are visible.
-        near: Option<f32> = None, optional, Rule::Any, ["near" in set::DURER];
+        near: Option<f32> = None, optional, Constraint::Any, ["near" in set::DURER];
         /// Handedness of the coordinate system; `left` mirrors the picture horizontally.
-        handedness: Handedness = Handedness::Right, optional, Rule::Any, ["handedness" in set::DURER];
+        handedness: Handedness = Handedness::Right, optional, Constraint::Any, ["handedness" in set::DURER];
     }
 }
 

@@ -13,7 +13,7 @@
 use super::Pose;
 use super::central::Central;
 use super::fisheye::FisheyeProjection;
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::{Vec2, Vec3};
 use glam::{DVec2, DVec3};
@@ -23,14 +23,14 @@ described! {
     /// are black.
     ParabolicCamera ["ParabolicCamera" in set::DURER] {
         /// Focus of the mirror: the single viewpoint.
-        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        center: Vec3 = Vec3::ZERO, required, Constraint::Any, ["center" in set::DURER];
         /// Axis of the mirror, from its focus to the lens, usually upwards; of any length.
-        direction: Vec3 = Vec3::Y, required, Rule::NonZero, ["direction" in set::DURER];
+        direction: Vec3 = Vec3::Y, required, Constraint::NonZero, ["direction" in set::DURER];
         /// Up direction of the picture; need not be perpendicular to `direction`.
-        up: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["up" in set::DURER];
+        up: Vec3 = Vec3::NEG_Z, required, Constraint::NonZero, ["up" in set::DURER];
         /// Field of view around the axis, in degrees: 180 reaches the horizon, and larger values
         /// reach below it.
-        angle: f32 = 210.0, optional, Rule::Between(0.0, 360.0), ["angle" in set::DURER];
+        angle: f32 = 210.0, optional, Constraint::Between(0.0, 360.0), ["angle" in set::DURER];
     }
 }
 

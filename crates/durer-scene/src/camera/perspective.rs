@@ -8,7 +8,7 @@
 
 use super::pose::{Aim, unit_or, units_or};
 use super::{CameraBasis, CameraSample, CameraSamples, Pose, Projection};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3, fp};
 use glam::DVec2;
@@ -17,13 +17,13 @@ described! {
     /// A perspective camera.
     PerspectiveCamera ["PerspectiveCamera" in set::CLASSIC, "Camera" in set::F23] {
         /// Position of the eye.
-        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::ALL];
+        center: Vec3 = Vec3::ZERO, required, Constraint::Any, ["center" in set::ALL];
         /// View direction, of any length.
-        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::ALL];
+        direction: Vec3 = Vec3::NEG_Z, required, Constraint::NonZero, ["direction" in set::ALL];
         /// Up direction of the picture; need not be perpendicular to the view direction.
-        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::ALL];
+        up: Vec3 = Vec3::Y, required, Constraint::NonZero, ["up" in set::ALL];
         /// Field of view across the picture's larger side, in degrees.
-        angle: f32 = 30.0, required, Rule::Between(0.0, 180.0), ["angle" in set::CLASSIC, "fov" in set::F23];
+        angle: f32 = 30.0, required, Constraint::Between(0.0, 180.0), ["angle" in set::CLASSIC, "fov" in set::F23];
     }
 }
 

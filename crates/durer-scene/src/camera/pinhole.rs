@@ -10,7 +10,7 @@
 
 use super::perspective::half_width;
 use super::{CameraBasis, CameraSample, Pose, Projection, aperture};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
@@ -19,17 +19,17 @@ described! {
     /// A pinhole camera with a hole of finite size instead of a lens.
     PinholeCamera ["PinholeCamera" in set::DURER] {
         /// Centre of the hole.
-        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        center: Vec3 = Vec3::ZERO, required, Constraint::Any, ["center" in set::DURER];
         /// View direction, of any length.
-        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
+        direction: Vec3 = Vec3::NEG_Z, required, Constraint::NonZero, ["direction" in set::DURER];
         /// Up direction of the picture; need not be perpendicular to `direction`.
-        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        up: Vec3 = Vec3::Y, required, Constraint::NonZero, ["up" in set::DURER];
         /// Field of view across the picture's larger side, in degrees.
-        angle: f32 = 30.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
+        angle: f32 = 30.0, required, Constraint::Between(0.0, 180.0), ["angle" in set::DURER];
         /// Diameter of the hole, in world units.
-        hole: f32 = 0.01, required, Rule::NonNegative, ["hole" in set::DURER];
+        hole: f32 = 0.01, required, Constraint::NonNegative, ["hole" in set::DURER];
         /// Distance from the hole to the film, in world units.
-        film_distance: f32 = 1.0, optional, Rule::Positive, ["filmDistance" in set::DURER];
+        film_distance: f32 = 1.0, optional, Constraint::Positive, ["filmDistance" in set::DURER];
     }
 }
 

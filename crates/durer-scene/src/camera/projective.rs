@@ -22,7 +22,7 @@
 use super::pose::world_ray;
 use super::sheet::Sheet;
 use super::{CameraBasis, CameraSample, Pose, Projection};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DMat2, DMat3, DVec2, DVec3};
@@ -32,21 +32,21 @@ described! {
     ProjectiveCamera ["ProjectiveCamera" in set::DURER] {
         /// 3x4 projection matrix, row by row, from homogeneous world-space points to pixels, with y
         /// downwards; its scale is arbitrary.
-        matrix: Vec<[f32; 4]> = plain_matrix(), required, Rule::Rows(3, 3), ["matrix" in set::DURER];
+        matrix: Vec<[f32; 4]> = plain_matrix(), required, Constraint::Rows(3, 3), ["matrix" in set::DURER];
         /// Width of the photograph in pixels.
-        width: f32 = 512.0, required, Rule::Positive, ["width" in set::DURER];
+        width: f32 = 512.0, required, Constraint::Positive, ["width" in set::DURER];
         /// Height of the photograph in pixels.
-        height: f32 = 512.0, required, Rule::Positive, ["height" in set::DURER];
+        height: f32 = 512.0, required, Constraint::Positive, ["height" in set::DURER];
         /// Radial distortion coefficient of r².
-        k1: f32 = 0.0, optional, Rule::Any, ["k1" in set::DURER];
+        k1: f32 = 0.0, optional, Constraint::Any, ["k1" in set::DURER];
         /// Radial distortion coefficient of r⁴.
-        k2: f32 = 0.0, optional, Rule::Any, ["k2" in set::DURER];
+        k2: f32 = 0.0, optional, Constraint::Any, ["k2" in set::DURER];
         /// Tangential distortion, vertical.
-        p1: f32 = 0.0, optional, Rule::Any, ["p1" in set::DURER];
+        p1: f32 = 0.0, optional, Constraint::Any, ["p1" in set::DURER];
         /// Tangential distortion, horizontal.
-        p2: f32 = 0.0, optional, Rule::Any, ["p2" in set::DURER];
+        p2: f32 = 0.0, optional, Constraint::Any, ["p2" in set::DURER];
         /// Radial distortion coefficient of r⁶.
-        k3: f32 = 0.0, optional, Rule::Any, ["k3" in set::DURER];
+        k3: f32 = 0.0, optional, Constraint::Any, ["k3" in set::DURER];
     }
 }
 

@@ -11,7 +11,7 @@
 use super::perspective::half_width;
 use super::sheet::Sheet;
 use super::{CameraBasis, CameraRules, CameraSample, Pose, Projection};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
@@ -20,17 +20,17 @@ described! {
     /// A camera that moves along a line and renders each column of the picture from the next point.
     PushBroomCamera ["PushBroomCamera" in set::DURER] {
         /// Eye position for the first column, at the left of the picture.
-        start: Vec3 = Vec3::NEG_X, required, Rule::Any, ["start" in set::DURER];
+        start: Vec3 = Vec3::NEG_X, required, Constraint::Any, ["start" in set::DURER];
         /// Eye position for the last column, at the right of the picture.
-        end: Vec3 = Vec3::X, required, Rule::Any, ["end" in set::DURER];
+        end: Vec3 = Vec3::X, required, Constraint::Any, ["end" in set::DURER];
         /// View direction of all columns; of any length.
-        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
+        direction: Vec3 = Vec3::NEG_Z, required, Constraint::NonZero, ["direction" in set::DURER];
         /// Up direction of the picture; need not be perpendicular to `direction`.
-        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        up: Vec3 = Vec3::Y, required, Constraint::NonZero, ["up" in set::DURER];
         /// Field of view from bottom to top, in degrees.
-        angle: f32 = 60.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
+        angle: f32 = 60.0, required, Constraint::Between(0.0, 180.0), ["angle" in set::DURER];
         /// Ratio of the picture's width to its height.
-        aspect: f32 = 2.0, optional, Rule::Positive, ["aspect" in set::DURER];
+        aspect: f32 = 2.0, optional, Constraint::Positive, ["aspect" in set::DURER];
     }
 }
 

@@ -12,7 +12,7 @@
 use super::perspective::half_width;
 use super::sheet::Sheet;
 use super::{CameraBasis, CameraSample, Eyes, Pose, Projection};
-use crate::describe::{Rule, described, described_words};
+use crate::describe::{Constraint, described, described_words};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DMat3, DVec2, DVec3};
@@ -26,24 +26,24 @@ described! {
     /// A stereo camera: perspective views for both eyes, or for one of them.
     StereoCamera ["StereoCamera" in set::DURER] {
         /// Midpoint between the eyes.
-        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        center: Vec3 = Vec3::ZERO, required, Constraint::Any, ["center" in set::DURER];
         /// View direction, of any length.
-        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
+        direction: Vec3 = Vec3::NEG_Z, required, Constraint::NonZero, ["direction" in set::DURER];
         /// Up direction of the picture; need not be perpendicular to `direction`.
-        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        up: Vec3 = Vec3::Y, required, Constraint::NonZero, ["up" in set::DURER];
         /// Field of view across the larger side of one eye's picture, in degrees.
-        angle: f32 = 30.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
+        angle: f32 = 30.0, required, Constraint::Between(0.0, 180.0), ["angle" in set::DURER];
         /// Distance between the eyes, in world units.
-        separation: f32 = 0.065, required, Rule::NonNegative, ["separation" in set::DURER];
+        separation: f32 = 0.065, required, Constraint::NonNegative, ["separation" in set::DURER];
         /// Distance at which an object appears at the same position for both eyes; ignored by the
         /// method `parallel`.
-        convergence: f32 = 1.0, optional, Rule::Positive, ["convergence" in set::DURER];
+        convergence: f32 = 1.0, optional, Constraint::Positive, ["convergence" in set::DURER];
         /// Method by which the two views converge.
-        method: StereoMethod = StereoMethod::OffAxis, optional, Rule::Any, ["method" in set::DURER];
+        method: StereoMethod = StereoMethod::OffAxis, optional, Constraint::Any, ["method" in set::DURER];
         /// Eye to render, or layout of both eyes.
-        eyes: Eyes = Eyes::SideBySide, optional, Rule::Any, ["eyes" in set::DURER];
+        eyes: Eyes = Eyes::SideBySide, optional, Constraint::Any, ["eyes" in set::DURER];
         /// Ratio of the width to the height of one eye's picture.
-        aspect: f32 = 1.0, optional, Rule::Positive, ["aspect" in set::DURER];
+        aspect: f32 = 1.0, optional, Constraint::Positive, ["aspect" in set::DURER];
     }
 }
 

@@ -15,7 +15,7 @@
 
 use super::perspective::half_width;
 use super::{CameraBasis, CameraSample, Handedness, Pose, Projection, aperture};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
@@ -24,32 +24,32 @@ described! {
     /// A camera with a lens, which has depth of field and a film that can be shifted.
     ThinLensCamera ["ThinLensCamera" in set::DURER] {
         /// Centre of the lens.
-        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        center: Vec3 = Vec3::ZERO, required, Constraint::Any, ["center" in set::DURER];
         /// View direction along the lens axis; of any length.
-        direction: Vec3 = Vec3::NEG_Z, required, Rule::NonZero, ["direction" in set::DURER];
+        direction: Vec3 = Vec3::NEG_Z, required, Constraint::NonZero, ["direction" in set::DURER];
         /// Up direction of the picture; need not be perpendicular to `direction`.
-        up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::DURER];
+        up: Vec3 = Vec3::Y, required, Constraint::NonZero, ["up" in set::DURER];
         /// Field of view across the picture's larger side, in degrees, for an unshifted film.
-        angle: f32 = 30.0, required, Rule::Between(0.0, 180.0), ["angle" in set::DURER];
+        angle: f32 = 30.0, required, Constraint::Between(0.0, 180.0), ["angle" in set::DURER];
         /// Diameter of the aperture: the focal length divided by the f-number. 0 makes everything
         /// sharp.
-        aperture: f32 = 0.0, optional, Rule::NonNegative, ["aperture" in set::DURER];
+        aperture: f32 = 0.0, optional, Constraint::NonNegative, ["aperture" in set::DURER];
         /// Distance of the focus plane along the axis, in world units.
-        focus_distance: f32 = 1.0, optional, Rule::Positive, ["focusDistance" in set::DURER];
+        focus_distance: f32 = 1.0, optional, Constraint::Positive, ["focusDistance" in set::DURER];
         /// Number of straight blades of the aperture; 0 makes it round.
-        blades: u32 = 0, optional, Rule::AtMost(aperture::MAX_BLADES), ["blades" in set::DURER];
+        blades: u32 = 0, optional, Constraint::AtMost(aperture::MAX_BLADES), ["blades" in set::DURER];
         /// Rotation of the aperture about the axis, in degrees.
-        blade_angle: f32 = 0.0, optional, Rule::Any, ["bladeAngle" in set::DURER];
+        blade_angle: f32 = 0.0, optional, Constraint::Any, ["bladeAngle" in set::DURER];
         /// Shift of the view to the right, relative to half the larger side.
-        shift_right: f32 = 0.0, optional, Rule::Any, ["shiftRight" in set::DURER];
+        shift_right: f32 = 0.0, optional, Constraint::Any, ["shiftRight" in set::DURER];
         /// Shift of the view upwards, relative to half the larger side.
-        shift_up: f32 = 0.0, optional, Rule::Any, ["shiftUp" in set::DURER];
+        shift_up: f32 = 0.0, optional, Constraint::Any, ["shiftUp" in set::DURER];
         /// Distance to the near clipping plane along the axis.
-        near: f32 = 0.0, optional, Rule::NonNegative, ["near" in set::DURER];
+        near: f32 = 0.0, optional, Constraint::NonNegative, ["near" in set::DURER];
         /// Distance to the far clipping plane along the axis; unlimited by default.
-        far: Option<f32> = None, optional, Rule::Positive, ["far" in set::DURER];
+        far: Option<f32> = None, optional, Constraint::Positive, ["far" in set::DURER];
         /// Handedness of the coordinate system; `left` mirrors the picture horizontally.
-        handedness: Handedness = Handedness::Right, optional, Rule::Any, ["handedness" in set::DURER];
+        handedness: Handedness = Handedness::Right, optional, Constraint::Any, ["handedness" in set::DURER];
     }
 }
 

@@ -16,23 +16,23 @@ fn table_rows_match_their_dialects() {
 
 #[test]
 fn compatibilities_have_unique_names_and_bits() {
-    for (i, (compat, name, doc)) in Compat::ALL.iter().enumerate() {
-        assert_eq!(Compat::from_name(name), Some(*compat));
+    for (i, (compat, name, doc)) in Quirk::ALL.iter().enumerate() {
+        assert_eq!(Quirk::from_name(name), Some(*compat));
         assert_eq!(compat.bit(), 1 << i);
         assert!(doc.trim().ends_with('.'), "{name}");
-        assert_eq!(Compat::ALL.iter().filter(|row| row.1 == *name).count(), 1, "{name}");
+        assert_eq!(Quirk::ALL.iter().filter(|row| row.1 == *name).count(), 1, "{name}");
     }
-    assert_eq!(Compat::from_name("no-such-bug"), None);
+    assert_eq!(Quirk::from_name("no-such-bug"), None);
 }
 
 #[test]
 fn sane_rules_have_no_old_bugs() {
     for dialect in Dialect::ALL {
-        let sane = dialect.rules().sane();
+        let sane = dialect.rules().without_quirks();
         assert_eq!(sane.compat, 0);
         assert_eq!((sane.epsilon, sane.paths), (None, PathBase::SceneFile));
-        assert_eq!(sane.sane(), sane, "{}", sane.name);
+        assert_eq!(sane.without_quirks(), sane, "{}", sane.name);
         assert_eq!(sane.name, dialect.name());
     }
-    assert_eq!(Dialect::Durer.rules().sane(), *Dialect::Durer.rules());
+    assert_eq!(Dialect::Durer.rules().without_quirks(), *Dialect::Durer.rules());
 }

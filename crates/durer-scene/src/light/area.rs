@@ -1,7 +1,7 @@
 //! Area lights: emitting surfaces in world space, and the sampling of points on them.
 
-use super::closed::{Body, Closed};
-use super::seen::{EmitterPoint, ON_SURFACE, Placement, one_minus_cosine};
+use super::affine_body::{AffineBody, Body};
+use super::emitter_point::{EmitterPoint, ON_SURFACE, Placement, one_minus_cosine};
 use crate::bsdf::{Frame, warp};
 use crate::math::{Aabb, Vec2, Vec3, fp};
 use glam::{DVec2, DVec3};
@@ -20,7 +20,7 @@ pub enum EmitterShape {
     /// Centre and radius.
     Sphere(DVec3, f32),
     /// Box, ellipsoid, cone, cylinder or ring.
-    Closed(Closed),
+    Closed(AffineBody),
 }
 
 impl EmitterShape {
@@ -34,7 +34,7 @@ impl EmitterShape {
     /// Body placed in the world. `axes` are the images of x, y and z, in object space. The normal
     /// is 0, since a body has normals in all directions. `None` if the map leaves no volume.
     pub fn body(place: &Placement, body: Body, center: Vec3, axes: [Vec3; 3]) -> Option<(EmitterShape, Vec3)> {
-        let closed = Closed::new(body, place.point(center), axes.map(|axis| place.vector(axis)))?;
+        let closed = AffineBody::new(body, place.point(center), axes.map(|axis| place.vector(axis)))?;
         Some((EmitterShape::Closed(closed), Vec3::ZERO))
     }
 

@@ -1,7 +1,7 @@
 //! Directional light, at infinity.
 
-use super::{Emitter, Illumination, as_bright};
-use crate::describe::{FileName, Rule, described};
+use super::{Illuminate, LightLiSample, as_bright};
+use crate::describe::{Constraint, FileName, described};
 use crate::dialect::set;
 use crate::math::{Color, Vec3};
 use glam::DVec3;
@@ -11,25 +11,25 @@ described! {
     /// Light that arrives from the same direction everywhere, like sunlight.
     DirectionalLight ["DirectionalLight" in set::CLASSIC, "directional" in set::F23] {
         /// Direction in which the light travels, of any length.
-        direction: Vec3 = Vec3::NEG_Y, required, Rule::NonZero, ["direction" in set::ALL];
+        direction: Vec3 = Vec3::NEG_Y, required, Constraint::NonZero, ["direction" in set::ALL];
         /// Colour and strength.
-        color: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::ALL];
+        color: Vec3 = Vec3::ONE, required, Constraint::Any, ["color" in set::ALL];
         /// Angular radius in degrees, for soft shadows and a visible disc in path tracing; 0.27 for
         /// the sun.
-        spread: Option<f32> = None, optional, Rule::NonNegative, ["spread" in set::DURER];
+        spread: Option<f32> = None, optional, Constraint::NonNegative, ["spread" in set::DURER];
         /// Illuminance in lux on a surface that faces the light; `color` then sets only the hue.
-        lux: Option<f32> = None, optional, Rule::NonNegative, ["lux" in set::DURER];
+        lux: Option<f32> = None, optional, Constraint::NonNegative, ["lux" in set::DURER];
         /// Measured spectrum, multiplied by `color`: a file (`lamp.csv`, `lamps.csv:column`) or an
         /// illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum; otherwise its RGB
         /// colour is used.
-        spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
+        spectrum: Option<FileName> = None, optional, Constraint::Any, ["spectrum" in set::DURER];
     }
 }
 
-impl Emitter for DirectionalLight {
-    fn illuminate(&self, _point: DVec3) -> Illumination {
+impl Illuminate for DirectionalLight {
+    fn illuminate(&self, _point: DVec3) -> LightLiSample {
         let to_light = (-self.direction).normalize_or(Vec3::Y);
-        Illumination { to_light, distance: f32::INFINITY, color: self.color }
+        LightLiSample { to_light, distance: f32::INFINITY, color: self.color }
     }
 
     fn in_units(&self) -> Self {

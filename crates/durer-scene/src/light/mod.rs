@@ -1,29 +1,29 @@
 //! Lights. One file each; the list is [`Light`].
 
+mod affine_body;
 pub mod area;
-mod closed;
 pub mod directional;
+mod emitter_point;
 pub mod photometric;
 pub mod point;
-mod seen;
 pub mod spot;
 
 use crate::describe::{FileName, described_list};
 use crate::math::{Color, LUMINANCE, Vec3};
+pub use affine_body::{AffineBody, Body};
 pub use area::EmitterShape;
-pub use closed::{Body, Closed};
 pub use directional::DirectionalLight;
+pub use emitter_point::{EmitterPoint, Placement};
 use glam::DVec3;
 pub use photometric::{PhotometricLight, Profile};
 pub use point::PointLight;
-pub use seen::{EmitterPoint, Placement};
 pub use spot::{Fade, SpotLight};
 
 macro_rules! delegate {
     ($($variant:ident),+) => {
-        impl Emitter for Light {
+        impl Illuminate for Light {
             #[inline]
-            fn illuminate(&self, point: DVec3) -> Illumination {
+            fn illuminate(&self, point: DVec3) -> LightLiSample {
                 match self { $(Light::$variant(l) => l.illuminate(point),)+ }
             }
             fn color(&self) -> Color {
@@ -33,7 +33,7 @@ macro_rules! delegate {
                 match self { $(Light::$variant(l) => l.color_mut(),)+ }
             }
             fn spectrum(&self) -> Option<&FileName> {
-                match self { $(Light::$variant(l) => Emitter::spectrum(l),)+ }
+                match self { $(Light::$variant(l) => Illuminate::spectrum(l),)+ }
             }
             fn in_units(&self) -> Self {
                 match self { $(Light::$variant(l) => l.in_units().into(),)+ }
@@ -68,7 +68,7 @@ macro_rules! delegate {
 
 described_list! {
     /// Light source.
-    Light: Emitter => delegate {
+    Light: Illuminate => delegate {
         Directional(directional::DirectionalLight),
         Point(point::PointLight),
         Spot(spot::SpotLight),
@@ -84,7 +84,7 @@ impl Light {
 
     /// File or name of the measured spectrum.
     pub fn spectrum(&self) -> Option<&FileName> {
-        Emitter::spectrum(self)
+        Illuminate::spectrum(self)
     }
 }
 
@@ -98,7 +98,7 @@ const TWO_UNITS: &str = "`candela` and `lumens` both set the strength of this li
 
 /// Light that arrives at a point from one light source.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Illumination {
+pub struct LightLiSample {
     /// Unit vector to the light, in world space.
     pub to_light: Vec3,
     /// Distance to the light; infinite for directional lights.
@@ -108,9 +108,9 @@ pub struct Illumination {
 }
 
 /// Interface of every light. No method has a default, so the compiler names what a new light lacks.
-pub trait Emitter {
+pub trait Illuminate {
     /// Light that arrives at a point, without occlusion.
-    fn illuminate(&self, point: DVec3) -> Illumination;
+    fn illuminate(&self, point: DVec3) -> LightLiSample;
 
     /// Colour, as written.
     fn color(&self) -> Color;
@@ -138,7 +138,7 @@ pub trait Emitter {
     /// `None` for a light that is equally strong in all directions.
     fn direction(&self) -> Option<Vec3>;
 
-    /// Angle in degrees from [`Emitter::direction`] to the edge of the beam; `None` without a beam.
+    /// Angle in degrees from [`Illuminate::direction`] to the edge of the beam; `None` without a beam.
     fn cone(&self) -> Option<f32>;
 
     /// Position, and the light that arrives at distance 1 in the strongest direction; `None` for a

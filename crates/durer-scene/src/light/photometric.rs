@@ -1,7 +1,7 @@
 //! Photometric light: a point light with a measured intensity in each direction.
 
-use super::{Emitter, Illumination, as_bright};
-use crate::describe::{FileName, Rule, described};
+use super::{Illuminate, LightLiSample, as_bright};
+use crate::describe::{Constraint, FileName, described};
 use crate::dialect::set;
 use crate::math::{Color, Vec3, fp};
 use crate::source::Digest;
@@ -12,25 +12,25 @@ described! {
     /// Point light with a measured intensity distribution in candela, from an IES or EULUMDAT file.
     PhotometricLight ["PhotometricLight" in set::DURER] {
         /// Position.
-        position: Vec3 = Vec3::ZERO, required, Rule::Any, ["position" in set::DURER];
+        position: Vec3 = Vec3::ZERO, required, Constraint::Any, ["position" in set::DURER];
         /// Measurement: an IES file (LM-63-1986 to 2019) or an EULUMDAT file (`.ldt`).
-        file: FileName = FileName::default(), required, Rule::Any, ["file" in set::DURER];
+        file: FileName = FileName::default(), required, Constraint::Any, ["file" in set::DURER];
         /// Direction that the lower side of the light faces, of any length.
-        direction: Vec3 = Vec3::NEG_Y, optional, Rule::NonZero, ["direction" in set::DURER];
+        direction: Vec3 = Vec3::NEG_Y, optional, Constraint::NonZero, ["direction" in set::DURER];
         /// Direction of horizontal angle 0; made perpendicular to `direction`.
-        front: Vec3 = Vec3::X, optional, Rule::NonZero, ["front" in set::DURER];
+        front: Vec3 = Vec3::X, optional, Constraint::NonZero, ["front" in set::DURER];
         /// Distance behind the position at which the light appears to originate, for example with a
         /// reflector: light at distance d fades as if at d + `focalLength`.
-        focal_length: f32 = 0.0, optional, Rule::NonNegative, ["focalLength" in set::DURER];
+        focal_length: f32 = 0.0, optional, Constraint::NonNegative, ["focalLength" in set::DURER];
         /// Factor on the measured light, per colour channel.
-        color: Vec3 = Vec3::ONE, optional, Rule::Any, ["color" in set::DURER];
+        color: Vec3 = Vec3::ONE, optional, Constraint::Any, ["color" in set::DURER];
         /// Luminous flux in lumens, instead of the value in the file; `color` then sets only the
         /// hue.
-        lumens: Option<f32> = None, optional, Rule::NonNegative, ["lumens" in set::DURER];
+        lumens: Option<f32> = None, optional, Constraint::NonNegative, ["lumens" in set::DURER];
         /// Measured spectrum, multiplied by `color`: a file (`lamp.csv`, `lamps.csv:column`) or an
         /// illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum; otherwise its RGB
         /// colour is used.
-        spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
+        spectrum: Option<FileName> = None, optional, Constraint::Any, ["spectrum" in set::DURER];
     }
 }
 
@@ -44,15 +44,15 @@ impl PhotometricLight {
     }
 }
 
-impl Emitter for PhotometricLight {
+impl Illuminate for PhotometricLight {
     /// Light for an intensity of 1 candela in all directions, to be multiplied by the profile.
-    fn illuminate(&self, point: DVec3) -> Illumination {
+    fn illuminate(&self, point: DVec3) -> LightLiSample {
         let offset = (self.position.as_dvec3() - point).as_vec3();
         let distance = offset.length();
         // The colour of a light is the radiance of a white diffuse surface: illuminance over pi.
         let faded = distance + self.focal_length;
         let color = self.color / (PI * faded * faded);
-        Illumination { to_light: offset.normalize_or(Vec3::Y), distance, color }
+        LightLiSample { to_light: offset.normalize_or(Vec3::Y), distance, color }
     }
 
     fn color(&self) -> Color {

@@ -1,7 +1,7 @@
 //! Point light. The light that arrives at distance d is color / (a0 + a1 d + a2 d^2).
 
-use super::{Emitter, Illumination, TWO_UNITS, as_bright};
-use crate::describe::{FileName, Rule, described};
+use super::{Illuminate, LightLiSample, TWO_UNITS, as_bright};
+use crate::describe::{Constraint, FileName, described};
 use crate::dialect::set;
 use crate::math::{Color, Vec3};
 use glam::DVec3;
@@ -11,32 +11,32 @@ described! {
     /// Light that is emitted from one point in all directions.
     PointLight ["PointLight" in set::CLASSIC, "point" in set::F23] {
         /// Position.
-        position: Vec3 = Vec3::ZERO, required, Rule::Any, ["position" in set::CLASSIC];
+        position: Vec3 = Vec3::ZERO, required, Constraint::Any, ["position" in set::CLASSIC];
         /// Colour and strength.
-        color: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::ALL];
+        color: Vec3 = Vec3::ONE, required, Constraint::Any, ["color" in set::ALL];
         /// Coefficients of the distance polynomial that the light is divided by: constant, linear
         /// and quadratic.
-        attenuation: Option<Vec3> = None, optional, Rule::Any, ["attenuation" in set::OLD | set::DURER];
+        attenuation: Option<Vec3> = None, optional, Constraint::Any, ["attenuation" in set::OLD | set::DURER];
         /// Quadratic coefficient of the distance polynomial; the other coefficients depend on the
         /// dialect.
-        falloff: Option<f32> = None, optional, Rule::NonNegative,
+        falloff: Option<f32> = None, optional, Constraint::NonNegative,
             ["falloff" in set::F12A5 | set::F16 | set::DURER, "attenuation" in set::F23];
         /// Luminous intensity in candela, with falloff by the squared distance; `color` then sets
         /// only the hue.
-        candela: Option<f32> = None, optional, Rule::NonNegative, ["candela" in set::DURER];
+        candela: Option<f32> = None, optional, Constraint::NonNegative, ["candela" in set::DURER];
         /// Luminous flux in lumens, with falloff by the squared distance; `color` then sets only
         /// the hue.
-        lumens: Option<f32> = None, optional, Rule::NonNegative, ["lumens" in set::DURER];
+        lumens: Option<f32> = None, optional, Constraint::NonNegative, ["lumens" in set::DURER];
         /// Measured spectrum, multiplied by `color`: a file (`lamp.csv`, `lamps.csv:column`) or an
         /// illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum; otherwise its RGB
         /// colour is used.
-        spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
+        spectrum: Option<FileName> = None, optional, Constraint::Any, ["spectrum" in set::DURER];
     }
 }
 
-impl Emitter for PointLight {
+impl Illuminate for PointLight {
     #[inline]
-    fn illuminate(&self, point: DVec3) -> Illumination {
+    fn illuminate(&self, point: DVec3) -> LightLiSample {
         let offset = (self.position.as_dvec3() - point).as_vec3();
         let distance = offset.length();
         let color = match self.attenuation {
@@ -44,7 +44,7 @@ impl Emitter for PointLight {
             None => self.color,
         };
         let to_light = offset.normalize_or(Vec3::Y);
-        Illumination { to_light, distance, color }
+        LightLiSample { to_light, distance, color }
     }
 
     fn color(&self) -> Color {

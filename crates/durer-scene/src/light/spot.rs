@@ -1,7 +1,7 @@
 //! Spot light: a point light with a cone.
 
-use super::{Emitter, Illumination, TWO_UNITS, as_bright};
-use crate::describe::{FileName, Rule, described, described_words};
+use super::{Illuminate, LightLiSample, TWO_UNITS, as_bright};
+use crate::describe::{Constraint, FileName, described, described_words};
 use crate::dialect::set;
 use crate::math::{Color, Vec3, fp};
 use glam::DVec3;
@@ -17,26 +17,26 @@ described! {
     /// Light emitted from one point into a cone, with falloff by the squared distance.
     SpotLight ["SpotLight" in set::DURER] {
         /// Position.
-        position: Vec3 = Vec3::ZERO, required, Rule::Any, ["position" in set::DURER];
+        position: Vec3 = Vec3::ZERO, required, Constraint::Any, ["position" in set::DURER];
         /// Direction of the cone's axis, of any length.
-        direction: Vec3 = Vec3::NEG_Y, required, Rule::NonZero, ["direction" in set::DURER];
+        direction: Vec3 = Vec3::NEG_Y, required, Constraint::NonZero, ["direction" in set::DURER];
         /// Colour and strength, as received on the axis at distance 1.
-        color: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::DURER];
+        color: Vec3 = Vec3::ONE, required, Constraint::Any, ["color" in set::DURER];
         /// Angle in degrees from the axis to the edge of the cone.
-        angle: f32 = 45.0, optional, Rule::UpTo(180.0), ["angle" in set::DURER];
+        angle: f32 = 45.0, optional, Constraint::UpTo(180.0), ["angle" in set::DURER];
         /// Angle in degrees from the axis at which the fade begins; at most `angle`.
-        inner_angle: f32 = 0.0, optional, Rule::NonNegative, ["innerAngle" in set::DURER];
+        inner_angle: f32 = 0.0, optional, Constraint::NonNegative, ["innerAngle" in set::DURER];
         /// Fade between the two angles, as a function of the fraction s between their cosines:
         /// `squared` is s^2, `smooth` is s^2 (3 - 2 s), `fourth` is s^4.
-        fade: Fade = Fade::Squared, optional, Rule::Any, ["fade" in set::DURER];
+        fade: Fade = Fade::Squared, optional, Constraint::Any, ["fade" in set::DURER];
         /// Luminous intensity in candela on the axis; `color` then sets only the hue.
-        candela: Option<f32> = None, optional, Rule::NonNegative, ["candela" in set::DURER];
+        candela: Option<f32> = None, optional, Constraint::NonNegative, ["candela" in set::DURER];
         /// Luminous flux in lumens; `color` then sets only the hue.
-        lumens: Option<f32> = None, optional, Rule::NonNegative, ["lumens" in set::DURER];
+        lumens: Option<f32> = None, optional, Constraint::NonNegative, ["lumens" in set::DURER];
         /// Measured spectrum, multiplied by `color`: a file (`lamp.csv`, `lamps.csv:column`) or an
         /// illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum; otherwise its RGB
         /// colour is used.
-        spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
+        spectrum: Option<FileName> = None, optional, Constraint::Any, ["spectrum" in set::DURER];
     }
 }
 
@@ -59,8 +59,8 @@ impl SpotLight {
     }
 }
 
-impl Emitter for SpotLight {
-    fn illuminate(&self, point: DVec3) -> Illumination {
+impl Illuminate for SpotLight {
+    fn illuminate(&self, point: DVec3) -> LightLiSample {
         let offset = (self.position.as_dvec3() - point).as_vec3();
         let distance = offset.length();
         let to_light = offset.normalize_or(Vec3::Y);
@@ -80,7 +80,7 @@ impl Emitter for SpotLight {
                 Fade::Smooth => 3.0 - 2.0 * share,
                 Fade::Fourth => share * share,
             };
-        Illumination { to_light, distance, color: self.color * (share / (distance * distance)) }
+        LightLiSample { to_light, distance, color: self.color * (share / (distance * distance)) }
     }
 
     fn color(&self) -> Color {

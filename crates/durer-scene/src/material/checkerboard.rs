@@ -1,7 +1,7 @@
 //! Checkerboard: unit cubes of two alternating materials.
 
 use super::Pattern;
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::Vec3;
 
@@ -9,9 +9,9 @@ described! {
     /// A 3D checkerboard: unit cubes that alternate between two materials.
     Checkerboard ["Checkerboard" in set::OLD | set::DURER] {
         /// Material of the cubes whose integer coordinates have an even sum.
-        material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
+        material1: u32 = 0, required, Constraint::Any, ["materialIndex" in set::ALL];
         /// Material of the other cubes.
-        material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
+        material2: u32 = 0, required, Constraint::Any, ["materialIndex" in set::ALL];
     }
 }
 

@@ -1,6 +1,6 @@
 //! Hair and fur: fibres that transmit light.
 
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::Vec3;
 
@@ -10,20 +10,20 @@ described! {
     /// `color`, and `color` over the melanins.
     HairMaterial ["HairMaterial" in set::DURER] {
         /// Amount of brown and black pigment: 0.3 in blond hair, 1.3 in brown, 8 in black.
-        eumelanin: f32 = 1.3, optional, Rule::NonNegative, ["eumelanin" in set::DURER];
+        eumelanin: f32 = 1.3, optional, Constraint::NonNegative, ["eumelanin" in set::DURER];
         /// Amount of yellow and red pigment: 1.2 or more in red hair.
-        pheomelanin: f32 = 0.0, optional, Rule::NonNegative, ["pheomelanin" in set::DURER];
+        pheomelanin: f32 = 0.0, optional, Constraint::NonNegative, ["pheomelanin" in set::DURER];
         /// Colour of a bundle of many fibres, from 0 to 1.
-        color: Option<Vec3> = None, optional, Rule::Any, ["color" in set::DURER];
+        color: Option<Vec3> = None, optional, Constraint::Any, ["color" in set::DURER];
         /// Absorption coefficient inside a fibre, per fibre radius, for red, green and blue.
-        absorption: Option<Vec3> = None, optional, Rule::Any, ["absorption" in set::DURER];
+        absorption: Option<Vec3> = None, optional, Constraint::Any, ["absorption" in set::DURER];
         /// Roughness along a fibre, from 0 to 1.
-        longitudinal_roughness: f32 = 0.3, optional, Rule::Share, ["longitudinalRoughness" in set::DURER];
+        longitudinal_roughness: f32 = 0.3, optional, Constraint::Share, ["longitudinalRoughness" in set::DURER];
         /// Roughness around a fibre, from 0 to 1.
-        azimuthal_roughness: f32 = 0.3, optional, Rule::Share, ["azimuthalRoughness" in set::DURER];
+        azimuthal_roughness: f32 = 0.3, optional, Constraint::Share, ["azimuthalRoughness" in set::DURER];
         /// Tilt in degrees of the cuticle scales of a fibre towards its tip.
-        scale_tilt: f32 = 2.0, optional, Rule::From(-45.0, 45.0), ["scaleTilt" in set::DURER];
+        scale_tilt: f32 = 2.0, optional, Constraint::From(-45.0, 45.0), ["scaleTilt" in set::DURER];
         /// Index of refraction.
-        ior: f32 = 1.55, optional, Rule::From(1.0, 4.0), ["ior" in set::DURER];
+        ior: f32 = 1.55, optional, Constraint::From(1.0, 4.0), ["ior" in set::DURER];
     }
 }

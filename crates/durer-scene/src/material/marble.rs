@@ -2,7 +2,7 @@
 //! 2.
 
 use super::{MAX_OCTAVES, Pattern};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::{Vec3, noise};
 
@@ -10,15 +10,15 @@ described! {
     /// A marble pattern: two materials in veins across the x axis.
     Marble ["Marble" in set::OLD | set::DURER] {
         /// Material where the sine is 1.
-        material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
+        material1: u32 = 0, required, Constraint::Any, ["materialIndex" in set::ALL];
         /// Material where the sine is -1.
-        material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
+        material2: u32 = 0, required, Constraint::Any, ["materialIndex" in set::ALL];
         /// Number of noise octaves, each with twice the frequency of the previous one.
-        octaves: u32 = 0, required, Rule::AtMost(MAX_OCTAVES), ["octaves" in set::ALL];
+        octaves: u32 = 0, required, Constraint::AtMost(MAX_OCTAVES), ["octaves" in set::ALL];
         /// Number of veins per 2 pi along x.
-        frequency: f32 = 1.0, required, Rule::Any, ["frequency" in set::ALL];
+        frequency: f32 = 1.0, required, Constraint::Any, ["frequency" in set::ALL];
         /// Strength of the noise that distorts the veins.
-        amplitude: f32 = 1.0, required, Rule::Any, ["amplitude" in set::ALL];
+        amplitude: f32 = 1.0, required, Constraint::Any, ["amplitude" in set::ALL];
     }
 }
 

@@ -1,7 +1,7 @@
 //! Mix of two materials, constant or by a texture.
 
 use super::Pattern;
-use crate::describe::{FileName, Rule, described};
+use crate::describe::{Constraint, FileName, described};
 use crate::dialect::set;
 use crate::math::Vec3;
 
@@ -9,13 +9,13 @@ described! {
     /// Mix of two materials in a proportion that is constant or set by a texture.
     Mix ["Mix" in set::DURER] {
         /// First material.
-        material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
+        material1: u32 = 0, required, Constraint::Any, ["materialIndex" in set::ALL];
         /// Second material.
-        material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
+        material2: u32 = 0, required, Constraint::Any, ["materialIndex" in set::ALL];
         /// Share of the first material, from 0 to 1.
-        share: f32 = 0.5, optional, Rule::Share, ["share" in set::DURER];
+        share: f32 = 0.5, optional, Constraint::Share, ["share" in set::DURER];
         /// Texture that multiplies `share`.
-        share_texture: Option<FileName> = None, optional, Rule::Any, ["shareTexture" in set::DURER];
+        share_texture: Option<FileName> = None, optional, Constraint::Any, ["shareTexture" in set::DURER];
     }
 }
 

@@ -3,7 +3,7 @@
 //!
 //! Source: *OpenPBR Surface specification*, version 1.1, Academy Software Foundation, 2024.
 
-use crate::describe::{FileName, Rule, described, described_words};
+use crate::describe::{Constraint, FileName, described, described_words};
 use crate::dialect::set;
 use crate::math::Vec3;
 
@@ -32,206 +32,206 @@ described! {
     /// or a diffuse base.
     PrincipledMaterial ["PrincipledMaterial" in set::DURER] {
         /// Strength of the base, from 0 to 1; scales the colours of the diffuse base and the metal.
-        base_weight: f32 = 1.0, optional, Rule::Share, ["baseWeight" in set::DURER];
+        base_weight: f32 = 1.0, optional, Constraint::Share, ["baseWeight" in set::DURER];
         /// Texture that multiplies `baseWeight`. Textures of scalars use the red channel, or the
         /// channel after a colon, for example `file.png:g`.
-        base_weight_texture: Option<FileName> = None, optional, Rule::Any, ["baseWeightTexture" in set::DURER];
+        base_weight_texture: Option<FileName> = None, optional, Constraint::Any, ["baseWeightTexture" in set::DURER];
         /// Albedo of the diffuse base, or reflectance of the metal at normal incidence, from 0 to
         /// 1.
-        base_color: Vec3 = Vec3::splat(0.8), optional, Rule::Any, ["baseColor" in set::DURER];
+        base_color: Vec3 = Vec3::splat(0.8), optional, Constraint::Any, ["baseColor" in set::DURER];
         /// File with a measured reflectance that replaces `baseColor`: rows of a wavelength in
         /// nanometres and a reflectance from 0 to 1. `file.csv:name` selects one of several
         /// columns. `--color spectral` uses the spectrum; otherwise its RGB colour in daylight is
         /// used.
-        base_spectrum: Option<FileName> = None, optional, Rule::Any, ["baseSpectrum" in set::DURER];
+        base_spectrum: Option<FileName> = None, optional, Constraint::Any, ["baseSpectrum" in set::DURER];
         /// Texture that multiplies `baseColor`, read as sRGB; its alpha multiplies `opacity`.
-        base_color_texture: Option<FileName> = None, optional, Rule::Any, ["baseColorTexture" in set::DURER];
+        base_color_texture: Option<FileName> = None, optional, Constraint::Any, ["baseColorTexture" in set::DURER];
         /// Roughness of the diffuse base, from 0 (Lambert) to 1.
-        base_diffuse_roughness: f32 = 0.0, optional, Rule::Share, ["baseDiffuseRoughness" in set::DURER];
+        base_diffuse_roughness: f32 = 0.0, optional, Constraint::Share, ["baseDiffuseRoughness" in set::DURER];
         /// Texture that multiplies `baseDiffuseRoughness`.
-        base_diffuse_roughness_texture: Option<FileName> = None, optional, Rule::Any,
+        base_diffuse_roughness_texture: Option<FileName> = None, optional, Constraint::Any,
             ["baseDiffuseRoughnessTexture" in set::DURER];
         /// Metalness, from 0 (glass or diffuse) to 1 (metal).
-        base_metalness: f32 = 0.0, optional, Rule::Share, ["baseMetalness" in set::DURER];
+        base_metalness: f32 = 0.0, optional, Constraint::Share, ["baseMetalness" in set::DURER];
         /// Texture that multiplies `baseMetalness`.
-        base_metalness_texture: Option<FileName> = None, optional, Rule::Any, ["baseMetalnessTexture" in set::DURER];
+        base_metalness_texture: Option<FileName> = None, optional, Constraint::Any, ["baseMetalnessTexture" in set::DURER];
         /// Factor on the reflectance at normal incidence, usually from 0 to 1.
-        specular_weight: f32 = 1.0, optional, Rule::NonNegative, ["specularWeight" in set::DURER];
+        specular_weight: f32 = 1.0, optional, Constraint::NonNegative, ["specularWeight" in set::DURER];
         /// Texture that multiplies the reflection equally at all angles.
-        specular_weight_texture: Option<FileName> = None, optional, Rule::Any, ["specularWeightTexture" in set::DURER];
+        specular_weight_texture: Option<FileName> = None, optional, Constraint::Any, ["specularWeightTexture" in set::DURER];
         /// Tint of the reflection, or for metal the colour near grazing angles.
-        specular_color: Vec3 = Vec3::ONE, optional, Rule::Any, ["specularColor" in set::DURER];
+        specular_color: Vec3 = Vec3::ONE, optional, Constraint::Any, ["specularColor" in set::DURER];
         /// Texture that multiplies `specularColor`, read as sRGB.
-        specular_color_texture: Option<FileName> = None, optional, Rule::Any, ["specularColorTexture" in set::DURER];
+        specular_color_texture: Option<FileName> = None, optional, Constraint::Any, ["specularColorTexture" in set::DURER];
         /// Roughness of the surface, from 0 (a mirror) to 1; its square is GGX's alpha.
-        specular_roughness: f32 = 0.3, optional, Rule::Share, ["specularRoughness" in set::DURER];
+        specular_roughness: f32 = 0.3, optional, Constraint::Share, ["specularRoughness" in set::DURER];
         /// Texture that multiplies `specularRoughness`.
-        specular_roughness_texture: Option<FileName> = None, optional, Rule::Any,
+        specular_roughness_texture: Option<FileName> = None, optional, Constraint::Any,
             ["specularRoughnessTexture" in set::DURER];
         /// Texture whose green channel multiplies `specularRoughness` and whose blue channel
         /// multiplies `baseMetalness`.
-        metallic_roughness_texture: Option<FileName> = None, optional, Rule::Any,
+        metallic_roughness_texture: Option<FileName> = None, optional, Constraint::Any,
             ["metallicRoughnessTexture" in set::DURER];
         /// Elongation of the highlight, from 0 (round) to 1.
-        specular_anisotropy: f32 = 0.0, optional, Rule::Share, ["specularAnisotropy" in set::DURER];
+        specular_anisotropy: f32 = 0.0, optional, Constraint::Share, ["specularAnisotropy" in set::DURER];
         /// Texture that multiplies `specularAnisotropy`.
-        specular_anisotropy_texture: Option<FileName> = None, optional, Rule::Any,
+        specular_anisotropy_texture: Option<FileName> = None, optional, Constraint::Any,
             ["specularAnisotropyTexture" in set::DURER];
         /// Rotation of the highlight about the normal, from the direction of increasing u; 1 is a
         /// full turn.
-        specular_rotation: f32 = 0.0, optional, Rule::Any, ["specularRotation" in set::DURER];
+        specular_rotation: f32 = 0.0, optional, Constraint::Any, ["specularRotation" in set::DURER];
         /// Texture added to `specularRotation`; 1 is a full turn. `file.png:angle` reads a
         /// direction from the red and green channels.
-        specular_rotation_texture: Option<FileName> = None, optional, Rule::Any,
+        specular_rotation_texture: Option<FileName> = None, optional, Constraint::Any,
             ["specularRotationTexture" in set::DURER];
         /// Index of refraction of the inside of the object.
-        specular_ior: f32 = 1.5, optional, Rule::Positive, ["specularIor" in set::DURER];
+        specular_ior: f32 = 1.5, optional, Constraint::Positive, ["specularIor" in set::DURER];
         /// `nested`: refraction at glass inside other glass or water uses both indices. `ignored`:
         /// `specularIor` is the ratio of the index inside to the index outside, regardless of the
         /// surrounding medium, as in pbrt and Mitsuba.
-        surroundings: Surroundings = Surroundings::Nested, optional, Rule::Any, ["surroundings" in set::DURER];
+        surroundings: Surroundings = Surroundings::Nested, optional, Constraint::Any, ["surroundings" in set::DURER];
         /// `on`: adds the light that is scattered several times between the facets of rough metal,
         /// glass or coats, so that no energy is lost. `off`: single scattering only, as in pbrt and
         /// Mitsuba, which makes rough surfaces darker.
-        energy_compensation: Switch = Switch::On, optional, Rule::Any,
+        energy_compensation: Switch = Switch::On, optional, Constraint::Any,
             ["energyCompensation" in set::DURER];
         /// Blend between a diffuse base at 0 and glass at 1.
-        transmission_weight: f32 = 0.0, optional, Rule::Share, ["transmissionWeight" in set::DURER];
+        transmission_weight: f32 = 0.0, optional, Constraint::Share, ["transmissionWeight" in set::DURER];
         /// Texture that multiplies `transmissionWeight`.
-        transmission_weight_texture: Option<FileName> = None, optional, Rule::Any,
+        transmission_weight_texture: Option<FileName> = None, optional, Constraint::Any,
             ["transmissionWeightTexture" in set::DURER];
         /// Colour of white light after travelling `transmissionDepth` through the material, or
         /// after passing the surface if that is 0. Thin walls are treated as `transmissionDepth`
         /// thick, so they absorb more at grazing angles.
-        transmission_color: Vec3 = Vec3::ONE, optional, Rule::Any, ["transmissionColor" in set::DURER];
+        transmission_color: Vec3 = Vec3::ONE, optional, Constraint::Any, ["transmissionColor" in set::DURER];
         /// Texture that multiplies `transmissionColor` if `transmissionDepth` is 0, read as sRGB.
-        transmission_color_texture: Option<FileName> = None, optional, Rule::Any,
+        transmission_color_texture: Option<FileName> = None, optional, Constraint::Any,
             ["transmissionColorTexture" in set::DURER];
         /// Distance in world units after which white light has `transmissionColor`. At 0, the
         /// surface tints the light instead; with thin walls, any other value makes the wall absorb
         /// light, including internal reflections.
-        transmission_depth: f32 = 0.0, optional, Rule::NonNegative, ["transmissionDepth" in set::DURER];
+        transmission_depth: f32 = 0.0, optional, Constraint::NonNegative, ["transmissionDepth" in set::DURER];
         /// Colour of the light scattered inside the material over the distance `transmissionDepth`;
         /// 0 0 0 for a clear material.
-        transmission_scatter: Vec3 = Vec3::ZERO, optional, Rule::Any, ["transmissionScatter" in set::DURER];
+        transmission_scatter: Vec3 = Vec3::ZERO, optional, Constraint::Any, ["transmissionScatter" in set::DURER];
         /// Mean cosine of the scattering angle inside the material: -1 is backward, 0 isotropic, 1
         /// forward.
-        transmission_scatter_anisotropy: f32 = 0.0, optional, Rule::Between(-1.0, 1.0),
+        transmission_scatter_anisotropy: f32 = 0.0, optional, Constraint::Between(-1.0, 1.0),
             ["transmissionScatterAnisotropy" in set::DURER];
         /// Density file (Mitsuba's `.vol`) that multiplies the extinction inside the material; its
         /// box is in world space.
-        transmission_density: Option<FileName> = None, optional, Rule::Any, ["transmissionDensity" in set::DURER];
+        transmission_density: Option<FileName> = None, optional, Constraint::Any, ["transmissionDensity" in set::DURER];
         /// Box in world space for `transmissionDensity` that replaces the box in the file: a
         /// corner, and the edges from it along the grid's x, y and z axes.
-        transmission_density_box: Vec<[f32; 3]> = Vec::new(), optional, Rule::Rows(0, 4),
+        transmission_density_box: Vec<[f32; 3]> = Vec::new(), optional, Constraint::Rows(0, 4),
             ["transmissionDensityBox" in set::DURER];
         /// Strength of the dispersion set by `transmissionDispersionAbbeNumber`, from 0 (none) to
         /// 1; only visible with `--color spectral`.
-        transmission_dispersion_scale: f32 = 0.0, optional, Rule::Share, ["transmissionDispersionScale" in set::DURER];
+        transmission_dispersion_scale: f32 = 0.0, optional, Constraint::Share, ["transmissionDispersionScale" in set::DURER];
         /// Abbe number of the glass, lower for stronger dispersion: 64 for crown glass, 30 for
         /// flint.
-        transmission_dispersion_abbe_number: f32 = 20.0, optional, Rule::Positive,
+        transmission_dispersion_abbe_number: f32 = 20.0, optional, Constraint::Positive,
             ["transmissionDispersionAbbeNumber" in set::DURER];
         /// Blend between a diffuse base at 0 and subsurface scattering at 1, where light enters the
         /// object, scatters and leaves elsewhere, as in marble, milk and skin.
-        subsurface_weight: f32 = 0.0, optional, Rule::Share, ["subsurfaceWeight" in set::DURER];
+        subsurface_weight: f32 = 0.0, optional, Constraint::Share, ["subsurfaceWeight" in set::DURER];
         /// Texture that multiplies `subsurfaceWeight`.
-        subsurface_weight_texture: Option<FileName> = None, optional, Rule::Any,
+        subsurface_weight_texture: Option<FileName> = None, optional, Constraint::Any,
             ["subsurfaceWeightTexture" in set::DURER];
         /// Perceived colour of an object with subsurface scattering.
-        subsurface_color: Vec3 = Vec3::splat(0.8), optional, Rule::Any, ["subsurfaceColor" in set::DURER];
+        subsurface_color: Vec3 = Vec3::splat(0.8), optional, Constraint::Any, ["subsurfaceColor" in set::DURER];
         /// Texture that multiplies `subsurfaceColor` where light enters, read as sRGB.
-        subsurface_color_texture: Option<FileName> = None, optional, Rule::Any, ["subsurfaceColorTexture" in set::DURER];
+        subsurface_color_texture: Option<FileName> = None, optional, Constraint::Any, ["subsurfaceColorTexture" in set::DURER];
         /// Mean free path inside the object, in world units.
-        subsurface_radius: f32 = 1.0, optional, Rule::Positive, ["subsurfaceRadius" in set::DURER];
+        subsurface_radius: f32 = 1.0, optional, Constraint::Positive, ["subsurfaceRadius" in set::DURER];
         /// Factors on `subsurfaceRadius` for red, green and blue.
-        subsurface_radius_scale: Vec3 = Vec3::new(1.0, 0.5, 0.25), optional, Rule::Any,
+        subsurface_radius_scale: Vec3 = Vec3::new(1.0, 0.5, 0.25), optional, Constraint::Any,
             ["subsurfaceRadiusScale" in set::DURER];
         /// Mean cosine of the subsurface scattering angle: -1 is backward, 0 isotropic, 1 forward.
-        subsurface_scatter_anisotropy: f32 = 0.0, optional, Rule::Between(-1.0, 1.0),
+        subsurface_scatter_anisotropy: f32 = 0.0, optional, Constraint::Between(-1.0, 1.0),
             ["subsurfaceScatterAnisotropy" in set::DURER];
         /// Strength of the clear coat, from 0 to 1.
-        coat_weight: f32 = 0.0, optional, Rule::Share, ["coatWeight" in set::DURER];
+        coat_weight: f32 = 0.0, optional, Constraint::Share, ["coatWeight" in set::DURER];
         /// Texture that multiplies `coatWeight`.
-        coat_weight_texture: Option<FileName> = None, optional, Rule::Any, ["coatWeightTexture" in set::DURER];
+        coat_weight_texture: Option<FileName> = None, optional, Constraint::Any, ["coatWeightTexture" in set::DURER];
         /// Transmittance of the coat for light that passes down and up again at normal incidence.
-        coat_color: Vec3 = Vec3::ONE, optional, Rule::Any, ["coatColor" in set::DURER];
+        coat_color: Vec3 = Vec3::ONE, optional, Constraint::Any, ["coatColor" in set::DURER];
         /// Texture that multiplies `coatColor`, read as sRGB.
-        coat_color_texture: Option<FileName> = None, optional, Rule::Any, ["coatColorTexture" in set::DURER];
+        coat_color_texture: Option<FileName> = None, optional, Constraint::Any, ["coatColorTexture" in set::DURER];
         /// Roughness of the coat, from 0 to 1.
-        coat_roughness: f32 = 0.0, optional, Rule::Share, ["coatRoughness" in set::DURER];
+        coat_roughness: f32 = 0.0, optional, Constraint::Share, ["coatRoughness" in set::DURER];
         /// Texture that multiplies `coatRoughness`.
-        coat_roughness_texture: Option<FileName> = None, optional, Rule::Any, ["coatRoughnessTexture" in set::DURER];
+        coat_roughness_texture: Option<FileName> = None, optional, Constraint::Any, ["coatRoughnessTexture" in set::DURER];
         /// Index of refraction of the coat.
-        coat_ior: f32 = 1.6, optional, Rule::Positive, ["coatIor" in set::DURER];
+        coat_ior: f32 = 1.6, optional, Constraint::Positive, ["coatIor" in set::DURER];
         /// Darkening of the base by internal reflection in the coat, from 0 (none) to 1 (physically
         /// correct).
-        coat_darkening: f32 = 1.0, optional, Rule::Share, ["coatDarkening" in set::DURER];
+        coat_darkening: f32 = 1.0, optional, Constraint::Share, ["coatDarkening" in set::DURER];
         /// Texture that multiplies `coatDarkening`.
-        coat_darkening_texture: Option<FileName> = None, optional, Rule::Any, ["coatDarkeningTexture" in set::DURER];
+        coat_darkening_texture: Option<FileName> = None, optional, Constraint::Any, ["coatDarkeningTexture" in set::DURER];
         /// Strength of the fuzz layer on top, for example velvet or dust, from 0 to 1.
-        fuzz_weight: f32 = 0.0, optional, Rule::Share, ["fuzzWeight" in set::DURER];
+        fuzz_weight: f32 = 0.0, optional, Constraint::Share, ["fuzzWeight" in set::DURER];
         /// Texture that multiplies `fuzzWeight`.
-        fuzz_weight_texture: Option<FileName> = None, optional, Rule::Any, ["fuzzWeightTexture" in set::DURER];
+        fuzz_weight_texture: Option<FileName> = None, optional, Constraint::Any, ["fuzzWeightTexture" in set::DURER];
         /// Colour of the fuzz.
-        fuzz_color: Vec3 = Vec3::ONE, optional, Rule::Any, ["fuzzColor" in set::DURER];
+        fuzz_color: Vec3 = Vec3::ONE, optional, Constraint::Any, ["fuzzColor" in set::DURER];
         /// Texture that multiplies `fuzzColor`, read as sRGB.
-        fuzz_color_texture: Option<FileName> = None, optional, Rule::Any, ["fuzzColorTexture" in set::DURER];
+        fuzz_color_texture: Option<FileName> = None, optional, Constraint::Any, ["fuzzColorTexture" in set::DURER];
         /// Roughness of the fuzz, from 0 to 1.
-        fuzz_roughness: f32 = 0.5, optional, Rule::Share, ["fuzzRoughness" in set::DURER];
+        fuzz_roughness: f32 = 0.5, optional, Constraint::Share, ["fuzzRoughness" in set::DURER];
         /// Texture that multiplies `fuzzRoughness`.
-        fuzz_roughness_texture: Option<FileName> = None, optional, Rule::Any, ["fuzzRoughnessTexture" in set::DURER];
+        fuzz_roughness_texture: Option<FileName> = None, optional, Constraint::Any, ["fuzzRoughnessTexture" in set::DURER];
         /// Fraction of the surface below the coat that is covered by a thin film, from 0 to 1, for
         /// example soap, oil, tempered steel or mother-of-pearl.
-        thin_film_weight: f32 = 0.0, optional, Rule::Share, ["thinFilmWeight" in set::DURER];
+        thin_film_weight: f32 = 0.0, optional, Constraint::Share, ["thinFilmWeight" in set::DURER];
         /// Texture that multiplies `thinFilmWeight`.
-        thin_film_weight_texture: Option<FileName> = None, optional, Rule::Any, ["thinFilmWeightTexture" in set::DURER];
+        thin_film_weight_texture: Option<FileName> = None, optional, Constraint::Any, ["thinFilmWeightTexture" in set::DURER];
         /// Thickness of the film in micrometres.
-        thin_film_thickness: f32 = 0.5, optional, Rule::NonNegative, ["thinFilmThickness" in set::DURER];
+        thin_film_thickness: f32 = 0.5, optional, Constraint::NonNegative, ["thinFilmThickness" in set::DURER];
         /// Texture that multiplies `thinFilmThickness`.
-        thin_film_thickness_texture: Option<FileName> = None, optional, Rule::Any,
+        thin_film_thickness_texture: Option<FileName> = None, optional, Constraint::Any,
             ["thinFilmThicknessTexture" in set::DURER];
         /// Index of refraction of the film.
-        thin_film_ior: f32 = 1.4, optional, Rule::Positive, ["thinFilmIor" in set::DURER];
+        thin_film_ior: f32 = 1.4, optional, Constraint::Positive, ["thinFilmIor" in set::DURER];
         /// Luminance of the emission in cd/m^2; a pixel value of 1 stands for 1 cd/m^2.
-        emission_luminance: f32 = 0.0, optional, Rule::NonNegative, ["emissionLuminance" in set::DURER];
+        emission_luminance: f32 = 0.0, optional, Constraint::NonNegative, ["emissionLuminance" in set::DURER];
         /// Colour of the emission, which multiplies `emissionLuminance`.
-        emission_color: Vec3 = Vec3::ONE, optional, Rule::Any, ["emissionColor" in set::DURER];
+        emission_color: Vec3 = Vec3::ONE, optional, Constraint::Any, ["emissionColor" in set::DURER];
         /// Spectrum of the emission, multiplied by `emissionColor`: an illuminant (A, D50, D55,
         /// D65, D75, E, F2, F7, F11), a black body (`2700K`), or a file as for `baseSpectrum`, in
         /// any unit. `emissionLuminance` still sets the brightness.
-        emission_spectrum: Option<FileName> = None, optional, Rule::Any, ["emissionSpectrum" in set::DURER];
+        emission_spectrum: Option<FileName> = None, optional, Constraint::Any, ["emissionSpectrum" in set::DURER];
         /// Texture that multiplies `emissionColor`, read as sRGB.
-        emission_texture: Option<FileName> = None, optional, Rule::Any, ["emissionTexture" in set::DURER];
+        emission_texture: Option<FileName> = None, optional, Constraint::Any, ["emissionTexture" in set::DURER];
         /// `on`: the vertex colours of a mesh multiply `emissionColor`.
-        emission_vertex_colors: Switch = Switch::Off, optional, Rule::Any, ["emissionVertexColors" in set::DURER];
+        emission_vertex_colors: Switch = Switch::Off, optional, Constraint::Any, ["emissionVertexColors" in set::DURER];
         /// Tangent-space normal map, as in glTF: red and green point along u and v, and blue points
         /// outwards.
-        normal_texture: Option<FileName> = None, optional, Rule::Any, ["normalTexture" in set::DURER];
+        normal_texture: Option<FileName> = None, optional, Constraint::Any, ["normalTexture" in set::DURER];
         /// Bump map: a height texture that tilts the normals as if bright areas were raised.
-        bump_texture: Option<FileName> = None, optional, Rule::Any, ["bumpTexture" in set::DURER];
+        bump_texture: Option<FileName> = None, optional, Constraint::Any, ["bumpTexture" in set::DURER];
         /// Height difference between white and black in the bump map, in world units; negative if
         /// white is deeper.
-        bump_height: f32 = 0.01, optional, Rule::Any, ["bumpHeight" in set::DURER];
+        bump_height: f32 = 0.01, optional, Constraint::Any, ["bumpHeight" in set::DURER];
         /// `on`: bends mapped normals that face away from the viewer, so that mirrored rays leave
         /// the surface. `off`: leaves such points black, as in Mitsuba.
-        normal_bending: Switch = Switch::On, optional, Rule::Any, ["normalBending" in set::DURER];
+        normal_bending: Switch = Switch::On, optional, Constraint::Any, ["normalBending" in set::DURER];
         /// Fraction of the surface that is present, from 0 to 1; the remaining light passes through
         /// unchanged.
-        opacity: f32 = 1.0, optional, Rule::Share, ["opacity" in set::DURER];
+        opacity: f32 = 1.0, optional, Constraint::Share, ["opacity" in set::DURER];
         /// Texture that multiplies `opacity` by its alpha channel if there is one, otherwise by its
         /// red channel.
-        opacity_texture: Option<FileName> = None, optional, Rule::Any, ["opacityTexture" in set::DURER];
+        opacity_texture: Option<FileName> = None, optional, Constraint::Any, ["opacityTexture" in set::DURER];
         /// Threshold for the combined opacity (`opacity`, textures and vertex alpha): the surface
         /// is fully present at or above it and absent below. Without it, partial opacity is kept.
-        opacity_cutoff: Option<f32> = None, optional, Rule::NonNegative, ["opacityCutoff" in set::DURER];
+        opacity_cutoff: Option<f32> = None, optional, Constraint::NonNegative, ["opacityCutoff" in set::DURER];
         /// `thin`: a sheet without an inside, which light crosses in a straight line. `solid`: the
         /// surface of a solid object.
-        walls: Walls = Walls::Solid, optional, Rule::Any, ["walls" in set::DURER];
+        walls: Walls = Walls::Solid, optional, Constraint::Any, ["walls" in set::DURER];
         /// `shown`: both sides are visible. `hidden`: faces that are turned away from the camera,
         /// or from a light without extent, are transparent to it. `black`: faces turned away
         /// scatter no light.
-        backs: Backs = Backs::Shown, optional, Rule::Any, ["backs" in set::DURER];
+        backs: Backs = Backs::Shown, optional, Constraint::Any, ["backs" in set::DURER];
     }
 }
 

@@ -1,7 +1,7 @@
 //! Two materials mixed by noise: the first has the share N + 1/2, clamped to [0, 1].
 
 use super::{MAX_OCTAVES, Pattern};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::{Vec3, noise};
 
@@ -9,11 +9,11 @@ described! {
     /// A mix of two materials by a noise function.
     SolidNoise ["Noise" in set::OLD | set::DURER] {
         /// Material where the noise is high.
-        material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
+        material1: u32 = 0, required, Constraint::Any, ["materialIndex" in set::ALL];
         /// Material where the noise is low.
-        material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
+        material2: u32 = 0, required, Constraint::Any, ["materialIndex" in set::ALL];
         /// Number of noise octaves, each with twice the frequency of the previous one.
-        octaves: u32 = 0, required, Rule::AtMost(MAX_OCTAVES), ["octaves" in set::ALL];
+        octaves: u32 = 0, required, Constraint::AtMost(MAX_OCTAVES), ["octaves" in set::ALL];
     }
 }
 

@@ -1,7 +1,7 @@
 //! Two-sided material: one material on the front, another on the back.
 
 use super::Pattern;
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::Vec3;
 
@@ -9,9 +9,9 @@ described! {
     /// Surface with one material on its front, where the normal points, and another on its back.
     TwoSided ["TwoSided" in set::DURER] {
         /// Material of the front.
-        material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
+        material1: u32 = 0, required, Constraint::Any, ["materialIndex" in set::ALL];
         /// Material of the back.
-        material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
+        material2: u32 = 0, required, Constraint::Any, ["materialIndex" in set::ALL];
     }
 }
 

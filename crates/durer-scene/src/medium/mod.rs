@@ -24,12 +24,12 @@ pub struct Medium {
     /// Phase function.
     pub phase: HenyeyGreenstein,
     /// Region and density; `None` for an infinite homogeneous medium.
-    pub place: Option<Place>,
+    pub place: Option<MediumRegion>,
 }
 
 /// Region of a medium.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Place {
+pub struct MediumRegion {
     /// Bounds of the medium.
     pub bounds: Aabb,
     /// Transform from the bounds to world space; `None` for the identity.
@@ -38,7 +38,7 @@ pub struct Place {
     pub density: Option<Arc<DensityGrid>>,
 }
 
-impl Place {
+impl MediumRegion {
     /// Density at a point in world space.
     fn density(&self, grid: &DensityGrid, point: Vec3) -> f32 {
         let own = self.placed.as_ref().map_or(point, |placed| placed.inverse_point(point));
@@ -48,7 +48,7 @@ impl Place {
 
 /// Result of sampling a distance along a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Flight {
+pub enum DistanceSample {
     /// The light passed the segment. Throughput factor.
     Passed(Spectrum),
     /// The light was scattered. Distance and throughput factor.
@@ -57,7 +57,7 @@ pub enum Flight {
 
 /// A straight segment.
 #[derive(Clone, Copy, Debug)]
-pub struct Way {
+pub struct Segment {
     /// Origin of the distances.
     pub origin: DVec3,
     /// Unit direction.
@@ -68,7 +68,7 @@ pub struct Way {
     pub to: f32,
 }
 
-impl Way {
+impl Segment {
     fn point(&self, distance: f32) -> Vec3 {
         (self.origin + f64::from(distance) * self.dir.as_dvec3()).as_vec3()
     }
@@ -84,7 +84,7 @@ impl Medium {
     }
 
     /// Part of a segment inside the medium.
-    fn clipped(&self, way: &Way) -> Option<(f32, f32)> {
+    fn clipped(&self, way: &Segment) -> Option<(f32, f32)> {
         let Some(place) = &self.place else { return Some((way.from, way.to)) };
         let (origin, dir) = match &place.placed {
             Some(placed) => {
@@ -98,7 +98,7 @@ impl Medium {
         (from < to).then_some((from, to))
     }
 
-    fn grid(&self) -> Option<(&DensityGrid, &Place)> {
+    fn grid(&self) -> Option<(&DensityGrid, &MediumRegion)> {
         let place = self.place.as_ref()?;
         Some((place.density.as_deref()?, place))
     }
@@ -112,7 +112,7 @@ impl Medium {
     /// Transmittance of a segment.
     ///
     /// Source of ratio tracking: Novák, Selle and Jarosz, *Residual Ratio Tracking*, 2014.
-    pub fn transmittance(&self, way: &Way, lanes: &Lanes, numbers: &mut dyn FnMut() -> f32) -> Spectrum {
+    pub fn transmittance(&self, way: &Segment, lanes: &Lanes, numbers: &mut dyn FnMut() -> f32) -> Spectrum {
         let Some((from, to)) = self.clipped(way) else { return Spectrum::ONE };
         let extinction = lanes.coefficient(self.extinction);
         let Some((grid, place)) = self.grid() else { return absorbed(extinction, to - from) };
@@ -135,11 +135,17 @@ impl Medium {
 
     /// Samples a distance along a segment for light with these weights: it passes or is scattered.
     /// The returned weight is divided by the probability of the event.
-    pub fn flight(&self, way: &Way, weights: Spectrum, lanes: &Lanes, numbers: &mut dyn FnMut() -> f32) -> Flight {
-        let Some((from, to)) = self.clipped(way) else { return Flight::Passed(Spectrum::ONE) };
+    pub fn flight(
+        &self,
+        way: &Segment,
+        weights: Spectrum,
+        lanes: &Lanes,
+        numbers: &mut dyn FnMut() -> f32,
+    ) -> DistanceSample {
+        let Some((from, to)) = self.clipped(way) else { return DistanceSample::Passed(Spectrum::ONE) };
         let extinction = lanes.coefficient(self.extinction);
         if !self.scatters() && self.grid().is_none() {
-            return Flight::Passed(absorbed(extinction, to - from));
+            return DistanceSample::Passed(absorbed(extinction, to - from));
         }
         let albedo = lanes.reflectance(self.albedo);
         match self.grid() {
@@ -155,11 +161,11 @@ impl Medium {
                     let here = extinction * (place.density(grid, way.point(at)) / most);
                     let real = (shares(weights * left) * here).element_sum();
                     if numbers() < real {
-                        return Flight::Scattered(at, left * albedo * here / real);
+                        return DistanceSample::Scattered(at, left * albedo * here / real);
                     }
                     left *= (Spectrum::ONE - here) / (1.0 - real);
                 }
-                Flight::Passed(left)
+                DistanceSample::Passed(left)
             }
             None => {
                 // One lane samples the distance; the weight combines the densities of all lanes
@@ -175,10 +181,10 @@ impl Medium {
                 if distance < to - from {
                     let left = absorbed(extinction, distance);
                     let density = (weights * extinction * left).element_sum();
-                    return Flight::Scattered(from + distance, albedo * extinction * left / density);
+                    return DistanceSample::Scattered(from + distance, albedo * extinction * left / density);
                 }
                 let left = absorbed(extinction, to - from);
-                Flight::Passed(left / (weights * left).element_sum().max(f32::MIN_POSITIVE))
+                DistanceSample::Passed(left / (weights * left).element_sum().max(f32::MIN_POSITIVE))
             }
         }
     }

@@ -8,8 +8,8 @@ fn medium(albedo: Color, extinction: Color) -> Medium {
     Medium { extinction, albedo, phase: HenyeyGreenstein::default(), place: None }
 }
 
-fn way(to: f32) -> Way {
-    Way { origin: DVec3::ZERO, dir: Vec3::X, from: 0.0, to }
+fn way(to: f32) -> Segment {
+    Segment { origin: DVec3::ZERO, dir: Vec3::X, from: 0.0, to }
 }
 
 #[test]
@@ -22,8 +22,8 @@ fn flight_agrees_with_beers_law_and_albedo() {
     for _ in 0..n {
         let mut numbers = || random.between(0.0, 1.0).min(0.999_999_9);
         match fog.flight(&way(1.5), Spectrum::ONE, &Lanes::Rgb, &mut numbers) {
-            Flight::Passed(left) => passed += left.truncate().as_dvec3(),
-            Flight::Scattered(distance, left) => {
+            DistanceSample::Passed(left) => passed += left.truncate().as_dvec3(),
+            DistanceSample::Scattered(distance, left) => {
                 assert!((0.0..1.5).contains(&distance));
                 scattered += left.truncate().as_dvec3();
             }
@@ -41,12 +41,12 @@ fn grid_transmittance_agrees_with_the_integral() {
     // Two cells, 1 and 3. Linear between their centres, the mean along x is 2.
     let grid = DensityGrid::new([2, 1, 1], vec![1.0, 3.0]).unwrap();
     let bounds = Aabb { min: Vec3::new(1.0, -1.0, -1.0), max: Vec3::new(3.0, 1.0, 1.0) };
-    let place = Place { bounds, placed: None, density: Some(Arc::new(grid)) };
+    let place = MediumRegion { bounds, placed: None, density: Some(Arc::new(grid)) };
     // Equal box from its opposite corner, with the unit cube's axes along -x, z and y.
     let edges = DMat3::from_cols(-2.0 * DVec3::X, 2.0 * DVec3::Z, 2.0 * DVec3::Y);
     let placed = Affine::new(DAffine3::from_mat3_translation(edges, DVec3::new(3.0, -1.0, -1.0)));
     let unit = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
-    for place in [place.clone(), Place { bounds: unit, placed, ..place }] {
+    for place in [place.clone(), MediumRegion { bounds: unit, placed, ..place }] {
         lets_through(&Medium { place: Some(place), ..medium(Color::splat(0.5), Color::new(0.2, 0.4, 0.1)) });
     }
     assert!(DensityGrid::new([2, 2, 1], vec![0.0; 3]).is_none() && DensityGrid::new([1, 1, 1], vec![-1.0]).is_none());
@@ -60,7 +60,7 @@ fn lets_through(smoke: &Medium) {
     for _ in 0..n {
         let mut numbers = || random.between(0.0, 1.0).min(0.999_999_9);
         ratio += smoke.transmittance(&way(10.0), &Lanes::Rgb, &mut numbers) / n as f32;
-        if let Flight::Passed(left) = smoke.flight(&way(10.0), Spectrum::ONE, &Lanes::Rgb, &mut numbers) {
+        if let DistanceSample::Passed(left) = smoke.flight(&way(10.0), Spectrum::ONE, &Lanes::Rgb, &mut numbers) {
             passed += left / n as f32;
         }
     }
@@ -68,7 +68,7 @@ fn lets_through(smoke: &Medium) {
     assert!((ratio.truncate() - wanted).abs().max_element() < 6e-3, "{ratio} {wanted}");
     assert!((passed.truncate() - wanted).abs().max_element() < 8e-3, "{passed} {wanted}");
     // The space outside the box is clear.
-    let beside = Way { origin: DVec3::new(0.0, 5.0, 0.0), ..way(10.0) };
+    let beside = Segment { origin: DVec3::new(0.0, 5.0, 0.0), ..way(10.0) };
     assert_eq!(smoke.transmittance(&beside, &Lanes::Rgb, &mut || 0.5), Spectrum::ONE);
 }
 

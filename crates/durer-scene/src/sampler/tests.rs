@@ -55,12 +55,12 @@ fn pairs_are_independent_across_pixels_and_dimensions() {
 #[test]
 fn grid_samplers_fill_their_grid() {
     for sampler in [Sampler::Uniform, Sampler::Jittered] {
-        for asked in 1..40 {
-            let n = sampler.round_up(asked);
+        for requested in 1..40 {
+            let n = sampler.round_up(requested);
             let side = n.isqrt();
-            assert!(n >= asked && side * side == n && (side - 1) * (side - 1) < asked);
+            assert!(n >= requested && side * side == n && (side - 1) * (side - 1) < requested);
             for s in 0..n {
-                let p = sampler.pixel_position(1, 2, 3, s, asked) * side as f32;
+                let p = sampler.pixel_position(1, 2, 3, s, requested) * side as f32;
                 assert_eq!((p.x as u32, p.y as u32), (s % side, s / side));
             }
         }

@@ -1,6 +1,6 @@
 //! Assets of a scene in memory, instead of files: meshes, pictures, light profiles and densities.
 
-use crate::describe::{FileName, Rule};
+use crate::describe::{Constraint, FileName};
 use crate::dialect::set;
 use crate::light::Profile;
 use crate::math::Aabb;
@@ -54,33 +54,33 @@ described! {
     /// `PrincipledMaterial` refer to it by name.
     NamedTexture ["Texture" in set::DURER] {
         /// Name of the texture.
-        name: FileName = FileName::default(), required, Rule::Any, ["name" in set::DURER];
+        name: FileName = FileName::default(), required, Constraint::Any, ["name" in set::DURER];
         /// Image file.
-        picture: FileName = FileName::default(), required, Rule::Any, ["picture" in set::DURER];
+        picture: FileName = FileName::default(), required, Constraint::Any, ["picture" in set::DURER];
         /// Wrap mode beyond the left and right borders: `repeat`, `mirror` or `clamp`.
-        wrap_u: Wrap = Wrap::Repeat, optional, Rule::Any, ["wrapU" in set::DURER];
+        wrap_u: Wrap = Wrap::Repeat, optional, Constraint::Any, ["wrapU" in set::DURER];
         /// Wrap mode beyond the upper and lower borders: `repeat`, `mirror` or `clamp`.
-        wrap_v: Wrap = Wrap::Repeat, optional, Rule::Any, ["wrapV" in set::DURER];
+        wrap_v: Wrap = Wrap::Repeat, optional, Constraint::Any, ["wrapV" in set::DURER];
         /// Magnification filter: `linear` interpolates the four nearest texels, `nearest` uses one.
-        texels: Texels = Texels::Linear, optional, Rule::Any, ["texels" in set::DURER];
+        texels: Texels = Texels::Linear, optional, Constraint::Any, ["texels" in set::DURER];
         /// Minification filter of the path tracer: `texels` samples the full-size image, `mipmaps`
         /// a smaller version of it.
-        minified: Minified = Minified::Texels, optional, Rule::Any, ["minified" in set::DURER];
+        minified: Minified = Minified::Texels, optional, Constraint::Any, ["minified" in set::DURER];
         /// Texture coordinate set of the mesh: 0 for the first, 1 for the second.
-        uv_set: u32 = 0, optional, Rule::AtMost(1), ["uvSet" in set::DURER];
+        uv_set: u32 = 0, optional, Constraint::AtMost(1), ["uvSet" in set::DURER];
         /// Transform from surface to image coordinates, both with v downwards from the upper
         /// border, as two rows of a matrix.
-        uv_transform: Vec<[f32; 3]> = Mapping::default().transform.to_vec(), optional, Rule::Rows(2, 2), ["uvTransform" in set::DURER];
+        uv_transform: Vec<[f32; 3]> = Mapping::default().transform.to_vec(), optional, Constraint::Rows(2, 2), ["uvTransform" in set::DURER];
         /// Alpha threshold: opacity is 1 at or above it and 0 below. Without it, opacity equals
         /// alpha.
-        alpha_cutoff: Option<f32> = None, optional, Rule::Any, ["alphaCutoff" in set::DURER];
+        alpha_cutoff: Option<f32> = None, optional, Constraint::Any, ["alphaCutoff" in set::DURER];
         /// Factor on the slope of the normals in a normal map.
-        normal_scale: f32 = 1.0, optional, Rule::Any, ["normalScale" in set::DURER];
+        normal_scale: f32 = 1.0, optional, Constraint::Any, ["normalScale" in set::DURER];
         /// Channel used for a scalar field: `r`, `g`, `b`, `a`, or the `angle` of the direction in
         /// red and green. The default is red, or for opacity the alpha channel if there is one.
-        channel: Option<Channel> = None, optional, Rule::Any, ["channel" in set::DURER];
+        channel: Option<Channel> = None, optional, Constraint::Any, ["channel" in set::DURER];
         /// Values that texels of 0 and 1 are mapped to in a scalar field.
-        texel_range: Vec<[f32; 2]> = vec![[0.0, 1.0]], optional, Rule::Rows(1, 1), ["texelRange" in set::DURER];
+        texel_range: Vec<[f32; 2]> = vec![[0.0, 1.0]], optional, Constraint::Rows(1, 1), ["texelRange" in set::DURER];
     }
 }
 

@@ -83,19 +83,19 @@ impl From<HairMaterial> for Material {
 #[derive(Clone, Debug, Default)]
 pub struct SceneBuilder {
     scene: Scene,
-    objects: Vec<Placed>,
+    objects: Vec<ObjectBuilder>,
     meshes: u32,
 }
 
 /// An object of a [`SceneBuilder`], with its material and transforms.
 #[derive(Clone, Debug)]
-pub struct Placed {
+pub struct ObjectBuilder {
     node: Node,
     material: Option<MaterialId>,
     ops: Vec<MatrixOp>,
 }
 
-impl Placed {
+impl ObjectBuilder {
     /// Sets the material. Objects without one are plain grey.
     pub fn material(&mut self, material: MaterialId) -> &mut Self {
         self.material = Some(material);
@@ -180,7 +180,7 @@ impl SceneBuilder {
     }
 
     /// Adds a primitive or a mesh; set material and transforms on the result.
-    pub fn add(&mut self, shape: impl Into<Shape>) -> &mut Placed {
+    pub fn add(&mut self, shape: impl Into<Shape>) -> &mut ObjectBuilder {
         let node = match shape.into() {
             Shape::Primitive(primitive) => Node::Primitive(primitive),
             Shape::Mesh(mesh) => {
@@ -188,7 +188,7 @@ impl SceneBuilder {
             }
         };
         let at = self.objects.len();
-        self.objects.push(Placed { node, material: None, ops: Vec::new() });
+        self.objects.push(ObjectBuilder { node, material: None, ops: Vec::new() });
         &mut self.objects[at]
     }
 
@@ -199,7 +199,7 @@ impl SceneBuilder {
     /// All errors that were found: see [`Scene::validate`].
     pub fn build(&self) -> Result<Scene, Diagnostics> {
         let mut scene = self.scene.clone();
-        let object = |placed: &Placed| {
+        let object = |placed: &ObjectBuilder| {
             let material = placed.material.map(|material| material.0);
             let object = Object { node: placed.node.clone(), material, span: Span::default() };
             match placed.ops.is_empty() {

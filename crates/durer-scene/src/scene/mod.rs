@@ -4,13 +4,13 @@
 
 pub mod assets;
 pub mod builder;
+pub mod defaults;
 pub mod extent;
 pub mod matrix;
-pub mod staging;
 mod validate;
 
 use crate::camera::Camera;
-use crate::describe::{FileName, Rule, described};
+use crate::describe::{Constraint, FileName, described};
 use crate::dialect::set;
 use crate::light::Light;
 use crate::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid};
@@ -30,58 +30,58 @@ use std::sync::Arc;
 
 pub use validate::MAX_NESTING;
 
-pub use staging::{Axis, Staging, Studio, View};
+pub use defaults::{Axis, DefaultLighting, SceneDefaults, View};
 
 described! {
     /// Background seen by rays that hit nothing, and ambient light.
     Background ["Background" in set::ALL] {
         /// Colour of rays that hit nothing; 0.5 by default, or black with `path` in a scene of
         /// Dürer's own dialect without a `Background`.
-        color: Vec3 = Vec3::splat(0.5), optional, Rule::Any, ["color" in set::ALL];
+        color: Vec3 = Vec3::splat(0.5), optional, Constraint::Any, ["color" in set::ALL];
         /// Ambient light on every surface.
-        ambient_light: Vec3 = Vec3::ZERO, optional, Rule::Any,
+        ambient_light: Vec3 = Vec3::ZERO, optional, Constraint::Any,
             ["ambientLight" in set::CLASSIC, "ambient_light" in set::F23];
         /// Folder with six images (left, right, up, down, front, back) that replace the colour.
-        cube_map: Option<FileName> = None, optional, Rule::Any,
+        cube_map: Option<FileName> = None, optional, Constraint::Any,
             ["cubeMap" in set::F12A5 | set::F16 | set::DURER, "cube_map" in set::F23];
         /// Environment map that replaces the colour and lights the scene, preferably with high
         /// dynamic range (`.exr`, `.hdr`); its centre is at -z. Whitted ray tracing ignores its
         /// light.
-        environment: Option<FileName> = None, optional, Rule::Any, ["environment" in set::DURER];
+        environment: Option<FileName> = None, optional, Constraint::Any, ["environment" in set::DURER];
         /// Direction to the sun, of any length, with y up. The sun and a clear sky light the scene,
         /// in cd/m^2; set `--exposure`, for example to -13.
-        sun: Option<Vec3> = None, optional, Rule::NonZero, ["sun" in set::DURER];
+        sun: Option<Vec3> = None, optional, Constraint::NonZero, ["sun" in set::DURER];
         /// Altitude of the sun, in degrees above the horizon; an alternative to `sun`.
-        sun_altitude: Option<f32> = None, optional, Rule::From(-90.0, 90.0), ["sunAltitude" in set::DURER];
+        sun_altitude: Option<f32> = None, optional, Constraint::From(-90.0, 90.0), ["sunAltitude" in set::DURER];
         /// Azimuth of the sun, in degrees from north (-z) towards east (x): 180 is south.
-        sun_azimuth: Option<f32> = None, optional, Rule::Any, ["sunAzimuth" in set::DURER];
+        sun_azimuth: Option<f32> = None, optional, Constraint::Any, ["sunAzimuth" in set::DURER];
         /// Latitude, in degrees north of the equator; together with date and time, an alternative
         /// to `sun`.
-        latitude: Option<f32> = None, optional, Rule::From(-90.0, 90.0), ["latitude" in set::DURER];
+        latitude: Option<f32> = None, optional, Constraint::From(-90.0, 90.0), ["latitude" in set::DURER];
         /// Longitude, in degrees east of Greenwich.
-        longitude: Option<f32> = None, optional, Rule::From(-360.0, 360.0), ["longitude" in set::DURER];
+        longitude: Option<f32> = None, optional, Constraint::From(-360.0, 360.0), ["longitude" in set::DURER];
         /// Year, month and day.
-        date: Option<Vec3> = None, optional, Rule::Counts(9999), ["date" in set::DURER];
+        date: Option<Vec3> = None, optional, Constraint::Counts(9999), ["date" in set::DURER];
         /// Hours, minutes and seconds of the local clock.
-        time: Option<Vec3> = None, optional, Rule::Any, ["time" in set::DURER];
+        time: Option<Vec3> = None, optional, Constraint::Any, ["time" in set::DURER];
         /// Offset of the local clock from UTC in hours, including daylight saving time; default 0.
-        time_zone: Option<f32> = None, optional, Rule::From(-14.0, 14.0), ["timeZone" in set::DURER];
+        time_zone: Option<f32> = None, optional, Constraint::From(-14.0, 14.0), ["timeZone" in set::DURER];
         /// Turbidity of the air: 2 is clear, 3 average, 10 hazy; default 3.
-        turbidity: Option<f32> = None, optional, Rule::Positive, ["turbidity" in set::DURER];
+        turbidity: Option<f32> = None, optional, Constraint::Positive, ["turbidity" in set::DURER];
         /// Number of a CIE standard sky, from 1 to 16 (1 overcast, 5 uniform, 12 clear, 16
         /// traditional overcast), which lights the scene in cd/m^2, without direct sunlight. All
         /// except 1, 3, 5 and 16 need the position of the sun, set by `sun`.
-        cie_sky: Option<u32> = None, optional, Rule::Numbered(OVERCAST), ["cieSky" in set::DURER];
+        cie_sky: Option<u32> = None, optional, Constraint::Numbered(OVERCAST), ["cieSky" in set::DURER];
         /// Luminance of the CIE sky at the zenith, in cd/m^2; default 10000.
-        zenith_luminance: Option<f32> = None, optional, Rule::Positive, ["zenithLuminance" in set::DURER];
+        zenith_luminance: Option<f32> = None, optional, Constraint::Positive, ["zenithLuminance" in set::DURER];
         /// Fraction of the light from sun and sky that the ground below the horizon reflects. The
         /// default is 0.2 with a CIE sky; with a clear sky, the ground has a fifth of the zenith's
         /// light by default.
-        ground_reflectance: Option<f32> = None, optional, Rule::Share, ["groundReflectance" in set::DURER];
+        ground_reflectance: Option<f32> = None, optional, Constraint::Share, ["groundReflectance" in set::DURER];
         /// Rotation of the environment about y, in degrees.
-        environment_rotation: Option<f32> = None, optional, Rule::Any, ["environmentRotation" in set::DURER];
+        environment_rotation: Option<f32> = None, optional, Constraint::Any, ["environmentRotation" in set::DURER];
         /// Factor on the environment.
-        environment_scale: Option<Vec3> = None, optional, Rule::Any, ["environmentScale" in set::DURER];
+        environment_scale: Option<Vec3> = None, optional, Constraint::Any, ["environmentScale" in set::DURER];
     }
 }
 
@@ -169,7 +169,7 @@ impl Background {
 
 /// Settings that a file requests for its picture; options override them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Wishes {
+pub struct RenderDefaults {
     /// Width and height in pixels.
     pub size: Option<(u32, u32)>,
     /// Part of the picture to render: first column, first row, width and height.
@@ -181,9 +181,9 @@ pub struct Wishes {
     pub bounces: Option<u32>,
 }
 
-impl Wishes {
-    fn are_none(&self) -> bool {
-        *self == Wishes::default()
+impl RenderDefaults {
+    fn is_empty(&self) -> bool {
+        *self == RenderDefaults::default()
     }
 }
 
@@ -207,8 +207,8 @@ pub struct Scene {
     #[serde(skip_serializing_if = "Assets::is_empty", skip_deserializing)]
     pub assets: Assets,
     /// Settings that the file requests for its picture.
-    #[serde(default, skip_serializing_if = "Wishes::are_none")]
-    pub wishes: Wishes,
+    #[serde(rename = "wishes", default, skip_serializing_if = "RenderDefaults::is_empty")]
+    pub render_defaults: RenderDefaults,
     /// Up axis, if the format defines one.
     #[serde(skip)]
     pub up: Option<Axis>,
@@ -245,12 +245,12 @@ impl Scene {
 
 impl Scene {
     /// Returns true if a surface, an environment map or the sun emits light.
-    pub fn shines(&self) -> bool {
-        let shines = |material: &Spanned<Material>| match &material.value {
+    pub fn emits_light(&self) -> bool {
+        let emits = |material: &Spanned<Material>| match &material.value {
             Material::Principled(layers) => layers.emission_luminance > 0.0,
             _ => false,
         };
-        self.background.environment.is_some() || self.background.sun().is_some() || self.materials.iter().any(shines)
+        self.background.environment.is_some() || self.background.sun().is_some() || self.materials.iter().any(emits)
     }
 }
 

@@ -6,8 +6,8 @@
 use super::{Background, Group, Material, MatrixOp, NamedTexture, Node, Object, Scene, Spanned};
 use crate::camera::Projection;
 use crate::describe::{DescribedList, Value};
-use crate::dialect::{Compat, CompatSet, Dialect};
-use crate::light::Emitter;
+use crate::dialect::{Dialect, Quirk, QuirkSet};
+use crate::light::Illuminate;
 use crate::material::Pattern;
 use crate::medium::Fog;
 use crate::shape::Shape;
@@ -32,20 +32,20 @@ impl Scene {
         self.validate_as(0)
     }
 
-    /// Checks as [`Scene::validate`], but under [`Compat::AnyValues`] accepts values that official
+    /// Checks as [`Scene::validate`], but under [`Quirk::AnyValues`] accepts values that official
     /// programs draw.
-    pub fn validate_as(&self, compat: CompatSet) -> Diagnostics {
-        let any = compat & Compat::AnyValues.bit() != 0;
+    pub fn validate_as(&self, compat: QuirkSet) -> Diagnostics {
+        let any = compat & Quirk::AnyValues.bit() != 0;
         let mut found = Validator { diagnostics: Diagnostics::default(), materials: self.materials.len(), any };
         if let Some(camera) = &self.camera {
-            found.thing(camera, self.camera_span, Projection::validate);
+            found.item(camera, self.camera_span, Projection::validate);
         }
-        found.thing(&self.background, self.background_span, Background::validate);
+        found.item(&self.background, self.background_span, Background::validate);
         if let Some(Spanned { value, span }) = &self.fog {
-            found.thing(value, *span, Fog::validate);
+            found.item(value, *span, Fog::validate);
         }
         for Spanned { value, span } in self.lights.iter().flatten() {
-            found.thing(value, *span, Emitter::validate);
+            found.item(value, *span, Illuminate::validate);
         }
         self.materials.iter().for_each(|material| found.material(material));
         found.nested_materials(self);
@@ -115,11 +115,11 @@ impl Validator {
     }
 
     /// Checks the fields of an object one by one and, if all are valid, in combination.
-    fn thing<T: DescribedList>(&mut self, thing: &T, span: Span, together: impl FnOnce(&T) -> Result<(), String>) {
-        let name = thing.keyword(Dialect::Durer);
+    fn item<T: DescribedList>(&mut self, entry: &T, span: Span, together: impl FnOnce(&T) -> Result<(), String>) {
+        let name = entry.keyword(Dialect::Durer);
         let mut is_valid = true;
-        for (at, field) in thing.fields().iter().enumerate() {
-            let Some(value) = thing.get(at) else { continue };
+        for (at, field) in entry.fields().iter().enumerate() {
+            let Some(value) = entry.get(at) else { continue };
             if let Err(violation) = field.rule.validate(&value) {
                 if self.any && field.drawn_anyway(name, &value).as_ref() == Some(&value) {
                     continue;
@@ -128,7 +128,7 @@ impl Validator {
                 self.error(format!("{name}: {}{} {violation}", field.name, shown(&value)), span);
             }
         }
-        if is_valid && let Err(message) = together(thing) {
+        if is_valid && let Err(message) = together(entry) {
             let error = Diagnostic::error(message);
             let lacks_sun = error.message.contains("`cieSky`");
             let help = "write `sun x y z`, the direction to the sun with y up; skies 1, 3, 5 and 16 need none";
@@ -140,15 +140,15 @@ impl Validator {
         let span = material.span;
         match &material.value {
             Material::Phong(phong, noise) => {
-                self.thing(&**phong, span, |_| Ok(()));
+                self.item(&**phong, span, |_| Ok(()));
                 if let Some(noise) = noise {
-                    self.thing(noise, span, |_| Ok(()));
+                    self.item(noise, span, |_| Ok(()));
                 }
             }
-            Material::Principled(layers) => self.thing(&**layers, span, |_| Ok(())),
-            Material::Hair(hair) => self.thing(hair, span, |_| Ok(())),
+            Material::Principled(layers) => self.item(&**layers, span, |_| Ok(())),
+            Material::Hair(hair) => self.item(hair, span, |_| Ok(())),
             Material::Solid(solid, ops) => {
-                self.thing(solid, span, |_| Ok(()));
+                self.item(solid, span, |_| Ok(()));
                 self.matrices(ops, span);
             }
         }
@@ -201,12 +201,12 @@ impl Validator {
                 self.object(inner, level + 1);
             }
             Node::Solid(_, parts) => parts.iter().for_each(|part| self.object(part, level + 1)),
-            Node::Primitive(shape) => self.thing(shape, span, Shape::validate),
-            Node::Mesh(mesh) => self.thing(mesh, span, |_| Ok(())),
-            Node::HeightField(field) => self.thing(field, span, |field| field.validate()),
+            Node::Primitive(shape) => self.item(shape, span, Shape::validate),
+            Node::Mesh(mesh) => self.item(mesh, span, |_| Ok(())),
+            Node::HeightField(field) => self.item(field, span, |field| field.validate()),
             Node::Voxels(grid, balls) => {
-                self.thing(grid, span, |grid| grid.validate());
-                balls.iter().for_each(|ball| self.thing(ball, span, Shape::validate));
+                self.item(grid, span, |grid| grid.validate());
+                balls.iter().for_each(|ball| self.item(ball, span, Shape::validate));
             }
         }
     }
@@ -231,7 +231,7 @@ impl Validator {
         }
         for (name, picture) in &scene.assets.pictures {
             let texture = NamedTexture::with_mapping(name, picture.bytes.path(), picture.mapping);
-            self.thing(&texture, Span::default(), |_| Ok(()));
+            self.item(&texture, Span::default(), |_| Ok(()));
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::chord::Chord;
 use super::cylinder::{Axis, BASE, SIDE, TOP};
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, exactly, inset, tessellate};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
@@ -13,13 +13,13 @@ described! {
     /// A cone with a cap, or a frustum with both caps if the top has a radius too.
     Cone ["Cone" in set::DURER] {
         /// Centre of the cap at the base.
-        base: Vec3 = Vec3::ZERO, required, Rule::Any, ["base" in set::DURER];
+        base: Vec3 = Vec3::ZERO, required, Constraint::Any, ["base" in set::DURER];
         /// The tip, or the centre of the cap at the top.
-        top: Vec3 = Vec3::Y, required, Rule::Any, ["top" in set::DURER];
+        top: Vec3 = Vec3::Y, required, Constraint::Any, ["top" in set::DURER];
         /// Radius at the base; can be 0 if the radius at the top is not.
-        base_radius: f32 = 1.0, required, Rule::NonNegative, ["baseRadius" in set::DURER];
+        base_radius: f32 = 1.0, required, Constraint::NonNegative, ["baseRadius" in set::DURER];
         /// Radius at the top; default 0 for a tip.
-        top_radius: f32 = 0.0, optional, Rule::NonNegative, ["topRadius" in set::DURER];
+        top_radius: f32 = 0.0, optional, Constraint::NonNegative, ["topRadius" in set::DURER];
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::chord::Chord;
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, exactly, inset, padded, tessellate};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::light::{Body, EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
@@ -12,9 +12,9 @@ described! {
     /// A box whose faces are parallel to the coordinate planes.
     Cuboid ["Box" in set::DURER] {
         /// Corner with the smallest coordinates.
-        min: Vec3 = Vec3::splat(-1.0), required, Rule::Any, ["min" in set::DURER];
+        min: Vec3 = Vec3::splat(-1.0), required, Constraint::Any, ["min" in set::DURER];
         /// Corner with the largest coordinates.
-        max: Vec3 = Vec3::ONE, required, Rule::Any, ["max" in set::DURER];
+        max: Vec3 = Vec3::ONE, required, Constraint::Any, ["max" in set::DURER];
     }
 }
 

@@ -4,7 +4,7 @@ use super::chord::Chord;
 use super::{
     Flip, INSET, MeshData, Plane, Shape, ShapeHit, Surface, Uv, disc_reach, exactly, inset, padded, tessellate,
 };
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
@@ -14,11 +14,11 @@ described! {
     /// A cylinder with caps, around the line between two points.
     Cylinder ["Cylinder" in set::DURER] {
         /// Centre of the cap at one end.
-        base: Vec3 = Vec3::ZERO, required, Rule::Any, ["base" in set::DURER];
+        base: Vec3 = Vec3::ZERO, required, Constraint::Any, ["base" in set::DURER];
         /// Centre of the cap at the other end.
-        top: Vec3 = Vec3::Y, required, Rule::Any, ["top" in set::DURER];
+        top: Vec3 = Vec3::Y, required, Constraint::Any, ["top" in set::DURER];
         /// Radius, in world units.
-        radius: f32 = 1.0, required, Rule::Positive, ["radius" in set::DURER];
+        radius: f32 = 1.0, required, Constraint::Positive, ["radius" in set::DURER];
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, Uv, disc_reach, padded, tessellate};
 use crate::bsdf::Frame;
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3};
@@ -12,13 +12,13 @@ described! {
     /// A flat disc, optionally with a hole.
     Disc ["Disc" in set::DURER] {
         /// Centre of the disc.
-        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        center: Vec3 = Vec3::ZERO, required, Constraint::Any, ["center" in set::DURER];
         /// Normal on the front side; of any length.
-        normal: Vec3 = Vec3::Y, required, Rule::NonZero, ["normal" in set::DURER];
+        normal: Vec3 = Vec3::Y, required, Constraint::NonZero, ["normal" in set::DURER];
         /// Radius, in world units.
-        radius: f32 = 1.0, required, Rule::Positive, ["radius" in set::DURER];
+        radius: f32 = 1.0, required, Constraint::Positive, ["radius" in set::DURER];
         /// Radius of the hole at the centre.
-        inner_radius: f32 = 0.0, optional, Rule::NonNegative, ["innerRadius" in set::DURER];
+        inner_radius: f32 = 0.0, optional, Constraint::NonNegative, ["innerRadius" in set::DURER];
     }
 }
 

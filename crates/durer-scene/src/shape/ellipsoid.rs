@@ -1,7 +1,7 @@
 //! The ellipsoid whose axes are parallel to the coordinate axes.
 
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, padded, tessellate, turn};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::light::{Body, EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
@@ -11,9 +11,9 @@ described! {
     /// A sphere stretched along the coordinate axes.
     Ellipsoid ["Ellipsoid" in set::DURER] {
         /// Centre of the ellipsoid.
-        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        center: Vec3 = Vec3::ZERO, required, Constraint::Any, ["center" in set::DURER];
         /// Semi-axes along x, y and z.
-        radii: Vec3 = Vec3::ONE, required, Rule::Any, ["radii" in set::DURER];
+        radii: Vec3 = Vec3::ONE, required, Constraint::Any, ["radii" in set::DURER];
     }
 }
 

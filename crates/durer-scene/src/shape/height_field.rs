@@ -2,7 +2,7 @@
 
 use super::MeshData;
 use super::mesh_data::Triangles;
-use crate::describe::{FileName, Rule, described};
+use crate::describe::{Constraint, FileName, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Vec2, Vec3};
 use crate::source::Digest;
@@ -15,13 +15,13 @@ described! {
     HeightField ["HeightField" in set::DURER] {
         /// Path of the height image. Black is lowest; white, or 1 in floating-point images, is
         /// highest.
-        picture: FileName = FileName::default(), required, Rule::Any, ["picture" in set::DURER];
+        picture: FileName = FileName::default(), required, Constraint::Any, ["picture" in set::DURER];
         /// Corner of the terrain's box with the smallest coordinates; heights there are 0.
-        min: Vec3 = Vec3::splat(-1.0), required, Rule::Any, ["min" in set::DURER];
+        min: Vec3 = Vec3::splat(-1.0), required, Constraint::Any, ["min" in set::DURER];
         /// Corner of the terrain's box with the largest coordinates; heights there are 1.
-        max: Vec3 = Vec3::ONE, required, Rule::Any, ["max" in set::DURER];
+        max: Vec3 = Vec3::ONE, required, Constraint::Any, ["max" in set::DURER];
         /// Depth of the block below `min`.
-        depth: f32 = 1.0, optional, Rule::Positive, ["depth" in set::DURER];
+        depth: f32 = 1.0, optional, Constraint::Positive, ["depth" in set::DURER];
     }
 }
 

@@ -5,7 +5,7 @@ pub use super::mesh_data::{MeshData, NO_INDEX, Triangles, loosened, place_key};
 use super::normals::{Normals, made, of_terrain};
 use super::triangle::triangle_surface;
 use super::{ShapeHit, Surface};
-use crate::describe::{FileName, Rule, described};
+use crate::describe::{Constraint, FileName, described};
 use crate::dialect::{MeshNormals, set};
 use crate::math::{Aabb, Vec2, Vec3};
 use crate::source::Digest;
@@ -17,7 +17,7 @@ described! {
     /// A triangle mesh in a separate file.
     TriangleMesh ["TriangleMesh" in set::CLASSIC, "mesh" in set::F23] {
         /// Path of the mesh file: `.obj`, `.ply` or `.stl`.
-        obj_file: FileName = FileName::default(), required, Rule::Any, ["obj_file" in set::ALL];
+        obj_file: FileName = FileName::default(), required, Constraint::Any, ["obj_file" in set::ALL];
     }
 }
 

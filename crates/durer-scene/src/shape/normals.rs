@@ -14,7 +14,7 @@ const MANY: usize = 64;
 /// Minimum number of vertices per thread.
 const AT_ONCE: usize = 256;
 /// Number of vertices processed in parallel; all at once would need much memory.
-const TOGETHER: usize = 64 * AT_ONCE;
+const PER_TASK: usize = 64 * AT_ONCE;
 
 /// Normals at the corners of triangles.
 #[derive(Clone, Debug, Default)]
@@ -177,7 +177,7 @@ fn shares_vertices(mesh: &impl Triangles) -> bool {
 /// JGT 3(1), 1998.
 fn creased(mesh: &impl Triangles, degrees: f32, by_vertex: bool) -> Normals {
     let least_cosine = fp::sin_cos_degrees(f64::from(degrees)).1 as f32;
-    let around = Around::new(mesh);
+    let around = VertexCorners::new(mesh);
     let face = |corner: u32| cross(mesh, corner as usize / 3).normalize_or_zero().as_vec3();
     let angle = |corner: u32| {
         let (corners, k) = (mesh.corners(corner as usize / 3), corner as usize);
@@ -223,8 +223,8 @@ fn creased(mesh: &impl Triangles, degrees: f32, by_vertex: bool) -> Normals {
         true => Corners::ByVertex(Vec::with_capacity(count), vec![[0; 3]; mesh.len()]),
         false => Corners::Listed(vec![[0; 3]; mesh.len()]),
     };
-    for first in (0..count).step_by(TOGETHER) {
-        let starts = (first..count.min(first + TOGETHER)).into_par_iter().step_by(AT_ONCE);
+    for first in (0..count).step_by(PER_TASK) {
+        let starts = (first..count.min(first + PER_TASK)).into_par_iter().step_by(AT_ONCE);
         let made: Vec<_> = starts.map(|start| some(start..count.min(start + AT_ONCE))).collect();
         for (own, of_vertices, numbers) in made {
             let base = values.len() as u32;
@@ -249,13 +249,13 @@ fn creased(mesh: &impl Triangles, degrees: f32, by_vertex: bool) -> Normals {
 
 /// Corners at each vertex, as one flat list, of triangles that [`Triangles::ordered`] does not
 /// cover: corner k of triangle i is 3 i + k.
-struct Around {
+struct VertexCorners {
     /// Start of each vertex's corners, then the end of the last.
     starts: Vec<u32>,
     corners: Vec<u32>,
 }
 
-impl Around {
+impl VertexCorners {
     fn new(mesh: &impl Triangles) -> Self {
         let listed = mesh.ordered()..mesh.len();
         let mut starts = vec![0; mesh.vertices() + 1];
@@ -276,7 +276,7 @@ impl Around {
         // Each start has advanced to the next vertex's start.
         starts.rotate_right(1);
         starts[0] = 0;
-        Around { starts, corners }
+        VertexCorners { starts, corners }
     }
 
     /// Offers all corners at a vertex, in the order of the triangles.

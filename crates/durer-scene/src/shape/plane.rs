@@ -1,7 +1,7 @@
 //! The infinite plane normal · p = offset.
 
 use super::{Flip, MeshData, Shape, ShapeHit, Surface, Uv};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
@@ -12,9 +12,9 @@ described! {
     /// space behind the plane.
     Plane ["Plane" in set::CLASSIC, "plane" in set::F23] {
         /// Normal on the front side; of any length.
-        normal: Vec3 = Vec3::Y, required, Rule::NonZero, ["normal" in set::ALL];
+        normal: Vec3 = Vec3::Y, required, Constraint::NonZero, ["normal" in set::ALL];
         /// Distance from the origin along the normal, for a unit normal.
-        offset: f32 = 0.0, required, Rule::Any, ["offset" in set::ALL];
+        offset: f32 = 0.0, required, Constraint::Any, ["offset" in set::ALL];
     }
 }
 

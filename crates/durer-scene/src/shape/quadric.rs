@@ -1,7 +1,7 @@
 //! General quadric: the zeros of a polynomial of degree two in x, y and z.
 
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, padded, turn};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
@@ -12,13 +12,13 @@ described! {
     /// J. The polynomial is negative inside.
     Quadric ["Quadric" in set::DURER] {
         /// Coefficients A, B and C.
-        squares: Vec3 = Vec3::ONE, required, Rule::Any, ["squares" in set::DURER];
+        squares: Vec3 = Vec3::ONE, required, Constraint::Any, ["squares" in set::DURER];
         /// Coefficients D, E and F.
-        products: Vec3 = Vec3::ZERO, optional, Rule::Any, ["products" in set::DURER];
+        products: Vec3 = Vec3::ZERO, optional, Constraint::Any, ["products" in set::DURER];
         /// Coefficients G, H and I.
-        linear: Vec3 = Vec3::ZERO, optional, Rule::Any, ["linear" in set::DURER];
+        linear: Vec3 = Vec3::ZERO, optional, Constraint::Any, ["linear" in set::DURER];
         /// Coefficient J.
-        constant: f32 = -1.0, required, Rule::Any, ["constant" in set::DURER];
+        constant: f32 = -1.0, required, Constraint::Any, ["constant" in set::DURER];
     }
 }
 

@@ -1,7 +1,7 @@
 //! The rectangle or parallelogram.
 
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, inset, padded, tessellate};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
@@ -12,11 +12,11 @@ described! {
     /// `edge1` is counter-clockwise from `edge0`.
     Rectangle ["Rectangle" in set::DURER] {
         /// Position of a corner.
-        corner: Vec3 = Vec3::ZERO, required, Rule::Any, ["corner" in set::DURER];
+        corner: Vec3 = Vec3::ZERO, required, Constraint::Any, ["corner" in set::DURER];
         /// Edge from the corner to the next one.
-        edge0: Vec3 = Vec3::X, required, Rule::NonZero, ["edge0" in set::DURER];
+        edge0: Vec3 = Vec3::X, required, Constraint::NonZero, ["edge0" in set::DURER];
         /// Edge from the corner to the previous one.
-        edge1: Vec3 = Vec3::Y, required, Rule::NonZero, ["edge1" in set::DURER];
+        edge1: Vec3 = Vec3::Y, required, Constraint::NonZero, ["edge1" in set::DURER];
     }
 }
 

@@ -1,7 +1,7 @@
 //! The sphere |p - center|^2 = radius^2.
 
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, Uv, tessellate};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::light::{Body, EmitterShape, Placement};
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, fp, gamma};
@@ -11,9 +11,9 @@ described! {
     /// A sphere.
     Sphere ["Sphere" in set::CLASSIC, "sphere" in set::F23] {
         /// Centre of the sphere.
-        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::CLASSIC];
+        center: Vec3 = Vec3::ZERO, required, Constraint::Any, ["center" in set::CLASSIC];
         /// Radius, in world units.
-        radius: f32 = 1.0, required, Rule::Positive, ["radius" in set::ALL];
+        radius: f32 = 1.0, required, Constraint::Positive, ["radius" in set::ALL];
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, disc_reach, padded, tessellate, turn};
 use crate::bsdf::Frame;
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::light::{Body, EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
@@ -12,13 +12,13 @@ described! {
     /// A torus: all points within `minorRadius` of a circle.
     Torus ["Torus" in set::DURER] {
         /// Centre of the circle.
-        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        center: Vec3 = Vec3::ZERO, required, Constraint::Any, ["center" in set::DURER];
         /// Normal of the circle's plane; of any length.
-        axis: Vec3 = Vec3::Y, optional, Rule::NonZero, ["axis" in set::DURER];
+        axis: Vec3 = Vec3::Y, optional, Constraint::NonZero, ["axis" in set::DURER];
         /// Radius of the circle, in world units.
-        major_radius: f32 = 1.0, required, Rule::Positive, ["majorRadius" in set::DURER];
+        major_radius: f32 = 1.0, required, Constraint::Positive, ["majorRadius" in set::DURER];
         /// Distance from the circle: half the ring's thickness.
-        minor_radius: f32 = 0.25, required, Rule::Positive, ["minorRadius" in set::DURER];
+        minor_radius: f32 = 0.25, required, Constraint::Positive, ["minorRadius" in set::DURER];
     }
 }
 

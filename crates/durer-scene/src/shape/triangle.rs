@@ -2,7 +2,7 @@
 
 use super::watertight::{self, WatertightRay};
 use super::{Flip, INSET, MeshData, Plane, Shape, ShapeHit, Surface, Uv, exactly, tessellate};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
@@ -12,11 +12,11 @@ described! {
     /// A triangle; its corners are counter-clockwise when seen from the front.
     Triangle ["Triangle" in set::CLASSIC, "triangle" in set::F23] {
         /// Position of the first corner.
-        vertex0: Vec3 = Vec3::ZERO, required, Rule::Any, ["vertex0" in set::ALL];
+        vertex0: Vec3 = Vec3::ZERO, required, Constraint::Any, ["vertex0" in set::ALL];
         /// Position of the second corner.
-        vertex1: Vec3 = Vec3::X, required, Rule::Any, ["vertex1" in set::ALL];
+        vertex1: Vec3 = Vec3::X, required, Constraint::Any, ["vertex1" in set::ALL];
         /// Position of the third corner.
-        vertex2: Vec3 = Vec3::Y, required, Rule::Any, ["vertex2" in set::ALL];
+        vertex2: Vec3 = Vec3::Y, required, Constraint::Any, ["vertex2" in set::ALL];
     }
 }
 

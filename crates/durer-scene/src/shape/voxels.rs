@@ -2,7 +2,7 @@
 //! of a sphere.
 
 use super::{MeshData, Sphere};
-use crate::describe::{Rule, described};
+use crate::describe::{Constraint, described};
 use crate::dialect::set;
 use crate::math::Vec3;
 
@@ -11,11 +11,11 @@ described! {
     /// whose centres are inside that sphere.
     VoxelGrid ["Grid" in set::F03 | set::DURER] {
         /// Corner with the smallest coordinates.
-        min: Vec3 = Vec3::splat(-1.0), required, Rule::Any, ["min" in set::F03 | set::DURER];
+        min: Vec3 = Vec3::splat(-1.0), required, Constraint::Any, ["min" in set::F03 | set::DURER];
         /// Corner with the largest coordinates.
-        max: Vec3 = Vec3::ONE, required, Rule::Any, ["max" in set::F03 | set::DURER];
+        max: Vec3 = Vec3::ONE, required, Constraint::Any, ["max" in set::F03 | set::DURER];
         /// Number of cells along x, y and z, each from 1 to 256.
-        num_cells: Vec3 = Vec3::ONE, required, Rule::Counts(256), ["numCells" in set::F03 | set::DURER];
+        num_cells: Vec3 = Vec3::ONE, required, Constraint::Counts(256), ["numCells" in set::F03 | set::DURER];
     }
 }
 

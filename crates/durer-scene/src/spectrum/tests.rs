@@ -109,7 +109,7 @@ fn illuminants_have_their_published_chromaticities() {
 fn light_with_negligible_visible_part_is_none() {
     assert_eq!(Curve::light(vec![[791.0, 0.0], [1e36, 2.0]]), None);
     assert_eq!(Curve::light(vec![[400.0, 0.0], [700.0, 0.0]]), None);
-    assert!(Curve::light(vec![[791.0, 0.0], [1e30, 2.0]]).is_none_or(|lamp| lamp.color().is_finite()));
+    assert!(Curve::light(vec![[791.0, 0.0], [1e30, 2.0]]).is_none_or(|emitter| emitter.color().is_finite()));
     assert!(Curve::light(vec![[400.0, 1e-30], [700.0, 1e-30]]).unwrap().color().is_finite());
 }
 

@@ -8,7 +8,7 @@ use crate::math::{Color, Vec2, Vec3};
 pub struct CubeMap {
     /// Images in the order of [`CubeMap::FACES`].
     pub faces: [Texture; 6],
-    /// True if the quirk [`crate::dialect::Compat::MirroredBack`] applies.
+    /// True if the quirk [`crate::dialect::Quirk::MirroredBack`] applies.
     pub mirrored_back: bool,
 }
 

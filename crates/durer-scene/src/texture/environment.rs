@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// Position of a direction in the map, in texels.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct TexelPosition {
     x: f32,
     y: f32,
     /// Sine of the direction's angle to the y axis.
@@ -159,16 +159,16 @@ impl Environment {
         size_of_val(&*self.texels) + size_of_val(&*self.hints)
     }
 
-    fn place(&self, dir: Vec3) -> Place {
+    fn place(&self, dir: Vec3) -> TexelPosition {
         let beside = (dir.x * dir.x + dir.z * dir.z).sqrt();
         let u = 0.5 + fp::atan2_turn(dir.x, -dir.z) - self.turn;
         let u = if u < 0.0 { u + 1.0 } else { u };
         let v = 2.0 * fp::atan2_turn(beside, dir.y);
-        Place { x: u * self.width as f32, y: v * self.height as f32, sine: beside / dir.length() }
+        TexelPosition { x: u * self.width as f32, y: v * self.height as f32, sine: beside / dir.length() }
     }
 
     /// Radiance at a position, interpolated bilinearly.
-    pub fn light(&self, place: &Place) -> Color {
+    pub fn light(&self, place: &TexelPosition) -> Color {
         // Integer coordinates, from 0, of the texel after the position.
         let (x, y) = (place.x + 0.5, place.y + 0.5);
         let (right, below) = (x as usize, y as usize);
@@ -181,7 +181,7 @@ impl Environment {
     }
 
     /// Pdf of a position, per solid angle.
-    fn density(&self, place: &Place) -> f32 {
+    fn density(&self, place: &TexelPosition) -> f32 {
         let (x, y) = ((place.x as usize).min(self.width - 1), (place.y as usize).min(self.height - 1));
         self.density_in((x, y), place.sine)
     }
@@ -226,7 +226,7 @@ impl Environment {
 
     /// Samples a direction by two numbers in [0, 1). Returns it with its position in the map and
     /// its pdf per solid angle.
-    pub fn direction(&self, u: Vec2) -> Option<(Vec3, Place, f32)> {
+    pub fn direction(&self, u: Vec2) -> Option<(Vec3, TexelPosition, f32)> {
         let steps = self.width.div_ceil(STEP);
         let (y, v) = choose(&self.columns, |sum| *sum, self.columns[self.height - 1], &self.column_hints, u.y);
         let hints = &self.hints[y * steps..(y + 1) * steps];
@@ -236,7 +236,7 @@ impl Environment {
         let (sin_turn, cos_turn) = fp::sin_cos_turn(across / self.width as f32 + self.turn - 0.5);
         let pdf = self.density_in((x, y), sine);
         let dir = Vec3::new(sine * sin_turn, cosine, -sine * cos_turn);
-        (pdf > 0.0).then_some((dir, Place { x: across, y: down, sine }, pdf))
+        (pdf > 0.0).then_some((dir, TexelPosition { x: across, y: down, sine }, pdf))
     }
 }
 

@@ -29,14 +29,14 @@ impl Session {
     pub(crate) fn look_at_disk(&mut self, say: &mut dyn FnMut(Message)) {
         let Some(document) = self.document.as_ref().filter(|_| self.on_disk) else { return };
         let stamp = durer::format::folder::stamp_of(&document.path);
-        if stamp == self.stamp || stamp == self.told || stamp.is_none() {
+        if stamp == self.stamp || stamp == self.reported || stamp.is_none() {
             return;
         }
         let Ok(bytes) = read(&document.path) else { return };
         if bytes != document.bytes {
             let Ok(text) = std::str::from_utf8(&bytes) else { return };
             say((Event::Text { text: text.into(), from_disk: true }, Vec::new()));
-            self.told = stamp;
+            self.reported = stamp;
         } else {
             self.stamp = stamp;
         }

@@ -2,7 +2,7 @@
 
 use super::probes::{Probe, ProbeGrid, ProbeHit};
 use durer_render::world::World;
-use durer_scene::light::Emitter as _;
+use durer_scene::light::Illuminate as _;
 use durer_scene::math::{Ray, Vec3};
 
 /// Largest share of the visible points in a beam that misses the scene.
@@ -26,8 +26,8 @@ pub(super) enum Aim {
 /// Returns the light that arrives at a point, as a share of the most that the light can send that
 /// far.
 pub(super) fn share(world: &World, light: usize, point: Vec3) -> f32 {
-    let lamp = &world.lights()[light];
-    let Some((place, strongest)) = lamp.place() else { return 1.0 };
+    let emitter = &world.lights()[light];
+    let Some((place, strongest)) = emitter.place() else { return 1.0 };
     let most = world.profiles().get(light).and_then(Option::as_ref).map_or(1.0, |profile| profile.most());
     let full = most * strongest.max_element() / (point - place).length_squared().max(f32::MIN_POSITIVE);
     world.illuminate(light, point.as_dvec3()).color.max_element() / full.max(f32::MIN_POSITIVE)

@@ -3,7 +3,7 @@
 use super::finding::{Finding, number, percent};
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
-use durer_scene::light::Emitter as _;
+use durer_scene::light::Illuminate as _;
 use durer_scene::math::{Color, fp};
 
 /// Fog is opaque if it transmits less than this.
@@ -79,7 +79,7 @@ pub(super) fn thick_fog(scout: &SceneProbe) -> Vec<Finding> {
             || world.background() != Color::ZERO && !world.is_dark();
         let suns = world.lights().iter().any(|light| light.position().is_none());
         let near = world.lights().iter().any(|light| light.position().is_some())
-            || world.objects().iter().any(|object| world.may_shine(object.material));
+            || world.objects().iter().any(|object| world.may_emit(object.material));
         if sky && !near || suns {
             let bounds = world.bounds();
             let size = bounds.size().max_element().max(1.0);

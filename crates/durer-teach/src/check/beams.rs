@@ -6,7 +6,7 @@ use super::lights::{all_fail, useless, written};
 use super::scene_probe::SceneProbe;
 use super::shapes::{point, spot};
 use durer_diag::Diagnostic;
-use durer_scene::light::{Emitter as _, Light};
+use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::Spanned;
 
@@ -15,9 +15,9 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     missing(scout, Aim::Away, |diagnostic, light| {
         let place = light.value.place().map_or(Vec3::ZERO, |(place, _)| place);
         // The visible part of a plane reaches the horizon, so aim at bounded objects only.
-        let things = scout.seen().filter(|(_, seen)| scout.world().objects()[seen.object as usize].bounds().is_some());
-        let things: Vec<Vec3> = things.map(|(probe, seen)| probe.ray.at(seen.t)).collect();
-        let all = if things.is_empty() { places(scout) } else { things };
+        let objects = scout.seen().filter(|(_, seen)| scout.world().objects()[seen.object as usize].bounds().is_some());
+        let objects: Vec<Vec3> = objects.map(|(probe, seen)| probe.ray.at(seen.t)).collect();
+        let all = if objects.is_empty() { places(scout) } else { objects };
         let middle = all.iter().sum::<Vec3>() / all.len().max(1) as f32;
         let (Some(direction), Some(_)) = (light.value.direction(), light.value.cone()) else { return diagnostic };
         let word = if light.value.profile().is_some() { "this photometric light" } else { "this spotlight" };
@@ -119,7 +119,8 @@ pub(super) fn near(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for light in 0..scout.world().lights().len().min(super::finding::MAX_ALIKE) {
         let Some((near, object)) = touching(scout, light) else { continue };
-        let Some((lamp, point)) = written(scout, light).and_then(|lamp| Some((lamp, point(&lamp.value)?))) else {
+        let Some((emitter, point)) = written(scout, light).and_then(|emitter| Some((emitter, point(&emitter.value)?)))
+        else {
             continue;
         };
         let mut away: Vec<f32> = places.iter().map(|place| (*place - point.position).length()).collect();
@@ -148,7 +149,7 @@ pub(super) fn near(scout: &SceneProbe) -> Vec<Finding> {
                     number(middle)
                 ));
         let only = scout.world().lights().len() == 1;
-        found.push(Finding::from(scout.at_value(diagnostic, lamp.span, &["position"])).whole(only));
+        found.push(Finding::from(scout.at_value(diagnostic, emitter.span, &["position"])).whole(only));
     }
     found
 }

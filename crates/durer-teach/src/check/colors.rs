@@ -4,8 +4,8 @@ use super::finding::{Finding, MAX_SOUGHT, counted, percent, vector};
 use super::scene_probe::SceneProbe;
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_render::world::{Geometry, Material, Phong};
-use durer_scene::dialect::{Compat, Dialect, Secondary};
-use durer_scene::light::{Emitter as _, Light};
+use durer_scene::dialect::{Dialect, Quirk, Secondary};
+use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::material::Pattern;
 use durer_scene::math::Color;
 use durer_scene::scene::{Material as Written, Spanned};
@@ -77,7 +77,7 @@ pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
         return super::optics::short_paths(scout);
     }
     let settings = &scout.subject.job.settings;
-    let old = scout.world().rules().is_official();
+    let old = scout.world().rules().is_bit_compatible();
     let counts = |color: Color| if old { color.length() } else { color.max_element() };
     // A colour below the minimum throughput is never traced, not even at the first bounce.
     let cut = |phong: &Phong| counts(phong.reflective).max(counts(phong.transparent)) < settings.least_weight;
@@ -86,9 +86,9 @@ pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
     // If the highlight's colour is also the mirror's, only a material that would be black without
     // reflection is meant as a mirror.
     let shared = matches!(scout.world().rules().secondary, Secondary::Specular | Secondary::SpecularFresnel);
-    let meant = |phong: &Phong| phong.fresnel || !shared || phong.diffuse.max_element() < 0.15;
+    let intended = |phong: &Phong| phong.fresnel || !shared || phong.diffuse.max_element() < 0.15;
     let all: Vec<_> =
-        phongs(scout).filter(|(i, _, phong)| bounces(phong) && meant(phong) && rays(scout, *i) > 0).collect();
+        phongs(scout).filter(|(i, _, phong)| bounces(phong) && intended(phong) && rays(scout, *i) > 0).collect();
     let Some((i, written, phong)) = all.iter().find(|(.., phong)| none || cut(phong)) else {
         return switched_off(scout, &all);
     };
@@ -206,7 +206,7 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
 }
 
 /// A colour of the scene, its block and its field names.
-struct Named {
+struct ColorField {
     color: Color,
     block: Span,
     fields: [&'static str; 2],
@@ -214,7 +214,7 @@ struct Named {
     most: f32,
 }
 
-fn all_colors(scout: &SceneProbe) -> Vec<Named> {
+fn all_colors(scout: &SceneProbe) -> Vec<ColorField> {
     let mut colors = Vec::new();
     for (i, written, used) in phongs(scout) {
         let Written::Phong(phong, _) = &written.value else { continue };
@@ -223,10 +223,10 @@ fn all_colors(scout: &SceneProbe) -> Vec<Named> {
         let small = rays(scout, i) * 25 < scout.probes.len();
         let named = |color, fields, most: f32| {
             let most = if small { most.max(15.0) } else { most };
-            Named { color, block: written.span, fields, most }
+            ColorField { color, block: written.span, fields, most }
         };
         colors.extend(phong.diffuse_color.map(|color| named(color, ["diffuseColor", "diffuse"], 1.001)));
-        let all = |color, fields, most: f32| Named { color, block: written.span, fields, most };
+        let all = |color, fields, most: f32| ColorField { color, block: written.span, fields, most };
         // A highlight may be a little stronger than white; a mirror reflects at most what it
         // receives.
         let mirrors = used.reflective != Color::ZERO && phong.reflective_color == Color::ZERO;
@@ -244,7 +244,7 @@ fn all_colors(scout: &SceneProbe) -> Vec<Named> {
             (m.fuzz_color, "fuzzColor"),
         ];
         // Presets of measured metals are a little above 1.
-        colors.extend(shares.map(|(color, field)| Named {
+        colors.extend(shares.map(|(color, field)| ColorField {
             color,
             block: written.span,
             fields: [field, field],
@@ -266,7 +266,7 @@ fn all_colors(scout: &SceneProbe) -> Vec<Named> {
         // Path tracing has free units of light, which the exposure scales.
         let free = candela || fades && !too_much || scout.is_physical();
         let most = if free { f32::INFINITY } else { 20.0 };
-        colors.push(Named { color: light.color(), block: written.span, fields: ["color", "color"], most });
+        colors.push(ColorField { color: light.color(), block: written.span, fields: ["color", "color"], most });
     }
     colors
 }
@@ -306,7 +306,7 @@ pub(super) fn too_large(scout: &SceneProbe) -> Vec<Finding> {
         found.push(Finding::from(diagnostic).whole(far));
     };
     let beyond = all_colors(scout).into_iter().filter(|named| named.color.max_element() > named.most);
-    for Named { color, block, fields, .. } in beyond.take(MAX_SOUGHT) {
+    for ColorField { color, block, fields, .. } in beyond.take(MAX_SOUGHT) {
         say(color, scout.value(block, &fields), Some(block));
     }
     let background = &scout.subject.scene.background;
@@ -411,8 +411,8 @@ pub(super) fn background_span(scout: &SceneProbe) -> Option<Span> {
 
 /// Reports colours below zero.
 pub(super) fn negative(scout: &SceneProbe) -> Vec<Finding> {
-    let below = |named: &Named| named.color.min_element() < 0.0;
-    let say = |Named { color, block, fields, .. }: Named| {
+    let below = |named: &ColorField| named.color.min_element() < 0.0;
+    let say = |ColorField { color, block, fields, .. }: ColorField| {
         let mended = color.abs();
         let diagnostic = Diagnostic::warning(format!("the colour {} is below zero", vector(color)))
             .effect("it subtracts light: surfaces become darker, or black")
@@ -425,7 +425,7 @@ pub(super) fn negative(scout: &SceneProbe) -> Vec<Finding> {
     };
     let background = &scout.subject.scene.background;
     let own = |color: Color, field: &'static str, nodes: &'static str| {
-        Some(Named { color, block: background_span(scout)?, fields: [field, nodes], most: 1.0 })
+        Some(ColorField { color, block: background_span(scout)?, fields: [field, nodes], most: 1.0 })
     };
     let own = [own(background.color, "color", "color"), own(background.ambient_light, "ambientLight", "ambient_light")];
     let all = all_colors(scout).into_iter().chain(own.into_iter().flatten());
@@ -489,7 +489,7 @@ fn lost_in_background(scout: &SceneProbe, alike: &dyn Fn(Color) -> bool) -> Vec<
 
 /// Reports textures on objects without texture coordinates.
 pub(super) fn no_coordinates(scout: &SceneProbe) -> Vec<Finding> {
-    let meshes_only = scout.world().rules().has(Compat::MeshTextures);
+    let meshes_only = scout.world().rules().has(Quirk::MeshTextures);
     let textured = phongs(scout).filter(|(_, _, phong)| phong.texture.is_some());
     let mut found = Vec::new();
     for (i, written, _) in textured {

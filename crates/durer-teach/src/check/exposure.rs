@@ -8,7 +8,7 @@ use super::probes::{Probe, ProbeHit};
 use super::scene_probe::SceneProbe;
 use super::verdict::VISIBLE;
 use durer_diag::{Diagnostic, Severity};
-use durer_scene::light::Emitter as _;
+use durer_scene::light::Illuminate as _;
 use durer_scene::math::{Color, fp};
 
 /// Values above `BEYOND` are clipped in eight bits; above `FAR_BEYOND` most of their shading is
@@ -34,15 +34,15 @@ fn stops_of(factor: f32) -> f32 {
 /// white.
 fn white(scout: &SceneProbe) -> Vec<Finding> {
     // What shines itself may be white, and a background that is not seen to be lit says nothing.
-    let lit = |probe: &Probe| probe.seen.as_ref().is_some_and(|seen| !scout.world().may_shine(seen.material));
+    let lit = |probe: &Probe| probe.seen.as_ref().is_some_and(|seen| !scout.world().may_emit(seen.material));
     let all = scout.light();
-    let things: Vec<Color> = scout.lit_probes().filter(|(probe, _)| lit(probe)).map(|(_, color)| color).collect();
+    let objects: Vec<Color> = scout.lit_probes().filter(|(probe, _)| lit(probe)).map(|(_, color)| color).collect();
     let is_white = |color: &&Color| color.min_element() > 1.1;
     let over = |shown: &[Color], share: f32| shown.iter().filter(is_white).count() as f32 > share * shown.len() as f32;
     let (shown, what) = if over(all, MAX_WHITE) {
         (all, "the picture")
-    } else if things.len() * 20 > all.len() && over(&things, MAX_WHITE_THINGS) {
-        (&things[..], "what is lit")
+    } else if objects.len() * 20 > all.len() && over(&objects, MAX_WHITE_THINGS) {
+        (&objects[..], "what is lit")
     } else {
         return Vec::new();
     };
@@ -57,14 +57,14 @@ fn white(scout: &SceneProbe) -> Vec<Finding> {
             .effect(format!("{} of {what} is white", percent(white, shown.len())));
     let background = &scout.subject.scene.background;
     let sky = background.sun().is_some() || background.cie_sky.is_some();
-    let lamp = super::lamps::brightest(scout).filter(|_| !sky);
+    let light = super::area_lights::brightest(scout).filter(|_| !sky);
     let exposure = number(stops + stops_of(scout.subject.exposure));
     let help = match sky {
         true => format!("this sky has outdoor brightness, in cd/m^2: set `--exposure {exposure}`"),
         false => format!("light is in cd/m^2: set `--exposure {exposure}`, or multiply the emission by {factor}"),
     };
     let diagnostic = diagnostic.help(help);
-    let diagnostic = match lamp {
+    let diagnostic = match light {
         Some((place, value)) => diagnostic.at(place).fix(place, number(value * 0.5 / middle)),
         None => Diagnostic { span: super::colors::background_span(scout), ..diagnostic },
     };
@@ -104,8 +104,8 @@ pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
             ));
     // If the lights alone are too strong, blame no material.
     let local = |seen: &ProbeHit| (seen.ambient + seen.lit.iter().map(|lit| lit.adds).sum::<Color>()).max_element();
-    let by_lamps = scout.seen().filter(|(_, seen)| local(seen) > FAR_BEYOND).count();
-    if let Some(cause) = super::colors::gives_too_much(scout).filter(|_| by_lamps * 2 < far) {
+    let by_lights = scout.seen().filter(|(_, seen)| local(seen) > FAR_BEYOND).count();
+    if let Some(cause) = super::colors::gives_too_much(scout).filter(|_| by_lights * 2 < far) {
         let severity = if over(far, MAX_FAR) { Severity::Warning } else { Severity::Note };
         let diagnostic = Diagnostic { severity, effect: diagnostic.effect, ..cause };
         return vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())];
@@ -193,8 +193,8 @@ fn dark_paths(scout: &SceneProbe) -> Vec<Finding> {
     };
     let factor = 0.6 / most.max(1e-9);
     let diagnostic = Diagnostic::warning(message).effect("everything visible is black, or nearly black");
-    let lamp = super::lamps::brightest(scout).filter(|_| most > 1e-6);
-    let diagnostic = match lamp {
+    let light = super::area_lights::brightest(scout).filter(|_| most > 1e-6);
+    let diagnostic = match light {
         Some((place, value)) => {
             let stops = number(stops_of(factor).round() + stops_of(scout.subject.exposure));
             let text = number(value * factor);

@@ -7,7 +7,7 @@ use super::shapes::point;
 use super::verdict::{Verdict, divisor};
 use durer_diag::{Diagnostic, Span};
 use durer_scene::dialect::Dialect;
-use durer_scene::light::Emitter as _;
+use durer_scene::light::Illuminate as _;
 use durer_scene::math::Vec3;
 
 pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {

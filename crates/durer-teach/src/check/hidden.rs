@@ -188,9 +188,9 @@ fn raised(scout: &SceneProbe, object: u32) -> Option<Vec3> {
     let (n, d) = ground(scout, object)?;
     let eye = scout.world().camera().pose().center;
     let height = |p: Vec3| p.dot(n) - d;
-    let things: Vec<[Vec3; 8]> = scout.world().objects().iter().filter_map(|o| Some(o.bounds()?.corners())).collect();
+    let objects: Vec<[Vec3; 8]> = scout.world().objects().iter().filter_map(|o| Some(o.bounds()?.corners())).collect();
     let size = scout.world().bounds().size().max_element();
-    let lowest = things.iter().flatten().map(|p| height(*p)).fold(f32::INFINITY, f32::min);
+    let lowest = objects.iter().flatten().map(|p| height(*p)).fold(f32::INFINITY, f32::min);
     (lowest > -0.05 * size && lowest < 0.05 * size && height(eye) < 0.0).then(|| eye - 2.0 * height(eye) * n)
 }
 
@@ -213,8 +213,8 @@ fn ceiling(scout: &SceneProbe) -> Option<u32> {
     let pose = world.camera().pose();
     let below = |p: Vec3| p.dot(plane.normal) < plane.offset;
     let faces_up = plane.normal.normalize_or_zero().dot(pose.up.normalize_or_zero()) > 0.7;
-    let things = world.bounds();
-    let all = !things.is_empty() && things.corners().iter().all(|corner| below(*corner)) && below(pose.center);
+    let objects = world.bounds();
+    let all = !objects.is_empty() && objects.corners().iter().all(|corner| below(*corner)) && below(pose.center);
     let seen = scout.seen().any(|(_, seen)| seen.object == number);
     (faces_up && all && seen && !matches!(world.camera(), Camera::Orthographic(_))).then_some(number)
 }
@@ -229,6 +229,6 @@ fn offset_turned(scout: &SceneProbe, object: u32) -> Option<(Span, String)> {
     }
     let place = scout.value(scout.object_span(object), &["offset"])?;
     let above = |p: Vec3| p.dot(plane.normal) > -plane.offset;
-    let things = scout.world().bounds();
-    (above(things.center()) == above(scout.world().camera().pose().center)).then(|| (place, number(-plane.offset)))
+    let objects = scout.world().bounds();
+    (above(objects.center()) == above(scout.world().camera().pose().center)).then(|| (place, number(-plane.offset)))
 }

@@ -161,8 +161,8 @@ pub(super) fn edge_on(scout: &SceneProbe) -> Vec<Finding> {
     if !orthographic && !super::visibility::has_eye(scout) {
         return Vec::new();
     }
-    let things = world.bounds();
-    let size = if things.is_empty() { 1.0 } else { things.size().max_element() };
+    let objects = world.bounds();
+    let size = if objects.is_empty() { 1.0 } else { objects.size().max_element() };
     let mut found = Vec::new();
     for (number, object) in world.objects().iter().enumerate().take(super::finding::MAX_SOUGHT) {
         let Some(plane) = plane(object) else { continue };
@@ -180,7 +180,7 @@ pub(super) fn edge_on(scout: &SceneProbe) -> Vec<Finding> {
                 .help("from there it is at most a line: tilt the camera's `direction` towards it"),
             false => {
                 // Towards the side with the objects.
-                let side = if (things.center() - on).dot(n) < 0.0 { -n } else { n };
+                let side = if (objects.center() - on).dot(n) < 0.0 { -n } else { n };
                 let raised = super::finding::vector(eye + 0.2 * size * side);
                 let value = scout.value(scout.subject.scene.camera_span, &["center"]);
                 Diagnostic::warning(format!("the camera is in the plane of the {name}"))

@@ -1,7 +1,7 @@
 //! Checks of lights that contribute nothing, or less than intended, to the visible points.
 
 use super::finding::{Finding, percent, vector};
-use super::probes::Lit;
+use super::probes::LightContribution;
 use super::scene_probe::SceneProbe;
 use super::shapes::point;
 use super::verdict::{GRAZING, MAX_JUDGED, VISIBLE, Verdict, most_common};
@@ -10,7 +10,7 @@ use durer_diag::{Diagnostic, Severity, Span};
 use durer_formats::course::place::{block, section};
 use durer_render::world::Material;
 use durer_scene::camera::Projection;
-use durer_scene::light::{Emitter as _, Light};
+use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::Vec3;
 use durer_scene::scene::Spanned;
 
@@ -52,8 +52,8 @@ pub(super) fn each(scout: &SceneProbe, find: impl Fn(usize, Verdict) -> Option<D
 fn enclosed(scout: &SceneProbe) -> Vec<Finding> {
     let shadows = scout.subject.job.settings.shadows;
     let lights = scout.world().lights().iter().enumerate().filter(|_| !shadows).take(MAX_JUDGED);
-    let say = |(light, lamp): (usize, &Light)| {
-        let point = point(lamp)?;
+    let say = |(light, emitter): (usize, &Light)| {
+        let point = point(emitter)?;
         if scout.verdicts()[light] != Verdict::Works {
             return None;
         }
@@ -142,8 +142,9 @@ fn main_lights(scout: &SceneProbe) -> Vec<usize> {
 fn mostly_dark(scout: &SceneProbe) -> Vec<Finding> {
     let working = main_lights(scout);
     let (mut all, mut reached, mut away, mut grazed) = (0, 0, 0, 0);
-    let is_main = |lit: &&Lit| working.contains(&lit.light);
-    let bright = |lit: &Lit| is_main(&lit) && lit.cosine > GRAZING && lit.adds.abs().max_element() > VISIBLE;
+    let is_main = |lit: &&LightContribution| working.contains(&lit.light);
+    let bright =
+        |lit: &LightContribution| is_main(&lit) && lit.cosine > GRAZING && lit.adds.abs().max_element() > VISIBLE;
     // An unshaded back is not the light's fault.
     let shaded = scout.subject.job.settings.shade_back;
     for (_, seen) in scout.seen().filter(|(_, seen)| shaded || !seen.from_behind) {
@@ -199,7 +200,7 @@ fn mostly_dark(scout: &SceneProbe) -> Vec<Finding> {
 /// Distance of a light, as a multiple of the scene's size, beyond which no edit places it.
 const FARTHEST: f32 = 20.0;
 
-fn is_grazing(lit: &Lit) -> bool {
+fn is_grazing(lit: &LightContribution) -> bool {
     lit.cosine.abs() <= 1e-3
 }
 
@@ -220,10 +221,10 @@ fn grazing(scout: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
     let (probe, _) = scout.seen().find(|(_, seen)| seen.object == surface && seen.by(light).is_some_and(is_grazing))?;
     let at = scout.world().intersect(&probe.ray, &mut ())?;
     let n = if at.inside() { -at.surface.n_geo } else { at.surface.n_geo };
-    let lamp = &written(scout, light)?.value;
-    match lamp.position() {
+    let emitter = &written(scout, light)?.value;
+    match emitter.position() {
         None => {
-            let direction = lamp.direction()?;
+            let direction = emitter.direction()?;
             let tilted = vector(direction - 0.7 * direction.length() * n);
             let value = scout.value(span, &["direction"]);
             let help = format!(
@@ -280,7 +281,7 @@ pub(super) fn behind(scout: &SceneProbe) -> Vec<Finding> {
         if verdict != Verdict::Behind {
             return None;
         }
-        let lit: Vec<&Lit> = scout.seen().filter_map(|(_, seen)| seen.by(light)).collect();
+        let lit: Vec<&LightContribution> = scout.seen().filter_map(|(_, seen)| seen.by(light)).collect();
         let away = lit.iter().filter(|lit| lit.cosine <= 1e-3).count();
         let turned = lit.iter().filter(|lit| lit.cosine < -1e-3).count();
         if turned * 2 < away {
@@ -289,10 +290,10 @@ pub(super) fn behind(scout: &SceneProbe) -> Vec<Finding> {
         let message =
             format!("this light is behind the visible surfaces: {} of them face away", percent(away, lit.len()));
         let (diagnostic, span) = useless(scout, light, message)?;
-        let lamp = &written(scout, light)?.value;
-        let diagnostic = match lamp.position() {
+        let emitter = &written(scout, light)?.value;
+        let diagnostic = match emitter.position() {
             None => {
-                let turned = vector(-lamp.direction()?);
+                let turned = vector(-emitter.direction()?);
                 let help = format!(
                     "`direction` is the direction in which the light travels, not the direction to it: `direction \
                      {turned}` lights the visible side"

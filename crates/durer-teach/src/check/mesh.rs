@@ -6,7 +6,7 @@ use super::mesh_files::{MeshFile, models};
 use super::scene_probe::SceneProbe;
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_render::world::{Material, Object as Placed};
-use durer_scene::dialect::Compat;
+use durer_scene::dialect::Quirk;
 use durer_scene::math::Vec3;
 
 /// Share of triangles without area that is above what the poles of a surface of revolution have.
@@ -108,7 +108,7 @@ pub(super) fn flat_glass(scout: &SceneProbe) -> Vec<Finding> {
             )
             .help("glass needs a closed body, such as a sphere or a closed mesh; or set its index to 1");
         // The surface of a lake is flat on purpose.
-        if *what != "triangle" && !world.rules().is_official() {
+        if *what != "triangle" && !world.rules().is_bit_compatible() {
             diagnostic.severity = durer_diag::Severity::Note;
         }
         Finding::from(diagnostic)
@@ -148,7 +148,7 @@ pub(super) fn misread(scout: &SceneProbe) -> Vec<Finding> {
             continue;
         };
         let last = bytes.rsplit(|b| *b == b'\n').next().unwrap_or_default();
-        if rules.has(Compat::LostLastLine) && (last.starts_with(b"f ") || last.starts_with(b"v ")) {
+        if rules.has(Quirk::LostLastLine) && (last.starts_with(b"f ") || last.starts_with(b"v ")) {
             let start = (bytes.len() - last.len()) as u32;
             let span = Span { file: mesh.file, start, end: bytes.len() as u32 };
             let end = Span { start: span.end, ..span };
@@ -161,7 +161,7 @@ pub(super) fn misread(scout: &SceneProbe) -> Vec<Finding> {
                     .fix(end, "\n");
             found.push(Finding::from(diagnostic));
         }
-        if rules.has(Compat::NormalsByVertex)
+        if rules.has(Quirk::NormalsByVertex)
             && let Some(span) = other_normal(bytes, mesh.file)
         {
             let diagnostic = Diagnostic::warning(format!("faces of `{}` use normal indices that differ from the vertex indices", mesh.name.path))
@@ -199,7 +199,7 @@ fn other_normal(bytes: &[u8], file: u32) -> Option<Span> {
 /// Reports triangles that wind the other way than their neighbours.
 pub(super) fn winding(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
-    for mesh in scout.meshes().iter().filter(|mesh| mesh.given.is_none()) {
+    for mesh in scout.meshes().iter().filter(|mesh| mesh.odd_normals.is_none()) {
         let (turned, all) = (&mesh.topology.turned, mesh.data.triangles.len());
         let Some(&first) = turned.first().filter(|_| !mesh.is_beyond_notice(turned.len())) else { continue };
         let message = format!(
@@ -222,7 +222,7 @@ pub(super) fn inside_out(scout: &SceneProbe) -> Vec<Finding> {
     for mesh in
         scout.meshes().iter().filter(|mesh| mesh.is_inside_out() && !mesh.is_room(scout) && !mesh.is_hollow(scout))
     {
-        let by_file = mesh.given.is_some();
+        let by_file = mesh.odd_normals.is_some();
         let seen = scout
             .seen()
             .filter(|(_, seen)| mesh.objects.iter().any(|o| scout.object_span(seen.object).start == o.span.start));
@@ -277,7 +277,7 @@ pub(super) fn shows_inside_out(scout: &SceneProbe, object: u32) -> bool {
 pub(super) fn given_normals(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for mesh in scout.meshes() {
-        let Some(given) = &mesh.given else { continue };
+        let Some(odd_normals) = &mesh.odd_normals else { continue };
         let all = mesh.data.triangles.len();
         let some = |list: &[u32]| list.first().copied().filter(|_| !mesh.is_beyond_notice(list.len()));
         let mut say = |list: &[u32], first: u32, what: &str, effect: &str, help: &str| {
@@ -285,27 +285,27 @@ pub(super) fn given_normals(scout: &SceneProbe) -> Vec<Finding> {
             let diagnostic = mesh.at_triangle(scout, Diagnostic::warning(message), first).effect(effect).help(help);
             found.push(Finding::from(diagnostic));
         };
-        if let Some(first) = some(&given.against) {
+        if let Some(first) = some(&odd_normals.against) {
             say(
-                &given.against,
+                &odd_normals.against,
                 first,
                 "have normals that contradict the order of their vertices",
                 "they are shaded as back faces: dark, or lit from the wrong side",
                 "negate those `vn` lines, or swap two vertices of the faces",
             );
         }
-        if let Some(first) = some(&given.missing) {
+        if let Some(first) = some(&odd_normals.missing) {
             say(
-                &given.missing,
+                &odd_normals.missing,
                 first,
                 "have no normals in the file, although others have some",
                 "they look faceted, or differ from their neighbours",
                 "write either all faces as `f 1//1 2//2 3//3`, or none",
             );
         }
-        if let Some(first) = some(&given.zero) {
+        if let Some(first) = some(&odd_normals.zero) {
             say(
-                &given.zero,
+                &odd_normals.zero,
                 first,
                 "have a normal of length 0",
                 "it has no direction: the shading there is wrong",

@@ -1,13 +1,13 @@
 //! Checks of the method against what lights the scene.
 
+use super::area_lights::emissive_objects;
 use super::colors::background_span;
 use super::finding::{Finding, percent};
-use super::lamps::shining;
 use super::probes::{Probe, ProbeHit};
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
 use durer_formats::scene_format_for;
-use durer_render::integrator::Method;
+use durer_render::integrator::IntegratorKind;
 use durer_render::world::Material;
 use durer_scene::math::{Color, Vec3};
 use durer_scene::scene::Material as Written;
@@ -22,11 +22,11 @@ const FEWEST: usize = 20;
 /// Reports a scene whose only light is of a kind that Whitted's method does not know.
 pub(super) fn wrong_integrator(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
-    if !matches!(scout.subject.job.method, Method::Whitted(_)) || !world.lights().is_empty() {
+    if !matches!(scout.subject.job.method, IntegratorKind::Whitted(_)) || !world.lights().is_empty() {
         return Vec::new();
     }
-    let lamp = shining(scout).into_iter().next();
-    let (what, span) = match (lamp, world.environment()) {
+    let light = emissive_objects(scout).into_iter().next();
+    let (what, span) = match (light, world.environment()) {
         (Some((object, _)), _) => ("surfaces that shine", Some(scout.object_span(object))),
         (None, Some(_)) => ("its environment", background_span(scout)),
         (None, None) => return Vec::new(),
@@ -44,7 +44,7 @@ pub(super) fn black_sky(scout: &SceneProbe) -> Vec<Finding> {
     if scout.world().environment().is_none() || background.environment_scale != Some(Vec3::ZERO) {
         return Vec::new();
     }
-    let alone = scout.world().lights().is_empty() && shining(scout).is_empty();
+    let alone = scout.world().lights().is_empty() && emissive_objects(scout).is_empty();
     let diagnostic = Diagnostic::warning("the environment is multiplied by 0")
         .effect(if alone { "nothing else shines: the picture is black" } else { "it gives no light, and is not seen" })
         .help("`environmentScale` is a factor: `environmentScale 1 1 1` is the picture as it is");
@@ -66,7 +66,7 @@ pub(super) fn mostly_black(scout: &SceneProbe) -> Vec<Finding> {
             _ => false,
         };
         !dark
-            && !world.may_shine(seen.material)
+            && !world.may_emit(seen.material)
             && !matches!(world.materials()[seen.material as usize], Material::Solid(..))
     };
     let own = scout

@@ -7,6 +7,7 @@
 
 mod aim;
 mod air;
+mod area_lights;
 mod beams;
 mod brightness;
 mod colors;
@@ -17,7 +18,6 @@ mod facing;
 mod fading;
 mod finding;
 mod hidden;
-mod lamps;
 mod layers;
 mod lens;
 mod lights;
@@ -52,7 +52,7 @@ use durer_diag::{Diagnostics, Severity};
 pub use finding::Finding;
 use finding::MAX_ALIKE;
 pub use probes::Subject;
-pub use repair::{Repaired, apply};
+pub use repair::{RepairedText, apply};
 pub use scene_probe::SceneProbe;
 pub use table::{CHECKS, Check, rank};
 
@@ -171,11 +171,11 @@ fn ordered(mut found: Vec<Finding>) -> Vec<Finding> {
     // Errors keep their order: the first may be the reason for the others.
     let rank = |finding: &Finding| if level(finding) == 0 { 0 } else { table::rank(finding.diagnostic.code) };
     found.sort_by_key(|finding| (level(finding), rank(finding)));
-    let mut told: Vec<(u8, &str)> = Vec::new();
+    let mut reported: Vec<(u8, &str)> = Vec::new();
     found.sort_by_cached_key(|finding| {
         let kind = (level(finding), finding.diagnostic.code);
-        let again = kind.0 > 0 && told.contains(&kind);
-        told.push(kind);
+        let again = kind.0 > 0 && reported.contains(&kind);
+        reported.push(kind);
         (level(finding), again, rank(finding))
     });
     let mut kept: Vec<Finding> = Vec::with_capacity(found.len());

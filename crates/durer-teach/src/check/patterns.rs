@@ -19,27 +19,27 @@ const FEWEST: usize = 20;
 
 /// A pattern that can be evaluated. Solids carry the matrix to pattern space and
 /// [`ShadingRules::conic_rings`](durer_render::world::ShadingRules::conic_rings).
-enum Look<'w> {
+enum PatternSampler<'w> {
     Solid(&'w Solid, &'w glam::DAffine3, bool),
     Noise(&'w ColorNoise),
 }
 
-impl Look<'_> {
-    fn of(world: &World, material: u32) -> Option<Look<'_>> {
+impl PatternSampler<'_> {
+    fn of(world: &World, material: u32) -> Option<PatternSampler<'_>> {
         match world.materials().get(material as usize)? {
             Material::Solid(solid, to_pattern, _) => {
-                Some(Look::Solid(solid, to_pattern, world.shading_rules().conic_rings))
+                Some(PatternSampler::Solid(solid, to_pattern, world.shading_rules().conic_rings))
             }
-            Material::Phong(phong) => phong.noise.as_ref().map(Look::Noise),
+            Material::Phong(phong) => phong.noise.as_ref().map(PatternSampler::Noise),
         }
     }
 
     fn at(&self, place: Vec3) -> f32 {
         match self {
-            Look::Solid(solid, to_pattern, conic_rings) => {
+            PatternSampler::Solid(solid, to_pattern, conic_rings) => {
                 solid.share(to_pattern.transform_point3(place.as_dvec3()).as_vec3(), *conic_rings)
             }
-            Look::Noise(noise) => {
+            PatternSampler::Noise(noise) => {
                 let range = noise.color1 - noise.color2;
                 let most = range.abs().max_element().max(1e-6);
                 (noise.color(place) - noise.color2).abs().max_element() / most
@@ -53,7 +53,7 @@ pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let mut found = Vec::new();
     for (number, written) in scout.subject.scene.materials.iter().enumerate().take(MAX_SOUGHT) {
-        let Some(look) = Look::of(world, number as u32) else { continue };
+        let Some(look) = PatternSampler::of(world, number as u32) else { continue };
         // Count direct hits only: a pattern inside another is only partly visible.
         let places: Vec<(Vec3, f32)> = scout
             .seen()
@@ -76,7 +76,7 @@ pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
         let fine = places.iter().filter(|place| noisy(place)).count();
         let (message, effect, help) = if let Some((message, help)) = without_change(scout, &look, &written.value) {
             (message, "the pattern is invisible: one colour, or a few large patches", help)
-        } else if matches!(look, Look::Solid(Solid::Mix(_) | Solid::TwoSided(_), ..)) {
+        } else if matches!(look, PatternSampler::Solid(Solid::Mix(_) | Solid::TwoSided(_), ..)) {
             continue;
         } else if most - least < 1e-3 {
             (
@@ -107,8 +107,8 @@ pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
 }
 
 /// Explains from the description why a pattern shows no change, if it can.
-fn without_change(scout: &SceneProbe, look: &Look, written: &Written) -> Option<(String, &'static str)> {
-    let Look::Solid(solid, to_pattern, _) = look else { return None };
+fn without_change(scout: &SceneProbe, look: &PatternSampler, written: &Written) -> Option<(String, &'static str)> {
+    let PatternSampler::Solid(solid, to_pattern, _) = look else { return None };
     if let Solid::Mix(mix) = solid {
         let message = format!("the `share` of this mix is {}", number(mix.share));
         let help = "the other material is invisible: a `share` between 0 and 1 shows both";

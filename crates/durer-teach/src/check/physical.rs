@@ -5,9 +5,9 @@ use super::finding::Finding;
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
 use durer_formats::scene_format_for;
-use durer_render::integrator::Method;
+use durer_render::integrator::IntegratorKind;
 use durer_render::world::Material as Compiled;
-use durer_scene::light::Emitter as _;
+use durer_scene::light::Illuminate as _;
 use durer_scene::math::{Color, Vec3};
 use durer_scene::scene::Material;
 
@@ -46,21 +46,21 @@ pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
         Compiled::Solid(..) => None,
     };
     let of = |material: u32| world.materials().get(material as usize).and_then(radiance).unwrap_or_default();
-    let shines = world.objects().iter().any(|object| of(object.material) != Color::ZERO)
+    let emits = world.objects().iter().any(|object| of(object.material) != Color::ZERO)
         || world
             .objects()
             .iter()
             .any(|object| matches!(world.materials().get(object.material as usize), Some(Compiled::Solid(..))))
             && world.materials().iter().any(|material| radiance(material).is_some());
-    if !scout.is_physical() || !dark_sky || shines || world.lights().iter().any(|light| light.color() != Color::ZERO) {
+    if !scout.is_physical() || !dark_sky || emits || world.lights().iter().any(|light| light.color() != Color::ZERO) {
         return Vec::new();
     }
     // Some material was meant to emit.
-    let lamp = scout.subject.scene.materials.iter().enumerate().find(|(_, material)| match &material.value {
+    let emitter = scout.subject.scene.materials.iter().enumerate().find(|(_, material)| match &material.value {
         Material::Principled(layers) => layers.emission_luminance > 0.0,
         _ => false,
     });
-    if let Some((number, material)) = lamp {
+    if let Some((number, material)) = emitter {
         let black = of(number as u32) == Color::ZERO;
         let message = match black {
             true => format!("nothing emits light: the `emissionColor` of material {number} is black"),
@@ -78,7 +78,7 @@ pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
         false => "; `ambientLight` has no effect on paths",
     };
     let format = scout.subject.files.name(0).and_then(scene_format_for);
-    let (surface, help) = match format.and_then(|format| format.shines) {
+    let (surface, help) = match format.and_then(|format| format.light_hint) {
         Some(words) => ("emissive surface", format!("{words}; lights that are reported as left out emit nothing")),
         None => (
             "material with `emissionLuminance`",
@@ -96,7 +96,7 @@ pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
 /// Reports point lights inside glass, whose light no path can find from outside.
 pub(super) fn lamp_in_glass(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
-    if !matches!(scout.subject.job.method, Method::Path(_)) {
+    if !matches!(scout.subject.job.method, IntegratorKind::Path(_)) {
         return Vec::new();
     }
     let lights = world.lights().iter().enumerate().filter_map(|(number, light)| Some((number, light.place()?.0)));

@@ -36,7 +36,7 @@ impl Oddity {
 /// Accumulates pixels and finds visible faults. Pixels are multiplied by the exposure and may
 /// arrive in any number of pieces.
 #[derive(Clone, Debug)]
-pub struct Looks {
+pub struct PictureScan {
     exposure: f32,
     first: Option<Color>,
     /// True if some pixel has another colour than the first.
@@ -46,10 +46,10 @@ pub struct Looks {
     cut: usize,
 }
 
-impl Looks {
+impl PictureScan {
     /// Creates an accumulator without pixels.
     pub fn new(exposure: f32) -> Self {
-        Looks { exposure, first: None, differs: false, pixels: 0, cut: 0 }
+        PictureScan { exposure, first: None, differs: false, pixels: 0, cut: 0 }
     }
 
     /// Adds pixels.
@@ -83,7 +83,7 @@ mod tests {
 
     /// Adds the pixels in pieces of two.
     fn oddity(pixels: &[f32], exposure: f32, statistics: &Statistics) -> Option<Oddity> {
-        let mut looks = Looks::new(exposure);
+        let mut looks = PictureScan::new(exposure);
         let colors: Vec<Color> = pixels.iter().map(|&v| Color::splat(v)).collect();
         colors.chunks(2).for_each(|piece| looks.add(piece));
         looks.oddity(statistics)

@@ -3,7 +3,7 @@
 use durer_diag::{Diagnostic, Files, Span};
 use durer_formats::course::place;
 use durer_render::integrator::trace::TermKind;
-use durer_render::integrator::{Method, Settings, Tree};
+use durer_render::integrator::{IntegratorKind, Tree, WhittedOptions};
 use durer_render::render::explain::{Names, explain_ray};
 use durer_render::render::{Job, center_ray, raster};
 use durer_render::world::{Material, World};
@@ -65,12 +65,12 @@ pub(super) struct ProbeHit {
     pub has_uv: bool,
     /// Contribution of the ambient light.
     pub ambient: Color,
-    pub lit: Vec<Lit>,
+    pub lit: Vec<LightContribution>,
 }
 
 /// Contribution of one light to a surface.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lit {
+pub(super) struct LightContribution {
     pub light: usize,
     /// N·L, and the light that arrives if nothing occludes it.
     pub cosine: f32,
@@ -102,13 +102,13 @@ impl<'a> ProbeGrid<'a> {
             [width, height].map(|side| ((u64::from(side) * u64::from(rays)).div_ceil(larger.into()) as u32).max(1));
         let raster = raster(subject.world, columns, rows);
         let job = Job {
-            settings: Settings {
+            settings: WhittedOptions {
                 bounces: settings.bounces.min(BOUNCES),
                 least_weight: settings.least_weight.max(MIN_WEIGHT),
                 ..settings
             },
             // The checks use Whitted's terms.
-            method: Method::WHITTED,
+            method: IntegratorKind::WHITTED,
             ..subject.job.clone()
         };
         let places: Vec<(u32, u32)> = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))).collect();
@@ -217,7 +217,7 @@ impl<'a> ProbeGrid<'a> {
 
 impl ProbeHit {
     /// Returns the contribution of a light. Lights are stored by index.
-    pub fn by(&self, light: usize) -> Option<&Lit> {
+    pub fn by(&self, light: usize) -> Option<&LightContribution> {
         self.lit.get(light).filter(|lit| lit.light == light)
     }
 }
@@ -244,7 +244,7 @@ impl Probe {
                     let adds = tree.color(term.contribution());
                     match seen.lit.last_mut().filter(|lit| lit.light == *light) {
                         Some(lit) => lit.adds += adds,
-                        None => seen.lit.push(Lit {
+                        None => seen.lit.push(LightContribution {
                             light: *light,
                             cosine: hit.n.dot(*to_light),
                             arrives: tree.color(term.scale),

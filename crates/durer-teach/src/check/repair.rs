@@ -5,7 +5,7 @@ use durer_diag::Edit;
 
 /// A text after the edits of some findings.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Repaired {
+pub struct RepairedText {
     /// The new text.
     pub bytes: Vec<u8>,
     /// Indices of the findings that were fixed.
@@ -14,7 +14,7 @@ pub struct Repaired {
 
 /// Applies the edits of findings to a file. Skips a finding whose edits overlap an earlier one's or
 /// lie in another file.
-pub fn apply(bytes: &[u8], file: u32, findings: &[Finding]) -> Repaired {
+pub fn apply(bytes: &[u8], file: u32, findings: &[Finding]) -> RepairedText {
     let mut edits: Vec<&Edit> = Vec::new();
     let mut mended = Vec::new();
     for (i, finding) in findings.iter().enumerate() {
@@ -38,5 +38,5 @@ pub fn apply(bytes: &[u8], file: u32, findings: &[Finding]) -> Repaired {
         at = edit.span.end as usize;
     }
     text.extend_from_slice(&bytes[at..]);
-    Repaired { bytes: text, mended }
+    RepairedText { bytes: text, mended }
 }

@@ -3,8 +3,8 @@
 use super::finding::Finding;
 use super::scene_probe::SceneProbe;
 use super::{
-    air, beams, colors, exposure, extent, facing, fading, hidden, lamps, layers, lens, lights, mesh, method, names,
-    numbers, objects, optics, patterns, physical, solid, unseen, view, year,
+    air, area_lights, beams, colors, exposure, extent, facing, fading, hidden, layers, lens, lights, mesh, method,
+    names, numbers, objects, optics, patterns, physical, solid, unseen, view, year,
 };
 
 /// A kind of finding.
@@ -73,9 +73,9 @@ checks! {
     "no-emitter": "a path-traced scene in which nothing emits light", physical::no_emitter;
     "fog-away": "fog that no ray of the picture goes through", air::away;
     "thick-fog": "fog that blocks all light", air::thick_fog;
-    "lamp-turned": "an area light that faces away from everything visible", lamps::turned;
-    "lamp-blocked": "an area light that is occluded from everything visible", lamps::blocked;
-    "lamp-in-glass": "an area light inside glass, which paths hardly find", lamps::in_glass;
+    "lamp-turned": "an area light that faces away from everything visible", area_lights::turned;
+    "lamp-blocked": "an area light that is occluded from everything visible", area_lights::blocked;
+    "lamp-in-glass": "an area light inside glass, which paths hardly find", area_lights::in_glass;
     "no-depth": "parameters of a medium without effect", physical::without_effect;
     "black-light": "a light without colour", reported;
     "light-divides": "a light whose falloff is zero, which causes a division by zero", fading::divides;

@@ -1,12 +1,12 @@
 //! Judges what each light contributes to the visible points, and why it contributes nothing.
 
 use super::aim::Aim;
-use super::probes::{Lit, ProbeGrid, ProbeHit};
+use super::probes::{LightContribution, ProbeGrid, ProbeHit};
 use super::shapes::point;
 use super::within::around;
 use durer_render::world::Material;
 use durer_scene::camera::Projection;
-use durer_scene::light::{Emitter as _, Light};
+use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::{Color, Ray, Vec3};
 
 /// Half a step of eight bits: smaller contributions are invisible.
@@ -66,7 +66,7 @@ fn weak_together(grid: &ProbeGrid, verdicts: &[Verdict]) -> Option<f32> {
     if verdicts.is_empty() || verdicts.len() > 3 || verdicts.iter().any(|verdict| *verdict != Verdict::Works) {
         return None;
     }
-    let most = |of: fn(&Lit) -> Color| {
+    let most = |of: fn(&LightContribution) -> Color| {
         let sums = grid.seen().map(|(_, seen)| seen.lit.iter().map(of).sum::<Color>().max_element());
         sums.fold(0.0, f32::max)
     };
@@ -103,12 +103,13 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
         Material::Solid(..) => false,
     };
     let lit = grid.seen().filter(|(_, seen)| !clear(seen));
-    let all: Vec<&Lit> = lit.filter_map(|(_, seen)| seen.by(number)).collect();
+    let all: Vec<&LightContribution> = lit.filter_map(|(_, seen)| seen.by(number)).collect();
     if light.color() == Color::ZERO {
         return Verdict::Black;
     }
-    let odd =
-        |lit: &&Lit| !lit.arrives.is_finite() || lit.arrives.min_element() < 0.0 && light.color().min_element() >= 0.0;
+    let odd = |lit: &&LightContribution| {
+        !lit.arrives.is_finite() || lit.arrives.min_element() < 0.0 && light.color().min_element() >= 0.0
+    };
     if divisor(light) == Some(Vec3::ZERO) || all.iter().any(odd) {
         return Verdict::Divides;
     }
@@ -132,7 +133,7 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
     {
         return Verdict::Inside(object);
     }
-    let facing: Vec<&&Lit> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
+    let facing: Vec<&&LightContribution> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
     let blocked: Vec<u32> = facing.iter().filter_map(|lit| lit.blocker).collect();
     if facing.len() - blocked.len() > all.len() / 50 && !is_blocked {
         let most = facing.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
@@ -167,8 +168,8 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
 
 /// Returns true if almost all points that face a light are in shadow; a few pixels at the horizon
 /// may be lit.
-fn nearly_blocked(all: &[&Lit]) -> bool {
-    let facing: Vec<&&Lit> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
+fn nearly_blocked(all: &[&LightContribution]) -> bool {
+    let facing: Vec<&&LightContribution> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
     let blocked = facing.iter().filter(|lit| lit.blocker.is_some()).count();
     blocked as f32 > MAX_BLOCKED * facing.len() as f32 && facing.len() * 5 > all.len()
 }
@@ -183,21 +184,21 @@ fn roofed(grid: &ProbeGrid, light: usize) -> bool {
     };
     let blockers: Vec<u32> = facing().filter_map(|(_, lit)| lit.blocker).collect();
     let Some(roof) = most_common(&blockers) else { return false };
-    let under = |(_, lit): &(u32, &Lit)| lit.blocker.is_some();
-    let things = || facing().filter(|(object, _)| *object != roof && objects[*object as usize].bounds().is_some());
-    let (count, covered) = (things().count(), things().filter(under).count());
+    let under = |(_, lit): &(u32, &LightContribution)| lit.blocker.is_some();
+    let items = || facing().filter(|(object, _)| *object != roof && objects[*object as usize].bounds().is_some());
+    let (count, covered) = (items().count(), items().filter(under).count());
     let (all, dark) = (facing().count(), facing().filter(|(_, lit)| lit.blocker == Some(roof)).count());
     count > 20 && covered as f32 > MAX_BLOCKED * count as f32 && dark as f32 > ROOFED * all as f32
 }
 
 /// Returns the object that blocks a light at the most points; objects may block each other.
 fn main_blocker(grid: &ProbeGrid, light: usize, blocked: &[u32]) -> Option<u32> {
-    let (common, lamp) = (most_common(blocked)?, &grid.world().lights()[light]);
+    let (common, emitter) = (most_common(blocked)?, &grid.world().lights()[light]);
     let places = grid.seen().filter(|(_, seen)| seen.by(light).is_some_and(|lit| lit.blocker.is_some()));
     let mut all = Vec::new();
     for (probe, seen) in places.step_by((blocked.len() / 60).max(1)) {
         let place = probe.ray.at(seen.t).as_dvec3();
-        let seen = lamp.illuminate(place);
+        let seen = emitter.illuminate(place);
         let reach = if seen.distance.is_finite() { seen.distance } else { f32::INFINITY };
         let ray = Ray { t_min: 1e-3, t_max: 0.999 * reach, ..Ray::new(place.as_vec3(), seen.to_light) };
         let mut hit: Vec<u32> = grid.world().all_hits(&ray).take(16).map(|hit| hit.object).collect();
@@ -223,7 +224,7 @@ fn behind_plane(grid: &ProbeGrid, light: &Light) -> Option<u32> {
 
 /// Returns true if an object around a light lets none out: it blocks the light, or no visible
 /// surface faces the light.
-fn keeps_light(grid: &ProbeGrid, object: u32, all: &[&Lit]) -> bool {
+fn keeps_light(grid: &ProbeGrid, object: u32, all: &[&LightContribution]) -> bool {
     let shadows = grid.subject.job.settings.shadows;
     let blocks = all.iter().any(|lit| lit.blocker == Some(object));
     blocks || !shadows || all.iter().all(|lit| lit.cosine <= 1e-3)

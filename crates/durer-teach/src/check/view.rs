@@ -98,7 +98,7 @@ fn is_dark_shell(scout: &SceneProbe, object: u32) -> bool {
     let own = &scout.world().objects()[object as usize];
     if !scout.is_physical()
         || super::extent::times_larger(scout, object).is_none()
-        || scout.world().may_shine(own.material)
+        || scout.world().may_emit(own.material)
         || scout.is_glass(object)
     {
         return false;
@@ -341,18 +341,18 @@ pub(super) fn plane_through(scout: &SceneProbe) -> Vec<Finding> {
 /// Reports a camera whose `up` points into the ground on which all objects stand.
 pub(super) fn upside_down(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
-    let (eye, things) = (world.camera().pose().center, world.bounds());
+    let (eye, objects) = (world.camera().pose().center, world.bounds());
     let mut planes = (0..world.objects().len() as u32).filter_map(|i| Some((i, ground(scout, i)?)));
     let (Some((number, (n, d))), None) = (planes.next(), planes.next()) else { return Vec::new() };
     let (n, d) = if eye.dot(n) < d { (-n, -d) } else { (n, d) };
     let height = |p: &Vec3| p.dot(n) - d;
-    let size = things.size().max_element();
-    let stand = !things.is_empty() && things.corners().iter().all(|p| height(p) > -0.1 * size);
+    let size = objects.size().max_element();
+    let stand = !objects.is_empty() && objects.corners().iter().all(|p| height(p) > -0.1 * size);
     let pose = world.camera().pose();
     let seen = scout.seen().any(|(_, seen)| seen.object == number);
     // A ceiling from which objects hang would look the same; objects that touch the plane show that
     // it is the ground.
-    let lowest = things.corners().iter().map(height).fold(f32::INFINITY, f32::min);
+    let lowest = objects.corners().iter().map(height).fold(f32::INFINITY, f32::min);
     if !stand || !seen || lowest > 0.3 * size || world.camera_frame().up.dot(n) > -0.3 || pose.up.dot(n) > 0.1 {
         return Vec::new();
     }

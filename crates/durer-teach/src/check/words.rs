@@ -112,14 +112,14 @@ fn material_index(scout: &SceneProbe, finding: &mut Finding) {
     if from_one(scout, finding, count) {
         return;
     }
-    let meant = index.parse::<usize>().map_or(0, |index| if index == count { count - 1 } else { 0 });
+    let suggestion = index.parse::<usize>().map_or(0, |index| if index == count { count - 1 } else { 0 });
     finding.diagnostic.help = Some(match count {
         1 => "material indices start at 0: write 0".into(),
         n => format!("material indices start at 0: the last of {n} is {}", n - 1),
     });
     let only = count == 1 || index.parse() == Ok(count);
     if only {
-        finding.diagnostic = finding.diagnostic.clone().fix(span, format!("{} {meant}", word.trim_end()));
+        finding.diagnostic = finding.diagnostic.clone().fix(span, format!("{} {suggestion}", word.trim_end()));
     }
 }
 

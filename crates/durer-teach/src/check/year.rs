@@ -4,8 +4,8 @@ use super::finding::{Finding, MAX_SOUGHT, number, percent, vector};
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
 use durer_scene::camera::Projection;
-use durer_scene::dialect::{Compat, Highlight};
-use durer_scene::light::Emitter as _;
+use durer_scene::dialect::{Highlight, Quirk};
+use durer_scene::light::Illuminate as _;
 use durer_scene::material::PhongMaterial;
 use durer_scene::math::Color;
 use durer_scene::scene::{Material as Written, Spanned};
@@ -30,7 +30,7 @@ fn seen<'s>(scout: &SceneProbe<'s>) -> impl Iterator<Item = (usize, &'s Spanned<
 /// Reports a highlight with exponent 0 in a dialect where 0 to the power of 0 is 1.
 pub(super) fn pow_zero(scout: &SceneProbe) -> Vec<Finding> {
     let rules = scout.world().rules();
-    if rules.highlight != Highlight::Phong || !rules.has(Compat::PowZero) {
+    if rules.highlight != Highlight::Phong || !rules.has(Quirk::PowZero) {
         return blunt(scout);
     }
     let all = scout.seen().count();
@@ -157,8 +157,8 @@ pub(super) fn long_up(scout: &SceneProbe) -> Vec<Finding> {
     let up = scout.world().camera().pose().up;
     let length = up.length();
     let rules = scout.world().rules();
-    if !rules.has(Compat::RawUp) {
-        return skew_up(scout).filter(|_| rules.has(Compat::SkewUp)).into_iter().collect();
+    if !rules.has(Quirk::RawUp) {
+        return skew_up(scout).filter(|_| rules.has(Quirk::SkewUp)).into_iter().collect();
     }
     if UNIT.contains(&length) {
         return skew_up(scout).into_iter().collect();
@@ -201,7 +201,7 @@ pub(super) fn stretched(scout: &SceneProbe) -> Vec<Finding> {
     let job = scout.subject.job;
     let (width, height) = (job.width as f32, job.height as f32);
     let ratio = width.max(height) / width.min(height);
-    if !scout.world().rules().has(Compat::Stretch) || ratio < SQUARE {
+    if !scout.world().rules().has(Quirk::Stretch) || ratio < SQUARE {
         return Vec::new();
     }
     let way = if width > height { "wide" } else { "high" };
@@ -217,7 +217,7 @@ pub(super) fn stretched(scout: &SceneProbe) -> Vec<Finding> {
 
 /// Reports faces of more than three corners, of which that year's program reads three.
 pub(super) fn quads(scout: &SceneProbe) -> Vec<Finding> {
-    if !scout.world().rules().is_official() {
+    if !scout.world().rules().is_bit_compatible() {
         return Vec::new();
     }
     let say = |(name, count, all, face): (&str, usize, usize, durer_diag::Span)| {
@@ -269,8 +269,8 @@ pub(super) fn same_parts(scout: &SceneProbe) -> Vec<Finding> {
 pub(super) fn full_ambient(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let ambient = world.ambient();
-    let lamps: Color = world.lights().iter().map(|light| light.color()).sum();
-    if ambient.min_element() < 0.8 || ambient.max_element() > 2.0 || lamps.max_element() <= 0.0 {
+    let lights: Color = world.lights().iter().map(|light| light.color()).sum();
+    if ambient.min_element() < 0.8 || ambient.max_element() > 2.0 || lights.max_element() <= 0.0 {
         return Vec::new();
     }
     let word = scout.word("ambientLight", "ambient_light");
@@ -292,7 +292,7 @@ pub(super) fn plane_normal(scout: &SceneProbe) -> Vec<Finding> {
         let plane = super::shapes::plane(object)?;
         let length = plane.normal.length();
         let rules = scout.world().rules();
-        let counts = rules.has(Compat::RawNormals) && !rules.has(Compat::UnitLight);
+        let counts = rules.has(Quirk::RawNormals) && !rules.has(Quirk::UnitLight);
         if (0.98..=1.02).contains(&length) || plane.offset == 0.0 && !counts {
             return None;
         }

@@ -15,9 +15,9 @@ mod tests;
 pub use change::Change;
 use durer_image::{Layer, Transfer};
 use durer_render::render::{Control, RenderError};
-use stage::Shown;
+use stage::LessonPicture;
 pub use stage::{OWN_SCENE, OWN_SCENE_NAME, Stage};
-pub use topics::{Carriage, Glass, Look, Place, Shot, TOPICS, Topic};
+pub use topics::{Glass, PathSettings, Shot, ShotOptions, SourcePlace, TOPICS, Topic};
 
 /// A picture and its caption.
 #[derive(Clone, Debug)]
@@ -107,9 +107,9 @@ fn steps(
     ours: bool,
     control: &Control,
 ) -> Result<Vec<Step>, RenderError> {
-    let one = |shown: &Shown, shot: &Shot| Picture { caption: shot.caption, layer: shown.layer.clone() };
+    let one = |shown: &LessonPicture, shot: &Shot| Picture { caption: shot.caption, layer: shown.layer.clone() };
     let mut steps: Vec<Step> = Vec::new();
-    let mut last: Option<(&Shot, Shown)> = None;
+    let mut last: Option<(&Shot, LessonPicture)> = None;
     for shot in topic.shots {
         let shown = stage.show(shot, control)?;
         let many = topic.shots.len() > 2;
@@ -147,7 +147,7 @@ fn steps(
 }
 
 /// Describes the noise of two Monte Carlo pictures in a sentence.
-fn noise(before: &Shown, after: &Shown) -> String {
+fn noise(before: &LessonPicture, after: &LessonPicture) -> String {
     let share = |noise: f64| format!("{:.1} %", 100.0 * noise);
     match (before.noise, after.noise) {
         (Some(before), Some(after)) => format!(

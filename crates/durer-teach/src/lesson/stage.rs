@@ -1,7 +1,7 @@
 //! A scene that can be rendered without parts of its light and with common mistakes.
 
-use super::topics::{Carriage, Glass, Look, Shot, Topic};
-use crate::mistakes::{Variant, of_name};
+use super::topics::{Glass, PathSettings, Shot, ShotOptions, Topic};
+use crate::mistakes::{SceneVariant, of_name};
 use durer_diag::{Diagnostics, Files};
 use durer_formats::Decoder;
 use durer_formats::course::{self, ReadOptions};
@@ -9,7 +9,7 @@ use durer_image::{Image, Layer};
 use durer_render::compile::{AccelKind, Resources, compile};
 use durer_render::film::aov::Aov;
 use durer_render::film::{Filter, luminance_of};
-use durer_render::integrator::{Method, PhotonParameters, Settings, Transport};
+use durer_render::integrator::{IntegratorKind, PathOptions, PhotonParameters, WhittedOptions};
 use durer_render::render::explain::Names;
 use durer_render::render::{Control, Job, RenderError, Sampling, center_ray, raster, render};
 use durer_render::world::{Material, World};
@@ -34,7 +34,7 @@ const KEPT: usize = 4;
 
 /// A picture and the values that it shows.
 #[derive(Clone, Debug)]
-pub(super) struct Shown {
+pub(super) struct LessonPicture {
     pub(super) layer: Layer,
     pub(super) values: Image,
     /// Standard error of the pixels as a share of the luminance, for Monte Carlo pictures.
@@ -54,7 +54,7 @@ pub struct Stage {
     materials: Vec<Material>,
     rules: Rules,
     /// Recent pictures: a step starts with the last picture of the one before.
-    made: Vec<(Shot, Shown)>,
+    made: Vec<(Shot, LessonPicture)>,
 }
 
 impl Stage {
@@ -105,8 +105,8 @@ impl Stage {
     }
 
     /// Renders the picture of a shot.
-    pub(super) fn show(&mut self, shot: &Shot, control: &Control) -> Result<Shown, RenderError> {
-        let same = |made: &&(Shot, Shown)| (made.0.value, made.0.look) == (shot.value, shot.look);
+    pub(super) fn show(&mut self, shot: &Shot, control: &Control) -> Result<LessonPicture, RenderError> {
+        let same = |made: &&(Shot, LessonPicture)| (made.0.value, made.0.look) == (shot.value, shot.look);
         if let Some((_, shown)) = self.made.iter().find(same) {
             return Ok(shown.clone());
         }
@@ -128,7 +128,7 @@ impl Stage {
                     rendered = render(&self.world, &job, control)?;
                 }
                 let noise = noise.and_then(|_| noise_of(&rendered.layers[0].image, &rendered.layers[1].image));
-                Shown {
+                LessonPicture {
                     layer: rendered.pictures.swap_remove(0),
                     values: Arc::unwrap_or_clone(rendered.layers.swap_remove(0).image),
                     noise,
@@ -142,7 +142,7 @@ impl Stage {
     }
 
     /// Applies the lights, materials and mistake of a look to the world.
-    fn arrange(&mut self, look: &Look) {
+    fn arrange(&mut self, look: &ShotOptions) {
         let (lights, ambient) = match look.lights {
             true => (self.lights.clone(), self.ambient),
             false => (Vec::new(), Color::ONE),
@@ -152,7 +152,7 @@ impl Stage {
         own.set_rules(self.rules.clone());
         // The mistakes of the lesson change only the rules.
         if let Some(mistake) = look.mistake.and_then(of_name) {
-            let mut variant = Variant::new(&self.scene, self.world.clone(), self.job.settings);
+            let mut variant = SceneVariant::new(&self.scene, self.world.clone(), self.job.settings);
             (mistake.make)(&mut variant, 0.0);
             let own = self.world.edit();
             own.set_rules(variant.world.rules().clone());
@@ -168,15 +168,15 @@ impl Stage {
             if phong.fresnel && look.glass != Glass::Fresnel {
                 (phong.fresnel, phong.reflective) = (false, Color::ZERO);
             }
-            if let (Some(own), Some(Carriage { disperses: false, .. })) = (&mut phong.principled, look.paths) {
+            if let (Some(own), Some(PathSettings { disperses: false, .. })) = (&mut phong.principled, look.paths) {
                 Arc::make_mut(own).written.transmission_dispersion_scale = 0.0;
             }
         }
     }
 
-    fn settings(&self, look: &Look) -> Settings {
+    fn settings(&self, look: &ShotOptions) -> WhittedOptions {
         let all = self.job.settings;
-        Settings {
+        WhittedOptions {
             bounces: look.bounces.min(all.bounces),
             shadows: look.shadows && all.shadows,
             refraction: all.refraction && look.glass != Glass::None,
@@ -185,16 +185,16 @@ impl Stage {
     }
 
     /// Returns Whitted's method, or path tracing with the job's own options.
-    fn method(&self, look: &Look) -> Method {
-        let Some(carriage) = look.paths else { return Method::WHITTED };
+    fn method(&self, look: &ShotOptions) -> IntegratorKind {
+        let Some(carriage) = look.paths else { return IntegratorKind::WHITTED };
         let own = self.job.method.transport().unwrap_or_default();
-        let transport = Transport { direct: carriage.direct, color: carriage.color, ..own };
+        let transport = PathOptions { direct: carriage.direct, color: carriage.color, ..own };
         match (carriage.photons, self.job.method) {
-            (false, _) => Method::Path(transport),
-            (true, Method::Photons(photons)) => {
-                Method::Photons(PhotonParameters { transport, corrected: false, ..photons })
+            (false, _) => IntegratorKind::Path(transport),
+            (true, IntegratorKind::Photons(photons)) => {
+                IntegratorKind::Photons(PhotonParameters { transport, corrected: false, ..photons })
             }
-            (true, _) => Method::Photons(PhotonParameters { transport, ..PhotonParameters::default() }),
+            (true, _) => IntegratorKind::Photons(PhotonParameters { transport, ..PhotonParameters::default() }),
         }
     }
 
@@ -205,9 +205,9 @@ impl Stage {
 
     /// Returns a look with paths in place of Whitted's method where that shows no light: direct light
     /// is the same step with either.
-    fn carried(&self, look: Look) -> Look {
+    fn carried(&self, look: ShotOptions) -> ShotOptions {
         match self.needs_paths() && look.lights && look.paths.is_none() && look.bounces == 0 {
-            true => Look { paths: Some(Carriage::PLAIN), sampled: true, ..look },
+            true => ShotOptions { paths: Some(PathSettings::PLAIN), sampled: true, ..look },
             false => look,
         }
     }
@@ -225,7 +225,7 @@ impl Stage {
         self.job.method.transport().is_some()
     }
 
-    fn sampling(&self, look: &Look) -> Sampling {
+    fn sampling(&self, look: &ShotOptions) -> Sampling {
         match (look.sampled, self.job.sampling) {
             (false, _) => Sampling::Center,
             (true, Sampling::Center) => Sampling::Filtered { samples: SAMPLES, filter: Filter::default() },
@@ -235,7 +235,7 @@ impl Stage {
 
     /// Returns the directions of the rays through the pixel centres as colours from 0 to 1; black
     /// for pixels without a ray.
-    fn directions(&self) -> Result<Shown, RenderError> {
+    fn directions(&self) -> Result<LessonPicture, RenderError> {
         let (raster, (width, height)) = (self.raster(), self.size());
         let rays: Vec<Option<Vec3>> =
             self.job.whole().places().map(|place| Some(center_ray(&self.world, &raster, place)?.dir)).collect();
@@ -243,7 +243,7 @@ impl Stage {
         let pixels = rays.iter().map(|dir| dir.map_or(Vec3::ZERO, |dir| 0.5 * (dir + 1.0))).collect();
         let values = rays.iter().map(|dir| dir.unwrap_or(Vec3::ZERO)).collect();
         let layer = Layer::data("rays", Image::from_pixels(width, height, pixels)?).with_coverage(coverage);
-        Ok(Shown { layer, values: Image::from_pixels(width, height, values)?, noise: None })
+        Ok(LessonPicture { layer, values: Image::from_pixels(width, height, values)?, noise: None })
     }
 
     /// Returns t of the first hit of each ray through a pixel's centre that hits something.
@@ -256,7 +256,7 @@ impl Stage {
 
     /// Describes a picture that is not compared with another, in a sentence; `None` if it shows
     /// nothing.
-    pub(super) fn facts(&self, shot: &Shot, shown: &Shown) -> Option<String> {
+    pub(super) fn facts(&self, shot: &Shot, shown: &LessonPicture) -> Option<String> {
         let values = &shown.values.pixels;
         match shot.value {
             Some("rays") => {

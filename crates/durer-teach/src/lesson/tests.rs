@@ -4,9 +4,9 @@ use super::*;
 use durer::{LoadOptions, load};
 use durer_render::compile::AccelKind;
 use durer_render::film::Filter;
-use durer_render::integrator::{Method, PhotonParameters};
+use durer_render::integrator::{IntegratorKind, PhotonParameters};
 use durer_render::render::{Job, Sampling, render};
-use durer_scene::dialect::{Compat, Dialect};
+use durer_scene::dialect::{Dialect, Quirk};
 use durer_scene::math::{Ray, Vec3};
 use std::path::{Path, PathBuf};
 
@@ -72,7 +72,7 @@ fn built_in_scene_replaces_a_scene_without_the_effect() {
 fn of_paths(scene: &str) -> Vec<Step> {
     let mut stage = stage(scene, 40);
     stage.job.method =
-        Method::Photons(PhotonParameters { count: 20_000, radius: Some(0.1), ..PhotonParameters::default() });
+        IntegratorKind::Photons(PhotonParameters { count: 20_000, radius: Some(0.1), ..PhotonParameters::default() });
     stage.job.sampling = Sampling::Filtered { samples: 8, filter: Filter::default() };
     let mut teacher = Teacher::new(stage, Transfer::Srgb);
     let topics = TOPICS.iter().filter(|topic| topic.is_of_paths());
@@ -103,7 +103,7 @@ fn path_steps_appear_only_in_scenes_that_show_them() {
 fn multiple_importance_sampling_has_less_noise_than_either_strategy() {
     let mut plates = stage("plates.txt", 48);
     (plates.job.method, plates.job.sampling) =
-        (Method::PATH, Sampling::Filtered { samples: 64, filter: Filter::default() });
+        (IntegratorKind::PATH, Sampling::Filtered { samples: 64, filter: Filter::default() });
     let topic = TOPICS.iter().find(|topic| topic.name == "mis").unwrap();
     let noise: Vec<f64> =
         topic.shots.iter().map(|shot| plates.show(shot, &Control::default()).unwrap().noise.unwrap()).collect();
@@ -128,7 +128,7 @@ fn moved_normals_are_transformed_by_the_matrix_itself() {
         Group { Transform { Scale 2 0.5 1 Sphere { center 0 0 0 radius 1 } } }";
     for (quirk, expected) in [(false, Vec3::new(0.3, 0.8, 0.0)), (true, Vec3::new(1.2, 0.2, 0.0))] {
         let mut rules = Dialect::Durer.rules().clone();
-        rules.compat = if quirk { Compat::MovedNormals.bit() } else { 0 };
+        rules.compat = if quirk { Quirk::MovedNormals.bit() } else { 0 };
         let folder = Path::new(".");
         let (world, _) = durer_render::compile::testing::try_read(text, &rules, AccelKind::Bvh, folder);
         // The point (0.6, 0.4, z) of the sphere in object space is (1.2, 0.2, z) in world space.
@@ -168,7 +168,7 @@ fn distances_are_those_of_the_rays_that_hit() {
 #[test]
 fn a_scene_without_lights_of_whitteds_method_is_shown_by_paths() {
     let mut stage = stage("cornell-box.txt", 32);
-    stage.job.method = Method::PATH;
+    stage.job.method = IntegratorKind::PATH;
     stage.job.sampling = Sampling::Filtered { samples: 4, filter: Filter::default() };
     let mut teacher = Teacher::new(stage, Transfer::Srgb);
     let mut of = |name: &str| {

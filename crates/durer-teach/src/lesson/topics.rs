@@ -6,7 +6,7 @@ use durer_scene::spectrum::ColorMode;
 
 /// Parts of the light that are computed, and the mistake that is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Look {
+pub struct ShotOptions {
     /// True if there are lights; otherwise each surface shows its own colour.
     pub lights: bool,
     /// True if there are highlights.
@@ -22,12 +22,12 @@ pub struct Look {
     /// True if a pixel has more than one sample.
     pub sampled: bool,
     /// Options of path tracing; `None` for Whitted's method.
-    pub paths: Option<Carriage>,
+    pub paths: Option<PathSettings>,
 }
 
 /// Options of path tracing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Carriage {
+pub struct PathSettings {
     /// Sampling strategy for direct light.
     pub direct: Direct,
     /// True if photons render caustics.
@@ -38,10 +38,10 @@ pub struct Carriage {
     pub disperses: bool,
 }
 
-impl Carriage {
+impl PathSettings {
     /// Paths with both ways to sample lights, in red, green and blue.
-    pub const PLAIN: Carriage =
-        Carriage { direct: Direct::Both, photons: false, color: ColorMode::Rgb, disperses: true };
+    pub const PLAIN: PathSettings =
+        PathSettings { direct: Direct::Both, photons: false, color: ColorMode::Rgb, disperses: true };
 }
 
 /// Behaviour of glass.
@@ -63,12 +63,12 @@ pub struct Shot {
     /// `rays`, or an AOV of [`durer_render::film::aov::AOVS`]; `None` for colour.
     pub value: Option<&'static str>,
     /// Parts of the light that are shown.
-    pub look: Look,
+    pub look: ShotOptions,
 }
 
 /// A place in the source: a file relative to the repository's root, and the text to find in it.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct SourcePlace {
     /// Path of the file.
     pub file: &'static str,
     /// Start of a definition in the file.
@@ -87,7 +87,7 @@ pub struct Topic {
     /// Equations, one a line.
     pub equations: &'static [&'static str],
     /// Places of the equations in the source.
-    pub places: &'static [Place],
+    pub places: &'static [SourcePlace],
     /// Pictures: a single one, or a chain in which each differs from the one before.
     pub shots: &'static [Shot],
     /// Reason why a scene may lack the effect.
@@ -102,19 +102,19 @@ impl Topic {
     }
 }
 
-const fn at(file: &'static str, symbol: &'static str) -> Place {
-    Place { file, symbol }
+const fn at(file: &'static str, symbol: &'static str) -> SourcePlace {
+    SourcePlace { file, symbol }
 }
 
 const fn value(caption: &'static str, value: &'static str) -> Shot {
     Shot { caption, value: Some(value), look: FLAT }
 }
 
-const fn color(caption: &'static str, look: Look) -> Shot {
+const fn color(caption: &'static str, look: ShotOptions) -> Shot {
     Shot { caption, value: None, look }
 }
 
-const FLAT: Look = Look {
+const FLAT: ShotOptions = ShotOptions {
     lights: false,
     highlights: false,
     shadows: false,
@@ -124,29 +124,29 @@ const FLAT: Look = Look {
     sampled: false,
     paths: None,
 };
-const DIFFUSE: Look = Look { lights: true, ..FLAT };
-const SPECULAR: Look = Look { highlights: true, ..DIFFUSE };
-const SHADOWS: Look = Look { shadows: true, ..SPECULAR };
-const SPECKLED: Look = Look { mistake: Some("epsilon-0"), ..SHADOWS };
-const fn mirrors(bounces: u32) -> Look {
-    Look { bounces, ..SHADOWS }
+const DIFFUSE: ShotOptions = ShotOptions { lights: true, ..FLAT };
+const SPECULAR: ShotOptions = ShotOptions { highlights: true, ..DIFFUSE };
+const SHADOWS: ShotOptions = ShotOptions { shadows: true, ..SPECULAR };
+const SPECKLED: ShotOptions = ShotOptions { mistake: Some("epsilon-0"), ..SHADOWS };
+const fn mirrors(bounces: u32) -> ShotOptions {
+    ShotOptions { bounces, ..SHADOWS }
 }
-const MIRRORS: Look = mirrors(u32::MAX);
-const GLASS: Look = Look { glass: Glass::Transmits, ..MIRRORS };
-const FRESNEL: Look = Look { glass: Glass::Fresnel, ..GLASS };
-const MOVED: Look = Look { mistake: Some("normals-moved"), ..FRESNEL };
-const SAMPLED: Look = Look { sampled: true, ..FRESNEL };
+const MIRRORS: ShotOptions = mirrors(u32::MAX);
+const GLASS: ShotOptions = ShotOptions { glass: Glass::Transmits, ..MIRRORS };
+const FRESNEL: ShotOptions = ShotOptions { glass: Glass::Fresnel, ..GLASS };
+const MOVED: ShotOptions = ShotOptions { mistake: Some("normals-moved"), ..FRESNEL };
+const SAMPLED: ShotOptions = ShotOptions { sampled: true, ..FRESNEL };
 
 /// Path tracing, always with many samples.
-const fn paths(bounces: u32, carriage: Carriage) -> Look {
-    Look { bounces, sampled: true, paths: Some(carriage), ..FRESNEL }
+const fn paths(bounces: u32, carriage: PathSettings) -> ShotOptions {
+    ShotOptions { bounces, sampled: true, paths: Some(carriage), ..FRESNEL }
 }
-const BOTH: Carriage = Carriage::PLAIN;
-const fn straight(direct: Direct) -> Look {
-    paths(0, Carriage { direct, ..BOTH })
+const BOTH: PathSettings = PathSettings::PLAIN;
+const fn straight(direct: Direct) -> ShotOptions {
+    paths(0, PathSettings { direct, ..BOTH })
 }
-const PHOTONS: Carriage = Carriage { photons: true, ..BOTH };
-const SPECTRAL: Carriage = Carriage { color: ColorMode::Spectral, ..PHOTONS };
+const PHOTONS: PathSettings = PathSettings { photons: true, ..BOTH };
+const SPECTRAL: PathSettings = PathSettings { color: ColorMode::Spectral, ..PHOTONS };
 
 /// Topics in the order of the lecture.
 pub static TOPICS: [Topic; 18] = [
@@ -348,7 +348,7 @@ pub static TOPICS: [Topic; 18] = [
             at("crates/durer-bvh/src/math/affine.rs", "fn normal"),
             at("crates/durer-bvh/src/math/affine.rs", "fn inverse_ray"),
             at("crates/durer-render/src/world/object.rs", "fn surface"),
-            at("crates/durer-scene/src/dialect/compat.rs", "MovedNormals"),
+            at("crates/durer-scene/src/dialect/quirk.rs", "MovedNormals"),
         ],
         shots: &[color("normals by M", MOVED), color("normals by the inverse transpose of M", FRESNEL)],
         lacking: "none of its visible objects is sheared or scaled non-uniformly",
@@ -465,7 +465,7 @@ pub static TOPICS: [Topic; 18] = [
             at("crates/durer-render/src/integrator/path/scatter.rs", "fn select_hero"),
         ],
         shots: &[
-            color("one index for all wavelengths", paths(u32::MAX, Carriage { disperses: false, ..SPECTRAL })),
+            color("one index for all wavelengths", paths(u32::MAX, PathSettings { disperses: false, ..SPECTRAL })),
             color("an index per wavelength", paths(u32::MAX, SPECTRAL)),
         ],
         lacking: "none of its glass has a `transmissionDispersionScale`",

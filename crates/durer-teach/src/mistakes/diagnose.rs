@@ -1,12 +1,12 @@
 //! Finds the mistake that made a picture by rendering the table's rows, alone and in pairs.
 
-use super::habits::Turn;
+use super::bugs::PictureTurn;
 use super::pictures::View;
-use super::question::{Diagnosis, MAX_OFF, Named, Question, prepared, values};
+use super::question::{Diagnosis, DiagnosisInput, Explanation, MAX_OFF, prepared, values};
 use super::search::{Fit, difference, differing, fit, sampled};
 use super::speckles;
 use super::table::{Formulas, MISTAKES, Mistake, Values};
-use super::variant::Variant;
+use super::variant::SceneVariant;
 use durer_image::compare::Scale;
 use durer_scene::math::Vec3;
 use rayon::prelude::*;
@@ -52,13 +52,13 @@ struct Pixels {
 }
 
 impl Trial {
-    fn named(&self) -> Named {
+    fn named(&self) -> Explanation {
         let Fit { explained, matched } = self.fit;
-        Named { mistakes: self.mistakes.clone(), explained, matched }
+        Explanation { mistakes: self.mistakes.clone(), explained, matched }
     }
 }
 
-impl Named {
+impl Explanation {
     fn fit(&self) -> Fit {
         Fit { explained: self.explained, matched: self.matched }
     }
@@ -77,17 +77,17 @@ impl Pixels {
 }
 
 struct Search<'a> {
-    question: &'a Question<'a>,
+    question: &'a DiagnosisInput<'a>,
     view: View<'a>,
-    base: Variant<'a>,
+    base: SceneVariant<'a>,
 }
 
-/// Tries all mistakes. `told` receives the progress, from 0 to 1.
-pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
-    Diagnosis { formulas: Formulas::of(question.scene, question.world.rules()), ..all_tried(question, told) }
+/// Tries all mistakes. `progress` receives the progress, from 0 to 1.
+pub fn diagnose(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diagnosis {
+    Diagnosis { formulas: Formulas::of(question.scene, question.world.rules()), ..all_tried(question, progress) }
 }
 
-fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
+fn all_tried(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     let (width, height) = (question.job.width, question.job.height);
     let (reference, view, base) = prepared(question);
     let test = values(question.test, view.scale, question.transfer);
@@ -114,7 +114,7 @@ fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     let steady = search.steady(&full);
     full.keep(&steady);
     let off = differing(&full.base, &full.reference) as f64 / full.base.len().max(1) as f64;
-    told(0.1);
+    progress(0.1);
     if off > MAX_OFF {
         return Diagnosis { off, ..Diagnosis::default() };
     }
@@ -131,10 +131,10 @@ fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     let mut singles = search.trials(search.singles(), &some);
     // A mistake that changes nothing in this scene explains nothing.
     singles.retain(|trial| differing(&trial.made, &some.base) > 0);
-    told(0.2);
+    progress(0.2);
     let mut better = search.trials(best(&mut singles, MAX_SINGLES), &coarse);
     sort(&mut better);
-    told(0.3);
+    progress(0.3);
     let refined = better.iter().take(BEST).map(|trial| search.refined(trial, &some, &coarse));
     let close = refined.chain(best_matched(&better).map(|trial| trial.mistakes.clone())).collect();
     let mut close = search.trials(close, &coarse);
@@ -142,31 +142,31 @@ fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     close.dedup_by(|a, b| same(&a.mistakes, &b.mistakes));
     let close = close.into_iter().enumerate().filter(|(i, trial)| *i < CLOSEST || trial.fit.explained > CLOSE);
     let trials = search.trials(close.map(|(_, trial)| trial.mistakes).collect(), &full);
-    told(0.5);
+    progress(0.5);
     let tried = tried(&trials);
-    let single = decided(trials, &full, &Bars::NEARLY);
-    if single.first().is_some_and(|named| Bars::CLEAR.passes(&named.fit())) {
+    let single = decided(trials, &full, &Thresholds::NEARLY);
+    if single.first().is_some_and(|named| Thresholds::CLEAR.passes(&named.fit())) {
         return Diagnosis { off, named: single, tried, ..Diagnosis::default() };
     }
     if let Some(share) = search.acne(&all, &reference, &test) {
         return Diagnosis { off, named: vec![share], tried, ..Diagnosis::default() };
     }
-    told(0.6);
+    progress(0.6);
     let (pairs, tried_pairs) = search.pairs(&better, &singles, [&few(FEWEST), &some, &coarse, &full]);
-    told(1.0);
+    progress(1.0);
     // Two mistakes always explain more than one; require much more.
-    let rest = |named: &[Named]| named.first().map_or(1.0, |named| 1.0 - named.explained);
+    let rest = |named: &[Explanation]| named.first().map_or(1.0, |named| 1.0 - named.explained);
     let named = if rest(&pairs) < 0.35 * rest(&single) { pairs } else { single };
     let tried = [tried, tried_pairs].concat();
-    match named.first().is_none_or(|named| Bars::SINGLE.passes(&named.fit())) {
+    match named.first().is_none_or(|named| Thresholds::SINGLE.passes(&named.fit())) {
         true => Diagnosis { off, named, tried, ..Diagnosis::default() },
         false => Diagnosis { off, nearly: named.into_iter().next(), tried, ..Diagnosis::default() },
     }
 }
 
 /// Returns the trials at all pixels, best first.
-fn tried(trials: &[Trial]) -> Vec<Named> {
-    let mut all: Vec<Named> = trials.iter().map(Trial::named).collect();
+fn tried(trials: &[Trial]) -> Vec<Explanation> {
+    let mut all: Vec<Explanation> = trials.iter().map(Trial::named).collect();
     all.sort_by(|a, b| b.explained.total_cmp(&a.explained));
     all.truncate(8);
     all
@@ -174,7 +174,7 @@ fn tried(trials: &[Trial]) -> Vec<Named> {
 
 /// Returns the share of a sample of pixels in which the scene's own picture differs from the
 /// reference.
-pub fn off(question: &Question) -> f64 {
+pub fn off(question: &DiagnosisInput) -> f64 {
     let (reference, view, base) = prepared(question);
     let places = sampled(question.job.width, &reference, &reference, 2 * FEW);
     let width = question.job.width;
@@ -225,7 +225,7 @@ impl<'a> Search<'a> {
         let mut made = self.view.picture(&variant, &pixels.places);
         // If the reference differs slightly from the scene's own picture, apply the mistake's
         // change to the reference.
-        if variant.turn == Turn::default() {
+        if variant.turn == PictureTurn::default() {
             for ((made, base), reference) in made.iter_mut().zip(&pixels.base).zip(&pixels.reference) {
                 if differing(&[*base], &[*reference]) > 0 {
                     *made = *reference + (*made - *base);
@@ -261,7 +261,12 @@ impl<'a> Search<'a> {
     }
 
     /// Tries pairs of the best mistakes with all others, the best of them at ever more pixels.
-    fn pairs(&self, best_of: &[Trial], singles: &[Trial], rounds: [&Pixels; 4]) -> (Vec<Named>, Vec<Named>) {
+    fn pairs(
+        &self,
+        best_of: &[Trial],
+        singles: &[Trial],
+        rounds: [&Pixels; 4],
+    ) -> (Vec<Explanation>, Vec<Explanation>) {
         let mut first: Vec<&Trial> = best_of.iter().take(BEST).chain(best_matched(best_of)).collect();
         first.dedup_by_key(|trial| trial.mistakes[0].0.name);
         let mut known = BTreeSet::new();
@@ -289,14 +294,14 @@ impl<'a> Search<'a> {
         };
         let trials = self.trials(pairs, full);
         let tried = tried(&trials);
-        let mut named = decided(trials, full, &Bars::PAIR);
+        let mut named = decided(trials, full, &Thresholds::PAIR);
         // Both mistakes must be needed.
         named.retain(|named| 1.0 - alone(&named.mistakes) > 2.0 * (1.0 - named.explained) + 0.002);
         (named, tried)
     }
 
     /// Checks if values that differ by 1/255 match the other rounding.
-    fn rounding(&self, pixels: &Pixels) -> Option<Named> {
+    fn rounding(&self, pixels: &Pixels) -> Option<Explanation> {
         let mistake = super::table::of_name("other-rounding")?;
         let made = self.trial(vec![(mistake, 0.0)], pixels).made;
         let differs = |a: &Vec3, b: &Vec3| (*a - *b).abs().max_element() > HALF;
@@ -308,12 +313,12 @@ impl<'a> Search<'a> {
             }
         }
         let share = agree as f64 / either.max(1) as f64;
-        let told = self.view.scale == Scale::Display && agree >= FEWEST_ROUNDED && share > Bars::FITTED.matched;
-        told.then(|| Named { mistakes: vec![(mistake, 0.0)], explained: share, matched: share })
+        let fits = self.view.scale == Scale::Display && agree >= FEWEST_ROUNDED && share > Thresholds::FITTED.matched;
+        fits.then(|| Explanation { mistakes: vec![(mistake, 0.0)], explained: share, matched: share })
     }
 
     /// Checks if the picture shows acne: rays that hit the surface they leave.
-    fn acne(&self, all: &[(u32, u32)], reference: &[Vec3], test: &[Vec3]) -> Option<Named> {
+    fn acne(&self, all: &[(u32, u32)], reference: &[Vec3], test: &[Vec3]) -> Option<Explanation> {
         let lights = self.base.world.lights().len();
         if all.len() > WHOLE || !(1..=4).contains(&lights) || !self.base.settings.shadows {
             return None;
@@ -329,7 +334,7 @@ impl<'a> Search<'a> {
             match way {
                 0 => {}
                 1 => variant.settings.bounces = 0,
-                _ => variant.habits.bounces.epsilon = Some(-1e-3),
+                _ => variant.bugs.bounces.epsilon = Some(-1e-3),
             }
             variant.world.edit().lights =
                 (0..lights).filter(|i| off >> i & 1 == 0).map(|i| variant.world.lights()[i].clone()).collect();
@@ -338,7 +343,7 @@ impl<'a> Search<'a> {
         let shadowed: Vec<Vec<Vec3>> = (1..bounces << lights).map(dark).collect();
         let share = speckles::share(test, &differ, &shadowed)?;
         let mistake = super::table::of_name("epsilon-0")?;
-        Some(Named { mistakes: vec![(mistake, 0.0)], explained: share, matched: share })
+        Some(Explanation { mistakes: vec![(mistake, 0.0)], explained: share, matched: share })
     }
 }
 
@@ -363,24 +368,24 @@ fn best_matched(trials: &[Trial]) -> impl Iterator<Item = &Trial> {
 }
 
 /// Minimum fit of an explanation.
-struct Bars {
+struct Thresholds {
     explained: f64,
     matched: f64,
 }
 
-impl Bars {
+impl Thresholds {
     /// Fit of a mistake beside which something more is different.
-    const NEARLY: Bars = Bars { explained: 0.985, matched: 0.9 };
+    const NEARLY: Thresholds = Thresholds { explained: 0.985, matched: 0.9 };
     // The right mistake leaves only rounding at edges; a larger rest means another mistake.
-    const SINGLE: Bars = Bars { explained: 0.99, matched: 0.95 };
+    const SINGLE: Thresholds = Thresholds { explained: 0.99, matched: 0.95 };
     /// Two mistakes fit more pictures by chance than one.
-    const PAIR: Bars = Bars { explained: 0.995, matched: 0.97 };
+    const PAIR: Thresholds = Thresholds { explained: 0.995, matched: 0.97 };
     /// Minimum fit with a fitted value.
-    const FITTED: Bars = Bars { explained: 0.999, matched: 0.97 };
+    const FITTED: Thresholds = Thresholds { explained: 0.999, matched: 0.97 };
     /// Fit at which the search stops.
-    const CLEAR: Bars = Bars { explained: 0.995, matched: 0.98 };
+    const CLEAR: Thresholds = Thresholds { explained: 0.995, matched: 0.98 };
     /// Practically perfect fit.
-    const PERFECT: Bars = Bars { explained: 0.998, matched: 0.995 };
+    const PERFECT: Thresholds = Thresholds { explained: 0.998, matched: 0.995 };
 
     fn passes(&self, fit: &Fit) -> bool {
         fit.explained >= self.explained && fit.matched >= self.matched
@@ -389,12 +394,12 @@ impl Bars {
 
 /// Returns the trials that explain the picture; none if no trial fits, or if two different ones fit
 /// almost equally well.
-fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Bars) -> Vec<Named> {
+fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Thresholds) -> Vec<Explanation> {
     sort(&mut trials);
     trials.dedup_by(|a, b| a.mistakes.len() == b.mistakes.len() && same(&a.mistakes, &b.mistakes));
     let passes = |trial: &Trial| {
         let is_fitted = trial.mistakes.iter().any(|(mistake, value)| mistake.is_fitted(*value));
-        if is_fitted { Bars::FITTED.passes(&trial.fit) } else { bars.passes(&trial.fit) }
+        if is_fitted { Thresholds::FITTED.passes(&trial.fit) } else { bars.passes(&trial.fit) }
     };
     let Some(best) = trials.iter().find(|trial| passes(trial)) else { return Vec::new() };
     let total = difference(&pixels.reference, &pixels.test);
@@ -404,7 +409,7 @@ fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Bars) -> Vec<Named> {
     };
     let rest = |trial: &Trial| 1.0 - trial.fit.explained;
     // A perfect fit has only perfect rivals.
-    let (slack, off) = if Bars::PERFECT.passes(&best.fit) { (0.001, 0.01) } else { (0.01, 0.1) };
+    let (slack, off) = if Thresholds::PERFECT.passes(&best.fit) { (0.001, 0.01) } else { (0.01, 0.1) };
     let rival = |other: &&Trial| {
         !equal(other)
             && rest(other) < 2.0 * rest(best) + slack
@@ -416,7 +421,7 @@ fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Bars) -> Vec<Named> {
     if rivals.len() > 2 || rivals.iter().any(|rival| !passes(rival)) {
         return Vec::new();
     }
-    let mut named: Vec<Named> = Vec::new();
+    let mut named: Vec<Explanation> = Vec::new();
     for trial in trials.iter().filter(|trial| equal(trial)).chain(rivals) {
         // Report a mistake with two values once.
         if !named.iter().any(|named| one_kind(&named.mistakes, &trial.mistakes)) {
@@ -424,7 +429,7 @@ fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Bars) -> Vec<Named> {
         }
     }
     // Prefer mistakes that need no fitted value.
-    let plain = |named: &Named| !named.mistakes.iter().any(|(mistake, value)| mistake.is_fitted(*value));
+    let plain = |named: &Explanation| !named.mistakes.iter().any(|(mistake, value)| mistake.is_fitted(*value));
     if named.iter().any(plain) {
         named.retain(plain);
     }

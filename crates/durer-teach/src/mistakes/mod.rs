@@ -1,16 +1,16 @@
 //! Common mistakes as one table, and their pictures of a scene.
 //!
 //! A row of [`MISTAKES`] states an error of a student's program in words and in both forms of the
-//! code, and changes a [`Variant`] so that a [`Pupil`]'s picture shows it. [`diagnose()`] renders
+//! code, and changes a [`SceneVariant`] so that a [`BuggyTracer`]'s picture shows it. [`diagnose()`] renders
 //! the rows, alone and in pairs, and names the one that explains a given picture; the lesson shows
 //! some of them. A new mistake is a new row.
 
+mod buggy_tracer;
+pub mod bugs;
 mod diagnose;
-pub mod habits;
 mod path_habits;
 mod paths;
 mod pictures;
-mod pupil;
 mod question;
 mod search;
 mod speckles;
@@ -20,23 +20,23 @@ mod variant;
 #[cfg(test)]
 mod tests;
 
+pub use buggy_tracer::BuggyTracer;
 pub use path_habits::Paths;
-pub use pupil::Pupil;
-pub use question::{Diagnosis, Named, Question};
+pub use question::{Diagnosis, DiagnosisInput, Explanation};
 pub use table::{Formulas, MISTAKES, Mistake, Values, of_name};
-pub use variant::Variant;
+pub use variant::SceneVariant;
 
 /// Tries all mistakes of the job's method. `told` receives the progress, from 0 to 1.
-pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
+pub fn diagnose(question: &DiagnosisInput, reported: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     match question.job.method.transport() {
-        Some(_) => paths::diagnose(question, told),
-        None => diagnose::diagnose(question, told),
+        Some(_) => paths::diagnose(question, reported),
+        None => diagnose::diagnose(question, reported),
     }
 }
 
 /// Returns the share of the reference in which the scene's own picture differs from it: of a sample of
 /// its pixels, or for paths of the blocks that differ by more than noise.
-pub fn off(question: &Question) -> f64 {
+pub fn off(question: &DiagnosisInput) -> f64 {
     match question.job.method.transport() {
         Some(_) => paths::off(question),
         None => diagnose::off(question),

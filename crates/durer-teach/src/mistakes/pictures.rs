@@ -1,7 +1,7 @@
 //! Pixels of a variant's picture.
 
-use super::habits::{Output, Rays, Turn};
-use super::{Pupil, Variant};
+use super::bugs::{OutputBug, PictureTurn, RayCount};
+use super::{BuggyTracer, SceneVariant};
 use durer_image::Transfer;
 use durer_image::compare::{Scale, linear_to_srgb, srgb_to_linear};
 use durer_render::render::{Job, sample_places};
@@ -23,23 +23,23 @@ pub(super) struct View<'j> {
 
 impl View<'_> {
     /// Renders the linear light of pixels.
-    pub fn light(&self, variant: &Variant, places: &[(u32, u32)]) -> Vec<Color> {
+    pub fn light(&self, variant: &SceneVariant, places: &[(u32, u32)]) -> Vec<Color> {
         let raster = variant.raster(self.job.width, self.job.height);
-        let pupil = Pupil::new(&variant.world, variant.settings, &variant.habits);
+        let tracer = BuggyTracer::new(&variant.world, variant.settings, &variant.bugs);
         let samples = sample_places(&variant.world, self.job);
         let pixel = |&(x, y): &(u32, u32)| {
             let (mut sum, mut weights) = (Color::ZERO, 0.0);
             let mut add = |place: Vec2, lens: Vec2, weight: f32| {
                 if let Some(ray) = variant.ray(&raster, (x, y), place, lens) {
-                    sum += weight * pupil.radiance(&ray);
+                    sum += weight * tracer.radiance(&ray);
                 }
                 weights += weight;
             };
             let corner = Vec2::new(x as f32, y as f32);
             match variant.aim.rays {
-                Rays::Right => samples(x, y, &mut add),
-                Rays::One => add(corner + 0.5, Vec2::splat(0.5), 1.0),
-                Rays::Sixteen => (0..16_u8).for_each(|i| {
+                RayCount::Right => samples(x, y, &mut add),
+                RayCount::One => add(corner + 0.5, Vec2::splat(0.5), 1.0),
+                RayCount::Sixteen => (0..16_u8).for_each(|i| {
                     let part = Vec2::new(f32::from(i % 4), f32::from(i / 4));
                     add(corner + (part + 0.5) / 4.0, Vec2::splat(0.5), 1.0);
                 }),
@@ -50,12 +50,12 @@ impl View<'_> {
     }
 
     /// Converts light to the values of a file.
-    pub fn values(&self, output: Output, light: &[Color]) -> Vec<Vec3> {
+    pub fn values(&self, output: OutputBug, light: &[Color]) -> Vec<Vec3> {
         light.iter().map(|&light| self.value(output, light)).collect()
     }
 
     /// Renders the file values of pixels of a variant.
-    pub fn picture(&self, variant: &Variant, places: &[(u32, u32)]) -> Vec<Vec3> {
+    pub fn picture(&self, variant: &SceneVariant, places: &[(u32, u32)]) -> Vec<Vec3> {
         let (width, height) = (self.job.width, self.job.height);
         let sources: Vec<(u32, u32)> = places.iter().map(|place| variant.turn.source(width, height, *place)).collect();
         let mut values = self.values(variant.output, &self.light(variant, &sources));
@@ -64,21 +64,21 @@ impl View<'_> {
                 *value = Vec3::ZERO;
             }
         }
-        let order = Turn::ORDERS[usize::from(variant.turn.channels).min(5)];
+        let order = PictureTurn::ORDERS[usize::from(variant.turn.channels).min(5)];
         values.iter_mut().for_each(|value| *value = order.map(|channel| value[channel]).into());
         values
     }
 
-    fn value(&self, output: Output, light: Color) -> Vec3 {
+    fn value(&self, output: OutputBug, light: Color) -> Vec3 {
         // Extremely large values are white, whatever the integer overflow of an old program gave.
         let light = if light.is_finite() { light.min(Color::splat(1e6)) } else { light };
-        let light = if output == Output::Toned { light.map(|v| v / (1.0 + v.max(0.0))) } else { light };
+        let light = if output == OutputBug::Toned { light.map(|v| v / (1.0 + v.max(0.0))) } else { light };
         let light = match output {
-            Output::Scaled => light / self.brightest,
-            Output::Times(factor) => light * factor,
-            Output::Negative => Color::ONE - light.clamp(Color::ZERO, Color::ONE),
-            Output::Grey(how) => Color::splat(grey(how, light.clamp(Color::ZERO, Color::ONE))),
-            Output::Steps(steps) => {
+            OutputBug::Scaled => light / self.brightest,
+            OutputBug::Times(factor) => light * factor,
+            OutputBug::Negative => Color::ONE - light.clamp(Color::ZERO, Color::ONE),
+            OutputBug::Grey(how) => Color::splat(grey(how, light.clamp(Color::ZERO, Color::ONE))),
+            OutputBug::Steps(steps) => {
                 let n = steps as f32;
                 light.map(|v| (v.clamp(0.0, 1.0) * n).floor().min(n - 1.0) / (n - 1.0).max(1.0))
             }
@@ -88,13 +88,13 @@ impl View<'_> {
             return light;
         }
         let transfer = match (output, self.transfer) {
-            (Output::OtherRounding, Transfer::Course) => Transfer::Linear,
-            (Output::OtherRounding, Transfer::Linear) => Transfer::Course,
+            (OutputBug::OtherRounding, Transfer::Course) => Transfer::Linear,
+            (OutputBug::OtherRounding, Transfer::Linear) => Transfer::Course,
             // Leaving the curve out writes linear values.
-            (Output::CurveLess(0.0), Transfer::Srgb) => Transfer::Linear,
+            (OutputBug::CurveLess(0.0), Transfer::Srgb) => Transfer::Linear,
             (_, transfer) => transfer,
         };
-        if let (Output::Wrapped(most), true) = (output, transfer != Transfer::Srgb) {
+        if let (OutputBug::Wrapped(most), true) = (output, transfer != Transfer::Srgb) {
             let half = if transfer == Transfer::Linear { 0.5 } else { 0.0 };
             let wrapped = |v: f32| ((v * f32::from(most) + half).floor() as i64).rem_euclid(256) as f32 / 255.0;
             return light.map(wrapped);
@@ -104,10 +104,10 @@ impl View<'_> {
         let curved = |v: f32| if transfer == Transfer::Srgb { linear_to_srgb(v.clamp(0.0, 1.0)) } else { v.max(0.0) };
         let plain = if transfer == Transfer::Course { Transfer::Course } else { Transfer::Linear };
         match output {
-            Output::CurveMore(0.0) => eight(plain, light.map(|v| linear_to_srgb(curved(v)))),
-            Output::CurveMore(power) => eight(plain, light.map(|v| fp::pow(curved(v), 1.0 / power))),
-            Output::CurveLess(power) if power > 0.0 => eight(plain, light.map(|v| fp::pow(curved(v), power))),
-            Output::CurveLess(_) if self.transfer != Transfer::Srgb => {
+            OutputBug::CurveMore(0.0) => eight(plain, light.map(|v| linear_to_srgb(curved(v)))),
+            OutputBug::CurveMore(power) => eight(plain, light.map(|v| fp::pow(curved(v), 1.0 / power))),
+            OutputBug::CurveLess(power) if power > 0.0 => eight(plain, light.map(|v| fp::pow(curved(v), power))),
+            OutputBug::CurveLess(_) if self.transfer != Transfer::Srgb => {
                 eight(plain, light.map(|v| srgb_to_linear(curved(v))))
             }
             _ => eight(transfer, light),

@@ -2,7 +2,7 @@
 
 use super::pictures::View;
 use super::table::{Formulas, Mistake};
-use super::variant::Variant;
+use super::variant::SceneVariant;
 use durer_image::Transfer;
 use durer_image::compare::{Picture, Scale};
 use durer_render::render::Job;
@@ -16,7 +16,7 @@ pub(super) const MAX_OFF: f64 = 0.25;
 
 /// Two pictures, and the scene of the reference.
 #[derive(Clone, Copy, Debug)]
-pub struct Question<'a> {
+pub struct DiagnosisInput<'a> {
     /// The scene as written.
     pub scene: &'a Scene,
     /// The scene compiled with the rules of the reference.
@@ -33,7 +33,7 @@ pub struct Question<'a> {
 
 /// Mistakes that together explain a picture.
 #[derive(Clone, Debug)]
-pub struct Named {
+pub struct Explanation {
     /// The mistakes, each with its value.
     pub mistakes: Vec<(&'static Mistake, f32)>,
     /// Share of the squared difference that they explain, without rounding.
@@ -49,14 +49,14 @@ pub struct Diagnosis {
     pub off: f64,
     /// Explanations of the picture, more than one if several give the same picture; empty if none
     /// does.
-    pub named: Vec<Named>,
+    pub named: Vec<Explanation>,
     /// A mistake that reproduces nearly all of the difference, while something more is different.
     /// Only if nothing is named.
-    pub nearly: Option<Named>,
+    pub nearly: Option<Explanation>,
     /// What else can be said, if nothing is named.
     pub remark: Option<String>,
     /// The closest trials, including those that do not explain the picture.
-    pub tried: Vec<Named>,
+    pub tried: Vec<Explanation>,
     /// Formulas for describing the mistakes.
     pub formulas: Formulas,
 }
@@ -78,10 +78,10 @@ pub(super) fn values(picture: &Picture, scale: Scale, transfer: Transfer) -> Vec
 }
 
 /// Returns the reference's values, the view, and the scene without mistakes.
-pub(super) fn prepared<'a>(question: &Question<'a>) -> (Vec<Vec3>, View<'a>, Variant<'a>) {
+pub(super) fn prepared<'a>(question: &DiagnosisInput<'a>) -> (Vec<Vec3>, View<'a>, SceneVariant<'a>) {
     let screen = [question.reference, question.test].iter().any(|picture| picture.scale == Scale::Display);
     let scale = if screen { Scale::Display } else { Scale::Linear };
-    let base = Variant::new(question.scene, question.world.clone(), question.job.settings);
+    let base = SceneVariant::new(question.scene, question.world.clone(), question.job.settings);
     let view = View { job: question.job, scale, transfer: question.transfer, brightest: 1.0 };
     (values(question.reference, scale, question.transfer), view, base)
 }

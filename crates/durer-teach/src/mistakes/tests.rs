@@ -2,7 +2,7 @@
 
 use super::pictures::View;
 use super::table::MISTAKES;
-use super::{Diagnosis, Pupil, Question, Variant, diagnose};
+use super::{BuggyTracer, Diagnosis, DiagnosisInput, SceneVariant, diagnose};
 use crate::lesson::TOPICS;
 use durer_diag::{Diagnostics, Files};
 use durer_formats::Decoder;
@@ -50,23 +50,23 @@ fn world_of(text: &str, rules: &Rules) -> (Scene, World) {
 
 fn job() -> Job {
     let job = Job { width: 48, height: 40, sampling: Sampling::Center, ..Job::default() };
-    Job { settings: durer_render::integrator::Settings { bounces: 3, least_weight: 0.0, ..job.settings }, ..job }
+    Job { settings: durer_render::integrator::WhittedOptions { bounces: 3, least_weight: 0.0, ..job.settings }, ..job }
 }
 
 /// In every dialect, a student's tracer without mistakes returns the rendered picture bit for bit.
 #[test]
 fn variant_without_mistakes_renders_the_correct_picture() {
     for dialect in Dialect::ALL {
-        for rules in [dialect.rules().clone(), dialect.rules().sane()] {
+        for rules in [dialect.rules().clone(), dialect.rules().without_quirks()] {
             let (scene, world) = world(&rules);
             let job = job();
-            let variant = Variant::new(&scene, world, job.settings);
-            let pupil = Pupil::new(&variant.world, job.settings, &variant.habits);
+            let variant = SceneVariant::new(&scene, world, job.settings);
+            let tracer = BuggyTracer::new(&variant.world, job.settings, &variant.bugs);
             let whitted = Whitted { world: &variant.world, settings: job.settings, cancel: None };
             let raster = variant.raster(job.width, job.height);
             for place in job.whole().places() {
                 let ray = center_ray(&variant.world, &raster, place).unwrap();
-                let (own, right) = (pupil.radiance(&ray), whitted.radiance(&ray, &mut ()));
+                let (own, right) = (tracer.radiance(&ray), whitted.radiance(&ray, &mut ()));
                 // A year's program may divide by zero.
                 let same = own == right || own.is_nan() && own.is_nan_mask() == right.is_nan_mask();
                 assert!(same, "{} at {place:?}: {own} {right}", dialect.name());
@@ -86,7 +86,7 @@ fn every_row_has_a_unique_name_and_a_lesson_step() {
 }
 
 /// Renders the eight-bit picture of a variant; also returns its brightest value.
-fn picture(variant: &Variant, job: &Job, brightest: f32) -> (Picture, f32) {
+fn picture(variant: &SceneVariant, job: &Job, brightest: f32) -> (Picture, f32) {
     let places: Vec<(u32, u32)> = job.whole().places().collect();
     let view = View { job, scale: Scale::Display, transfer: Transfer::Course, brightest };
     let brightest = view.light(variant, &places).iter().map(|light| light.max_element()).fold(0.0, f32::max);
@@ -100,7 +100,7 @@ fn found(names: &[(&str, f32)]) -> Diagnosis {
 
 fn found_in(text: &str, job: Job, names: &[(&str, f32)]) -> Diagnosis {
     let (scene, world) = world_of(text, Dialect::F04.rules());
-    let right = Variant::new(&scene, world, job.settings);
+    let right = SceneVariant::new(&scene, world, job.settings);
     let mut wrong = right.clone();
     for (name, value) in names {
         (super::of_name(name).unwrap().make)(&mut wrong, *value);
@@ -109,7 +109,7 @@ fn found_in(text: &str, job: Job, names: &[(&str, f32)]) -> Diagnosis {
     let (test, _) = picture(&wrong, &job, brightest);
     let transfer = Transfer::Course;
     let question =
-        Question { scene: &scene, world: &right.world, job: &job, transfer, reference: &reference, test: &test };
+        DiagnosisInput { scene: &scene, world: &right.world, job: &job, transfer, reference: &reference, test: &test };
     diagnose(&question, &|_| {})
 }
 
@@ -189,9 +189,9 @@ fn each_usual_mistake_is_named() {
     let mut judge = |text: &str, job: Job, name: &str, value: f32| {
         let named = found_in(text, job, &[(name, value)]).named;
         if !named.iter().any(|n| n.mistakes.len() == 1 && n.mistakes[0].0.name == name) {
-            let said: Vec<Vec<_>> =
+            let messages: Vec<Vec<_>> =
                 named.iter().map(|n| n.mistakes.iter().map(|m| (m.0.name, m.1)).collect()).collect();
-            wrong.push(format!("{name} {value}: {said:?}"));
+            wrong.push(format!("{name} {value}: {messages:?}"));
         }
     };
     // Bright enough to clamp, and with little glass, so that every term is visible.
@@ -244,9 +244,9 @@ fn each_further_mistake_is_named() {
     for (name, value) in FURTHER {
         let named = found_in(&bright, job(), &[(name, value)]).named;
         if !named.iter().any(|n| n.mistakes.len() == 1 && n.mistakes[0].0.name == name) {
-            let said: Vec<Vec<_>> =
+            let messages: Vec<Vec<_>> =
                 named.iter().map(|n| n.mistakes.iter().map(|m| (m.0.name, m.1)).collect()).collect();
-            wrong.push(format!("{name} {value}: {said:?}"));
+            wrong.push(format!("{name} {value}: {messages:?}"));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -257,7 +257,7 @@ fn each_further_mistake_is_named() {
 fn unrelated_pictures_match_no_mistake() {
     let (scene, world) = world(Dialect::F04.rules());
     let job = job();
-    let right = Variant::new(&scene, world, job.settings);
+    let right = SceneVariant::new(&scene, world, job.settings);
     let (reference, _) = picture(&right, &job, 1.0);
     let mut other = reference.clone();
     for (i, pixel) in other.image.pixels.iter_mut().enumerate() {
@@ -265,7 +265,7 @@ fn unrelated_pictures_match_no_mistake() {
     }
     let ask = |reference: &Picture, test: &Picture| {
         let transfer = Transfer::Course;
-        diagnose(&Question { scene: &scene, world: &right.world, job: &job, transfer, reference, test }, &|_| {})
+        diagnose(&DiagnosisInput { scene: &scene, world: &right.world, job: &job, transfer, reference, test }, &|_| {})
     };
     let diagnosis = ask(&reference, &other);
     assert!(diagnosis.is_of_scene() && diagnosis.named.is_empty(), "{:?}", diagnosis.named);

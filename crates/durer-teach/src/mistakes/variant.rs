@@ -1,15 +1,15 @@
 //! A scene with its rules, and the deviations of a student's tracer.
 
-use super::habits::{Aim, Habits, Output, Turn};
+use super::bugs::{Bugs, CameraBugs, OutputBug, PictureTurn};
 use super::path_habits::Paths;
 use durer_bvh::BuildQuality;
 use durer_render::compile::rules::matrix_rules;
 use durer_render::compile::{self, AccelKind};
-use durer_render::integrator::Settings;
+use durer_render::integrator::WhittedOptions;
 use durer_render::render::raster;
 use durer_render::world::{Geometry, HighlightModel, Material, MeshTree, Object, Phong, World};
 use durer_scene::camera::{Camera, CameraBasis, CameraSample, Projection, Raster};
-use durer_scene::dialect::{Compat, Highlight, Rules};
+use durer_scene::dialect::{Highlight, Quirk, Rules};
 use durer_scene::light::Light;
 use durer_scene::material::PhongMaterial;
 use durer_scene::math::{Color, Ray, Vec2};
@@ -20,21 +20,21 @@ use std::sync::Arc;
 
 /// State that a mistake can change.
 #[derive(Clone, Debug)]
-pub struct Variant<'s> {
+pub struct SceneVariant<'s> {
     /// The scene as written.
     pub scene: &'s Scene,
     /// The world: geometry, lights, materials, camera and rules.
     pub world: World,
     /// Whitted's settings.
-    pub settings: Settings,
+    pub settings: WhittedOptions,
     /// Deviations of the tracer.
-    pub habits: Habits,
+    pub bugs: Bugs,
     /// Deviations of camera rays.
-    pub aim: Aim,
+    pub aim: CameraBugs,
     /// Deviations of the output curve.
-    pub output: Output,
+    pub output: OutputBug,
     /// Deviations of pixel order.
-    pub turn: Turn,
+    pub turn: PictureTurn,
     /// Deviations of a path tracer.
     pub paths: Paths,
 }
@@ -53,7 +53,7 @@ const WIDE: f32 = 100.0;
 
 /// Kinds of geometry that the course's programs implement, and can therefore get wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Taught {
+pub enum TaughtShapes {
     /// `Sphere`.
     Sphere,
     /// `Plane`.
@@ -65,14 +65,14 @@ pub enum Taught {
 }
 
 /// Returns the course's kind of a geometry; `None` if the course has none.
-pub fn taught(geometry: &Geometry) -> Option<Taught> {
+pub fn taught_shapes(geometry: &Geometry) -> Option<TaughtShapes> {
     match geometry {
-        Geometry::Mesh(_) => Some(Taught::Mesh),
+        Geometry::Mesh(_) => Some(TaughtShapes::Mesh),
         Geometry::Solid(_) => None,
         Geometry::Primitive(shape) => match shape {
-            Primitive::Sphere(_) => Some(Taught::Sphere),
-            Primitive::Plane(_) => Some(Taught::Plane),
-            Primitive::Triangle(_) => Some(Taught::Triangle),
+            Primitive::Sphere(_) => Some(TaughtShapes::Sphere),
+            Primitive::Plane(_) => Some(TaughtShapes::Plane),
+            Primitive::Triangle(_) => Some(TaughtShapes::Triangle),
             Primitive::Cuboid(_)
             | Primitive::Cylinder(_)
             | Primitive::Cone(_)
@@ -88,11 +88,11 @@ pub fn taught(geometry: &Geometry) -> Option<Taught> {
 /// Computes the product of a transform's matrices.
 pub type Product<'p> = &'p dyn Fn(&[MatrixOp], MatrixRules) -> DAffine3;
 
-impl<'s> Variant<'s> {
+impl<'s> SceneVariant<'s> {
     /// Creates a variant without mistakes.
-    pub fn new(scene: &'s Scene, world: World, settings: Settings) -> Self {
-        let (habits, aim, output, turn, paths) = Default::default();
-        Variant { scene, world, settings, habits, aim, output, turn, paths }
+    pub fn new(scene: &'s Scene, world: World, settings: WhittedOptions) -> Self {
+        let (bugs, aim, output, turn, paths) = Default::default();
+        SceneVariant { scene, world, settings, bugs, aim, output, turn, paths }
     }
 
     /// Returns the ray of a pixel through a position in pixels from the upper left corner.
@@ -114,7 +114,7 @@ impl<'s> Variant<'s> {
     }
 
     /// Toggles a quirk of the rules.
-    pub fn toggle(&mut self, compat: Compat) {
+    pub fn toggle(&mut self, compat: Quirk) {
         self.change_rules(|rules| rules.compat ^= compat.bit());
     }
 
@@ -149,7 +149,7 @@ impl<'s> Variant<'s> {
 
     /// Changes the model of highlights from Blinn's to Phong's and back.
     pub fn other_highlights(&mut self) {
-        let behind = self.world.rules().has(Compat::HighlightBehind);
+        let behind = self.world.rules().has(Quirk::HighlightBehind);
         self.phongs(|phong| {
             if let Some((_, _, model)) = &mut phong.highlight {
                 *model = match model {
@@ -167,7 +167,7 @@ impl<'s> Variant<'s> {
         if self.world.rules().highlight != Highlight::None {
             return;
         }
-        let behind = self.world.rules().has(Compat::HighlightBehind) && form == 0.0;
+        let behind = self.world.rules().has(Quirk::HighlightBehind) && form == 0.0;
         let model = if form == 2.0 { HighlightModel::Blinn } else { HighlightModel::Phong { behind } };
         for (written, material) in self.scene.materials.iter().zip(&mut self.world.edit().materials) {
             if let (scene::Material::Phong(written, _), Material::Phong(phong)) = (&written.value, material) {
@@ -179,7 +179,7 @@ impl<'s> Variant<'s> {
 
     /// Adds a black highlight to materials that have none.
     pub fn highlights_everywhere(&mut self) {
-        let behind = self.world.rules().has(Compat::HighlightBehind);
+        let behind = self.world.rules().has(Quirk::HighlightBehind);
         let model = match self.world.rules().highlight {
             Highlight::None => return,
             Highlight::Phong => HighlightModel::Phong { behind },

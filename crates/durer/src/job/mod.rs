@@ -10,7 +10,7 @@ use durer_render::film::Filter;
 use durer_render::film::aov::Aov;
 use durer_render::film::course::CourseFilter;
 use durer_render::film::false_color::LightScale;
-use durer_render::integrator::{Method, Settings};
+use durer_render::integrator::{IntegratorKind, WhittedOptions};
 use durer_render::render::{Crop, Job, Sampling};
 use durer_scene::camera::{Projection, Raster};
 use durer_scene::describe::{DescribedList, Field, Value};
@@ -45,7 +45,7 @@ macro_rules! options {
         }
 
         impl $name {
-            /// Every option except those of integrators, which state their own: see [`Method`].
+            /// Every option except those of integrators, which state their own: see [`IntegratorKind`].
             pub const OPTIONS: &'static [JobOption] =
                 &[$(JobOption { name: $word, doc: concat!($($fdoc, "\n"),+), form: $form },)*];
 
@@ -113,7 +113,7 @@ options! {
         /// Maximum depth of reflected and transmitted rays; with path and photons, maximum number
         /// of scattering events after the first hit [default: 8; 16 with path and photons; with
         /// --dialect, that dialect's own default]
-        bounces: u32 = "bounces", OptionForm::Whole(0, Settings::MAX_BOUNCES);
+        bounces: u32 = "bounces", OptionForm::Whole(0, WhittedOptions::MAX_BOUNCES);
         /// Cast shadows [default: on; with --dialect, off]
         shadows: bool = "shadows", OptionForm::Switch;
         /// Also shade surfaces that are seen from behind [default: on; with --dialect, off]
@@ -157,8 +157,8 @@ options! {
 
 /// Returns the default integrator of a scene: path tracing for layered materials, environments, fog
 /// and emissive surfaces, otherwise Whitted's.
-pub fn usual_method(scene: &Scene) -> Method {
-    if scene.is_physical() { Method::PATH } else { Method::WHITTED }
+pub fn usual_method(scene: &Scene) -> IntegratorKind {
+    if scene.is_physical() { IntegratorKind::PATH } else { IntegratorKind::WHITTED }
 }
 
 /// Returns the name of an integrator's option on the command line.
@@ -167,7 +167,7 @@ pub fn option_name(field: &Field) -> &'static str {
 }
 
 /// Returns the index of an integrator's option by name.
-pub fn option_index(method: &Method, option: &str) -> Option<usize> {
+pub fn option_index(method: &IntegratorKind, option: &str) -> Option<usize> {
     method.fields().iter().position(|field| option_name(field) == option)
 }
 
@@ -213,7 +213,7 @@ impl RenderJob {
     ///
     /// A sentence, if no integrator has this option.
     pub fn set_integrator_option(&mut self, name: &str, value: Value) -> Result<(), String> {
-        let kinds = Method::kinds();
+        let kinds = IntegratorKind::kinds();
         let fields = kinds.iter().flat_map(|kind| kind.fields());
         let name = fields.map(option_name).find(|word| *word == name).ok_or_else(|| self.unknown(name))?;
         self.method_options.retain(|known| known.0 != name);
@@ -223,11 +223,11 @@ impl RenderJob {
 
     fn set_of_method(&mut self, name: &str, text: &str) -> Result<(), String> {
         if name == "integrator" {
-            one_of(text, &Method::kinds().iter().map(Method::name).collect::<Vec<_>>())?;
+            one_of(text, &IntegratorKind::kinds().iter().map(IntegratorKind::name).collect::<Vec<_>>())?;
             self.method = Some(text.into());
             return Ok(());
         }
-        let kinds = Method::kinds();
+        let kinds = IntegratorKind::kinds();
         let field = kinds.iter().flat_map(|kind| kind.fields()).find(|field| option_name(field) == name);
         let kind = field.map(|field| field.kind).ok_or_else(|| self.unknown(name))?;
         use durer_scene::describe::Kind;
@@ -252,9 +252,9 @@ impl RenderJob {
     ///
     /// A sentence, for an unknown integrator, or an option that does not belong to it or is out of
     /// range.
-    pub fn resolved_method(&self, usual: Method) -> Result<Method, String> {
-        let has = |kind: &Method, (option, _): &(&str, Value)| option_index(kind, option).is_some();
-        let mut methods = std::iter::once(usual).chain(Method::kinds());
+    pub fn resolved_method(&self, usual: IntegratorKind) -> Result<IntegratorKind, String> {
+        let has = |kind: &IntegratorKind, (option, _): &(&str, Value)| option_index(kind, option).is_some();
+        let mut methods = std::iter::once(usual).chain(IntegratorKind::kinds());
         // Find an integrator with all options, or at least with the last one.
         let fitting = methods.clone().find(|kind| self.method_options.iter().all(|option| has(kind, option)));
         let last = self.method_options.last();
@@ -263,7 +263,7 @@ impl RenderJob {
             None => fitting.or_else(|| methods.find(|kind| last.is_none_or(|option| has(kind, option)))),
         };
         let Some(mut method) = found else {
-            let known: Vec<&str> = Method::kinds().iter().map(Method::name).collect();
+            let known: Vec<&str> = IntegratorKind::kinds().iter().map(IntegratorKind::name).collect();
             return Err(format!("unknown integrator; expected one of {}", known.join(", ")));
         };
         for (option, value) in &self.method_options {
@@ -292,13 +292,13 @@ impl RenderJob {
     pub fn resolve(&self, context: &JobContext, view: Option<&View>) -> Result<Job, String> {
         let JobContext { scene, rules, emulates, .. } = *context;
         let camera = scene.camera.as_ref();
-        let wishes = scene.wishes;
+        let render_defaults = scene.render_defaults;
         let natural = || Raster::natural_size(camera.and_then(|camera| camera.proportions()), rules.size);
-        let (width, height) = self.size.or(wishes.size).unwrap_or_else(natural);
+        let (width, height) = self.size.or(render_defaults.size).unwrap_or_else(natural);
         let method = self.resolved_method(usual_method(scene))?;
         // Blur needs more samples than an edge.
         let plenty = if camera.is_some_and(|camera| camera.has_aperture()) || method.is_random() { 64 } else { 16 };
-        let plenty = wishes.samples.unwrap_or(plenty);
+        let plenty = render_defaults.samples.unwrap_or(plenty);
         let is = |flag: Option<bool>| flag.unwrap_or(false);
         if method.is_random() && (is(self.jitter) || is(self.blur)) {
             return Err(format!("--jitter and --blur do not apply to --integrator {}", method.name()));
@@ -323,7 +323,7 @@ impl RenderJob {
             None => None,
         };
         // The scene's crop only applies to the scene's own size.
-        let wished = wishes.crop.filter(|_| wishes.size == Some((width, height)));
+        let wished = render_defaults.crop.filter(|_| render_defaults.size == Some((width, height)));
         let crop = view.and_then(|view| view.crop.or(wished));
         let shown = view.map_or(&[][..], |view| &view.show);
         Ok(Job {
@@ -335,7 +335,7 @@ impl RenderJob {
             noise: self.noise_threshold,
             adaptive: is(self.adaptive),
             method,
-            settings: Settings {
+            settings: WhittedOptions {
                 bounces: self.bounces.unwrap_or_else(|| usual_bounces(method, context)),
                 shadows: self.shadows.unwrap_or(rules.shadows),
                 shade_back: self.shade_back.unwrap_or(rules.shade_back),
@@ -423,7 +423,8 @@ impl RenderJob {
         let settings = &job.settings;
         let unless = |value: bool, usual: bool| (value != usual).then_some(value);
         let usual = usual_method(scene);
-        let plain = Method::kinds().into_iter().find(|kind| kind.name() == job.method.name()).unwrap_or_default();
+        let plain =
+            IntegratorKind::kinds().into_iter().find(|kind| kind.name() == job.method.name()).unwrap_or_default();
         let fields = job.method.fields().iter().enumerate();
         let differing = fields.filter(|&(at, _)| job.method.get(at) != plain.get(at));
         let mut options = RenderJob {
@@ -495,9 +496,9 @@ impl RenderJob {
 }
 
 /// Returns the default number of bounces.
-fn usual_bounces(method: Method, context: &JobContext) -> u32 {
+fn usual_bounces(method: IntegratorKind, context: &JobContext) -> u32 {
     match method.transport() {
-        Some(_) => context.scene.wishes.bounces.unwrap_or(PATH_BOUNCES),
+        Some(_) => context.scene.render_defaults.bounces.unwrap_or(PATH_BOUNCES),
         None => context.rules.bounces,
     }
 }

@@ -1,6 +1,6 @@
 use super::*;
 use durer_scene::material::PrincipledMaterial;
-use durer_scene::scene::{Material, Spanned, Wishes};
+use durer_scene::scene::{Material, RenderDefaults, Spanned};
 
 fn context<'a>(scene: &'a Scene, rules: &'a Rules) -> JobContext<'a> {
     JobContext { scene, rules, emulates: false, timed: false }
@@ -11,15 +11,16 @@ fn defaults_follow_from_the_scene() {
     let rules = Dialect::Durer.rules();
     let job = |scene: &Scene| RenderJob::default().resolve(&context(scene, rules), None).unwrap();
     let plain = job(&Scene::default());
-    assert_eq!((plain.width, plain.height, plain.method), (512, 512, Method::WHITTED));
+    assert_eq!((plain.width, plain.height, plain.method), (512, 512, IntegratorKind::WHITTED));
     assert_eq!(plain.sampling.samples(), 16);
     assert_eq!(plain.settings.bounces, 8);
     let layers = Material::from(PrincipledMaterial::default());
-    let wishes = Wishes { size: Some((64, 32)), samples: None, bounces: Some(3), crop: Some((1, 2, 3, 4)) };
+    let render_defaults =
+        RenderDefaults { size: Some((64, 32)), samples: None, bounces: Some(3), crop: Some((1, 2, 3, 4)) };
     let materials = vec![Spanned { value: layers, span: Default::default() }];
-    let scene = Scene { materials, wishes, ..Scene::default() };
+    let scene = Scene { materials, render_defaults, ..Scene::default() };
     let physical = job(&scene);
-    assert_eq!((physical.width, physical.height, physical.method), (64, 32, Method::PATH));
+    assert_eq!((physical.width, physical.height, physical.method), (64, 32, IntegratorKind::PATH));
     assert_eq!((physical.sampling.samples(), physical.settings.bounces), (64, 3));
     let view = View::default();
     let crop = |job: RenderJob| job.resolve(&context(&scene, rules), Some(&view)).unwrap().crop;

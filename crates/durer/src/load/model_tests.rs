@@ -5,7 +5,7 @@ use durer_diag::Diagnostic;
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::{Vec3, fp};
-use durer_scene::scene::{Material, Node, Studio, View};
+use durer_scene::scene::{DefaultLighting, Material, Node, View};
 use durer_scene::source::Digest;
 use durer_scene::texture::Channel;
 use std::fs;
@@ -109,7 +109,7 @@ fn model_renders_the_same_in_every_format() {
     let folder = tetrahedra();
     let options = LoadOptions::default();
     let up = LoadOptions {
-        staging: Staging { up: Some(durer_scene::scene::Axis::Y), ..Staging::default() },
+        scene_defaults: SceneDefaults { up: Some(durer_scene::scene::Axis::Y), ..SceneDefaults::default() },
         ..options.clone()
     };
     let obj = hash(folder.path(), "a.obj", &options);
@@ -122,7 +122,10 @@ fn model_renders_the_same_in_every_format() {
     // STL files are z-up by default.
     assert_ne!(hash(folder.path(), "a.stl", &options), obj);
     // Another view is another picture with another digest.
-    let front = LoadOptions { staging: Staging { view: Some(View::Front), ..Staging::default() }, ..options.clone() };
+    let front = LoadOptions {
+        scene_defaults: SceneDefaults { view: Some(View::Front), ..SceneDefaults::default() },
+        ..options.clone()
+    };
     assert_ne!(hash(folder.path(), "a.obj", &front), obj);
 }
 
@@ -181,8 +184,10 @@ fn meshes_are_equal_after_writing_and_reading() {
 #[test]
 fn model_without_light_is_dark_only_on_request() {
     let folder = tetrahedra();
-    let none =
-        LoadOptions { staging: Staging { studio: Some(Studio::None), ..Staging::default() }, ..Default::default() };
+    let none = LoadOptions {
+        scene_defaults: SceneDefaults { studio: Some(DefaultLighting::None), ..SceneDefaults::default() },
+        ..Default::default()
+    };
     let scene = read(folder.path(), "a.ply", &none).0.unwrap();
     assert!(scene.lights.unwrap().is_empty() && scene.root.unwrap().objects.len() == 1);
     assert_eq!(read(folder.path(), "a.ply", &LoadOptions::default()).1, [""; 0]);
@@ -280,8 +285,9 @@ fn gltf_camera_is_chosen_by_name() {
     )
     .unwrap();
     let seen = |camera: &str| {
-        let staging = Staging { camera: Some(camera.into()), aspect: Some(2.0), ..Staging::default() };
-        read(folder.path(), "a.gltf", &LoadOptions { staging, ..LoadOptions::default() })
+        let scene_defaults =
+            SceneDefaults { camera: Some(camera.into()), aspect: Some(2.0), ..SceneDefaults::default() };
+        read(folder.path(), "a.gltf", &LoadOptions { scene_defaults, ..LoadOptions::default() })
     };
     let Some(durer_scene::camera::Camera::Perspective(left)) = seen("left").0.unwrap().camera else {
         panic!("no camera")

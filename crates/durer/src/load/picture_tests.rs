@@ -3,7 +3,7 @@
 use super::*;
 use ::image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 use durer_image::linear_from_srgb;
-use durer_render::integrator::Method;
+use durer_render::integrator::IntegratorKind;
 use durer_render::render::{Control, Job, Sampling, render};
 use durer_scene::math::{Color, Vec2};
 use durer_scene::texture::{Mapping, Texture};
@@ -14,13 +14,13 @@ fn texture(field: &str, name: &str, bytes: &[u8], memory: Option<u64>) -> Result
         "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }} Materials {{ PrincipledMaterial {{ {field} {name} }} }}
          Group {{ MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }} }}"
     );
-    let given = vec![(name.to_string(), bytes.into())];
-    let options = LoadOptions { given, memory, dialect: Some(Dialect::Durer), ..LoadOptions::default() };
+    let in_memory = vec![(name.to_string(), bytes.into())];
+    let options = LoadOptions { in_memory, memory, dialect: Some(Dialect::Durer), ..LoadOptions::default() };
     let (mut files, mut found) = (Files::default(), Diagnostics::default());
     let loaded = load_text(Path::new("scene.txt"), text.as_bytes().into(), &options, &mut files, &mut found);
     let world = loaded.and_then(|loaded| loaded.compile(&options, &mut files, &mut found));
-    let said = || found.iter().map(|finding| finding.message.clone()).collect();
-    world.map(|world| world.textures()[0].clone()).ok_or_else(said)
+    let messages = || found.iter().map(|finding| finding.message.clone()).collect();
+    world.map(|world| world.textures()[0].clone()).ok_or_else(messages)
 }
 
 /// Encodes one floating-point pixel as PFM.
@@ -58,8 +58,8 @@ fn memory_is_checked_before_allocation() {
     let read = |memory| texture("emissionTexture", "a.pfm", &large, Some(memory)).map(|texture| texture.bytes());
     // The picture and the texture made of it count together.
     assert_eq!(read(6_000_000), Ok(400 * 400 * 12));
-    let said = read(3_000_000).unwrap_err();
-    assert!(said.contains("memory"), "{said}");
+    let messages = read(3_000_000).unwrap_err();
+    assert!(messages.contains("memory"), "{messages}");
 }
 
 /// Returns mean and variance of the pixels of a far wall with thin emissive stripes, seen directly
@@ -85,7 +85,7 @@ fn stripes(minified: &str, mirrored: bool) -> (f64, f64) {
          Group {{ MaterialIndex 0 Rectangle {{ {wall} }} {mirror} }}"
     );
     let options = LoadOptions {
-        given: vec![("s.ppm".to_string(), picture.into())],
+        in_memory: vec![("s.ppm".to_string(), picture.into())],
         dialect: Some(Dialect::Durer),
         ..LoadOptions::default()
     };
@@ -94,7 +94,7 @@ fn stripes(minified: &str, mirrored: bool) -> (f64, f64) {
     let world = loaded.and_then(|loaded| loaded.compile(&options, &mut files, &mut found));
     let world = world.unwrap_or_else(|| panic!("{found:?}"));
     let sampling = Sampling::Filtered { samples: 16, filter: durer_render::film::Filter::Box { radius: 0.5 } };
-    let job = Job { method: Method::PATH, width: 48, height: 48, sampling, ..Job::default() };
+    let job = Job { method: IntegratorKind::PATH, width: 48, height: 48, sampling, ..Job::default() };
     let rendered = render(&world, &job, &Control::default()).unwrap();
     let pixels: Vec<f64> = rendered.layers[0].image.pixels.iter().map(|pixel| f64::from(pixel.x)).collect();
     let mean = pixels.iter().sum::<f64>() / pixels.len() as f64;

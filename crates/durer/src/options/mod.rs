@@ -19,8 +19,8 @@ mod rows;
 
 pub use crate::job::{JobOption, OptionForm};
 use crate::job::{RenderJob, View, option_index, option_name, unknown_option};
-use crate::{LoadOptions, Loaded};
-use durer_render::integrator::Method;
+use crate::{LoadOptions, LoadedScene};
+use durer_render::integrator::IntegratorKind;
 use durer_render::render::{Control, Job, Shard};
 use durer_scene::describe::{DescribedList, Field, Kind};
 use memory::Memory;
@@ -90,7 +90,7 @@ impl RenderOptions {
         let mut load = self.load.clone();
         load.threads = self.threads;
         load.memory = self.memory.bytes();
-        load.staging.aspect = self.job.given_size().map(|(width, height)| width as f32 / height.max(1) as f32);
+        load.scene_defaults.aspect = self.job.given_size().map(|(width, height)| width as f32 / height.max(1) as f32);
         load
     }
 
@@ -99,7 +99,7 @@ impl RenderOptions {
     /// # Errors
     ///
     /// A sentence, if options contradict each other or the scene.
-    pub fn resolve(&self, loaded: &Loaded) -> Result<Job, String> {
+    pub fn resolve(&self, loaded: &LoadedScene) -> Result<Job, String> {
         self.job.resolve(&loaded.job_context(self.time_limit.is_some()), Some(&self.view))
     }
 
@@ -150,7 +150,7 @@ pub fn statements() -> Vec<OptionStatement> {
         name: "integrator",
         help: integrator_help(),
         value: Some("METHOD".into()),
-        words: Method::kinds().iter().map(Method::name).collect(),
+        words: IntegratorKind::kinds().iter().map(IntegratorKind::name).collect(),
         group: OptionGroup::Picture,
     });
     all.extend(integrator_options().into_iter().map(|(field, help)| OptionStatement {
@@ -181,12 +181,12 @@ fn stated(option: &JobOption, group: OptionGroup) -> OptionStatement {
 fn is_known(name: &str) -> bool {
     name == "integrator"
         || RenderJob::OPTIONS.iter().any(|option| option.name == name)
-        || Method::kinds().iter().any(|kind| option_index(kind, name).is_some())
+        || IntegratorKind::kinds().iter().any(|kind| option_index(kind, name).is_some())
 }
 
 /// Returns the help of `--integrator`: each integrator with its meaning.
 pub fn integrator_help() -> String {
-    let kinds = Method::kinds();
+    let kinds = IntegratorKind::kinds();
     let listed: Vec<String> = kinds.iter().map(|kind| format!("{} ({})", kind.name(), one_line(kind.doc()))).collect();
     format!(
         "Integrator: {} [default: path for scenes with principled materials, an environment, fog or emissive surfaces, \
@@ -197,14 +197,14 @@ pub fn integrator_help() -> String {
 
 /// Returns the options of the integrators, each once, with their help.
 pub fn integrator_options() -> Vec<(Field, String)> {
-    let kinds = Method::kinds();
+    let kinds = IntegratorKind::kinds();
     let mut all: Vec<(Field, String)> = Vec::new();
     for field in kinds.iter().flat_map(|kind| kind.fields()) {
         let name = option_name(field);
         if all.iter().any(|(known, _)| option_name(known) == name) {
             continue;
         }
-        let having = kinds.iter().filter(|kind| option_index(kind, name).is_some()).map(Method::name);
+        let having = kinds.iter().filter(|kind| option_index(kind, name).is_some()).map(IntegratorKind::name);
         let help = one_line(field.doc);
         let (first, rest) = help.split_at(1);
         let help = format!("With {}: {}{rest}", having.collect::<Vec<_>>().join(" and "), first.to_lowercase());

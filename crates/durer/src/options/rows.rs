@@ -9,8 +9,8 @@ use durer_diag::did_you_mean;
 use durer_render::compile::AccelKind;
 use durer_render::film::aov::AOVS;
 use durer_render::render::ShardBy;
-use durer_scene::dialect::{Compat, Dialect};
-use durer_scene::scene::{Axis, Studio, View};
+use durer_scene::dialect::{Dialect, Quirk};
+use durer_scene::scene::{Axis, DefaultLighting, View};
 
 /// An option, and a setter that parses text of its form.
 pub(super) struct Row {
@@ -93,7 +93,7 @@ pub(super) const READING: &[Row] = &[
         "up",
         OptionForm::Words(|| vec!["x", "y", "z"]),
         |to, text| {
-            to.load.staging.up = Some(match text {
+            to.load.scene_defaults.up = Some(match text {
                 "x" => Axis::X,
                 "y" => Axis::Y,
                 _ => Axis::Z,
@@ -105,56 +105,56 @@ pub(super) const READING: &[Row] = &[
     row(
         "view",
         OptionForm::Words(|| VIEWS.map(|row| row.0).to_vec()),
-        |to, text| Ok(to.load.staging.view = VIEWS.iter().find(|row| row.0 == text).map(|row| row.1)),
+        |to, text| Ok(to.load.scene_defaults.view = VIEWS.iter().find(|row| row.0 == text).map(|row| row.1)),
         "View to render a model from; overrides the model's own camera [default: three-quarter if the model has no \
          camera]",
     ),
     row(
         "studio",
         OptionForm::Words(|| STUDIOS.map(|row| row.0).to_vec()),
-        |to, text| Ok(to.load.staging.studio = STUDIOS.iter().find(|row| row.0 == text).map(|row| row.1)),
+        |to, text| Ok(to.load.scene_defaults.studio = STUDIOS.iter().find(|row| row.0 == text).map(|row| row.1)),
         "Lights to render a model with; overrides the model's own lights [default: soft if the model has no lights]",
     ),
     row(
         "environment",
         OptionForm::Value("FILE"),
-        |to, text| Ok(to.load.staging.environment = Some(text.into())),
+        |to, text| Ok(to.load.scene_defaults.environment = Some(text.into())),
         "Environment map (.hdr, .exr) that lights the model; overrides the model's own sky and the studio lights",
     ),
     row(
         "view-file",
         OptionForm::Value("FILE"),
-        |to, text| Ok(to.load.staging.view_file = Some(text.into())),
+        |to, text| Ok(to.load.scene_defaults.view_file = Some(text.into())),
         "Radiance view file (.vf); the last view in it is used as the camera",
     ),
     row(
         "camera",
         OptionForm::Value("NAME"),
-        |to, text| Ok(to.load.staging.camera = Some(text.into())),
+        |to, text| Ok(to.load.scene_defaults.camera = Some(text.into())),
         "Name or number of the model's camera to render from [default: the first]",
     ),
     row(
         "variant",
         OptionForm::Value("NAME"),
-        |to, text| Ok(to.load.staging.variant = Some(text.into())),
+        |to, text| Ok(to.load.scene_defaults.variant = Some(text.into())),
         "Name or number of the material variant of a glTF file [default: the file's own materials]",
     ),
     row(
         "fit",
         OptionForm::Flag,
-        |to, text| Ok(to.load.staging.fit = flag(text)?),
+        |to, text| Ok(to.load.scene_defaults.fit = flag(text)?),
         "Move the model's own camera along its view direction until the entire model is visible",
     ),
     row(
         "turned",
         OptionForm::Number("DEGREES", f32::is_finite, SAY_NUMBER),
-        |to, text| Ok(to.load.staging.turned = text.parse().ok()),
+        |to, text| Ok(to.load.scene_defaults.turned = text.parse().ok()),
         "Rotate the camera around the model by this many degrees [default: 0]",
     ),
     row(
         "at",
         OptionForm::Number("SECONDS", |x| x.is_finite() && x >= 0.0, "expected seconds, 0 or more"),
-        |to, text| Ok(to.load.staging.at = text.parse().ok()),
+        |to, text| Ok(to.load.scene_defaults.at = text.parse().ok()),
         "Time in the model's animation, in seconds [default: the pose without animation]",
     ),
 ];
@@ -236,7 +236,8 @@ const VIEWS: [(&str, View); 5] = [
 ];
 
 /// Lights for models.
-const STUDIOS: [(&str, Studio); 3] = [("none", Studio::None), ("soft", Studio::Soft), ("sun", Studio::Sun)];
+const STUDIOS: [(&str, DefaultLighting); 3] =
+    [("none", DefaultLighting::None), ("soft", DefaultLighting::Soft), ("sun", DefaultLighting::Sun)];
 
 fn shown() -> Vec<&'static str> {
     std::iter::once("color").chain(AOVS.iter().map(|aov| aov.name)).collect()
@@ -261,10 +262,10 @@ pub fn doc(name: &str) -> &'static str {
 /// # Errors
 ///
 /// A sentence, for unknown quirks.
-pub fn compat(text: &str) -> Result<(Compat, bool), String> {
+pub fn compat(text: &str) -> Result<(Quirk, bool), String> {
     let (name, on) = text.strip_prefix("no-").map_or((text, true), |name| (name, false));
-    Compat::from_name(name).map(|compat| (compat, on)).ok_or_else(|| {
-        let names = Compat::ALL.iter().map(|row| row.1);
+    Quirk::from_name(name).map(|compat| (compat, on)).ok_or_else(|| {
+        let names = Quirk::ALL.iter().map(|row| row.1);
         match did_you_mean(name, names) {
             Some(near) => format!("no such quirk; did you mean `{near}`?"),
             None => "no such quirk; see `durer dialects`".into(),

@@ -42,7 +42,7 @@ fn invalid_values_are_refused_with_the_expected_form() {
 fn options_reach_the_job_and_the_loader() {
     assert_eq!(set("grid", "2x3x4").unwrap().load.accel, AccelKind::Grid(Some([2, 3, 4])));
     assert_eq!(set("compat", "no-exit-r0").unwrap().load.compat.len(), 1);
-    assert_eq!(set("size", "300x200").unwrap().load_options().staging.aspect, Some(1.5));
+    assert_eq!(set("size", "300x200").unwrap().load_options().scene_defaults.aspect, Some(1.5));
     let mut options = set("shard-by", "samples").unwrap();
     options.set("shard", "2/5").unwrap();
     assert_eq!((options.shard.index, options.shard.count, options.shard.by), (2, 5, ShardBy::Samples));

@@ -1,7 +1,7 @@
 //! Line drawings of a scene in world space.
 
 use durer_render::world::{Geometry, Object, World};
-use durer_scene::light::Emitter;
+use durer_scene::light::Illuminate;
 use durer_scene::math::{Aabb, Vec3};
 use durer_scene::shape::Shape;
 use serde_json::{Value, json};

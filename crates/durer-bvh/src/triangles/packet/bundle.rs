@@ -1,7 +1,7 @@
 //! A packet: coherent rays and their shared data.
 
 use super::rays::PacketRays;
-use super::shared::{Axes, Meeting};
+use super::shared::{Axes, PacketHit};
 use crate::lanes::WIDE;
 use crate::triangles::tree::TriangleBvh;
 
@@ -22,9 +22,9 @@ pub struct Packet<'a> {
     /// Mask of the rays that are still searching.
     pub alive: u64,
     /// Mask of the rays with a hit.
-    pub met: u64,
+    pub hit_mask: u64,
     /// Upper bound of all rays' `t`.
     pub limit: f32,
     /// Triangles hit so far. The first entry stands for none.
-    pub meetings: &'a mut Vec<Meeting>,
+    pub packet_hits: &'a mut Vec<PacketHit>,
 }

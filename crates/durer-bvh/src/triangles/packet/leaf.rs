@@ -1,7 +1,7 @@
 //! Tests of a packet with the triangles of a leaf.
 
 use super::bundle::{Packet, RAYS};
-use super::shared::Meeting;
+use super::shared::PacketHit;
 use crate::lanes::{Columns, Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::node;
 use crate::triangles::leaf::{Flat, by_corner, ends, from_origin};
@@ -69,18 +69,18 @@ impl Packet<'_> {
         }
         // Tuned by measurement: with few rays left in the groups, or many triangles, test ray by
         // ray.
-        let met = match 2 * (rays.count_ones() as usize) < groups * (count + 4) {
+        let hits = match 2 * (rays.count_ones() as usize) < groups * (count + 4) {
             true if self.is_point => self.ray_by_ray::<L, ANY, true>(lanes, leaf, rays),
             true => self.ray_by_ray::<L, ANY, false>(lanes, leaf, rays),
             false if self.is_point => self.one_by_one::<L, ANY, true>(lanes, leaf, rays),
             false => self.one_by_one::<L, ANY, false>(lanes, leaf, rays),
         };
-        self.met |= met;
+        self.hit_mask |= hits;
         if ANY {
-            self.alive &= !met;
-        } else if met != 0 {
+            self.alive &= !hits;
+        } else if hits != 0 {
             for group in 0..self.groups {
-                if met >> (group * WIDE) & 0xffff != 0 {
+                if hits >> (group * WIDE) & 0xffff != 0 {
                     self.sixteens[group].bound_last(lanes, &self.axes);
                 }
             }
@@ -99,9 +99,9 @@ impl Packet<'_> {
         let columns = Columns::new(&self.axes.turn, count);
         let triangles = lanes.corners(rows, columns);
         let triangles = Corners::new(lanes, if POINT { self.as_seen(lanes, triangles) } else { triangles });
-        let mut all_met = 0;
+        let mut all_hit = 0;
         // Index of each triangle's meeting, or 0.
-        let mut meetings = [0; WIDTH];
+        let mut packet_hits = [0; WIDTH];
         for group in 0..self.groups {
             let mut active = (rays >> (group * WIDE)) as u32 & 0xffff;
             if active == 0 {
@@ -133,33 +133,33 @@ impl Packet<'_> {
                 let beside = wide.lt(wide.load(&e.heights[1]), lowest) | wide.lt(highest, wide.load(&e.heights[0]));
                 let candidates = candidates & active & !beside;
                 let mut crossed = candidates & crossed;
-                let mut met = 0;
+                let mut hits = 0;
                 if ANY {
                     // Any-hit rays need no exact distance.
-                    met = crossed
+                    hits = crossed
                         & wide.lt(wide.load(&e.heights[2]), lowest)
                         & wide.lt(highest, wide.load(&e.heights[3]));
-                    crossed &= !met;
+                    crossed &= !hits;
                 }
-                let unsure = candidates & !(crossed | met);
+                let unsure = candidates & !(crossed | hits);
                 if unsure != 0 {
                     crossed |= e.crossing(unsure, corners);
                 }
                 if crossed != 0 {
-                    let meeting = &mut meetings[lane];
+                    let meeting = &mut packet_hits[lane];
                     if *meeting == 0 {
-                        *meeting = self.meetings.len() as u32;
-                        self.meetings.push(Meeting::new(corners, number(rows, count, lane)));
+                        *meeting = self.packet_hits.len() as u32;
+                        self.packet_hits.push(PacketHit::new(corners, number(rows, count, lane)));
                     }
-                    met |= e.intersect_node(lanes, &self.axes, self.meetings, *meeting, crossed);
+                    hits |= e.intersect_node(lanes, &self.axes, self.packet_hits, *meeting, crossed);
                 }
-                all_met |= u64::from(met) << (group * WIDE);
+                all_hit |= u64::from(hits) << (group * WIDE);
                 if ANY {
-                    active &= !met;
+                    active &= !hits;
                 }
             }
         }
-        all_met
+        all_hit
     }
 
     /// Tests each ray with all triangles at once. Returns a mask of the rays that hit one.
@@ -171,7 +171,7 @@ impl Packet<'_> {
         let columns = Columns::new(&self.axes.turn, count);
         let triangles = lanes.corners(rows, columns);
         let triangles = if POINT { self.as_seen(lanes, triangles) } else { triangles };
-        let (mut all_met, mut some) = (0, 0);
+        let (mut all_hit, mut some) = (0, 0);
         let mut masks = [[0u8; 2]; RAYS];
         let mut left = rays;
         while left != 0 {
@@ -191,10 +191,10 @@ impl Packet<'_> {
             if ANY {
                 let inside =
                     lanes.lt(lanes.splat(e.heights[2][i]), lowest) & lanes.lt(highest, lanes.splat(e.heights[3][i]));
-                all_met |= u64::from(candidates & crossed & inside != 0) << ray;
+                all_hit |= u64::from(candidates & crossed & inside != 0) << ray;
             }
         }
-        some &= !all_met;
+        some &= !all_hit;
         while some != 0 {
             let ray = some.trailing_zeros() as usize & (RAYS - 1);
             some &= some - 1;
@@ -207,13 +207,13 @@ impl Packet<'_> {
                 if crossed >> lane & 1 == 0 && e.crossing(1 << i, corners) == 0 {
                     continue;
                 }
-                let meeting = Meeting::new(corners, number(rows, count, lane));
-                if e.meet_one(&self.axes, self.meetings, &meeting, i) {
-                    self.meetings.push(meeting);
-                    all_met |= 1 << ray;
+                let meeting = PacketHit::new(corners, number(rows, count, lane));
+                if e.intersect_one(&self.axes, self.packet_hits, &meeting, i) {
+                    self.packet_hits.push(meeting);
+                    all_hit |= 1 << ray;
                 }
             }
         }
-        all_met
+        all_hit
     }
 }

@@ -32,7 +32,7 @@ use crate::lanes::{Kernel, Lanes, Numbers, WIDE, WIDTH, Wide, numbers_of};
 use crate::math::{Ray, Vec2};
 use bundle::{Packet, RAYS, Sixteens};
 use glam::Vec3A;
-use shared::{Axes, Meeting};
+use shared::{Axes, PacketHit};
 use std::cell::RefCell;
 use walk::Entry;
 
@@ -71,7 +71,7 @@ impl TriangleBvh {
 struct Scratch {
     /// Numbers of the rays that are not traced in packets.
     rest: Vec<u32>,
-    meetings: Vec<Meeting>,
+    packet_hits: Vec<PacketHit>,
     stack: Vec<Entry>,
     sixteens: Box<Sixteens>,
 }
@@ -92,7 +92,7 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
 
     #[inline(always)]
     fn run<L: Lanes>(mut self, lanes: L) {
-        let Scratch { rest, meetings, stack, sixteens } = self.scratch;
+        let Scratch { rest, packet_hits, stack, sixteens } = self.scratch;
         let mut packet = Packet {
             bvh: self.bvh,
             axes: Axes::of_key(0),
@@ -101,9 +101,9 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             groups: 0,
             is_point: false,
             alive: 0,
-            met: 0,
+            hit_mask: 0,
             limit: 0.0,
-            meetings,
+            packet_hits,
         };
         // If rays are incoherent, or none is fast, the next ones are probably alike: try less and
         // less often.
@@ -149,8 +149,8 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
                     rest.extend_from_slice(&packet.numbers[..count]);
                     continue;
                 }
-                packet.meetings.clear();
-                packet.meetings.push(Meeting::new([Vec3A::ZERO; 3], u32::MAX));
+                packet.packet_hits.clear();
+                packet.packet_hits.push(PacketHit::new([Vec3A::ZERO; 3], u32::MAX));
                 packet.traverse::<L, ANY>(lanes, stack);
                 packet.answer::<L, ANY>(lanes, count, &mut self.answer);
             }
@@ -216,7 +216,7 @@ impl Packet<'_> {
     #[inline(always)]
     fn prepare<L: Lanes>(&mut self, lanes: L, key: usize, count: usize) -> bool {
         self.axes = Axes::of_key(key);
-        (self.alive, self.met) = (0, 0);
+        (self.alive, self.hit_mask) = (0, 0);
         for group in 0..self.groups {
             let fast = self.sixteens[group].prepare(lanes, &self.axes, self.bvh.reach);
             self.alive |= u64::from(fast) << (group * WIDE);
@@ -260,32 +260,32 @@ impl Packet<'_> {
         same & 0xffff == 0xffff
     }
 
-    /// Passes the hits of the first `count` rays to `tell`.
+    /// Passes the hits of the first `count` rays to `report`.
     #[inline(always)]
     fn answer<L: Lanes, const ANY: bool>(
         &self,
         lanes: L,
         count: usize,
-        tell: &mut impl FnMut(usize, Option<TriangleHit>),
+        report: &mut impl FnMut(usize, Option<TriangleHit>),
     ) {
         for (k, numbers) in self.numbers[..count].chunks(WIDTH).enumerate() {
-            let (e, half, mut met) = (&self.sixteens[k / 2], k % 2, self.met >> (k * WIDTH) & 255);
-            let [u, v] = match !ANY && met != 0 {
-                true => e.uv(lanes, &self.axes, half, self.corners(lanes, e.meetings(half))),
+            let (e, half, mut hits) = (&self.sixteens[k / 2], k % 2, self.hit_mask >> (k * WIDTH) & 255);
+            let [u, v] = match !ANY && hits != 0 {
+                true => e.uv(lanes, &self.axes, half, self.corners(lanes, e.packet_hits(half))),
                 false => [[0.0; WIDTH]; 2],
             };
             for (i, &number) in numbers.iter().enumerate() {
-                let is_met = met & 1 == 1;
-                met >>= 1;
+                let is_hit = hits & 1 == 1;
+                hits >>= 1;
                 let hit = if ANY {
-                    is_met.then_some(TriangleHit { t: 0.0, uv: Vec2::ZERO, triangle: 0 })
-                } else if is_met {
-                    let triangle = self.meetings[e.meetings(half)[i].to_bits() as usize].triangle;
+                    is_hit.then_some(TriangleHit { t: 0.0, uv: Vec2::ZERO, triangle: 0 })
+                } else if is_hit {
+                    let triangle = self.packet_hits[e.packet_hits(half)[i].to_bits() as usize].triangle;
                     Some(TriangleHit { t: e.t_last[half * WIDTH + i], uv: Vec2::new(u[i], v[i]), triangle })
                 } else {
                     None
                 };
-                tell(number as usize, hit);
+                report(number as usize, hit);
             }
         }
     }
@@ -298,13 +298,13 @@ impl Packet<'_> {
         // subnormal.
         let (all, one) = (lanes.load(numbers), lanes.splat(first));
         if lanes.signs(lanes.before(all, one)) | lanes.signs(lanes.before(one, all)) == 0 {
-            let [a, b, c] = self.meetings[first.to_bits() as usize].corners;
+            let [a, b, c] = self.packet_hits[first.to_bits() as usize].corners;
             return [lanes.splat3(a), lanes.splat3(b), lanes.splat3(c)];
         }
         // Load eight of the nine coordinates of each triangle at once, then the last.
         let (mut rows, mut lasts) = ([lanes.splat(0.0); WIDTH], [0.0; WIDTH]);
         for ((row, last), number) in rows.iter_mut().zip(&mut lasts).zip(numbers) {
-            let [[a, b, c], [d, e, f], [g, h, i]] = self.meetings[number.to_bits() as usize].corners;
+            let [[a, b, c], [d, e, f], [g, h, i]] = self.packet_hits[number.to_bits() as usize].corners;
             (*row, *last) = (lanes.load(&[a, b, c, d, e, f, g, h]), i);
         }
         let [a, b, c, d, e, f, g, h] = lanes.transpose(rows);

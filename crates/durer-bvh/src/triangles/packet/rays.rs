@@ -1,11 +1,11 @@
 //! Packet rays in lanes.
 
-use super::shared::{Axes, Meeting};
+use super::shared::{Axes, PacketHit};
 use crate::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::math::{Doubles, Ray, Vec3};
 use crate::traverse::{FAST_RANGE, MIN_MAIN_COMPONENT, PADDING};
 use crate::triangles::leaf::{across, from_origin};
-use crate::watertight::{Exact, Plane, WatertightRay, uv_across};
+use crate::watertight::{Plane, PreciseLine, WatertightRay, uv_across};
 use glam::Vec3A;
 
 /// A value for each of sixteen rays.
@@ -37,7 +37,7 @@ pub struct PacketRays {
     /// Heights above the third and below the fourth are certainly inside.
     pub heights: [PerRay; 4],
     /// Indices of the meetings as bits; 0 for none. Meaningless for any-hit rays.
-    meetings: PerRay,
+    packet_hits: PerRay,
 }
 
 impl PacketRays {
@@ -109,7 +109,7 @@ impl PacketRays {
             *inverse = lanes.store_doubles(lanes.splat_double(1.0).div(dz));
         }
         self.t_max = self.t_last;
-        self.meetings = PerRay::default();
+        self.packet_hits = PerRay::default();
         self.bound(lanes, axes);
         fast
     }
@@ -149,13 +149,13 @@ impl PacketRays {
         &mut self,
         lanes: L,
         axes: &Axes,
-        meetings: &[Meeting],
+        packet_hits: &[PacketHit],
         number: u32,
         crossed: u32,
     ) -> u32 {
         let [x, y, z] = axes.turned();
         let splat3 = |v: [f64; 3]| [lanes.splat_double(v[0]), lanes.splat_double(v[1]), lanes.splat_double(v[2])];
-        let Meeting { plane, triangle, .. } = &meetings[number as usize];
+        let PacketHit { plane, triangle, .. } = &packet_hits[number as usize];
         let [low, high] = plane.heights;
         let plane = Plane {
             normal: splat3(plane.normal),
@@ -178,39 +178,40 @@ impl PacketRays {
                 };
             }
             let inverse = lanes.load_doubles(&self.inverse_z[half]);
-            let line = Exact::with_inverse(turned!(self.origin), turned!(self.dir), inverse);
+            let line = PreciseLine::with_inverse(turned!(self.origin), turned!(self.dir), inverse);
             halves[half] = lanes.singles(line.t(&plane)[0]);
         }
         let (t, t_last) = (lanes.join(halves), wide.load(&self.t_last));
         // Rejects NaN, too.
         let within = crossed & wide.lt(wide.load(&self.t_min), t) & wide.lt(t, wide.load(&self.t_max));
-        let mut met = within & wide.lt(t, t_last);
-        let mut same = within & wide.le(t, t_last) & !met;
+        let mut hits = within & wide.lt(t, t_last);
+        let mut same = within & wide.le(t, t_last) & !hits;
         while same != 0 {
             let i = same.trailing_zeros();
             same &= same - 1;
-            met |= u32::from(*triangle < meetings[self.meetings[i as usize].to_bits() as usize].triangle) << i;
+            hits |= u32::from(*triangle < packet_hits[self.packet_hits[i as usize].to_bits() as usize].triangle) << i;
         }
-        self.meetings = wide.store(wide.select(met, wide.splat(f32::from_bits(number)), wide.load(&self.meetings)));
-        self.t_last = wide.store(wide.select(met, t, t_last));
-        met
+        self.packet_hits =
+            wide.store(wide.select(hits, wide.splat(f32::from_bits(number)), wide.load(&self.packet_hits)));
+        self.t_last = wide.store(wide.select(hits, t, t_last));
+        hits
     }
 
     /// Tests a single ray as [`PacketRays::intersect_node`] does, with a meeting that would be
     /// appended.
     #[inline(always)]
-    pub fn meet_one(&mut self, axes: &Axes, meetings: &[Meeting], next: &Meeting, lane: usize) -> bool {
+    pub fn intersect_one(&mut self, axes: &Axes, packet_hits: &[PacketHit], next: &PacketHit, lane: usize) -> bool {
         let [x, y, z] = axes.turned();
         let at = |v: &[PerRay; 3]| [v[x][lane], v[y][lane], v[z][lane]].map(f64::from);
         let inverse = self.inverse_z[lane / WIDTH][lane % WIDTH];
-        let t = Exact::with_inverse(at(&self.origin), at(&self.dir), inverse).t(&next.plane)[0] as f32;
-        let (t_last, last) = (self.t_last[lane], &meetings[self.meetings[lane].to_bits() as usize]);
+        let t = PreciseLine::with_inverse(at(&self.origin), at(&self.dir), inverse).t(&next.plane)[0] as f32;
+        let (t_last, last) = (self.t_last[lane], &packet_hits[self.packet_hits[lane].to_bits() as usize]);
         let within = t > self.t_min[lane] && t < self.t_max[lane];
-        let met = within && (t < t_last || t == t_last && next.triangle < last.triangle);
-        if met {
-            (self.t_last[lane], self.meetings[lane]) = (t, f32::from_bits(meetings.len() as u32));
+        let hits = within && (t < t_last || t == t_last && next.triangle < last.triangle);
+        if hits {
+            (self.t_last[lane], self.packet_hits[lane]) = (t, f32::from_bits(packet_hits.len() as u32));
         }
-        met
+        hits
     }
 
     /// Barycentric coordinates of the hits of half of the rays.
@@ -237,8 +238,8 @@ impl PacketRays {
 
     /// Indices of the meetings of half of the rays, as bits.
     #[inline(always)]
-    pub fn meetings(&self, half: usize) -> &[f32; WIDTH] {
-        part(&self.meetings, half)
+    pub fn packet_hits(&self, half: usize) -> &[f32; WIDTH] {
+        part(&self.packet_hits, half)
     }
 
     /// Mask of the rays that cross a triangle with permuted axes, by the exact test.

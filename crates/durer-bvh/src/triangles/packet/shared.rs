@@ -35,16 +35,16 @@ impl Axes {
 }
 
 /// A triangle that some ray has hit.
-pub struct Meeting {
+pub struct PacketHit {
     /// Corners with permuted axes.
     pub corners: [[f32; 3]; 3],
     pub triangle: u32,
     pub plane: Plane<[f64; 3]>,
 }
 
-impl Meeting {
+impl PacketHit {
     #[inline(always)]
     pub fn new(corners: [Vec3A; 3], triangle: u32) -> Self {
-        Meeting { corners: corners.map(|corner| corner.to_array()), triangle, plane: Plane::single(corners) }
+        PacketHit { corners: corners.map(|corner| corner.to_array()), triangle, plane: Plane::single(corners) }
     }
 }

@@ -55,19 +55,19 @@ impl<L: Lanes> IntervalRay<L> {
         if lanes.store(self.t_min)[0] >= 0.0 {
             return 0.0;
         }
-        let (met, enter) = self.intersect_node(lanes, root, lanes.splat(limit));
+        let (hits, enter) = self.intersect_node(lanes, root, lanes.splat(limit));
         let nowhere = f32::INFINITY;
-        lanes.store(lanes.select(met, enter, lanes.splat(nowhere))).into_iter().fold(nowhere, f32::min)
+        lanes.store(lanes.select(hits, enter, lanes.splat(nowhere))).into_iter().fold(nowhere, f32::min)
     }
 }
 
 /// Slot of the hit child with the least entry distance, none of which is below `start`. (Node order
 /// follows a single axis: along other axes, rays would visit far children before near ones.)
 #[inline(always)]
-fn nearest<L: Lanes>(lanes: L, node: &WideNode, met: u32, enter: L::Floats, start: f32) -> u32 {
+fn nearest<L: Lanes>(lanes: L, node: &WideNode, hits: u32, enter: L::Floats, start: f32) -> u32 {
     let nothing = lanes.splat(0.0);
     let since = lanes.later(lanes.sub(enter, lanes.splat(start)), nothing);
-    let which = lanes.select(met, lanes.splat(f32::from_bits(u32::MAX)), nothing);
+    let which = lanes.select(hits, lanes.splat(f32::from_bits(u32::MAX)), nothing);
     lanes.nearest(since, which, &node.child_tags) & PLACE
 }
 
@@ -132,16 +132,16 @@ impl Packet<'_> {
         loop {
             if child & LEAF == 0 {
                 let node = &bvh.nodes[node::number(child)];
-                let (met, enter) = intervals.intersect_node(lanes, node, lanes.splat(self.limit));
-                if met != 0 {
+                let (hits, enter) = intervals.intersect_node(lanes, node, lanes.splat(self.limit));
+                if hits != 0 {
                     let box_at = child;
                     let from_last = node.order(ANY, octant) != 0;
                     let next = match ANY {
-                        true => end_of(met, from_last),
-                        false => nearest(lanes, node, met, enter, start),
+                        true => end_of(hits, from_last),
+                        false => nearest(lanes, node, hits, enter, start),
                     };
                     // Push the child that is visited last first.
-                    let (mut others, enter) = (met ^ 1 << next, lanes.store(enter));
+                    let (mut others, enter) = (hits ^ 1 << next, lanes.store(enter));
                     while others != 0 {
                         let place = end_of(others, !from_last);
                         others ^= 1 << place;
@@ -242,10 +242,10 @@ mod tests {
             (0b0110_0100, 0.0, 2),
             (0b0100_0000, 0.0, 6),
         ];
-        for (level, (met, start, expected)) in SimdLevel::available().flat_map(|level| cases.map(|case| (level, case)))
+        for (level, (hits, start, expected)) in SimdLevel::available().flat_map(|level| cases.map(|case| (level, case)))
         {
-            let place = Available::or_scalar(level).run(Nearest(&node, enter, met, start));
-            assert_eq!(place, expected, "{level:?} {met:b}");
+            let place = Available::or_scalar(level).run(Nearest(&node, enter, hits, start));
+            assert_eq!(place, expected, "{level:?} {hits:b}");
         }
     }
 }

@@ -17,7 +17,7 @@ fn with_sides(mesh: &Mesh, ray: &Ray) -> Vec<(TriangleHit, Option<Facing>)> {
 
 #[test]
 fn sides_and_filters_match_brute_force() {
-    let (mut random, mut met) = (Random(21), 0);
+    let (mut random, mut hits) = (Random(21), 0);
     for mesh in [torus(30, 15), cube(4), soup(&mut random, 300, 0.4), bars(&mut random, 60, 12)] {
         let bvh = TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Best);
         for level in SimdLevel::available() {
@@ -40,11 +40,11 @@ fn sides_and_filters_match_brute_force() {
                 assert_eq!(bvh.occluded_where(&ray, |hit, _| keep(hit)), first.is_some(), "{ray:?}");
                 assert_eq!(bvh.closest_where(&ray, |_, _| true), bvh.closest(&ray));
                 assert_eq!(bvh.closest_where(&ray, |_, _| false), None);
-                met += usize::from(first.is_some());
+                hits += usize::from(first.is_some());
             }
         }
     }
-    assert!(met > 1_000, "{met}");
+    assert!(hits > 1_000, "{hits}");
 }
 
 /// A ray crosses fronts and backs of a closed mesh in turn, even through edges and vertices.

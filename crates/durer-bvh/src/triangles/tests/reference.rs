@@ -93,12 +93,12 @@ fn dozen() -> Vec<(&'static str, Mesh)> {
 }
 
 #[derive(Default, Debug)]
-struct Tried {
+struct EdgeCounts {
     crossed: usize,
     unsure: usize,
 }
 
-impl AddAssign for Tried {
+impl AddAssign for EdgeCounts {
     fn add_assign(&mut self, other: Self) {
         self.crossed += other.crossed;
         self.unsure += other.unsure;
@@ -106,12 +106,12 @@ impl AddAssign for Tried {
 }
 
 /// Tests random rays around a mesh: all hits and the closest.
-fn try_rays(name: &str, mesh: &Mesh, seed: u64, rays: usize) -> Tried {
+fn try_rays(name: &str, mesh: &Mesh, seed: u64, rays: usize) -> EdgeCounts {
     let (vertices, triangles) = mesh;
     let tree = TriangleBvh::build(vertices, triangles, BuildQuality::Best);
     let bounds = tree.bounds();
     let (center, size) = (bounds.center(), bounds.size().max_element());
-    let (mut random, mut tried) = (Random(seed), Tried::default());
+    let (mut random, mut tried) = (Random(seed), EdgeCounts::default());
     for _ in 0..rays {
         let origin = center + size * random.between(0.1, 2.0) * random.point();
         let goal = center + 0.5 * bounds.size() * random.point();
@@ -143,7 +143,7 @@ fn double_precision_reference_agrees() {
     for (number, (name, mesh)) in dozen().into_iter().enumerate() {
         cut += usize::from(TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Best).items() > mesh.1.len());
         let part = |i: usize| try_rays(name, &mesh, (number as u64) << 32 | i as u64, AT_ONCE);
-        let tried = (0..all.div_ceil(AT_ONCE)).into_par_iter().map(part).reduce(Tried::default, |mut a, b| {
+        let tried = (0..all.div_ceil(AT_ONCE)).into_par_iter().map(part).reduce(EdgeCounts::default, |mut a, b| {
             a += b;
             a
         });

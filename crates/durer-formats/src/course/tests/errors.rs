@@ -327,17 +327,17 @@ fn repeated_and_foreign_words_give_one_warning() {
 #[test]
 fn a_colour_of_the_web_is_told_at_its_own_place() {
     let text = "Materials { Material { diffuseColor #b38033\n specularColor 1 1 1 } } Group { }";
-    let told = findings(text, Dialect::Durer).join("\n");
-    assert!(told.contains("`diffuseColor` needs number 1 of 3, but `#b38033` begins a comment"), "{told}");
-    assert!(told.contains("0.702 0.502 0.2"), "{told}");
+    let messages = findings(text, Dialect::Durer).join("\n");
+    assert!(messages.contains("`diffuseColor` needs number 1 of 3, but `#b38033` begins a comment"), "{messages}");
+    assert!(messages.contains("0.702 0.502 0.2"), "{messages}");
     // Any other comment says nothing about the value.
-    let told = findings(&text.replace("#b38033", "# brown"), Dialect::Durer).join("\n");
-    assert!(told.contains("but found `specularColor`"), "{told}");
+    let messages = findings(&text.replace("#b38033", "# brown"), Dialect::Durer).join("\n");
+    assert!(messages.contains("but found `specularColor`"), "{messages}");
 }
 
 #[test]
 fn a_count_that_is_given_twice_is_told() {
     let text = "Group { numObjects 1 numObjects 1 Sphere { center 0 0 0 radius 1 } }";
-    let told = findings(text, Dialect::Durer).join("\n");
-    assert!(told.contains("`numObjects` is given twice; the last counts"), "{told}");
+    let messages = findings(text, Dialect::Durer).join("\n");
+    assert!(messages.contains("`numObjects` is given twice; the last counts"), "{messages}");
 }

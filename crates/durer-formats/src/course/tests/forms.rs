@@ -2,7 +2,7 @@
 
 use super::*;
 use durer_scene::camera::Camera;
-use durer_scene::describe::{DescribedList, Kind, Rule, Value};
+use durer_scene::describe::{Constraint, DescribedList, Kind, Value};
 use durer_scene::light::Light;
 use durer_scene::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
 use durer_scene::math::Vec3;
@@ -11,21 +11,21 @@ use durer_scene::scene::{Background, Material, MatrixOp, Node, Object};
 use durer_scene::shape::{HeightField, Primitive, TriangleMesh};
 
 /// Returns a value of a kind, different from the default, as text and as read.
-fn sample(kind: Kind, rule: Rule) -> (String, Value) {
+fn sample(kind: Kind, rule: Constraint) -> (String, Value) {
     let (text, value) = match kind {
         Kind::Word(words) => (words[words.len() - 1], Value::Word(words[words.len() - 1].into())),
         Kind::Rows(width) => {
-            let count = if let Rule::Rows(least, _) = rule { least } else { 1 };
+            let count = if let Constraint::Rows(least, _) = rule { least } else { 1 };
             let rows: Vec<Vec<f32>> = (0..count).map(|i| (0..width).map(|j| (3 * i + j) as f32).collect()).collect();
             let numbers: Vec<String> = rows.iter().flatten().map(f32::to_string).collect();
             return (format!("{{ {} }}", numbers.join(" ")), Value::Rows(rows));
         }
-        Kind::Float if matches!(rule, Rule::Share | Rule::Between(..)) => ("0.125", Value::Float(0.125)),
+        Kind::Float if matches!(rule, Constraint::Share | Constraint::Between(..)) => ("0.125", Value::Float(0.125)),
         Kind::Float => ("12.5", Value::Float(12.5)),
         // Index of one of the two materials before a solid texture.
-        Kind::Int if rule == Rule::Any => ("1", Value::Int(1)),
+        Kind::Int if rule == Constraint::Any => ("1", Value::Int(1)),
         Kind::Int => ("7", Value::Int(7)),
-        Kind::Vec3 if matches!(rule, Rule::Counts(_)) => ("3 1. 2", Value::Vec3(Vec3::new(3.0, 1.0, 2.0))),
+        Kind::Vec3 if matches!(rule, Constraint::Counts(_)) => ("3 1. 2", Value::Vec3(Vec3::new(3.0, 1.0, 2.0))),
         Kind::Vec3 => (".25 -1.5e1 3.", Value::Vec3(Vec3::new(0.25, -15.0, 3.0))),
         Kind::Path => {
             ("a/b.x", Value::Path(durer_scene::describe::FileName { path: "a/b.x".into(), ..Default::default() }))
@@ -43,17 +43,17 @@ fn every_word<T: DescribedList + PartialEq + std::fmt::Debug>(
     for dialect in Dialect::ALL.into_iter().filter(|d| *d != Dialect::F23) {
         for kind in T::kinds() {
             for (keyword, set) in kind.keywords().iter().filter(|(_, set)| dialect.is_in(*set)) {
-                let mut thing = T::from_keyword(keyword).unwrap();
+                let mut item = T::from_keyword(keyword).unwrap();
                 let mut fields = String::new();
                 for (i, field) in kind.fields().iter().enumerate() {
                     let Some(word) = field.spelling(dialect) else { continue };
                     let (text, value) = sample(field.kind, field.rule);
                     fields += &format!("{word} {text} ");
-                    thing.set(i, value);
+                    item.set(i, value);
                 }
                 let _ = set;
                 let scene = clean(&wrap(keyword, &format!("{keyword} {{ {fields}}}")), dialect);
-                assert_eq!(find(scene), thing, "{keyword} in {}", dialect.name());
+                assert_eq!(find(scene), item, "{keyword} in {}", dialect.name());
             }
         }
     }

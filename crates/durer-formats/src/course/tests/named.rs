@@ -61,7 +61,7 @@ fn each_use_copies_the_defined_object() {
 
 #[test]
 fn wrong_names_are_errors() {
-    for (text, told) in [
+    for (text, expected) in [
         (
             "Group { MaterialIndex rad Sphere { center 0 0 0 radius 1 } }",
             "3:23 error: no material `rad` is defined before this [rad] (did you mean `red`?)",
@@ -84,7 +84,7 @@ fn wrong_names_are_errors() {
         ("include light.txt", "3:1 error: a text without a folder cannot include files [include light.txt]"),
         ("include", "3:1 error: `include` needs the name of a file [include] (as in `include light.txt`)"),
     ] {
-        assert_eq!(refused(text)[0], told, "{text}");
+        assert_eq!(refused(text)[0], expected, "{text}");
     }
     // Each definition doubles the size: reject the bomb before it takes memory.
     let mut text = "define a0 Sphere { center 0 0 0 radius 1 }\n".to_string();
@@ -111,14 +111,14 @@ fn included_file_replaces_its_include() {
         ("utf16.txt", b"\xff\xfeS\0p\0"),
     ];
     let files = folder(&files);
-    let (scene, told) = read_in(
+    let (scene, expected) = read_in(
         files.path(),
         "s.txt",
         &format!("{HEAD}include paints.txt Group {{ MaterialIndex red include parts/both.txt }}"),
     );
-    assert_eq!(told, [""; 0]);
+    assert_eq!(expected, [""; 0]);
     assert_eq!(scene.unwrap().root.unwrap().objects.len(), 2);
-    for (text, told) in [
+    for (text, expected) in [
         ("Group { include a.txt }", "b.txt:2:3 error `a.txt` includes itself"),
         ("Group { include open.txt }", "open.txt:1:7 error this block is not closed in its file"),
         ("Group { include close.txt }", "close.txt:1:34 error this `}` has no matching `{` in its file"),
@@ -129,6 +129,6 @@ fn included_file_replaces_its_include() {
     ] {
         let (scene, found) = read_in(files.path(), "s.txt", &format!("{HEAD}{text}"));
         assert!(scene.is_none(), "{text}");
-        assert!(found[0].starts_with(told), "{text}: {found:?}");
+        assert!(found[0].starts_with(expected), "{text}: {found:?}");
     }
 }

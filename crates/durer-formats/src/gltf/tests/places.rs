@@ -6,7 +6,7 @@ use durer_scene::math::Vec3;
 use durer_scene::scene::Node;
 
 /// Returns the findings of a file.
-fn told(name: &str, bytes: &[u8]) -> Vec<String> {
+fn messages(name: &str, bytes: &[u8]) -> Vec<String> {
     read_in(std::path::Path::new("."), name, bytes).1
 }
 
@@ -36,11 +36,12 @@ const PLAIN: &str = r#""nodes":[{"mesh":0}]"#;
 fn glb_findings_have_positions_in_the_json() {
     let wrong = "{\"asset\":{\"version\":\"2.0\"},\n\"nodes\":[{\"mesh\":3}]}";
     for (name, bytes) in [("a.gltf", wrong.as_bytes().to_vec()), ("a.glb", glb(wrong))] {
-        assert_eq!(told(name, &bytes), [format!("{name}:2:18 error /nodes/0/mesh: unresolved reference: 3")]);
+        assert_eq!(messages(name, &bytes), [format!("{name}:2:18 error /nodes/0/mesh: unresolved reference: 3")]);
     }
-    let broken = told("a.glb", &glb("{\"asset\":\n  }"));
+    let broken = messages("a.glb", &glb("{\"asset\":\n  }"));
     assert!(broken.len() == 1 && broken[0].starts_with("a.glb:2:3 error invalid JSON"), "{broken:?}");
-    let empty = told("a.glb", &glb("{\"asset\":{\"version\":\"2.0\"},\n\"scene\":0,\"scenes\":[{\"name\":\"S\"}]}"));
+    let empty =
+        messages("a.glb", &glb("{\"asset\":{\"version\":\"2.0\"},\n\"scene\":0,\"scenes\":[{\"name\":\"S\"}]}"));
     assert_eq!(empty, ["a.glb:2:21 warning /scenes/0: the scene has no visible triangles"]);
 }
 
@@ -57,18 +58,18 @@ fn warnings_name_the_part_of_the_file() {
         "{} warning /meshes/0/primitives/0: points and lines of mesh `Dots` have no surface: small balls and thin sticks are shown",
         line(&text, r#"{"attributes""#)
     );
-    assert_eq!(told("a.gltf", text.as_bytes()), [expected]);
+    assert_eq!(messages("a.gltf", text.as_bytes()), [expected]);
 
     let text = corners(r#","COLOR_1":0},"indices":1"#, PLAIN);
     let expected = "additional attribute sets, here of mesh, are left out";
     let place = line(&text, r#"0},"indices""#);
     let expected = format!("{place} warning /meshes/0/primitives/0/attributes/COLOR_1: {expected}");
-    assert_eq!(told("a.gltf", text.as_bytes()), [expected]);
+    assert_eq!(messages("a.gltf", text.as_bytes()), [expected]);
 
     let nodes = r#""nodes":[{"children":[1],"scale":[1,0,1]},{"mesh":0,"name":"Gone","scale":[0,2,1]}]"#;
     let text = corners(r#"},"indices":1"#, nodes);
     let expected = "node `Gone` is left out: its transform flattens it to a line or point, or overflows";
-    let found = told("a.gltf", text.as_bytes());
+    let found = messages("a.gltf", text.as_bytes());
     assert_eq!(found[0], format!("{} warning /nodes/1: {expected}", line(&text, r#"{"mesh":0,"name""#)));
 
     let material = r#""images":[{"uri":"none.png"}],"textures":[{"source":0}],"materials":[{"name":"Wood","pbrMetallicRoughness":
@@ -77,7 +78,7 @@ fn warnings_name_the_part_of_the_file() {
     let expected =
         "this texture of material `Wood` uses TEXCOORD_2, but only two sets are supported: TEXCOORD_0 is used";
     let at = "/materials/0/pbrMetallicRoughness/baseColorTexture";
-    let found = told("a.gltf", text.as_bytes());
+    let found = messages("a.gltf", text.as_bytes());
     assert_eq!(found, [format!("{} warning {at}: {expected}", line(&text, r#"{"index":0,"texCoord""#))]);
     // Errors about a picture are reported where the file names it.
     let (scene, _) = read_in(std::path::Path::new("."), "a.gltf", text.as_bytes());
@@ -91,7 +92,7 @@ fn animations_not_shown_are_noted() {
     let animated = |names: &[&str]| {
         let all: Vec<String> = names.iter().map(|name| format!(r#"{{"name":"{name}"}}"#)).collect();
         let text = corners(r#"},"indices":1"#, &format!(r#""animations":[{}],{PLAIN}"#, all.join(",")));
-        told("a.gltf", text.as_bytes()).remove(0)
+        messages("a.gltf", text.as_bytes()).remove(0)
     };
     let expected = "the file has 1 animation and is shown at rest: `--at 0` shows its first moment";
     assert!(animated(&["Walk"]).ends_with(&format!("note /animations: {expected}")), "{}", animated(&["Walk"]));

@@ -2,7 +2,7 @@
 
 use super::{material, staged};
 use durer_scene::material::principled::Switch;
-use durer_scene::scene::{Material, Staging};
+use durer_scene::scene::{Material, SceneDefaults};
 use std::path::Path;
 
 /// Returns the material of a triangle with vertex colours.
@@ -16,8 +16,8 @@ fn colored(words: &str) -> durer_scene::material::PrincipledMaterial {
         "buffers":[{{"byteLength":84,"uri":"data:application/octet-stream;base64,{}"}}]}}"#,
         "A".repeat(112)
     );
-    let (scene, told) = staged(text.as_bytes(), Path::new("."), "a.gltf", &Staging::default());
-    let scene = scene.unwrap_or_else(|| panic!("{told:?}"));
+    let (scene, messages) = staged(text.as_bytes(), Path::new("."), "a.gltf", &SceneDefaults::default());
+    let scene = scene.unwrap_or_else(|| panic!("{messages:?}"));
     let Material::Principled(m) = &scene.materials[0].value else { panic!() };
     (**m).clone()
 }

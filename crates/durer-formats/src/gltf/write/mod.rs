@@ -17,7 +17,7 @@ use durer_diag::{Diagnostic, Diagnostics};
 use durer_scene::camera::{Camera, Projection};
 use durer_scene::describe::DescribedList;
 use durer_scene::dialect::Dialect;
-use durer_scene::light::{Emitter as _, Light};
+use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::{MatrixOp, MatrixRules, Node, Object, Scene};
 use durer_scene::shape::{MeshData, Shape as _};
@@ -32,7 +32,7 @@ struct Writer<'a> {
     scene: &'a Scene,
     output: &'a Output<'a>,
     diagnostics: &'a mut Diagnostics,
-    told: BTreeSet<String>,
+    reported: BTreeSet<String>,
     buffer: Vec<u8>,
     /// Top-level arrays of the file by name.
     lists: BTreeMap<&'static str, Vec<Value>>,
@@ -53,7 +53,7 @@ pub(crate) fn write(scene: &Scene, output: &Output, diagnostics: &mut Diagnostic
         scene,
         output,
         diagnostics,
-        told: BTreeSet::new(),
+        reported: BTreeSet::new(),
         buffer: Vec::new(),
         lists: BTreeMap::new(),
         extensions: BTreeSet::new(),
@@ -80,7 +80,7 @@ impl Writer<'_> {
     /// Warns once per message about content that is lost or changed.
     fn left_out(&mut self, message: impl Into<String>) {
         let message = message.into();
-        if self.told.insert(message.clone()) {
+        if self.reported.insert(message.clone()) {
             self.diagnostics.push(Diagnostic::warning(message).code("NO_COUNTERPART"));
         }
     }
@@ -167,7 +167,7 @@ impl Writer<'_> {
         let camera = self.scene.camera.as_ref()?;
         let pose = camera.pose();
         // The scene's angles and sizes refer to the picture's larger side, glTF's to its height.
-        let aspect = self.scene.wishes.size.map_or(1.0, |(width, height)| width as f32 / height as f32);
+        let aspect = self.scene.render_defaults.size.map_or(1.0, |(width, height)| width as f32 / height as f32);
         let narrow = aspect.max(1.0);
         let upright = |angle: f32| {
             let half = fp::tan_f64(f64::from(angle).to_radians() / 2.0) / f64::from(narrow);
@@ -193,7 +193,7 @@ impl Writer<'_> {
                     }
                 };
                 let mut lens = json!({ "yfov": upright(angle), "znear": 1e-3 });
-                if self.scene.wishes.size.is_some() {
+                if self.scene.render_defaults.size.is_some() {
                     lens["aspectRatio"] = aspect.into();
                 }
                 json!({ "type": "perspective", "perspective": lens })

@@ -10,28 +10,28 @@ use durer_scene::light::Light;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::{Backs, Walls};
 use durer_scene::math::Vec3;
-use durer_scene::scene::{Material, Scene, Staging};
+use durer_scene::scene::{Material, Scene, SceneDefaults};
 
 /// Reads a scene in the scene language, which must be valid.
 fn scene(text: &str) -> Scene {
-    let (scene, told) = read_in(&std::env::temp_dir(), "a.txt", text);
-    scene.unwrap_or_else(|| panic!("{told:?}"))
+    let (scene, messages) = read_in(&std::env::temp_dir(), "a.txt", text);
+    scene.unwrap_or_else(|| panic!("{messages:?}"))
 }
 
 /// Writes and reads a scene; returns the result and the writer's findings.
 fn again(scene: &Scene, name: &str) -> (Scene, Vec<String>) {
     let folder = folder(&[]);
     let source = FolderSource::new(folder.path());
-    let mut told = Diagnostics::default();
+    let mut messages = Diagnostics::default();
     let output = Output { name, source: &source, normals: MeshNormals::Flat, memory: u64::MAX };
     let write = SCENE_FORMATS.iter().find(|format| format.extensions.contains(&"glb")).unwrap().write.unwrap();
-    let bytes = write(scene, &output, &mut told);
+    let bytes = write(scene, &output, &mut messages);
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
-    let staging = Staging { bare: true, ..Staging::default() };
-    let options = LoadOptions { staging, ..LoadOptions::default() };
+    let scene_defaults = SceneDefaults { bare: true, ..SceneDefaults::default() };
+    let options = LoadOptions { scene_defaults, ..LoadOptions::default() };
     let loaded = load_text(&folder.path().join(name), bytes.as_slice().into(), &options, &mut files, &mut diagnostics);
     assert_eq!(diagnostics.iter().map(|d| d.message.clone()).collect::<Vec<_>>(), [""; 0]);
-    (loaded.unwrap().scene, told.iter().map(|d| d.message.clone()).collect())
+    (loaded.unwrap().scene, messages.iter().map(|d| d.message.clone()).collect())
 }
 
 const HEAD: &str = "PerspectiveCamera { center 1 2 9 direction 0 0 -1 up 0 1 0 angle 30 } ";
@@ -47,8 +47,8 @@ fn materials_round_trip() {
     let balls: String = (0..4).map(|i| format!("MaterialIndex {i} Sphere {{ center {i} 0 0 radius 0.4 }} ")).collect();
     let before = scene(&format!("{HEAD} Materials {{ numMaterials 4 {words} }} Group {{ numObjects 4 {balls} }}"));
     for name in ["a.glb", "a.gltf"] {
-        let (after, told) = again(&before, name);
-        assert_eq!(told, [""; 0]);
+        let (after, messages) = again(&before, name);
+        assert_eq!(messages, [""; 0]);
         for (i, (old, new)) in before.materials.iter().zip(&after.materials).enumerate() {
             let layers = |material: &Material| -> PrincipledMaterial {
                 let Material::Principled(layers) = material else { panic!() };
@@ -72,12 +72,12 @@ fn materials_round_trip() {
 #[test]
 fn one_sided_emitter_loses_its_back_side() {
     let materials = "numMaterials 2 PrincipledMaterial { emissionLuminance 8 } PrincipledMaterial { emissionLuminance 8 walls thin }";
-    let lamps: String = (0..2)
+    let lights: String = (0..2)
         .map(|i| format!("MaterialIndex {i} Rectangle {{ corner {i} 0 0 edge0 0.5 0 0 edge1 0 0.5 0 }} "))
         .collect();
-    let before = scene(&format!("{HEAD} Materials {{ {materials} }} Group {{ numObjects 2 {lamps} }}")); // prose: keep
-    let (after, told) = again(&before, "a.glb");
-    assert_eq!(told, ["glTF has no one-sided emitters: the back side is left out"]);
+    let before = scene(&format!("{HEAD} Materials {{ {materials} }} Group {{ numObjects 2 {lights} }}")); // prose: keep
+    let (after, messages) = again(&before, "a.glb");
+    assert_eq!(messages, ["glTF has no one-sided emitters: the back side is left out"]);
     let sides = after.materials.iter().map(|material| match &material.value {
         Material::Principled(m) => (m.walls, m.backs),
         other => panic!("{other:?}"),
@@ -92,8 +92,8 @@ fn cameras_and_lights_round_trip() {
     let before = scene(&format!(
         "{HEAD} {lights} Materials {{ numMaterials 1 PrincipledMaterial {{ }} }} Group {{ numObjects 1 MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }} }}"
     ));
-    let (after, told) = again(&before, "a.glb");
-    assert_eq!(told, [""; 0]);
+    let (after, messages) = again(&before, "a.glb");
+    assert_eq!(messages, [""; 0]);
     assert_eq!(format!("{:?}", before.camera), format!("{:?}", after.camera));
     let [a, b] = [&before, &after]
         .map(|scene| scene.lights.as_ref().unwrap().iter().map(|l| l.value.clone()).collect::<Vec<Light>>());
@@ -124,9 +124,9 @@ fn each_loss_is_reported_once() {
          Group {{ numObjects 3 MaterialIndex 0 {SOLID} {SOLID}
          Sphere {{ center 0 0 0 radius 1 }} }}"
     ));
-    let (after, told) = again(&before, "a.gltf");
-    assert_eq!(told.len(), 3, "{told:?}");
-    assert!(told.iter().any(|line| line.contains("solids, grids and height fields")));
+    let (after, messages) = again(&before, "a.gltf");
+    assert_eq!(messages.len(), 3, "{messages:?}");
+    assert!(messages.iter().any(|line| line.contains("solids, grids and height fields")));
     assert_eq!(after.assets.meshes.len(), 1);
 }
 
@@ -134,13 +134,13 @@ fn each_loss_is_reported_once() {
 fn mesh_round_trips() {
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0.5\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0.25 1\nvn 0 0 1\nvn 0.6 0 0.8\nf 1/1/1 2/2/2 3/3/1\nf 2/2/2 4/3/1 3/3/1\n";
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
-    let staging = Staging { bare: true, ..Staging::default() };
-    let options = LoadOptions { staging, ..LoadOptions::default() };
+    let scene_defaults = SceneDefaults { bare: true, ..SceneDefaults::default() };
+    let options = LoadOptions { scene_defaults, ..LoadOptions::default() };
     let path = std::env::temp_dir().join("a.obj");
     let loaded = load_text(&path, text.as_bytes().into(), &options, &mut files, &mut diagnostics).unwrap();
     assert!(loaded.scene.camera.is_none());
-    let (after, told) = again(&loaded.scene, "a.glb");
-    assert_eq!(told, [""; 0]);
+    let (after, messages) = again(&loaded.scene, "a.glb");
+    assert_eq!(messages, [""; 0]);
     let [old, new] = [&loaded.scene, &after].map(|scene| scene.assets.meshes.values().next().unwrap().clone());
     let corners = |data: &durer_scene::shape::MeshData| -> Vec<(Vec3, durer_scene::math::Vec2, Vec3)> {
         let at = |i: usize, k: usize| {

@@ -3,11 +3,11 @@
 
 use super::conventions::{clean_in, picture};
 use super::{folder, material, read, read_in};
-use crate::beside::put_beside;
+use crate::asset_export::export_assets;
 use crate::folder::FolderSource;
 use durer::load::{LoadOptions, load_text};
 use durer_diag::Diagnostics;
-use durer_render::integrator::{Integrate, Path, Settings, Transport};
+use durer_render::integrator::{Integrate, Path, PathOptions, WhittedOptions};
 use durer_scene::light::Light;
 use durer_scene::math::{Vec3, fp};
 use durer_scene::sampler::SampleId;
@@ -35,11 +35,11 @@ fn projectors_and_spots_project_pictures() {
         let scene = clean_in(files, &format!("{text}<shape type='sphere'/>"));
         let lights = scene.lights.as_ref().unwrap();
         let red = lights.iter().find_map(|light| match &light.value {
-            Light::Photometric(lamp) if lamp.color.x > 0.0 => Some(lamp),
+            Light::Photometric(emitter) if emitter.color.x > 0.0 => Some(emitter),
             _ => None,
         });
-        let lamp = red.unwrap();
-        let profile = &scene.assets.profiles[&lamp.file.path];
+        let emitter = red.unwrap();
+        let profile = &scene.assets.profiles[&emitter.file.path];
         let rows = profile.vertical.len();
         // Middle of a pixel of the projector, at horizontal angle 0 and at half a turn.
         let vertical = profile.vertical.iter().position(|angle| *angle >= 16.102).unwrap();
@@ -49,7 +49,7 @@ fn projectors_and_spots_project_pictures() {
         if text.contains("projector") {
             // Pi times the picture over the cube of the cosine.
             let cosine = fp::sin_cos_degrees(16.102).1 as f32;
-            let found = at(0) * lamp.color.x / std::f32::consts::PI * cosine * cosine * cosine;
+            let found = at(0) * emitter.color.x / std::f32::consts::PI * cosine * cosine * cosine;
             assert!((found - 1.0).abs() < 0.01, "{found}");
         }
     }
@@ -59,8 +59,8 @@ fn projectors_and_spots_project_pictures() {
 fn daylight_illuminance_on_level_ground_matches_mitsuba() {
     let text = "<emitter type='sunsky'><float name='turbidity' value='3'/><vector name='sun_direction' value='0,.8660254,.5'/>\
                 <transform name='to_world'><rotate x='1' angle='-90'/></transform></emitter><shape type='sphere'/>";
-    let (scene, told) = read(&format!("<scene version='3.0.0'>{text}</scene>"));
-    assert!(told.iter().all(|told| told.contains("Preetham")), "{told:?}");
+    let (scene, messages) = read(&format!("<scene version='3.0.0'>{text}</scene>"));
+    assert!(messages.iter().all(|message| message.contains("Preetham")), "{messages:?}");
     let scene = scene.unwrap();
     let Light::Directional(sun) = &scene.lights.as_ref().unwrap()[0].value else { panic!() };
     assert!((sun.direction + Vec3::new(0.0, 0.866_025_4, 0.5)).length() < 1e-5, "{}", sun.direction);
@@ -103,8 +103,8 @@ fn ball(bsdf: &str) -> Vec3 {
     let (mut files, mut found, options) = (Default::default(), Diagnostics::default(), LoadOptions::default());
     let loaded = load_text(std::path::Path::new("a.xml"), text.as_bytes().into(), &options, &mut files, &mut found);
     let world = loaded.and_then(|loaded| loaded.compile(&options, &mut files, &mut found)).unwrap();
-    let settings = Settings { bounces: 8, ..durer_render::render::Job::default().settings };
-    let path = Path::new(&world, settings, Transport::default());
+    let settings = WhittedOptions { bounces: 8, ..durer_render::render::Job::default().settings };
+    let path = Path::new(&world, settings, PathOptions::default());
     let n = 1 << 14;
     let one = |i: u32| {
         let id = SampleId::new(1, (0, 0), i);
@@ -159,25 +159,25 @@ fn volumes_become_density_grids_with_their_transform() {
         let scattered = m.transmission_scatter / m.transmission_depth;
         assert!((scattered - Vec3::new(2.7, 1.8, 0.9)).abs().max_element() < 1e-5, "{scattered}");
         // Written beside a scene, it is the same file.
-        let (made, beside) = put_beside(&scene, "kept", &FolderSource::new(&std::env::temp_dir()));
+        let (made, beside) = export_assets(&scene, "kept", &FolderSource::new(&std::env::temp_dir()));
         let Material::Principled(m) = material(&made) else { panic!() };
         assert_eq!(m.transmission_density.as_ref().unwrap().path, "kept/smoke.vol");
         assert!(beside.contains(&("kept/smoke.vol".to_string(), volume.clone())));
     }
     // An albedo by a volume becomes its mean; an invalid volume is an error.
-    let told = |files: &[(&str, &[u8])], albedo: &str| {
+    let reported = |files: &[(&str, &[u8])], albedo: &str| {
         let folder = folder(files);
         read_in(folder.path(), "scene.xml", &format!("<scene version='3.0.0'>{}</scene>", medium("", albedo)))
     };
     let by_volume = "<volume name='albedo' type='gridvolume'><string name='filename' value='albedo.vol'/></volume>";
     let mut albedo = volume.clone();
     albedo[52..56].copy_from_slice(&0.25_f32.to_le_bytes());
-    let (scene, said) = told(&[files[0], ("albedo.vol", &albedo)], by_volume);
+    let (scene, messages) = reported(&[files[0], ("albedo.vol", &albedo)], by_volume);
     let Material::Principled(m) = material(scene.as_ref().unwrap()).clone() else { panic!() };
     assert!((m.transmission_scatter / m.transmission_depth - Vec3::splat(3.0 * 0.375)).abs().max_element() < 1e-5);
-    assert!(said.iter().all(|said| said.contains("its mean is used")), "{said:?}");
-    let (_, said) = told(&[("smoke.vol", &volume[..55])], even);
-    assert!(said.iter().any(|said| said.contains("the file ends after 1 of 2 densities")), "{said:?}");
-    let (_, said) = told(&[], even);
-    assert!(said.iter().any(|said| said.contains("smoke.vol")), "{said:?}");
+    assert!(messages.iter().all(|message| message.contains("its mean is used")), "{messages:?}");
+    let (_, messages) = reported(&[("smoke.vol", &volume[..55])], even);
+    assert!(messages.iter().any(|message| message.contains("the file ends after 1 of 2 densities")), "{messages:?}");
+    let (_, messages) = reported(&[], even);
+    assert!(messages.iter().any(|message| message.contains("smoke.vol")), "{messages:?}");
 }

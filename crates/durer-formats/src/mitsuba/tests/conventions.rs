@@ -83,21 +83,21 @@ fn settings_come_from_film_sampler_and_integrator() {
         "<integrator type='path'><integer name='max_depth' value='7'/></integrator><sensor type='perspective'>\
          <sampler type='multijitter'><integer name='sample_count' value='36'/></sampler></sensor><shape type='cube'/>",
     );
-    assert_eq!(scene.wishes.size, Some((768, 576)));
-    assert_eq!((scene.wishes.samples, scene.wishes.bounces), (Some(36), Some(5)));
+    assert_eq!(scene.render_defaults.size, Some((768, 576)));
+    assert_eq!((scene.render_defaults.samples, scene.render_defaults.bounces), (Some(36), Some(5)));
     let film = |more: &str| {
         let inner = format!("<film type='hdrfilm'><integer name='width' value='96'/>{more}</film>");
         read(&format!("<scene><sensor type='perspective'>{inner}</sensor><shape type='cube'/></scene>"))
     };
     let number = |name: &str, value: i32| format!("<integer name='crop_{name}' value='{value}'/>");
     let part = number("offset_x", 10) + &number("offset_y", 20) + &number("height", 32);
-    let (scene, told) = film(&(part.clone() + &number("width", 86)));
-    assert_eq!((scene.unwrap().wishes.crop, told), (Some((10, 20, 86, 32)), Vec::new()));
+    let (scene, messages) = film(&(part.clone() + &number("width", 86)));
+    assert_eq!((scene.unwrap().render_defaults.crop, messages), (Some((10, 20, 86, 32)), Vec::new()));
     for wrong in [number("width", 87), number("width", 0), number("width", -1), String::new()] {
-        let (scene, told) = film(&(part.clone() + &wrong));
+        let (scene, messages) = film(&(part.clone() + &wrong));
         assert!(
-            scene.is_none() && told[0].contains("the crop window must lie within the picture of 96 x 576"),
-            "{told:?}"
+            scene.is_none() && messages[0].contains("the crop window must lie within the picture of 96 x 576"),
+            "{messages:?}"
         );
     }
 }
@@ -116,9 +116,9 @@ fn lights_have_mitsuba_units() {
     // A spotlight with falloff is linear in the angle: a measured light of its intensity.
     let text = "<emitter type='spot'><float name='intensity' value='3'/></emitter><shape type='sphere'/>";
     let scene = clean(text);
-    let Light::Photometric(lamp) = &scene.lights.as_ref().unwrap()[0].value else { panic!() };
-    let profile = &scene.assets.profiles[&lamp.file.path];
-    assert_eq!((lamp.direction, lamp.color), (Vec3::Z, Vec3::splat(3.0)));
+    let Light::Photometric(light) = &scene.lights.as_ref().unwrap()[0].value else { panic!() };
+    let profile = &scene.assets.profiles[&light.file.path];
+    assert_eq!((light.direction, light.color), (Vec3::Z, Vec3::splat(3.0)));
     assert_eq!(profile.vertical, [0.0, 15.0, 20.0]);
     assert!(profile.candela.iter().zip([1.0, 1.0, 0.0]).all(|(found, wanted)| (found - wanted).abs() < 1e-6));
     // A constant emission spectrum is not white; a constant reflectance spectrum is.
@@ -253,25 +253,25 @@ fn interior_scattering_is_extinction_times_albedo() {
     assert!((m.transmission_color.x - fp::exp(-1.0)).abs() < 1e-6);
     assert_eq!(objects(&scene).len(), 1);
     // A `null` surface without a medium is not rendered.
-    let (scene, told) = read("<scene><shape type='sphere'><bsdf type='null'/></shape></scene>");
-    assert!(scene.is_some_and(|scene| objects(&scene).is_empty()), "{told:?}");
+    let (scene, messages) = read("<scene><shape type='sphere'><bsdf type='null'/></shape></scene>");
+    assert!(scene.is_some_and(|scene| objects(&scene).is_empty()), "{messages:?}");
 }
 
 #[test]
 fn rotation_axis_not_of_length_1_is_reported() {
-    let told = |version: &str, axis: &str| {
+    let messages = |version: &str, axis: &str| {
         let rotate = format!("<transform name='to_world'><rotate {axis} angle='40'/></transform>");
         read(&format!("<scene version='{version}'><shape type='sphere'>{rotate}</shape></scene>")).1
     };
-    assert!(told("3.0.0", "x='1' y='2' z='.5'")[0].contains("not of length 1"));
-    assert!(told("0.6.0", "x='1' y='2' z='.5'").is_empty() && told("3.0.0", "x='.6' y='.8'").is_empty());
+    assert!(messages("3.0.0", "x='1' y='2' z='.5'")[0].contains("not of length 1"));
+    assert!(messages("0.6.0", "x='1' y='2' z='.5'").is_empty() && messages("3.0.0", "x='.6' y='.8'").is_empty());
 }
 
 /// Reads a scene with files of a folder and expects no diagnostics.
 pub(super) fn clean_in(files: &[(&str, &[u8])], inner: &str) -> Scene {
     let folder = folder(files);
-    let (scene, told) = read_in(folder.path(), "scene.xml", &format!("<scene version='3.0.0'>{inner}</scene>"));
-    assert_eq!(told, [""; 0], "{inner}");
+    let (scene, messages) = read_in(folder.path(), "scene.xml", &format!("<scene version='3.0.0'>{inner}</scene>"));
+    assert_eq!(messages, [""; 0], "{inner}");
     scene.unwrap()
 }
 
@@ -284,27 +284,27 @@ pub(super) fn picture(pixels: [[f32; 3]; 2]) -> Vec<u8> {
 
 #[test]
 fn emitters_without_material_do_not_scatter() {
-    let lamp = "<emitter type='area'><rgb name='radiance' value='2'/></emitter>";
-    let alone = layers(lamp);
+    let light = "<emitter type='area'><rgb name='radiance' value='2'/></emitter>";
+    let alone = layers(light);
     assert_eq!((alone.base_color, alone.emission_luminance), (Vec3::ZERO, 2.0));
-    assert_eq!(layers(&format!("{lamp}<bsdf type='diffuse'/>")).base_color, Vec3::splat(0.5)); // prose: keep
+    assert_eq!(layers(&format!("{light}<bsdf type='diffuse'/>")).base_color, Vec3::splat(0.5)); // prose: keep
     assert_eq!(layers("").base_color, Vec3::splat(0.5));
     // An inverted sphere is a dome that lights its inside.
-    let dome = format!("<boolean name='flip_normals' value='true'/>{lamp}"); // prose: keep
-    let (scene, told) = read(&format!("<scene><shape type='sphere'>{dome}</shape></scene>"));
-    assert!(told[0].contains("it emits on both sides"), "{told:?}");
+    let dome = format!("<boolean name='flip_normals' value='true'/>{light}"); // prose: keep
+    let (scene, messages) = read(&format!("<scene><shape type='sphere'>{dome}</shape></scene>"));
+    assert!(messages[0].contains("it emits on both sides"), "{messages:?}");
     let Material::Principled(dome) = material(scene.as_ref().unwrap()) else { panic!() };
     assert_eq!((dome.emission_luminance, dome.walls), (2.0, Walls::Thin));
 }
 
 #[test]
 fn pictures_of_emitters_may_exceed_1() {
-    let lamp = "<shape type='rectangle'><emitter type='area'><texture name='radiance' type='bitmap'>\
+    let emitter = "<shape type='rectangle'><emitter type='area'><texture name='radiance' type='bitmap'>\
         <string name='filename' value='lamp.pfm'/></texture></emitter></shape>";
-    let scene = clean_in(&[("lamp.pfm", &picture([[8.0, 2.0, 0.0], [4.0, 4.0, 4.0]]))], lamp);
-    let Material::Principled(lamp) = material(&scene) else { panic!() };
-    assert_eq!((lamp.emission_luminance, lamp.emission_color), (8.0, Vec3::ONE));
-    let name = &lamp.emission_texture.as_ref().unwrap().path;
+    let scene = clean_in(&[("lamp.pfm", &picture([[8.0, 2.0, 0.0], [4.0, 4.0, 4.0]]))], emitter);
+    let Material::Principled(emitter) = material(&scene) else { panic!() };
+    assert_eq!((emitter.emission_luminance, emitter.emission_color), (8.0, Vec3::ONE));
+    let name = &emitter.emission_texture.as_ref().unwrap().path;
     let PictureBytes::Here(path, bytes) = &scene.assets.pictures[name].bytes else { panic!() };
     let image = durer_image::read(bytes, path).unwrap();
     let wanted = [Vec3::new(1.0, 0.25, 0.0), Vec3::splat(0.5)];
@@ -543,8 +543,8 @@ fn curve_files_with_hair_become_tubes() {
     };
     // Splines have flat ends; linear curves end in half balls.
     for (kind, from, to, ball) in [("bsplinecurve", 1.0, 2.0, 0.0), ("linearcurve", 0.0, 3.0, 0.2)] {
-        let (scene, told) = read_in(folder.path(), "scene.xml", text(kind, "hair.txt"));
-        assert_eq!(told, [""; 0]);
+        let (scene, messages) = read_in(folder.path(), "scene.xml", text(kind, "hair.txt"));
+        assert_eq!(messages, [""; 0]);
         let scene = scene.unwrap();
         let Material::Hair(hair) = material(&scene) else { panic!("{kind}") };
         let wanted =
@@ -573,7 +573,7 @@ fn curve_files_with_hair_become_tubes() {
         ),
         ("none.txt", "linearcurve", "error the curves cannot be read"),
     ] {
-        let (scene, told) = read_in(folder.path(), "scene.xml", text(kind, file));
-        assert!(scene.is_none() && told.iter().any(|told| told.contains(wanted)), "{told:#?}");
+        let (scene, messages) = read_in(folder.path(), "scene.xml", text(kind, file));
+        assert!(scene.is_none() && messages.iter().any(|message| message.contains(wanted)), "{messages:#?}");
     }
 }

@@ -3,7 +3,7 @@
 //! Source: Burley, *Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering*,
 //! SIGGRAPH courses, 2015, and *Physically Based Rendering*, 3rd edition.
 
-use super::super::made::Made;
+use super::super::defs::MaterialDef;
 use super::super::params::Params;
 use super::super::state::Reader;
 use super::rough::Rough;
@@ -19,7 +19,7 @@ use durer_scene::math::{Color, LUMINANCE, Vec3};
 const SHEEN: f32 = 0.1;
 
 impl Reader<'_> {
-    pub(super) fn disney(&mut self, params: &Params, at: Span) -> Made {
+    pub(super) fn disney(&mut self, params: &Params, at: Span) -> MaterialDef {
         let (color, picture) = self.colored(params, "color", 0.5);
         let share = |reader: &Self, name, usual| reader.value(params, name, usual).clamp(0.0, 1.0);
         let roughness = share(self, "roughness", 0.5);
@@ -58,7 +58,7 @@ impl Reader<'_> {
         params.known(&["speculartint", "clearcoatgloss"]);
         if share(self, "flatness", 0.0) > 0.0 {
             let what = "`flatness` has no counterpart: the base stays diffuse";
-            self.said.once(params.place("flatness"), what);
+            self.report.once(params.place("flatness"), what);
         }
         let distance = params.spectrum("scatterdistance").map_or(Color::ZERO, |spectrum| spectrum.plain());
         let onwards = self.value(params, "difftrans", 1.0).clamp(0.0, 2.0);
@@ -78,7 +78,7 @@ impl Reader<'_> {
         }
         self.surface(&mut m, params, "bumpmap");
         if metallic == 0.0 {
-            return Made::Layers(Box::new(m), at);
+            return MaterialDef::Layers(Box::new(m), at);
         }
         // The other part is metal: the colour times Schlick's reflectance of that colour.
         let mut metal = m.clone();
@@ -89,10 +89,10 @@ impl Reader<'_> {
         (metal.specular_color_texture, metal.fuzz_weight) = (None, 0.0);
         (metal.transmission_weight, metal.subsurface_weight) = (0.0, 0.0);
         if metallic == 1.0 {
-            return Made::Layers(Box::new(metal), at);
+            return MaterialDef::Layers(Box::new(metal), at);
         }
         let numbers = [metal, m].map(|layers| {
-            self.materials.push(Made::Layers(Box::new(layers), at));
+            self.materials.push(MaterialDef::Layers(Box::new(layers), at));
             self.materials.len() - 1
         });
         self.mix(numbers, metallic, at)

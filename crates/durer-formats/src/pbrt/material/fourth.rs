@@ -4,13 +4,13 @@
 //! base becomes a coat that darkens it. A metal becomes its reflectance at 0 and at 82 degrees.
 //! GGX's alpha is the square of our roughness.
 
-use super::super::made::{Made, Texture};
+use super::super::defs::{MaterialDef, Texture};
 use super::super::medium::medium_of;
 use super::super::named;
 use super::super::params::{Kind, Params, Values};
 use super::super::state::Reader;
 use super::{below_skin, matte};
-use crate::said::meant;
+use crate::shared_report::suggest;
 use durer_diag::Span;
 use durer_scene::bsdf::fresnel::{self, conductor_colors, schlick_82};
 use durer_scene::bsdf::microfacet::Ggx;
@@ -87,7 +87,7 @@ impl Reader<'_> {
         }
     }
 
-    pub(super) fn fourth(&mut self, kind: &str, params: &Params, at: Span) -> Made {
+    pub(super) fn fourth(&mut self, kind: &str, params: &Params, at: Span) -> MaterialDef {
         let remapped = params.truth("remaproughness").unwrap_or(true);
         let mut m = PrincipledMaterial::default();
         const ROUGHNESS: [&str; 3] = ["roughness", "uroughness", "vroughness"];
@@ -138,7 +138,7 @@ impl Reader<'_> {
                     if picture.is_some() {
                         let what =
                             "diffuse transmission by a picture has no counterpart: its `scale` is used as the colour";
-                        self.said.once(params.place(name), what);
+                        self.report.once(params.place(name), what);
                     }
                     scale * color
                 });
@@ -171,26 +171,26 @@ impl Reader<'_> {
             "measured" => {
                 params.known(&["filename"]);
                 m = matte(Vec3::splat(0.5));
-                self.said.once(at, "measured materials have no counterpart: diffuse grey is used");
+                self.report.once(at, "measured materials have no counterpart: diffuse grey is used");
             }
             "hair" => return self.hair(params, &["reflectance", "color"], at),
             "mix" => return self.mixed(params, at),
-            "interface" | "" | "none" => return Made::Nothing,
+            "interface" | "" | "none" => return MaterialDef::Nothing,
             other => {
                 let old = OLD.iter().find(|row| row.0 == other);
                 let help = match old {
                     Some((_, now)) => Some(format!("this material is of pbrt-v3; the nearest of pbrt-v4 is `{now}`")),
-                    None => meant(other, KNOWN),
+                    None => suggest(other, KNOWN),
                 };
                 self.no_material(other, at, help, old.is_some());
-                return Made::Nothing;
+                return MaterialDef::Nothing;
             }
         }
         m.energy_compensation = Switch::Off;
         // `eta` is the ratio across the surface, whatever medium surrounds it.
         m.surroundings = Surroundings::Ignored;
         self.surface(&mut m, params, "displacement");
-        Made::Layers(Box::new(m), at)
+        MaterialDef::Layers(Box::new(m), at)
     }
 
     /// Index of refraction; may be a spectrum.
@@ -200,7 +200,7 @@ impl Reader<'_> {
             _ => self.value(params, name, usual),
         };
         if index <= 0.0 {
-            self.said.bad(params.place(name), "an index of refraction must be more than 0");
+            self.report.bad(params.place(name), "an index of refraction must be more than 0");
             return usual;
         }
         index
@@ -209,10 +209,10 @@ impl Reader<'_> {
     fn coat(&self, m: &mut PrincipledMaterial, [u, v]: [f32; 2], params: &Params) {
         (m.coat_weight, m.coat_roughness) = (1.0, (u.min(1.0) * v.min(1.0)).sqrt().sqrt());
         if u != v {
-            self.said.once(params.at, "an anisotropic coat has no counterpart: its mean roughness is used");
+            self.report.once(params.at, "an anisotropic coat has no counterpart: its mean roughness is used");
         }
         if params.get("albedo").is_some_and(|param| param.numbers().iter().any(|x| *x != 0.0)) {
-            self.said.once(params.place("albedo"), "a medium inside a coat has no counterpart: the coat is clear");
+            self.report.once(params.place("albedo"), "a medium inside a coat has no counterpart: the coat is clear");
         }
         // Light that crosses the coat is attenuated by its thickness even without a medium in it.
         let thickness = self.value(params, "thickness", 0.01).max(0.0);
@@ -232,7 +232,8 @@ impl Reader<'_> {
         let [f0, f82] = match params.get(reflectance) {
             Some(param) => {
                 if params.get(eta).is_some() || params.get(k).is_some() {
-                    self.said.bad(param.at, format!("a conductor takes either `{reflectance}`, or `{eta}` and `{k}`"));
+                    self.report
+                        .bad(param.at, format!("a conductor takes either `{reflectance}`, or `{eta}` and `{k}`"));
                 }
                 let share = match self.pattern(params, reflectance, true, Vec3::splat(0.5)) {
                     Texture::Even(color) => color,
@@ -260,21 +261,21 @@ impl Reader<'_> {
         [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
     }
 
-    fn mixed(&mut self, params: &Params, at: Span) -> Made {
+    fn mixed(&mut self, params: &Params, at: Span) -> MaterialDef {
         let share = self.pictured(params, "amount", 0.5, |amount| 1.0 - amount.clamp(0.0, 1.0));
         let Some(param) = params.get("materials") else {
-            self.said.bad(at, "a mix needs two names, `\"string materials\" [ \"a\" \"b\" ]`");
-            return Made::Nothing;
+            self.report.bad(at, "a mix needs two names, `\"string materials\" [ \"a\" \"b\" ]`");
+            return MaterialDef::Nothing;
         };
-        let Values::Texts(names) = &param.values else { return Made::Nothing };
+        let Values::Texts(names) = &param.values else { return MaterialDef::Nothing };
         let [first, second] = names.as_slice() else {
-            self.said.bad(param.values_at, format!("a mix needs two materials, found {}", names.len()));
-            return Made::Nothing;
+            self.report.bad(param.values_at, format!("a mix needs two materials, found {}", names.len()));
+            return MaterialDef::Nothing;
         };
         let (Some(a), Some(b)) =
             (self.known_material(first, param.values_at), self.known_material(second, param.values_at))
         else {
-            return Made::Nothing;
+            return MaterialDef::Nothing;
         };
         self.mix_by([a, b], share, at)
     }

@@ -2,7 +2,7 @@
 //!
 //! Source: *Physically Based Rendering*, 4th edition, section 9.9.
 
-use crate::pbrt::made::{Made, Texture};
+use crate::pbrt::defs::{MaterialDef, Texture};
 use crate::pbrt::params::Params;
 use crate::pbrt::state::Reader;
 use durer_diag::Span;
@@ -11,7 +11,7 @@ use durer_scene::math::Vec3;
 
 impl Reader<'_> {
     /// Reads hair given by absorption, by colour (a parameter in `names`) or by melanin.
-    pub(super) fn hair(&self, params: &Params, names: &[&'static str], at: Span) -> Made {
+    pub(super) fn hair(&self, params: &Params, names: &[&'static str], at: Span) -> MaterialDef {
         let given = names.iter().copied().find(|name| params.get(name).is_some());
         let absorption = params.spectrum("sigma_a").map(|spectrum| spectrum.coefficient().max(Vec3::ZERO));
         let color =
@@ -25,7 +25,7 @@ impl Reader<'_> {
         let usual = HairMaterial::default();
         let brown = if has_melanin { 0.0 } else { usual.eumelanin };
         let value = |name, usual| self.value(params, name, usual);
-        Made::Hair(
+        MaterialDef::Hair(
             HairMaterial {
                 eumelanin: value("eumelanin", brown).max(0.0),
                 pheomelanin: value("pheomelanin", 0.0).max(0.0),

@@ -11,11 +11,11 @@ mod third;
 #[cfg(test)]
 pub(super) use rough::alpha_of_roughness;
 
+use super::defs::{AreaLight, MaterialDef, Opacity, Texture};
 use super::language::Language;
-use super::made::{AreaLight, Made, Opacity, Texture};
 use super::params::{Kind, Param, Params};
 use super::state::{MATERIAL, Reader};
-use crate::said::meant;
+use crate::shared_report::suggest;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::describe::FileName;
 use durer_scene::material::mix::Mix;
@@ -29,22 +29,22 @@ use std::rc::Rc;
 /// Maximum depth of nested mixes.
 const DEEPEST: u32 = 32;
 
-impl Made {
+impl MaterialDef {
     /// Material of shapes without a `Material` directive.
-    pub fn usual() -> Made {
-        Made::Layers(Box::new(matte(Vec3::splat(0.5))), Span::default())
+    pub fn usual() -> MaterialDef {
+        MaterialDef::Layers(Box::new(matte(Vec3::splat(0.5))), Span::default())
     }
 
     /// Depth of nested mixes.
     fn depth(&self) -> u32 {
-        if let Made::Mix { depth, .. } = self { *depth } else { 0 }
+        if let MaterialDef::Mix { depth, .. } = self { *depth } else { 0 }
     }
 
     fn is_pictured(&self) -> bool {
         match self {
-            Made::Layers(layers, _) => layers.has_pictures(),
-            Made::Mix { pictured, .. } => *pictured,
-            Made::Hair(..) | Made::Nothing => false,
+            MaterialDef::Layers(layers, _) => layers.has_pictures(),
+            MaterialDef::Mix { pictured, .. } => *pictured,
+            MaterialDef::Hair(..) | MaterialDef::Nothing => false,
         }
     }
 }
@@ -81,11 +81,11 @@ impl Reader<'_> {
     pub fn make_named_material(&mut self, name: String, at: Span, list: Vec<Rc<Param>>) {
         let kind = list.iter().find(|param| param.name == "type" && param.kind == Kind::Text);
         let Some(kind) = kind.map(|param| param.text().to_string()) else {
-            return self.said.bad(at, format!("the material `{name}` needs a `\"string type\"`"));
+            return self.report.bad(at, format!("the material `{name}` needs a `\"string type\"`"));
         };
         let number = self.material(&kind, at, list);
         if self.named_materials.insert(name.clone(), number).is_some() && self.language == Language::Fourth {
-            self.said.bad(at, format!("the material `{name}` is already defined"));
+            self.report.bad(at, format!("the material `{name}` is already defined"));
         }
     }
 
@@ -93,8 +93,8 @@ impl Reader<'_> {
         match self.named_materials.get(name) {
             Some(number) => self.state.material = *number,
             None => {
-                let help = meant(name, self.named_materials.keys().map(String::as_str));
-                self.said.bad_with(at, format!("unknown material `{name}`"), help);
+                let help = suggest(name, self.named_materials.keys().map(String::as_str));
+                self.report.bad_with(at, format!("unknown material `{name}`"), help);
             }
         }
     }
@@ -108,32 +108,32 @@ impl Reader<'_> {
             Some(by) => error.related(by, &format!("this word makes the file {language}")),
             None => error,
         };
-        self.said.push(Diagnostic { help, ..error });
+        self.report.push(Diagnostic { help, ..error });
     }
 
-    /// Mix of two materials by index; `Made::Nothing` if mixes are nested too deep.
-    fn mix(&self, parts: [usize; 2], share: f32, at: Span) -> Made {
+    /// Mix of two materials by index; `MaterialDef::Nothing` if mixes are nested too deep.
+    fn mix(&self, parts: [usize; 2], share: f32, at: Span) -> MaterialDef {
         self.mix_by(parts, (share, None), at)
     }
 
     /// Mix whose share is multiplied by a picture. See [`Reader::mix`].
-    fn mix_by(&self, parts: [usize; 2], (share, picture): (f32, Option<FileName>), at: Span) -> Made {
+    fn mix_by(&self, parts: [usize; 2], (share, picture): (f32, Option<FileName>), at: Span) -> MaterialDef {
         let [first, second] = parts.map(|number| &self.materials[number]);
         let depth = 1 + first.depth().max(second.depth());
         let pictured = first.is_pictured() || second.is_pictured() || picture.is_some();
         if depth > DEEPEST {
-            self.said.bad(at, format!("mixes of materials are nested more than {DEEPEST} deep"));
-            return Made::Nothing;
+            self.report.bad(at, format!("mixes of materials are nested more than {DEEPEST} deep"));
+            return MaterialDef::Nothing;
         }
-        Made::Mix { parts, share, picture, depth, pictured, at }
+        MaterialDef::Mix { parts, share, picture, depth, pictured, at }
     }
 
     /// Index of a material named by a mix.
     fn known_material(&self, name: &str, at: Span) -> Option<usize> {
         let found = self.named_materials.get(name).copied();
         if found.is_none() {
-            let help = meant(name, self.named_materials.keys().map(String::as_str));
-            self.said.bad_with(at, format!("no material `{name}` is defined before this"), help);
+            let help = suggest(name, self.named_materials.keys().map(String::as_str));
+            self.report.bad_with(at, format!("no material `{name}` is defined before this"), help);
         }
         found
     }
@@ -178,29 +178,29 @@ impl Reader<'_> {
             return *known;
         }
         let number = match &self.materials[made] {
-            Made::Nothing => None,
-            Made::Layers(layers, at) => {
+            MaterialDef::Nothing => None,
+            MaterialDef::Layers(layers, at) => {
                 let (mut m, at) = (layers.clone(), *at);
                 m.opacity *= opacity.share.clamp(0.0, 1.0);
                 if opacity.picture.is_some() {
                     m.opacity_texture = opacity.picture.clone();
                 }
                 if let Some((light, color)) = light {
-                    self.shine(&mut m, light, color);
+                    self.set_emission(&mut m, light, color);
                 }
                 Some(self.scene_material(Material::Principled(m), at))
             }
-            Made::Hair(hair, at) => {
+            MaterialDef::Hair(hair, at) => {
                 let (hair, at) = (hair.clone(), *at);
                 if light.is_some() {
-                    self.said.once(at, "emission of hair has no counterpart: it is ignored");
+                    self.report.once(at, "emission of hair has no counterpart: it is ignored");
                 }
                 if opacity.share < 1.0 || opacity.picture.is_some() {
-                    self.said.once(at, "opacity of hair has no counterpart: it is ignored");
+                    self.report.once(at, "opacity of hair has no counterpart: it is ignored");
                 }
                 Some(self.scene_material(Material::Hair(hair), at))
             }
-            Made::Mix { parts: [a, b], share, picture, at, .. } => {
+            MaterialDef::Mix { parts: [a, b], share, picture, at, .. } => {
                 let (a, b, share, share_texture, at) = (*a, *b, *share, picture.clone(), *at);
                 match (self.number(a, light, opacity), self.number(b, light, opacity)) {
                     (Some(material1), Some(material2)) => {
@@ -208,7 +208,7 @@ impl Reader<'_> {
                         Some(self.scene_material(Material::Solid(solid, Vec::new()), at))
                     }
                     (Some(only), None) | (None, Some(only)) => {
-                        self.said
+                        self.report
                             .once(at, "a mix with an invisible material has no counterpart: only the other is used");
                         Some(only)
                     }
@@ -225,7 +225,7 @@ impl Reader<'_> {
         (self.scene.materials.len() - 1) as u32
     }
 
-    fn shine(&mut self, m: &mut PrincipledMaterial, light: &AreaLight, color: Color) {
+    fn set_emission(&mut self, m: &mut PrincipledMaterial, light: &AreaLight, color: Color) {
         let most = color.max_element();
         if most <= 0.0 {
             return;
@@ -234,7 +234,7 @@ impl Reader<'_> {
         if light.two_sided {
             match m.transmission_weight > 0.0 && m.walls == Walls::Solid {
                 true => {
-                    self.said.once(light.at, "two-sided emission of glass has no counterpart: it emits outwards only")
+                    self.report.once(light.at, "two-sided emission of glass has no counterpart: it emits outwards only")
                 }
                 false => m.walls = Walls::Thin,
             }

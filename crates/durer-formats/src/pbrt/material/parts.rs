@@ -2,7 +2,7 @@
 //!
 //! A sum becomes a mixture: each part is scaled by the inverse of its share.
 
-use super::super::made::Made;
+use super::super::defs::MaterialDef;
 use super::super::state::Reader;
 use super::matte;
 use super::rough::Rough;
@@ -91,16 +91,16 @@ pub(super) fn glass(
 
 impl Reader<'_> {
     /// Material that scatters as the sum of the parts.
-    pub(super) fn sum(&mut self, parts: Vec<Part>, at: Span) -> Made {
+    pub(super) fn sum(&mut self, parts: Vec<Part>, at: Span) -> MaterialDef {
         // Keep the opacity: a black material may still be partly transparent.
         let opacity =
             parts.first().map_or((1.0, None), |part| (part.layers.opacity, part.layers.opacity_texture.clone()));
         let black = PrincipledMaterial { opacity: opacity.0, opacity_texture: opacity.1, ..matte(Vec3::ZERO) };
         let mut parts: Vec<Part> = parts.into_iter().filter(|part| part.most > 0.0).collect();
         let whole: f32 = parts.iter().map(|part| part.most).sum();
-        let Some(last) = parts.pop() else { return Made::Layers(Box::new(black), at) };
+        let Some(last) = parts.pop() else { return MaterialDef::Layers(Box::new(black), at) };
         if parts.is_empty() {
-            return Made::Layers(Box::new(last.layers), at);
+            return MaterialDef::Layers(Box::new(last.layers), at);
         }
         let layers = |part: Part| {
             let (mut m, factor) = (part.layers, whole / part.most);
@@ -108,7 +108,7 @@ impl Reader<'_> {
             {
                 *color *= factor;
             }
-            Made::Layers(Box::new(m), at)
+            MaterialDef::Layers(Box::new(m), at)
         };
         let mut rest = last.most;
         let mut made = layers(last);

@@ -67,7 +67,7 @@ impl Reader<'_> {
         let rough = self.rough(params, both, each, usual);
         let [u, v] = rough.alphas;
         if u != v {
-            self.said.once(
+            self.report.once(
                 params.at,
                 "an anisotropic coat over a matte base has no counterpart: its mean roughness is used",
             );

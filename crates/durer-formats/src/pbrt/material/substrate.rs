@@ -25,9 +25,9 @@ impl Reader<'_> {
     pub(super) fn substrate(&mut self, params: &Params) -> Vec<Part> {
         let rough = self.even_rough(params, None, true, 0.1);
         let (color, picture) = self.colored(params, "Kd", 0.5);
-        let (shine, shine_picture) = self.colored(params, "Ks", 0.5);
-        let most = shine.max_element();
-        let passing = Vec3::ONE - shine.min(Vec3::ONE);
+        let (specular, specular_picture) = self.colored(params, "Ks", 0.5);
+        let most = specular.max_element();
+        let passing = Vec3::ONE - specular.min(Vec3::ONE);
         let base = PrincipledMaterial {
             base_color_texture: picture,
             specular_weight: 1.0,
@@ -40,9 +40,9 @@ impl Reader<'_> {
         if most <= 0.0 {
             return vec![base];
         }
-        let (f0, hue) = (most.min(0.98), shine / most);
+        let (f0, hue) = (most.min(0.98), specular / most);
         let strength = blended(rough.alphas[0], f0);
-        let layers = glossy((strength * hue, shine_picture), fresnel::ior_of_reflectance(f0), &rough);
+        let layers = glossy((strength * hue, specular_picture), fresnel::ior_of_reflectance(f0), &rough);
         // Mean reflectance over all directions, instead of that at normal incidence.
         vec![base, Part { most: f0 + (1.0 - f0) / 21.0, layers }]
     }

@@ -4,15 +4,15 @@
 //! Source: *Physically Based Rendering*, 3rd edition, chapters 8 and 9, and *Input File Format*,
 //! pbrt.org/fileformat-v3.
 
+use super::super::defs::{MaterialDef, Texture};
 use super::super::language::NEW_MATERIALS;
-use super::super::made::{Made, Texture};
 use super::super::medium::medium_of;
 use super::super::params::{Kind, Params};
 use super::super::state::Reader;
 use super::parts::{Part, glass, glossy, metallic, oren_nayar};
 use super::rough::Rough;
 use super::{below_skin, matte};
-use crate::said::meant;
+use crate::shared_report::suggest;
 use durer_diag::Span;
 use durer_scene::bsdf::fresnel::conductor_colors;
 use durer_scene::material::PrincipledMaterial;
@@ -53,13 +53,13 @@ impl Reader<'_> {
             _ => self.value(params, name, usual),
         };
         if index <= 0.0 {
-            self.said.bad(params.place(name), "an index of refraction must be more than 0");
+            self.report.bad(params.place(name), "an index of refraction must be more than 0");
             return usual;
         }
         index
     }
 
-    pub(super) fn third(&mut self, kind: &str, params: &Params, at: Span) -> Made {
+    pub(super) fn third(&mut self, kind: &str, params: &Params, at: Span) -> MaterialDef {
         let parts = match kind {
             "matte" => {
                 let (color, picture) = self.colored(params, "Kd", 0.5);
@@ -114,17 +114,17 @@ impl Reader<'_> {
             "subsurface" | "kdsubsurface" => vec![self.below(kind, params)],
             "mix" => return self.mix_of_two(params, at),
             "hair" => return self.hair(params, &["color"], at),
-            "" | "none" => return Made::Nothing,
+            "" | "none" => return MaterialDef::Nothing,
             "fourier" => {
                 params.known(&["bsdffile"]);
-                self.said.once(at, "measured materials have no counterpart: diffuse grey is used");
+                self.report.once(at, "measured materials have no counterpart: diffuse grey is used");
                 vec![Part { layers: matte(Vec3::splat(0.5)), most: 1.0 }]
             }
             other => {
                 let is_new = NEW_MATERIALS.contains(&other);
-                let help = if is_new { Some("this material is of pbrt-v4".into()) } else { meant(other, KNOWN) };
+                let help = if is_new { Some("this material is of pbrt-v4".into()) } else { suggest(other, KNOWN) };
                 self.no_material(other, at, help, is_new);
-                return Made::Nothing;
+                return MaterialDef::Nothing;
             }
         };
         let mut bent = Vec::with_capacity(parts.len());
@@ -188,19 +188,19 @@ impl Reader<'_> {
             ..matte(Vec3::ZERO)
         };
         let matte = Part { most: (color * (up + down)).max_element(), layers };
-        let (shine, picture) = self.colored(params, "Ks", 0.25);
-        let gloss = glossy((up * shine, picture.clone()), 1.5, &rough);
-        let mut parts = vec![matte, Part { most: (up * shine).max_element(), layers: gloss }];
+        let (specular, picture) = self.colored(params, "Ks", 0.25);
+        let gloss = glossy((up * specular, picture.clone()), 1.5, &rough);
+        let mut parts = vec![matte, Part { most: (up * specular).max_element(), layers: gloss }];
         // Microfacets transmit too; those of a thin sheet do not refract.
-        if (down * shine).max_element() > 0.0 {
+        if (down * specular).max_element() > 0.0 {
             let what = "glossy transmission of `translucent` is not refracted here";
-            self.said.once(params.at, what);
+            self.report.once(params.at, what);
             let mut through = super::matte(Vec3::ZERO);
             (through.specular_weight, through.specular_color) = (1.0, Vec3::ZERO);
             (through.transmission_weight, through.walls) = (1.0, Walls::Thin);
-            (through.transmission_color, through.transmission_color_texture) = (down * shine, picture);
+            (through.transmission_color, through.transmission_color_texture) = (down * specular, picture);
             rough.put(&mut through);
-            parts.push(Part { most: (down * shine).max_element(), layers: through });
+            parts.push(Part { most: (down * specular).max_element(), layers: through });
         }
         parts
     }
@@ -227,13 +227,13 @@ impl Reader<'_> {
     fn grey(&self, params: &Params, name: &'static str, color: Color) -> f32 {
         if color.max_element() - color.min_element() > 1e-3 {
             let what = format!("a coloured `{name}` has no counterpart: its mean is used");
-            self.said.once(params.place(name), what);
+            self.report.once(params.place(name), what);
         }
         color.element_sum() / 3.0
     }
 
     /// Mix of two named materials; `amount` is the share of the first.
-    fn mix_of_two(&mut self, params: &Params, at: Span) -> Made {
+    fn mix_of_two(&mut self, params: &Params, at: Span) -> MaterialDef {
         let share = |amount: f32| amount.clamp(0.0, 1.0);
         let amount = match self.pattern(params, "amount", true, Vec3::splat(0.5)) {
             Texture::Even(color) => (share(self.grey(params, "amount", color)), None),
@@ -243,13 +243,13 @@ impl Reader<'_> {
         let mut numbers = [0; 2];
         for (number, (name, given)) in numbers.iter_mut().zip(names) {
             let Some(given) = given else {
-                self.said.bad(at, format!("a mix needs `\"string {name}\"`"));
-                return Made::Nothing;
+                self.report.bad(at, format!("a mix needs `\"string {name}\"`"));
+                return MaterialDef::Nothing;
             };
             let place = params.get(name).map_or(at, |param| param.values_at);
             match self.known_material(&given, place) {
                 Some(found) => *number = found,
-                None => return Made::Nothing,
+                None => return MaterialDef::Nothing,
             }
         }
         self.mix_by(numbers, amount, at)

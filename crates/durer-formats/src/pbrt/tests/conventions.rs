@@ -3,7 +3,7 @@ use super::super::named;
 use super::*;
 use durer_diag::Diagnostic;
 use durer_render::compile::testing;
-use durer_render::integrator::{Integrate, Path as Paths, Settings, Transport};
+use durer_render::integrator::{Integrate, Path as Paths, PathOptions, WhittedOptions};
 use durer_render::render::Job;
 use durer_render::world::World;
 use durer_scene::bsdf::fresnel::conductor_colors;
@@ -89,8 +89,8 @@ fn orthographic_spherical_and_lens_cameras_match_closed_forms() {
 
 /// Irradiance at a point on a surface facing up, from one sample.
 fn irradiance(world: &World, point: Vec3) -> Vec3 {
-    let settings = Settings { bounces: 0, ..Job::default().settings };
-    let paths = Paths::new(world, settings, Transport::default());
+    let settings = WhittedOptions { bounces: 0, ..Job::default().settings };
+    let paths = Paths::new(world, settings, PathOptions::default());
     paths.irradiance(point.as_dvec3(), Vec3::Y, SampleId::new(0, (3, 5), 7), &mut ())
 }
 
@@ -297,8 +297,8 @@ fn environment_picture_has_pbrt_orientation() {
     std::fs::write(folder.path().join("sky.pfm"), bytes).unwrap();
     let text =
         "Camera \"perspective\" WorldBegin LightSource \"infinite\" \"string filename\" \"sky.pfm\" Shape \"sphere\"";
-    let (_, told) = read_in(folder.path(), text);
-    assert!(told[0].contains("an environment picture must be square, found 3 x 2 pixels"), "{told:?}");
+    let (_, messages) = read_in(folder.path(), text);
+    assert!(messages[0].contains("an environment picture must be square, found 3 x 2 pixels"), "{messages:?}");
 }
 
 #[test]
@@ -428,10 +428,10 @@ fn density_grids_follow_transform_and_end_in_zero() {
         ("\"float density\" [ -1 ]", "error density 1 is -1: it must be 0 or more"),
         ("\"integer nx\" -1 \"float density\" [ 1 ]", "error `density` needs -1 x 1 x 1 numbers"),
     ] {
-        let (_, told) = read(&format!(
+        let (_, messages) = read(&format!(
             "Camera \"perspective\" WorldBegin MakeNamedMedium \"a\" \"string type\" \"uniformgrid\" {grid} Shape \"sphere\""
         ));
-        assert!(told.iter().any(|told| told.contains(expected)), "{told:?}");
+        assert!(messages.iter().any(|message| message.contains(expected)), "{messages:?}");
     }
 }
 
@@ -447,9 +447,9 @@ fn media_fill_shapes_and_surround_the_camera() {
     );
     let inside = world("smoke.pbrt", &text);
     assert_eq!(inside.objects().len(), 1);
-    let settings = Settings { bounces: 4, ..Job::default().settings };
+    let settings = WhittedOptions { bounces: 4, ..Job::default().settings };
     let through = |world: &World| {
-        let paths = Paths::new(world, settings, Transport::default());
+        let paths = Paths::new(world, settings, PathOptions::default());
         let ray = durer_scene::math::Ray::new(Vec3::ZERO, Vec3::Z);
         paths.radiance(&ray, SampleId::new(0, (3, 5), 7), &mut ())
     };

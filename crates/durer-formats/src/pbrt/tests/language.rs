@@ -111,9 +111,9 @@ fn errors_have_place_and_suggestion() {
         let camera = if text.starts_with("WorldBegin") { "" } else { "Camera \"perspective\" " };
         let film = text.starts_with("Film") || text.starts_with("ColorSpace");
         let text = if film { format!("{text} {camera} WorldBegin") } else { text.to_string() };
-        let (scene, told) = read(&text);
+        let (scene, messages) = read(&text);
         assert!(scene.is_none(), "{text}");
-        assert!(told.iter().any(|told| told.contains(wanted)), "{text}\n{wanted}\n{told:#?}");
+        assert!(messages.iter().any(|message| message.contains(wanted)), "{text}\n{wanted}\n{messages:#?}");
     }
 }
 
@@ -123,10 +123,10 @@ fn unsupported_features_are_reported_once_with_substitute() {
                 MakeNamedMedium \"fog\" \"string type\" \"cloud\" MediumInterface \"\" \"fog\"\n\
                 LightSource \"infinite\" \"point3 portal\" [ 0 0 0 ] Shape \"sphere\" \"float radiu\" 2\n\
                 Material \"measured\" Shape \"sphere\"";
-    let (scene, told) = read(text);
+    let (scene, messages) = read(text);
     assert_eq!(scene.unwrap().root.unwrap().objects.len(), 2);
     assert_eq!(
-        told,
+        messages,
         [
             "scene.pbrt:1:13 note the integrator `bdpt` has no counterpart: path tracing is used",
             "scene.pbrt:3:18 warning media of type `cloud` have no counterpart: they are ignored",
@@ -155,11 +155,11 @@ fn included_files_are_read_and_errors_name_their_file() {
         ("round.pbrt", b"\nInclude \"circle.pbrt\""),
     ]);
     let head = "Camera \"perspective\" WorldBegin ";
-    let (scene, told) = read_in(
+    let (scene, messages) = read_in(
         folder.path(),
         &format!("{head} Include \"a.pbrt\" Import \"state.pbrt\" Include \"packed.pbrt.gz\" Shape \"sphere\""),
     );
-    assert_eq!(told, [""; 0]);
+    assert_eq!(messages, [""; 0]);
     let objects = scene.unwrap().root.unwrap().objects;
     assert_eq!(objects.len(), 4);
     // `Import` restores the state.
@@ -172,8 +172,8 @@ fn included_files_are_read_and_errors_name_their_file() {
         ("bda.pbrt", "scene.pbrt:1:43 error the file `bda.pbrt` does not exist (did you mean `bad.pbrt`?)"),
         ("../a.pbrt", "error the file"),
     ] {
-        let (scene, told) = read_in(folder.path(), &format!("{head} Include \"{name}\""));
-        assert!(scene.is_none() && told.iter().any(|told| told.contains(wanted)), "{name}: {told:#?}"); // prose: keep
+        let (scene, messages) = read_in(folder.path(), &format!("{head} Include \"{name}\""));
+        assert!(scene.is_none() && messages.iter().any(|message| message.contains(wanted)), "{name}: {messages:#?}"); // prose: keep
     }
 }
 
@@ -198,10 +198,13 @@ fn hostile_files_never_panic() {
         (mixes + " NamedMaterial \"m199\" Shape \"sphere\"", "mixes of materials are nested more than 32 deep"),
         (format!("{world} Shape \"sphere\" {}", "\"float a\" ".repeat(100_000)), "expected"),
     ] {
-        let (scene, told) = read(&text);
+        let (scene, messages) = read(&text);
         let end: String = text.chars().take(80).collect();
         assert!(scene.is_none() || wanted == "expected", "{end}");
-        assert!(wanted == "expected" || told.iter().any(|told| told.contains(wanted)), "{end}: {told:#?}"); // prose: keep
+        assert!(
+            wanted == "expected" || messages.iter().any(|message| message.contains(wanted)),
+            "{end}: {messages:#?}"
+        ); // prose: keep
     }
     // Every prefix of a file, and a change of every byte.
     let text = "Film \"rgb\" \"integer xresolution\" [8] Camera \"perspective\" \"float fov\" 40 WorldBegin\n\
@@ -255,8 +258,11 @@ fn settings_come_from_film_sampler_and_integrator() {
         "Film \"rgb\" \"integer xresolution\" 30 \"integer yresolution\" 20 Sampler \"stratified\" \"integer xsamples\" 3\n\
          Integrator \"path\" \"integer maxdepth\" 7 Camera \"perspective\" WorldBegin Shape \"sphere\"",
     );
-    let wishes = scene.wishes;
-    assert_eq!((wishes.size, wishes.samples, wishes.bounces), (Some((30, 20)), Some(12), Some(6)));
+    let render_defaults = scene.render_defaults;
+    assert_eq!(
+        (render_defaults.size, render_defaults.samples, render_defaults.bounces),
+        (Some((30, 20)), Some(12), Some(6))
+    );
     // Pixels from, to, from, to; fractions are rounded up.
     let film = |more: &str| {
         format!(
@@ -264,12 +270,12 @@ fn settings_come_from_film_sampler_and_integrator() {
              Camera \"perspective\" WorldBegin Shape \"sphere\""
         )
     };
-    let crop = |more: &str| clean(&film(more)).wishes.crop;
+    let crop = |more: &str| clean(&film(more)).render_defaults.crop;
     assert_eq!(crop(""), None);
     assert_eq!(crop("\"float cropwindow\" [.25 .75 .5 1]"), Some((8, 10, 15, 10)));
     assert_eq!(crop("\"integer pixelbounds\" [3 40 0 7]"), Some((3, 0, 27, 7)));
-    let (scene, told) = read(&film("\"float cropwindow\" [.5 .5 0 1]"));
-    assert!(scene.is_none() && told[0].contains("has no pixels"), "{told:?}");
+    let (scene, messages) = read(&film("\"float cropwindow\" [.5 .5 0 1]"));
+    assert!(scene.is_none() && messages[0].contains("has no pixels"), "{messages:?}");
 }
 
 #[test]
@@ -284,8 +290,8 @@ fn corpus_scenes_are_read() {
         for folder in std::fs::read_dir(set.path()).unwrap().flatten().filter(|entry| entry.path().is_dir()) {
             for file in std::fs::read_dir(folder.path()).unwrap().flatten().map(|entry| entry.path()) {
                 if file.extension().is_some_and(|extension| extension == "pbrt") {
-                    let (scene, told) = read_in(&folder.path(), &std::fs::read_to_string(&file).unwrap());
-                    assert!(scene.is_some(), "{}: {told:#?}", file.display()); // prose: keep
+                    let (scene, messages) = read_in(&folder.path(), &std::fs::read_to_string(&file).unwrap());
+                    assert!(scene.is_some(), "{}: {messages:#?}", file.display()); // prose: keep
                     count += 1;
                 }
             }

@@ -205,14 +205,17 @@ fn height_fields_and_nurbs_become_meshes() {
 fn tessellation_is_limited() {
     // A partial ball has at most 128 x 64 x 2 triangles: the limit in tests leaves out some of 20.
     let text = "Shape \"sphere\" \"float phimax\" 359 ".repeat(20);
-    let (scene, told) =
+    let (scene, messages) =
         read_with_low_limits("a.pbrt", &format!("Film \"image\" Camera \"perspective\" WorldBegin {text}"));
-    assert!(told.len() == 1 && told[0].contains("triangles are left out"), "{told:?}");
+    assert!(messages.len() == 1 && messages[0].contains("triangles are left out"), "{messages:?}");
     let triangles: usize = scene.unwrap().assets.meshes.values().map(|mesh| mesh.triangles.len()).sum();
     assert!(triangles <= 1 << 18 && triangles > 1 << 17, "{triangles}");
     let surface =
         "Shape \"loopsubdiv\" \"integer levels\" 16 \"point P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 2 ]";
-    let (_, told) =
+    let (_, messages) =
         read_with_low_limits("a.pbrt", &format!("Film \"image\" Camera \"perspective\" WorldBegin {surface}"));
-    assert!(told.len() == 1 && told[0].contains("triangles: the surface is subdivided only 7 times"), "{told:?}");
+    assert!(
+        messages.len() == 1 && messages[0].contains("triangles: the surface is subdivided only 7 times"),
+        "{messages:?}"
+    );
 }

@@ -23,8 +23,8 @@ fn lights(text: &str) -> Vec<Light> {
 
 /// Layers of a sphere's material with their shares; each part of a mix.
 pub(super) fn parts(text: &str) -> Vec<(f32, PrincipledMaterial)> {
-    let (scene, told) = read(&format!("{HEAD}{text} Shape \"sphere\""));
-    let scene = scene.unwrap_or_else(|| panic!("{text}: {told:?}")); // prose: keep
+    let (scene, messages) = read(&format!("{HEAD}{text} Shape \"sphere\""));
+    let scene = scene.unwrap_or_else(|| panic!("{text}: {messages:?}")); // prose: keep
     let first = scene.root.as_ref().unwrap().objects[0].material.unwrap();
     let (mut open, mut found) = (vec![(1.0, first)], Vec::new());
     while let Some((share, number)) = open.pop() {
@@ -55,8 +55,8 @@ fn first_unambiguous_word_decides_language() {
     // In pbrt-v3 values are absolute; in pbrt-v4 a spectrum is scaled to luminance 1.
     let light = "LightSource \"point\" \"spectrum I\" [ 300 5 900 5 ] Shape \"sphere\"";
     let is_third = |text: &str| {
-        let (scene, told) = read(&format!("{text} {light}"));
-        let scene = scene.unwrap_or_else(|| panic!("{text}: {told:?}")); // prose: keep
+        let (scene, messages) = read(&format!("{text} {light}"));
+        let scene = scene.unwrap_or_else(|| panic!("{text}: {messages:?}")); // prose: keep
         let lights = scene.lights.unwrap();
         let point =
             lights.iter().find_map(|light| if let Light::Point(point) = &light.value { Some(point) } else { None });
@@ -95,8 +95,10 @@ fn first_unambiguous_word_decides_language() {
     // An included file may decide.
     let folder = folder(&[("a.pbrt", b"Material \"matte\"")]);
     let text = format!("{camera} {light} Include \"a.pbrt\"");
-    let (scene, told) = read_in(folder.path(), &text);
-    let Light::Point(point) = &scene.unwrap_or_else(|| panic!("{told:?}")).lights.unwrap()[0].value else { panic!() };
+    let (scene, messages) = read_in(folder.path(), &text);
+    let Light::Point(point) = &scene.unwrap_or_else(|| panic!("{messages:?}")).lights.unwrap()[0].value else {
+        panic!()
+    };
     assert!(point.color.y > 1.0);
 }
 
@@ -126,8 +128,8 @@ fn light_values_are_absolute() {
     let Light::Spot(spot) = lights("LightSource \"spot\" \"float coneangle\" 40")[0].clone() else { panic!() };
     assert_eq!((spot.angle, spot.inner_angle, spot.fade), (40.0, 35.0, Fade::Fourth));
     let text = "AreaLightSource \"area\" \"rgb L\" [ 1 2 3 ] \"rgb scale\" [ 2 2 2 ] \"integer nsamples\" 8";
-    let (_, shining) = parts(text)[0].clone();
-    close(shining.emission_luminance * shining.emission_color, Vec3::new(2.0, 4.0, 6.0));
+    let (_, emissive) = parts(text)[0].clone();
+    close(emissive.emission_luminance * emissive.emission_color, Vec3::new(2.0, 4.0, 6.0));
 }
 
 #[test]
@@ -137,8 +139,8 @@ fn environment_has_z_up_and_x_at_left_edge() {
     let folder = folder(&[("sky.pfm", &bytes)]);
     let text =
         format!("{HEAD} LightSource \"infinite\" \"string mapname\" \"sky.pfm\" \"rgb L\" [ 2 1 1 ] Shape \"sphere\"");
-    let (scene, told) = read_in(folder.path(), &text);
-    let scene = scene.unwrap_or_else(|| panic!("{told:?}"));
+    let (scene, messages) = read_in(folder.path(), &text);
+    let scene = scene.unwrap_or_else(|| panic!("{messages:?}"));
     let PictureBytes::Here(name, bytes) = &scene.assets.pictures["sky.pfm#environment.pfm"].bytes else { panic!() };
     let encoded = durer_image::Encoded::open(bytes, name).unwrap();
     let sky = encoded.read(u64::MAX, durer_image::decode_linear).unwrap();
@@ -156,13 +158,13 @@ fn pictured_lights_follow_their_pictures() {
     let gonio = pfm(8, 4, |x, y| Vec3::splat(if y == 0 { 5.0 } else { (x + 1) as f32 }));
     let slide = pfm(4, 2, |x, y| Vec3::new(x as f32, y as f32, 0.0));
     let folder = folder(&[("gonio.pfm", &gonio), ("slide.pfm", &slide)]);
-    let lamps = |text: &str| {
-        let (scene, told) = read_in(folder.path(), &format!("{HEAD}{text} Shape \"sphere\""));
-        let scene = scene.unwrap_or_else(|| panic!("{told:?}"));
-        assert_eq!(told, [""; 0]);
+    let lights = |text: &str| {
+        let (scene, messages) = read_in(folder.path(), &format!("{HEAD}{text} Shape \"sphere\""));
+        let scene = scene.unwrap_or_else(|| panic!("{messages:?}"));
+        assert_eq!(messages, [""; 0]);
         move |dir: [f32; 3]| -> Color {
             let each = scene.lights.iter().flatten().map(|light| {
-                use durer_scene::light::Emitter;
+                use durer_scene::light::Illuminate;
                 let profile = &scene.assets.profiles[&light.value.profile().unwrap().path];
                 light.value.color() * profile.at(light.value.in_profile(Vec3::from_array(dir).normalize()))
             });
@@ -170,22 +172,22 @@ fn pictured_lights_follow_their_pictures() {
         }
     };
     let gonio = "LightSource \"goniometric\" \"rgb I\" [ 1 2 3 ] \"string mapname\" \"gonio.pfm\"";
-    let shining = lamps(gonio);
+    let emissive = lights(gonio);
     // The pole is +y, where the first row meets the last, as in pbrt-v3; columns go from +x over
     // +z.
-    close(shining([0.0, 1.0, 0.0]), 0.5 * (5.0 + 4.5) * Vec3::new(1.0, 2.0, 3.0));
-    close(shining([0.0, 0.0, 1.0]), 2.5 * Vec3::new(1.0, 2.0, 3.0));
-    close(shining([-1.0, 0.0, 0.0]), 4.5 * Vec3::new(1.0, 2.0, 3.0));
-    close(shining([0.0, 0.0, -1.0]), 6.5 * Vec3::new(1.0, 2.0, 3.0));
+    close(emissive([0.0, 1.0, 0.0]), 0.5 * (5.0 + 4.5) * Vec3::new(1.0, 2.0, 3.0));
+    close(emissive([0.0, 0.0, 1.0]), 2.5 * Vec3::new(1.0, 2.0, 3.0));
+    close(emissive([-1.0, 0.0, 0.0]), 4.5 * Vec3::new(1.0, 2.0, 3.0));
+    close(emissive([0.0, 0.0, -1.0]), 6.5 * Vec3::new(1.0, 2.0, 3.0));
     // Rotated: the pole is +x, and z stays.
-    let turned = lamps(&format!("Rotate -90 0 0 1 {gonio}"));
+    let turned = lights(&format!("Rotate -90 0 0 1 {gonio}"));
     close(turned([1.0, 0.0, 0.0]), 4.75 * Vec3::new(1.0, 2.0, 3.0));
     close(turned([0.0, 0.0, 1.0]), 2.5 * Vec3::new(1.0, 2.0, 3.0));
     // Mirrored.
-    let mirrored = lamps(&format!("Scale 1 1 -1 {gonio}"));
+    let mirrored = lights(&format!("Scale 1 1 -1 {gonio}"));
     close(mirrored([0.0, 0.0, -1.0]), 2.5 * Vec3::new(1.0, 2.0, 3.0));
     // 90 degrees across the shorter side: the picture covers -2 to 2 by -1 to 1.
-    let slide = lamps("LightSource \"projection\" \"float fov\" 90 \"string mapname\" \"slide.pfm\"");
+    let slide = lights("LightSource \"projection\" \"float fov\" 90 \"string mapname\" \"slide.pfm\"");
     let at = |x: f32, y: f32| slide([x, y, 1.0]);
     for (place, wanted) in [((0.5, 0.5), [2.0, 1.0, 0.0]), ((-1.5, -0.5), [0.0; 3]), ((1.5, 0.0), [3.0, 0.5, 0.0])] {
         assert!(
@@ -233,9 +235,9 @@ fn errors_and_warnings_of_pbrt_v3() {
             "error `levels` must be from 0 to 16",
         ),
     ] {
-        let (scene, told) = read(&format!("{HEAD}{text}"));
+        let (scene, messages) = read(&format!("{HEAD}{text}"));
         assert!(scene.is_none(), "{text}");
-        assert!(told.iter().any(|told| told.contains(wanted)), "{text}\n{wanted}\n{told:#?}");
+        assert!(messages.iter().any(|message| message.contains(wanted)), "{text}\n{wanted}\n{messages:#?}");
     }
     for (text, wanted) in [
         (
@@ -261,8 +263,8 @@ fn errors_and_warnings_of_pbrt_v3() {
             "warning the medium `Skin7` is unknown",
         ),
     ] {
-        let (scene, told) = read(&format!("{HEAD}{text} Shape \"sphere\""));
-        assert!(scene.is_some() && told.len() == 1, "{text}\n{told:#?}");
-        assert!(told[0].contains(wanted), "{text}\n{wanted}\n{told:#?}");
+        let (scene, messages) = read(&format!("{HEAD}{text} Shape \"sphere\""));
+        assert!(scene.is_some() && messages.len() == 1, "{text}\n{messages:#?}");
+        assert!(messages[0].contains(wanted), "{text}\n{wanted}\n{messages:#?}");
     }
 }

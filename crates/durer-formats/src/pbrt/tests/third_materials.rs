@@ -29,9 +29,9 @@ fn mixes_reflect_the_sum_of_their_parts() {
     );
     assert_eq!(plastic.len(), 2);
     close(whole(&plastic, |layers| layers.base_color), Vec3::new(0.4, 0.2, 0.1));
-    let shine =
+    let specular =
         |layers: &PrincipledMaterial| if layers.specular_weight > 0.0 { layers.specular_color } else { Vec3::ZERO };
-    assert!((whole(&plastic, shine) - Vec3::new(0.1, 0.2, 0.3)).abs().max_element() < 2e-3);
+    assert!((whole(&plastic, specular) - Vec3::new(0.1, 0.2, 0.3)).abs().max_element() < 2e-3);
     assert!(plastic.iter().any(|(_, layers)| (layers.specular_ior - 1.0 / 1.5).abs() < 1e-6));
     // Black parts are dropped.
     assert_eq!(parts("Material \"plastic\" \"rgb Ks\" [ 0 0 0 ]").len(), 1);
@@ -44,8 +44,8 @@ fn mixes_reflect_the_sum_of_their_parts() {
     close(whole(&uber, |layers| layers.specular_color * layers.transmission_weight), Vec3::new(0.2, 0.4, 0.6));
     assert!(uber.iter().all(|(_, layers)| layers.opacity == 0.25));
     // Emission is as given for every material.
-    let shining = parts("AreaLightSource \"diffuse\" \"rgb L\" [ 2 4 6 ] Material \"plastic\"");
-    close(whole(&shining, |layers| layers.emission_luminance * layers.emission_color), Vec3::new(2.0, 4.0, 6.0));
+    let emissive = parts("AreaLightSource \"diffuse\" \"rgb L\" [ 2 4 6 ] Material \"plastic\"");
+    close(whole(&emissive, |layers| layers.emission_luminance * layers.emission_color), Vec3::new(2.0, 4.0, 6.0));
 }
 
 #[test]
@@ -101,15 +101,15 @@ fn substrate_mean_albedo_follows_its_formula() {
     for cosine in [0.1, 0.3, 0.5, 0.7, 1.0] {
         let (half, wanted): (f32, f32) = (1.0 - 0.5 * cosine, 28.0 / 23.0);
         let formula = wanted * (1.0 - half * half * half * half * half);
-        let ours = (1.0 - boundary.given(cosine, base.specular_roughness)) / passing;
+        let ours = (1.0 - boundary.reflectance(cosine, base.specular_roughness)) / passing;
         assert!(
             (ours - formula).abs() < 0.12 && (cosine < 0.2 || (ours - formula).abs() < 0.04),
             "{cosine}: {ours} {formula}"
         );
     }
     // The mean of smooth microfacets is Ks + (1 - Ks) / 21.
-    let (share, shine) = parts.iter().find(|(_, layers)| layers.base_color == Vec3::ZERO).unwrap();
-    let ratio = (shine.specular_ior - 1.0) / (shine.specular_ior + 1.0);
+    let (share, specular) = parts.iter().find(|(_, layers)| layers.base_color == Vec3::ZERO).unwrap();
+    let ratio = (specular.specular_ior - 1.0) / (specular.specular_ior + 1.0);
     assert!((ratio * ratio - 0.04).abs() < 1e-5 && *share > 0.0);
 }
 

@@ -2,7 +2,7 @@ use super::*;
 use durer::LoadOptions;
 use durer::load_text;
 use durer_diag::{Diagnostics, Files};
-use durer_render::integrator::{Integrate, Path as Paths, Settings, Transport};
+use durer_render::integrator::{Integrate, Path as Paths, PathOptions, WhittedOptions};
 use durer_render::render::Job;
 use durer_scene::camera::{CameraBasis, CameraRules, CameraSample, Projection};
 use durer_scene::math::{Vec2, fp};
@@ -17,9 +17,9 @@ fn shown(text: &str, point: Vec3, normal: Vec3) -> Vec3 {
     let loaded = load_text(Path::new("a.rad"), text.as_bytes().into(), &options, &mut files, &mut diagnostics);
     let world = loaded.and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics));
     let world = world.unwrap_or_else(|| panic!("{:?}", diagnostics.iter().collect::<Vec<_>>()));
-    let settings = Settings { bounces: 0, ..Job::default().settings };
+    let settings = WhittedOptions { bounces: 0, ..Job::default().settings };
     let paths =
-        Paths { world: &world, settings, transport: Transport::default(), photons: None, cone: None, cancel: None };
+        Paths { world: &world, settings, transport: PathOptions::default(), photons: None, cone: None, cancel: None };
     const SAMPLES: u32 = 256;
     let sum: glam::DVec3 = (0..SAMPLES)
         .map(|i| paths.irradiance(point.as_dvec3(), normal, SampleId::new(0, (0, 0), i), &mut ()).as_dvec3())
@@ -70,8 +70,8 @@ fn emitters_have_the_given_radiance() {
 /// Direction of a view at a picture position, -1 to 1 across the larger side.
 fn sees(options: &str, x: f32, y: f32) -> Vec3 {
     let files = folder(&[("s.rad", b"void plastic w 0 0 5 1 1 1 0 0 w sphere s 0 0 4 0 0 0 1")]);
-    let (scene, told) = read_in(files.path(), "x.rif", &format!("scene = s.rad\nview = {options}\n"));
-    let scene = scene.unwrap_or_else(|| panic!("{told:?}"));
+    let (scene, messages) = read_in(files.path(), "x.rif", &format!("scene = s.rad\nview = {options}\n"));
+    let scene = scene.unwrap_or_else(|| panic!("{messages:?}"));
     let camera = scene.camera.as_ref().unwrap();
     let frame = CameraBasis::of(camera, CameraRules::default());
     let sample = CameraSample { lens: Vec2::splat(0.5), ..CameraSample::at(Vec2::new(x, y)) };
@@ -87,8 +87,10 @@ fn views_match_radiance() {
     // Parallel views show what is in front of their point, or of `-vo`.
     for (options, near) in [("-vtl -vp 1 2 3 -vh 4 -vv 4", 0.0), ("-vtl -vo -2.5 -vh 4 -vv 4", -2.5)] {
         let files = folder(&[("s.rad", b"void plastic w 0 0 5 1 1 1 0 0 w sphere s 0 0 4 0 0 0 1")]);
-        let (scene, told) = read_in(files.path(), "x.rif", &format!("scene = s.rad\nview = {options}\n"));
-        let Some(durer_scene::camera::Camera::Orthographic(camera)) = scene.unwrap().camera else { panic!("{told:?}") };
+        let (scene, messages) = read_in(files.path(), "x.rif", &format!("scene = s.rad\nview = {options}\n"));
+        let Some(durer_scene::camera::Camera::Orthographic(camera)) = scene.unwrap().camera else {
+            panic!("{messages:?}")
+        };
         assert_eq!(camera.near, Some(near));
         let frame = CameraBasis::of(&camera, CameraRules::default());
         assert_eq!(camera.ray(&frame, &CameraSample::at(Vec2::ZERO)).unwrap().t_min, near);
@@ -113,9 +115,9 @@ fn tessellated_cone_has_uniform_irradiance() {
     let options = LoadOptions::default();
     let loaded = load_text(Path::new("a.rad"), text.as_bytes().into(), &options, &mut files, &mut diagnostics).unwrap();
     let world = loaded.compile(&options, &mut files, &mut diagnostics).unwrap();
-    let settings = Settings { bounces: 0, ..Job::default().settings };
+    let settings = WhittedOptions { bounces: 0, ..Job::default().settings };
     let paths =
-        Paths { world: &world, settings, transport: Transport::default(), photons: None, cone: None, cancel: None };
+        Paths { world: &world, settings, transport: PathOptions::default(), photons: None, cone: None, cancel: None };
     let mut dark = 0;
     for i in 0..256 {
         let (sin, cos) = fp::sin_cos_degrees(f64::from(i) * 1.40625 + 0.3);

@@ -1,11 +1,11 @@
 //! Tests of the output of `gensky` and `gendaylit`.
 
 use super::*;
-use crate::radiance::args::Thing;
+use crate::radiance::args::RadPrimitive;
 use crate::radiance::gensky;
 use crate::radiance::sky::Sky;
 use crate::radiance::words::{Word, Words};
-use crate::said::Said;
+use crate::shared_report::SharedReport;
 use durer_scene::light::Light;
 use glam::{DMat3, DVec3};
 
@@ -16,8 +16,8 @@ fn words(text: &str) -> Vec<Word> {
 
 /// Returns the radiance of the sun, and the arguments of the sky.
 fn printed(args: &str) -> (f64, Vec<f64>) {
-    let (said, words) = (Said::default(), words(&format!("gensky {args}")));
-    let text = gensky::text(&said, &words[0], &words[1..]).unwrap_or_else(|| panic!("{args}"));
+    let (report, words) = (SharedReport::default(), words(&format!("gensky {args}")));
+    let text = gensky::text(&report, &words[0], &words[1..]).unwrap_or_else(|| panic!("{args}"));
     let words: Vec<&str> = text.split_whitespace().collect();
     let after = |word: &str, skip: usize| {
         let at = words.iter().position(|other| *other == word);
@@ -76,7 +76,7 @@ fn command_gives_the_sky_of_its_output() {
 
 #[test]
 fn errors_have_positions() {
-    for (text, told) in [
+    for (text, expected) in [
         ("!gensky 6 21", "1:2 error `gensky` needs month, day and hour, or `-ang` with altitude and azimuth"),
         ("!gensky 13 21 12", "1:9 error the month must be from 1 to 12"),
         ("!gensky 6 21 25", "1:14 error the hour must be of the form 14.5, 14:30, 14:30EST or, in solar time, +14.5"),
@@ -89,7 +89,7 @@ fn errors_have_positions() {
         ("!gensky 6 21 12 -a north", "1:20 error expected a number, found `north`"),
     ] {
         let (scene, found) = read(text);
-        assert!(scene.is_none() && found == [format!("scene.rad:{told}")], "{text}: {found:?}");
+        assert!(scene.is_none() && found == [format!("scene.rad:{expected}")], "{text}: {found:?}");
     }
     let (_, found) = read("!gensky 6 21 12:30XYZ");
     assert!(found[0].starts_with("scene.rad:1:14 error unknown time zone in `12:30XYZ`: known are YST"), "{found:?}");
@@ -100,9 +100,9 @@ fn perez_sky_matches_rtrace() {
     let text =
         "void brightfunc f 2 skybright perezlum.cal 0 10 37.1 29.99 -0.953158 -0.216935 17.406817 -3.934951 0.685099
         -0.058393 -0.321824 0.944997";
-    let (said, mut all) = (Said::default(), Words::new(text.as_bytes(), 0, 0..text.len()));
-    let thing = Thing::read(all.next().unwrap(), &mut all, &said).unwrap();
-    let sky = Sky::perez(&thing, DMat3::IDENTITY, &said).unwrap();
+    let (report, mut all) = (SharedReport::default(), Words::new(text.as_bytes(), 0, 0..text.len()));
+    let primitive = RadPrimitive::read(all.next().unwrap(), &mut all, &report).unwrap();
+    let sky = Sky::perez(&primitive, DMat3::IDENTITY, &report).unwrap();
     let ways = [[0.0, 0.0, 1.0], [0.6, 0.772, 0.1736], [0.8, 0.0, -0.05], [0.3, -0.9, -0.3]];
     for (way, expected) in ways.into_iter().zip([54.42088, 27.81774, 32.10053, 29.99851]) {
         let found = sky.at(DVec3::from_array(way).normalize());

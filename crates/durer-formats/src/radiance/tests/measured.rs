@@ -3,13 +3,13 @@
 //! a sheet.
 
 use super::*;
-use crate::radiance::args::Thing;
+use crate::radiance::args::RadPrimitive;
 use crate::radiance::sky::Sky;
 use crate::radiance::words::Words;
-use crate::said::Said;
+use crate::shared_report::SharedReport;
 use durer::{LoadOptions, load_text};
 use durer_diag::{Diagnostics, Files};
-use durer_render::integrator::{Integrate, Path as Paths, Transport};
+use durer_render::integrator::{Integrate, Path as Paths, PathOptions};
 use durer_render::render::Job;
 use durer_scene::camera::Projection;
 use durer_scene::light::Light;
@@ -55,10 +55,10 @@ fn surface_with_a_pattern_has_the_material_below_it() {
 /// Returns the radiance of a sky in four directions.
 fn skies(numbers: &str, turn: DMat3) -> [f32; 4] {
     let text = format!("void brightfunc f 2 skybr skybright.cal 0 {numbers}");
-    let said = Said::default();
+    let report = SharedReport::default();
     let mut words = Words::new(text.as_bytes(), 0, 0..text.len());
-    let thing = Thing::read(words.next().unwrap(), &mut words, &said).unwrap();
-    let sky = Sky::of(&thing, turn, &said).unwrap();
+    let primitive = RadPrimitive::read(words.next().unwrap(), &mut words, &report).unwrap();
+    let sky = Sky::of(&primitive, turn, &report).unwrap();
     let ways = [[0.0, 0.0, 1.0], [0.6, 0.772, 0.1736], [0.8, 0.0, -0.05], [0.3, -0.9, -0.3]];
     ways.map(|way| sky.at(DVec3::from_array(way).normalize()))
 }
@@ -103,8 +103,14 @@ fn skies_are_rotated_by_xform_and_by_their_arguments() {
         let scene = load_text(&path, text.as_bytes().into(), &options, &mut files_read, &mut diagnostics).unwrap();
         let world = scene.compile(&options, &mut files_read, &mut diagnostics).unwrap();
         let settings = Job::default().settings;
-        let paths =
-            Paths { world: &world, settings, transport: Transport::default(), photons: None, cone: None, cancel: None };
+        let paths = Paths {
+            world: &world,
+            settings,
+            transport: PathOptions::default(),
+            photons: None,
+            cone: None,
+            cancel: None,
+        };
         let at = |x: f32, y: f32| {
             let ray = Ray::new(Vec3::ZERO, Vec3::new(x, y, 1.0).normalize());
             paths.radiance(&ray, SampleId::new(0, (0, 0), 0), &mut ()).x
@@ -137,13 +143,15 @@ fn commands_run_in_the_folder_of_the_file_of_xform() {
         ("!xform -c fur/desk.rad", Err("leg.rad")),
         ("!xform -e -c -e fur/desk.rad", Ok(2)),
     ] {
-        let (scene, told) = read_in(files.path(), "scene.rad", format!("{MATTE}{command}{SUN}"));
+        let (scene, messages) = read_in(files.path(), "scene.rad", format!("{MATTE}{command}{SUN}"));
         match objects {
             Ok(count) => {
-                let scene = scene.unwrap_or_else(|| panic!("{command}: {told:?}")); // prose: keep
-                assert_eq!((scene.root.unwrap().objects.len(), told.len()), (count, 0), "{command}: {told:?}"); // prose: keep
+                let scene = scene.unwrap_or_else(|| panic!("{command}: {messages:?}")); // prose: keep
+                assert_eq!((scene.root.unwrap().objects.len(), messages.len()), (count, 0), "{command}: {messages:?}"); // prose: keep
             }
-            Err(name) => assert!(told[0].contains(&format!("the file `{name}` does not exist")), "{command}: {told:?}"), // prose: keep
+            Err(name) => {
+                assert!(messages[0].contains(&format!("the file `{name}` does not exist")), "{command}: {messages:?}")
+            } // prose: keep
         }
     }
 }
@@ -153,9 +161,9 @@ fn picture_header_is_a_view() {
     let text = b"#?RADIANCE\noconv scene.rad\n/usr/bin/rpict -vf v.vf -vp 9 9 9 -x 32 -y 32\n\
                  VIEW= -vtv -vp 1 2 3 -vd 0 1 0 -vu 0 0 1 -vh 40 -vv 40\n\nVIEW= -vp \x80 x y\n";
     let files = folder(&[("s.rad", b"void plastic w 0 0 5 1 1 1 0 0 w sphere s 0 0 4 0 0 0 1"), ("a.hdr", text)]);
-    let (scene, told) = read_in(files.path(), "x.rif", "scene = s.rad\nview = -vf a.hdr\n");
-    let scene = scene.unwrap_or_else(|| panic!("{told:?}"));
-    assert_eq!((scene.camera.unwrap().pose().center, told.len()), (Vec3::new(1.0, 2.0, 3.0), 0));
+    let (scene, messages) = read_in(files.path(), "x.rif", "scene = s.rad\nview = -vf a.hdr\n");
+    let scene = scene.unwrap_or_else(|| panic!("{messages:?}"));
+    assert_eq!((scene.camera.unwrap().pose().center, messages.len()), (Vec3::new(1.0, 2.0, 3.0), 0));
 }
 
 #[test]
@@ -170,8 +178,8 @@ fn standard_views_match_rad() {
         // Without a zone, the bounding cube of everything.
         ("view= XYZ", [16.0, 16.0, 18.0], [-8.0, -8.0, -8.0], Vec3::Z),
     ] {
-        let (scene, told) = read_in(files.path(), "x.rif", format!("scene = s.rad\n{lines}\n"));
-        let camera = scene.unwrap_or_else(|| panic!("{lines}: {told:?}")).camera.unwrap(); // prose: keep
+        let (scene, messages) = read_in(files.path(), "x.rif", format!("scene = s.rad\n{lines}\n"));
+        let camera = scene.unwrap_or_else(|| panic!("{lines}: {messages:?}")).camera.unwrap(); // prose: keep
         let pose = camera.pose();
         let close = |a: Vec3, b: [f32; 3]| (a - Vec3::from_array(b)).length() < 1e-4;
         assert!(close(pose.center, center) && close(pose.direction, direction) && pose.up == up, "{lines}: {camera:?}");
@@ -191,8 +199,8 @@ fn sheet_has_the_given_reflectance_and_transmittance() {
         ("0 0 1 1", [0.0, 1.0, 0.0]),
         ("0 .1 .5 1", [0.0, 0.5, 0.5]),
     ] {
-        let (m, told) = sphere(&format!("void trans m 0 0 7 .7 .7 .7 {numbers}"));
-        assert_eq!(told, [""; 0]);
+        let (m, messages) = sphere(&format!("void trans m 0 0 7 .7 .7 .7 {numbers}"));
+        assert_eq!(messages, [""; 0]);
         let root = (m.specular_ior - 1.0) / (m.specular_ior + 1.0);
         let (once, share) = (root * root, m.transmission_weight);
         let twice = 2.0 * once / (1.0 + once);
@@ -223,7 +231,7 @@ fn rough_plastic_has_the_given_reflectance_in_all_directions() {
         let options = LoadOptions::default();
         let loaded = load_text(Path::new("a.rad"), text.as_bytes().into(), &options, &mut files, &mut diagnostics);
         let world = loaded.and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics)).unwrap();
-        let paths = Paths::new(&world, Job::default().settings, Transport::default());
+        let paths = Paths::new(&world, Job::default().settings, PathOptions::default());
         for (x, z) in [(0.0, -1.0), (0.8, -0.6), (0.97, -0.243)] {
             let ray = Ray::new(Vec3::new(-x, 0.0, -z), Vec3::new(x, 0.0, z));
             let seen = (0..4096).map(|i| f64::from(paths.radiance(&ray, SampleId::new(0, (0, 0), i), &mut ()).x));
@@ -238,10 +246,13 @@ fn mirror_uses_its_substitute_and_void_is_transparent() {
     let other = "void plastic blue 0 0 5 0 0 .7 0 0\n";
     let what =
         "scene.rad:2:6 warning `mirror` has no counterpart: its substitute is used, which does not mirror lights";
-    let (scene, told) = read(&format!("{other}void mirror m 1 blue 0 3 .8 .8 .8 m sphere s 0 0 4 0 0 0 1"));
-    assert_eq!((first(&scene.unwrap()).base_color, told.as_slice()), (0.7 * Vec3::Z, [what.to_string()].as_slice()));
-    let (scene, told) = read(&format!("{other}void mirror m 1 void 0 3 .8 .8 .8 m sphere s 0 0 4 0 0 0 1{SUN}"));
-    assert_eq!((scene.unwrap().root.unwrap().objects.len(), told.as_slice()), (0, [what.to_string()].as_slice()));
+    let (scene, messages) = read(&format!("{other}void mirror m 1 blue 0 3 .8 .8 .8 m sphere s 0 0 4 0 0 0 1"));
+    assert_eq!(
+        (first(&scene.unwrap()).base_color, messages.as_slice()),
+        (0.7 * Vec3::Z, [what.to_string()].as_slice())
+    );
+    let (scene, messages) = read(&format!("{other}void mirror m 1 void 0 3 .8 .8 .8 m sphere s 0 0 4 0 0 0 1{SUN}"));
+    assert_eq!((scene.unwrap().root.unwrap().objects.len(), messages.as_slice()), (0, [what.to_string()].as_slice()));
     for (mixed, opacity) in [("blue void .25", 0.25), ("void blue .25", 0.75), ("void half .5", 0.25)] {
         let text = format!("{other}void mixfunc half 4 blue void .5 . 0 0 void mixfunc m 4 {mixed} . 0 0");
         let scene = clean(&format!("{text} m sphere s 0 0 4 0 0 0 1{SUN}"));
@@ -256,7 +267,7 @@ fn mirror_uses_its_substitute_and_void_is_transparent() {
 
 #[test]
 fn degenerate_surfaces_are_left_out() {
-    for (thing, told) in [
+    for (primitive, expected) in [
         ("sphere s 0 0 4 0 0 0 0", "a sphere of radius 0 is left out"),
         ("ring s 0 0 8 0 0 0 0 0 0 0 1", "a ring without a direction or a radius is left out"),
         (
@@ -268,9 +279,10 @@ fn degenerate_surfaces_are_left_out() {
             "a cone without a length, or with radii that are all 0 or differ in sign, is left out",
         ),
     ] {
-        let (scene, found) = read(&format!("{MATTE}white {thing}\nwhite {thing}\nwhite sphere b 0 0 4 0 0 0 1{SUN}"));
+        let (scene, found) =
+            read(&format!("{MATTE}white {primitive}\nwhite {primitive}\nwhite sphere b 0 0 4 0 0 0 1{SUN}"));
         assert_eq!(scene.unwrap().root.unwrap().objects.len(), 1);
-        assert_eq!(found, [format!("scene.rad:2:7 warning {told}")]); // prose: keep
+        assert_eq!(found, [format!("scene.rad:2:7 warning {expected}")]); // prose: keep
     }
 }
 
@@ -293,17 +305,18 @@ fn missing_files_that_are_not_read_give_a_warning() {
         ("brightfunc f 2 f(Px) noise.cal 0 0 f plastic", None),
     ] {
         let text = format!("void {kind} m 0 0 5 1 1 1 0 0 m sphere b 0 0 4 0 0 0 1");
-        let (scene, told) = read_in(files.path(), "scene.rad", text);
+        let (scene, messages) = read_in(files.path(), "scene.rad", text);
         assert!(scene.is_some());
-        let found: Vec<&String> = told.iter().filter(|told| told.contains("missing file")).collect();
+        let found: Vec<&String> = messages.iter().filter(|message| message.contains("missing file")).collect();
         assert_eq!(found, missing.map(|missing| format!("scene.rad:{missing}")).iter().collect::<Vec<_>>());
     }
-    for thing in [
+    for primitive in [
         "void BSDF m 6 0 gone.xml 0 0 1 . 0 0 m sphere s 0 0 4 0 0 0 1",
         "void mesh m 1 gone.rtm 0 0",
         "void instance m 1 gone.oct 0 0",
     ] {
-        let (_, told) = read_in(files.path(), "scene.rad", format!("{MATTE}white sphere b 0 0 4 0 0 0 1\n{thing}"));
-        assert!(told.iter().any(|told| told.contains("missing file `gone.")), "{told:?}");
+        let (_, messages) =
+            read_in(files.path(), "scene.rad", format!("{MATTE}white sphere b 0 0 4 0 0 0 1\n{primitive}"));
+        assert!(messages.iter().any(|message| message.contains("missing file `gone.")), "{messages:?}");
     }
 }

@@ -50,9 +50,9 @@ fn unit_vectors(samples: &[Sample]) -> Option<(Decode, Vec<&Sample>)> {
             samples.iter().filter(|s| (decode(s.reference).length() - 1.0).abs() < 0.015).collect();
         // The rest is background. Full red, green, or blue may be unit vectors by chance, so
         // require other colours, too.
-        let things = samples.iter().filter(|s| s.reference != Vec3::ZERO).count();
+        let objects = samples.iter().filter(|s| s.reference != Vec3::ZERO).count();
         let mixed = unit.iter().filter(|s| s.reference.max_element() < 0.98).count();
-        (3 * unit.len() > things && 4 * mixed > unit.len() && !unit.is_empty()).then_some((decode, unit))
+        (3 * unit.len() > objects && 4 * mixed > unit.len() && !unit.is_empty()).then_some((decode, unit))
     })
 }
 

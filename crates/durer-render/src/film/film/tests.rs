@@ -1,5 +1,5 @@
 use super::*;
-use crate::film::Packed;
+use crate::film::PackedFilm;
 use proptest::prelude::*;
 
 #[derive(Clone, Copy, Debug)]
@@ -37,16 +37,16 @@ proptest! {
         let negative: Vec<Sample> = usual.iter().map(|s| Sample(s.0, s.1, s.2, s.3, if s.2 % 2 == 0 { 1.25 } else { -1.25 })).collect();
         for (samples, count) in [(&samples, 50), (&usual, 120), (&negative, 121), (&single, 1)] {
             let film = film(samples);
-            let packed = Packed::new(film.clone(), count);
+            let packed = PackedFilm::new(film.clone(), count);
             prop_assert_eq!(&packed.film([0, 0, 3, 2]), &film);
             let (mut means, bits) = (Vec::new(), |color: Color, share: f32| (color.to_array().map(f32::to_bits), share.to_bits()));
             packed.means(|color, share| means.push(bits(color, share)));
             let whole = (0..6).map(|i| (i % 3, i / 3)).map(|(x, y)| bits(film.resolve(x, y), film.coverage(x, y)));
             prop_assert_eq!(means, whole.collect::<Vec<_>>());
             match (samples.len(), count) {
-                (6, 1) => prop_assert!(matches!(packed, Packed::Single(..))),
-                (_, 120) => prop_assert!(matches!(packed, Packed::Even(..))),
-                (1.., 121) => prop_assert!(matches!(packed, Packed::Small(..))),
+                (6, 1) => prop_assert!(matches!(packed, PackedFilm::Single(..))),
+                (_, 120) => prop_assert!(matches!(packed, PackedFilm::Even(..))),
+                (1.., 121) => prop_assert!(matches!(packed, PackedFilm::Small(..))),
                 _ => {}
             }
         }

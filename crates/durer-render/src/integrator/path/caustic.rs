@@ -1,7 +1,7 @@
 //! Light of photons at a vertex.
 
 use super::Path;
-use super::photons::Gathered;
+use super::photons::DensityEstimate;
 use super::radiance::{Contribution, Output};
 use super::state::{PathState, SampleContext};
 use super::vertex::{Vertex, VertexKind};
@@ -19,7 +19,7 @@ impl Path<'_> {
     ) {
         let Some(map) = &context.photons else { return };
         let max_bounces = self.max_depth() - state.depth;
-        let Gathered { light, photons, radius } = match &vertex.kind {
+        let DensityEstimate { light, photons, radius } = match &vertex.kind {
             VertexKind::Surface(surface, shading, _) => map.on_surface(surface, shading, max_bounces),
             VertexKind::Medium(point, dir, phase) => {
                 map.in_medium((point.as_vec3(), *dir), state.media.object(), phase, max_bounces)

@@ -21,7 +21,7 @@ impl Path<'_> {
         let mirrored = self.photons.is_none() && phongs.any(shows);
         let by_chance = self.world.objects().iter().filter(|object| {
             let is_chosen =
-                self.world.shines_to_both_sides(object.material).is_some() && emitter_of(object, 0).is_some();
+                self.world.emits_on_both_sides(object.material).is_some() && emitter_of(object, 0).is_some();
             mirrored || !is_chosen
         });
         let brightest = by_chance.map(|object| self.brightest(object.material, &brightness)).fold(0.0, f32::max);

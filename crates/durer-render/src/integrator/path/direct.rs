@@ -12,10 +12,10 @@ use crate::integrator::Direct;
 use crate::integrator::media::Media;
 use crate::integrator::spawn::spawn_ray;
 use crate::integrator::trace::{Shadow, TermKind, TermValue, TraceListener};
-use crate::world::Interaction;
+use crate::world::SurfaceInteraction;
 use crate::world::emitters::{Choice, LightSample};
 use durer_scene::math::{Color, Ray64, Vec2};
-use durer_scene::medium::Way;
+use durer_scene::medium::Segment;
 use durer_scene::spectrum::Spectrum;
 
 /// Sampled point of a light, as seen from a vertex.
@@ -162,7 +162,7 @@ impl Path<'_> {
         let mut numbers = state.sample.stream(state.depth, 1);
         let mut pass = |media: &Media, ray: &Ray64, to: f32| match self.world.medium(media.object()) {
             Some(medium) => {
-                let way = Way { origin: ray.origin(), dir: light.wi, from: 0.0, to };
+                let way = Segment { origin: ray.origin(), dir: light.wi, from: 0.0, to };
                 medium.transmittance(&way, &context.lanes, &mut || numbers.number())
             }
             None => Spectrum::ONE,
@@ -203,7 +203,7 @@ impl Path<'_> {
 
     /// Fraction of light that passes straight through an open surface, such as a pane. If photons
     /// are sent to the surface, they account for that light.
-    fn straight_transmittance(&self, at: &Interaction, context: &SampleContext) -> Spectrum {
+    fn straight_transmittance(&self, at: &SurfaceInteraction, context: &SampleContext) -> Spectrum {
         let opacity = self.world.opacity(at);
         let around = Spectrum::splat(1.0 - opacity);
         if !self.world.may_enter(at) || self.is_photon_target(at) {
@@ -219,7 +219,7 @@ impl Path<'_> {
     }
 
     /// Returns true if photons are sent to the hit object.
-    pub(super) fn is_photon_target(&self, at: &Interaction) -> bool {
+    pub(super) fn is_photon_target(&self, at: &SurfaceInteraction) -> bool {
         self.photons.as_ref().is_some_and(|photons| photons.reaches(at.hit.object))
     }
 

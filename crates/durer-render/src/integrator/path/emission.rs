@@ -4,7 +4,7 @@ use super::Path;
 use super::radiance::{Contribution, Output};
 use super::state::{PathState, PrevVertex, SampleContext};
 use crate::integrator::trace::{TermKind, TraceListener};
-use crate::world::Interaction;
+use crate::world::SurfaceInteraction;
 use durer_scene::math::Color;
 use durer_scene::spectrum::Spectrum;
 
@@ -38,7 +38,7 @@ impl Path<'_> {
     /// Adds the light that a hit surface emits.
     pub(super) fn add_emission<T: TraceListener>(
         &self,
-        at: &Interaction,
+        at: &SurfaceInteraction,
         state: &PathState,
         context: &SampleContext,
         output: &mut Output<T>,
@@ -65,8 +65,8 @@ impl Path<'_> {
     }
 
     /// Density per steradian with which light sampling at the previous vertex chooses a hit.
-    fn pdf_of_hit(&self, at: &Interaction, prev: &PrevVertex) -> f32 {
-        let Interaction { ray, hit, .. } = at;
+    fn pdf_of_hit(&self, at: &SurfaceInteraction, prev: &PrevVertex) -> f32 {
+        let SurfaceInteraction { ray, hit, .. } = at;
         let way = ray.origin() + f64::from(hit.t) * ray.dir().as_dvec3() - prev.receiver.point;
         let (wi, distance) = (ray.dir().normalize(), way.length() as f32);
         self.world.emitters().pdf_of_hit(self.world, hit, &prev.receiver, wi, distance)

@@ -19,9 +19,9 @@
 //! Light Transport Simulation*, 1997, chapters 9 and 10.
 
 use super::trace::{HitRecord, NodeId, RayKind, TermKind, TraceListener};
-use super::{Integrate, Settings, one_by_one};
+use super::{Integrate, WhittedOptions, one_by_one};
 use crate::integrator::media::{Media, Passage};
-use crate::world::{Hit, Interaction, Shading, TOGETHER, World};
+use crate::world::{Hit, MAX_BATCH, Shading, SurfaceInteraction, World};
 use durer_scene::bsdf::lobe::diffuse::Diffuse;
 use durer_scene::bsdf::{Bsdf, Frame};
 use durer_scene::camera::RayCone;
@@ -30,8 +30,8 @@ use durer_scene::sampler::SampleId;
 use durer_scene::shape::Surface;
 use durer_scene::spectrum::{Lanes, Spectrum};
 use glam::DVec3;
-pub use parameters::{Direct, PhotonParameters, Transport};
-pub use photons::{Gathered, PhotonMap, Photons};
+pub use parameters::{Direct, PathOptions, PhotonParameters};
+pub use photons::{DensityEstimate, PhotonMap, Photons};
 use propagate::Event;
 use radiance::Output;
 use smallvec::SmallVec;
@@ -46,9 +46,9 @@ pub struct Path<'w> {
     /// Scene to render.
     pub world: &'w World,
     /// Maximum depth, and whether objects cast shadows.
-    pub settings: Settings,
+    pub settings: WhittedOptions,
     /// Sampling of lights, colour mode, clamp.
-    pub transport: Transport,
+    pub transport: PathOptions,
     /// Photons for caustics; without them, paths find caustics by chance.
     pub photons: Option<Arc<Photons>>,
     /// Footprint of a sample, if a texture is filtered by it.
@@ -93,12 +93,12 @@ impl Integrate for Path<'_> {
         if T::LISTENS || T::COUNTS_WORK {
             return one_by_one(self, rays, begin, tally, colors);
         }
-        let mut found = [None; TOGETHER];
-        for (part, (rays, colors)) in rays.chunks(TOGETHER).zip(colors.chunks_mut(TOGETHER)).enumerate() {
-            self.world.closest_together(rays, &mut found[..rays.len()]);
+        let mut found = [None; MAX_BATCH];
+        for (part, (rays, colors)) in rays.chunks(MAX_BATCH).zip(colors.chunks_mut(MAX_BATCH)).enumerate() {
+            self.world.closest_batch(rays, &mut found[..rays.len()]);
             for (i, (ray, color)) in rays.iter().zip(colors).enumerate() {
                 tally.ray();
-                let id = begin(part * TOGETHER + i);
+                let id = begin(part * MAX_BATCH + i);
                 let context = self.context(id);
                 *color = context.lanes.color(self.trace(self.start(*ray, id), found[i], &context, tally));
             }
@@ -114,7 +114,7 @@ impl Integrate for Path<'_> {
 
 impl<'w> Path<'w> {
     /// Path tracer without photons that is never cancelled.
-    pub fn new(world: &'w World, settings: Settings, transport: Transport) -> Self {
+    pub fn new(world: &'w World, settings: WhittedOptions, transport: PathOptions) -> Self {
         Path { world, settings, transport, photons: None, cone: None, cancel: None }
     }
 
@@ -192,7 +192,7 @@ impl<'w> Path<'w> {
         context: &SampleContext,
         output: &mut Output<T>,
     ) {
-        let mut at = Interaction::NOWHERE;
+        let mut at = SurfaceInteraction::NOWHERE;
         let mut next = Some(hit);
         while let Some(hit) = next {
             let goes_on = self.bounce(hit, &mut at, &mut stack, context, output);
@@ -219,7 +219,7 @@ impl<'w> Path<'w> {
     fn bounce<T: TraceListener>(
         &self,
         hit: Option<Hit>,
-        at: &mut Interaction,
+        at: &mut SurfaceInteraction,
         stack: &mut PathStack,
         context: &SampleContext,
         output: &mut Output<T>,

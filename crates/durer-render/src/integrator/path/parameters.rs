@@ -1,8 +1,8 @@
 //! Options of the path tracer, with and without photons.
 
 use super::{Path, Photons};
-use crate::integrator::{Parameters, Setup};
-use durer_scene::describe::{Describe, Field, FieldType, Kind, Rule, Value, described};
+use crate::integrator::{IntegratorContext, Parameters};
+use durer_scene::describe::{Constraint, Describe, Field, FieldType, Kind, Value, described};
 use durer_scene::dialect::{DialectSet, set};
 use durer_scene::spectrum::ColorMode;
 use serde::{Deserialize, Serialize};
@@ -10,32 +10,32 @@ use std::sync::Arc;
 
 described! {
     /// path tracing: global illumination
-    Transport ["path" in set::DURER] {
+    PathOptions ["path" in set::DURER] {
         /// Maximum brightness of one contribution (one light seen from one path vertex) after more
         /// than one scattering event; suppresses fireflies but also removes some light [default: no
         /// limit]
-        clamp: Option<f32> = None, optional, Rule::Positive, ["clamp" in set::DURER];
+        clamp: Option<f32> = None, optional, Constraint::Positive, ["clamp" in set::DURER];
         /// Colour mode: rgb, or spectral, which traces four wavelengths per path, for dispersion
         /// and for coloured light on coloured surfaces [default: rgb]
-        color: ColorMode = ColorMode::Rgb, optional, Rule::Any, ["color" in set::DURER];
+        color: ColorMode = ColorMode::Rgb, optional, Constraint::Any, ["color" in set::DURER];
         /// Sampling of direct light: both (light and BSDF sampling, combined by MIS), or for
         /// comparison only lights or only bsdf (same mean, more noise) [default: both]
-        direct: Direct = Direct::Both, optional, Rule::Any, ["direct" in set::DURER];
+        direct: Direct = Direct::Both, optional, Constraint::Any, ["direct" in set::DURER];
     }
 }
 
-impl Copy for Transport {}
+impl Copy for PathOptions {}
 
-impl Parameters for Transport {
+impl Parameters for PathOptions {
     type Integrator<'w> = Path<'w>;
 
-    fn over(self, Setup { world, settings, cone, cancel, .. }: Setup<'_>) -> Path<'_> {
+    fn over(self, IntegratorContext { world, settings, cone, cancel, .. }: IntegratorContext<'_>) -> Path<'_> {
         // Without mipmaps the footprint is unused.
         let cone = cone.filter(|_| world.has_mipmaps());
         Path { cancel, cone, ..Path::new(world, settings, self) }
     }
 
-    fn transport(&self) -> Option<Transport> {
+    fn transport(&self) -> Option<PathOptions> {
         Some(*self)
     }
 }
@@ -45,7 +45,7 @@ impl Parameters for Transport {
 pub struct PhotonParameters {
     /// Options of path tracing.
     #[serde(flatten)]
-    pub transport: Transport,
+    pub transport: PathOptions,
     /// Number of photons a sample.
     pub count: u32,
     /// Search radius of the first sample, in units of the world.
@@ -56,7 +56,7 @@ pub struct PhotonParameters {
 
 impl Default for PhotonParameters {
     fn default() -> Self {
-        PhotonParameters { transport: Transport::default(), count: 100_000, radius: None, corrected: false }
+        PhotonParameters { transport: PathOptions::default(), count: 100_000, radius: None, corrected: false }
     }
 }
 
@@ -64,14 +64,14 @@ impl Describe for PhotonParameters {
     const KEYWORDS: &'static [(&'static str, DialectSet)] = &[("photons", set::DURER)];
     const DOC: &'static str = "path tracing with a photon map for caustics";
     const FIELDS: &'static [Field] = &[
-        Transport::FIELDS[0],
-        Transport::FIELDS[1],
-        Transport::FIELDS[2],
+        PathOptions::FIELDS[0],
+        PathOptions::FIELDS[1],
+        PathOptions::FIELDS[2],
         Field {
             name: "count",
             kind: Kind::Int,
             required: false,
-            rule: Rule::Numbered(100_000_000),
+            rule: Constraint::Numbered(100_000_000),
             spellings: &[("photons", set::DURER)],
             doc: "Photons emitted per sample [default: 100000]",
         },
@@ -79,7 +79,7 @@ impl Describe for PhotonParameters {
             name: "radius",
             kind: Kind::Float,
             required: false,
-            rule: Rule::Positive,
+            rule: Constraint::Positive,
             spellings: &[("photon-radius", set::DURER)],
             doc: "Search radius for photons in the first sample, in world units; it shrinks with later samples \
                   [default: one twentieth of the radius of the smallest object that reflects or refracts]",
@@ -108,13 +108,13 @@ impl Parameters for PhotonParameters {
 
     const PREPARES: bool = true;
 
-    fn over(self, setup: Setup<'_>) -> Path<'_> {
+    fn over(self, setup: IntegratorContext<'_>) -> Path<'_> {
         let photons = Photons::new(setup.world, setup.seed, self.count, self.radius);
         let photons = if self.corrected { photons.corrected() } else { photons };
         Path { photons: Some(Arc::new(photons)), ..self.transport.over(setup) }
     }
 
-    fn transport(&self) -> Option<Transport> {
+    fn transport(&self) -> Option<PathOptions> {
         Some(self.transport)
     }
 }

@@ -4,9 +4,9 @@ use super::Path;
 use super::state::{PathState, SampleContext};
 use crate::integrator::media::{Media, Passage};
 use crate::integrator::trace::TraceListener;
-use crate::world::{Hit, Interaction};
+use crate::world::{Hit, SurfaceInteraction};
 use durer_scene::math::{Ray64, Vec3, gamma};
-use durer_scene::medium::{Flight, HenyeyGreenstein, Way};
+use durer_scene::medium::{DistanceSample, HenyeyGreenstein, Segment};
 use durer_scene::spectrum::{Lanes, Spectrum};
 use glam::DVec3;
 use std::sync::atomic::Ordering::Relaxed;
@@ -33,22 +33,22 @@ impl Path<'_> {
     pub(super) fn propagate<T: TraceListener>(
         &self,
         hit: Option<Hit>,
-        at: &mut Interaction,
+        at: &mut SurfaceInteraction,
         state: &mut PathState,
         context: &SampleContext,
         tally: &mut T,
     ) -> Event {
-        let (event, transmittance) = self.fly(hit, at, state, context, tally);
+        let (event, transmittance) = self.propagate_inner(hit, at, state, context, tally);
         tally.weigh(state.node, context.term(transmittance), context.term(state.throughput * state.share));
         event
     }
 
     /// [`Path::propagate`], also returning the transmittance.
     #[inline(always)]
-    fn fly<T: TraceListener>(
+    fn propagate_inner<T: TraceListener>(
         &self,
         mut hit: Option<Hit>,
-        at: &mut Interaction,
+        at: &mut SurfaceInteraction,
         state: &mut PathState,
         context: &SampleContext,
         tally: &mut T,
@@ -66,10 +66,10 @@ impl Path<'_> {
                 let stretch = ray.dir().length();
                 let length = hit.map_or(f32::INFINITY, |hit| hit.t * stretch);
                 if let Some(medium) = self.world.medium(state.media.object()) {
-                    let way = Way { origin: ray.origin(), dir: ray.dir() / stretch, from: walked, to: length };
+                    let way = Segment { origin: ray.origin(), dir: ray.dir() / stretch, from: walked, to: length };
                     match medium.flight(&way, state.throughput, lanes, &mut || numbers.number()) {
-                        Flight::Passed(left) => transmittance *= left,
-                        Flight::Scattered(distance, left) => {
+                        DistanceSample::Passed(left) => transmittance *= left,
+                        DistanceSample::Scattered(distance, left) => {
                             transmittance *= left;
                             state.throughput = before * transmittance;
                             // Stay in front of the surface that bounds the medium.
@@ -102,7 +102,7 @@ impl Path<'_> {
                 }
                 let Some(hit) = hit else { return (Event::Escaped, transmittance) };
                 walked = length;
-                self.world.meet(ray, hit, at);
+                self.world.intersect_into(ray, hit, at);
                 if let (Some(cone), Some(before)) = (&self.cone, state.camera_distance) {
                     at.width = cone.width_at(before + length);
                 }
@@ -139,7 +139,7 @@ impl Path<'_> {
     }
 
     /// Passage of light through a surface; `None` if no light enters the object.
-    pub(super) fn passage(&self, at: &Interaction, media: &Media, lanes: &Lanes) -> Option<Passage> {
+    pub(super) fn passage(&self, at: &SurfaceInteraction, media: &Media, lanes: &Lanes) -> Option<Passage> {
         let ior = self.world.refracts(at, lanes)?;
         let passage = media.nested_passage(self.world, at, ior, at.inside());
         Some(match self.world.ignores_surroundings(at) {
@@ -149,7 +149,7 @@ impl Path<'_> {
     }
 
     /// Returns true if a surface only bounds a medium and does not deflect light.
-    pub(super) fn is_nothing(&self, at: &Interaction, passage: &Passage) -> bool {
+    pub(super) fn is_nothing(&self, at: &SurfaceInteraction, passage: &Passage) -> bool {
         passage.hidden || passage.here == passage.there && self.world.is_interface(at)
     }
 }

@@ -4,7 +4,7 @@ use super::state::{Dimension, PathState, PrevVertex, SampleContext};
 use super::vertex::{BsdfSample, Vertex};
 use super::{Path, PathStack};
 use crate::integrator::trace::{Bounce, RayKind, TermKind, TraceListener};
-use crate::world::Interaction;
+use crate::world::SurfaceInteraction;
 use durer_scene::spectrum::Spectrum;
 
 /// Maximum survival probability in Russian roulette.
@@ -98,7 +98,7 @@ impl Path<'_> {
     /// directions. The hero then counts four times.
     pub(super) fn select_hero<T: TraceListener>(
         &self,
-        at: &Interaction,
+        at: &SurfaceInteraction,
         state: &mut PathState,
         context: &SampleContext,
         tally: &mut T,

@@ -9,8 +9,8 @@ use durer_scene::dialect::Dialect;
 use durer_scene::math::fp;
 use durer_scene::spectrum::ColorMode;
 
+mod area_lights;
 mod caustics;
-mod lamps;
 mod media;
 mod sheets;
 mod sides;
@@ -18,8 +18,8 @@ mod terms;
 
 /// Returns the mean of many samples along a ray, and its standard error.
 fn light(world: &World, ray: Ray, bounces: u32, samples: u32) -> (f64, f64) {
-    let settings = Settings { bounces, ..Job::default().settings };
-    let path = Path::new(world, settings, Transport::default());
+    let settings = WhittedOptions { bounces, ..Job::default().settings };
+    let path = Path::new(world, settings, PathOptions::default());
     let (mut sum, mut squares) = (0.0, 0.0);
     for sample in 0..samples {
         let value = f64::from(path.radiance(&ray, SampleId::new(7, (3, 5), sample), &mut ()).x);
@@ -32,9 +32,9 @@ fn light(world: &World, ray: Ray, bounces: u32, samples: u32) -> (f64, f64) {
 
 /// Returns mean and variance by colour of many samples along a ray, for combined, light and BSDF
 /// sampling.
-fn by_ways(world: &World, ray: Ray, settings: Settings, color: ColorMode) -> [[(f64, f64); 3]; 3] {
+fn by_ways(world: &World, ray: Ray, settings: WhittedOptions, color: ColorMode) -> [[(f64, f64); 3]; 3] {
     [Direct::Both, Direct::Lights, Direct::Bsdf].map(|direct| {
-        let path = Path::new(world, settings, Transport { color, direct, ..Transport::default() });
+        let path = Path::new(world, settings, PathOptions { color, direct, ..PathOptions::default() });
         let n = 1 << 14;
         let (mut sum, mut squares) = (DVec3::ZERO, DVec3::ZERO);
         // Different pixels, so that the estimates are independent.
@@ -65,10 +65,10 @@ fn scene(materials: &str, lights: &str, group: &str) -> World {
 const MATTE: &str = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 }";
 
 /// Builds a matte floor at y = 0 of albedo 0.5, seen from the side, and an emitter.
-fn over_floor(lights: &str, shining: &str) -> World {
+fn over_floor(lights: &str, emissive: &str) -> World {
     let materials = format!("{MATTE} PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 3 }}");
     let floor = "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1";
-    scene(&materials, lights, &format!("{floor} {shining}"))
+    scene(&materials, lights, &format!("{floor} {emissive}"))
 }
 
 /// Returns a ray that hits the floor at the origin.
@@ -114,19 +114,19 @@ fn distant_area_lights_are_as_accurate_as_near_ones() {
                 words(corner + Vec3::Z)
             ),
         ]
-        .map(|lamp| {
+        .map(|emitter| {
             let materials = format!("{MATTE} PrincipledMaterial {{ emissionLuminance 3 }}");
             let floor =
                 format!("Rectangle {{ corner {} edge0 8 0 0 edge1 0 0 -8 }}", words(at + Vec3::new(-4.0, 0.0, 4.0)));
-            let world = scene(&materials, "", &format!("MaterialIndex 0 {floor} MaterialIndex 1 {lamp}"));
+            let world = scene(&materials, "", &format!("MaterialIndex 0 {floor} MaterialIndex 1 {emitter}"));
             let ray = Ray { origin: at + to_origin().origin, ..to_origin() };
-            (light(&world, ray, 0, 256).0, lamp)
+            (light(&world, ray, 0, 256).0, emitter)
         })
     };
     let near = seen(Vec3::ZERO);
     for distance in [1e2, 1e3, 1e4, 1e5] {
-        for ((far, lamp), (near, _)) in seen(distance * Vec3::new(1.0, -0.75, 0.5)).into_iter().zip(&near) {
-            assert!(*near > 0.05 && (far - near).abs() < 1e-3 * near, "{lamp}: {far}, expected {near}");
+        for ((far, emitter), (near, _)) in seen(distance * Vec3::new(1.0, -0.75, 0.5)).into_iter().zip(&near) {
+            assert!(*near > 0.05 && (far - near).abs() < 1e-3 * near, "{emitter}: {far}, expected {near}");
         }
     }
 }
@@ -207,10 +207,10 @@ fn partially_opaque_emitters_emit_in_part() {
     // A sphere of radius r at height h gives pi L (r / h)^2.
     let whole = std::f64::consts::PI * 3.0 * 0.25 * 0.25;
     for (opacity, share) in [("1", 1.0), ("0.5", 0.5), ("0.25", 0.25)] {
-        let lamp =
+        let light =
             format!("PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 3 opacity {opacity} }}");
         let group = "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 4 0 radius 1 }";
-        assert_light(opacity, &scene(&format!("{MATTE} {lamp}"), "", group), to_origin(), 0, shown(share * whole));
+        assert_light(opacity, &scene(&format!("{MATTE} {light}"), "", group), to_origin(), 0, shown(share * whole));
     }
 }
 
@@ -250,7 +250,7 @@ fn light_sampling_and_bsdf_sampling_alone_have_the_mean_of_both() {
          MaterialIndex 1 Sphere {{ center -0.8 1.6 0 radius 0.8 }} Triangle {{ vertex0 1 2 0 vertex1 2 2 0 vertex2 2 2 1 }}
          MaterialIndex 2 Sphere {{ center -0.3 0.4 1 radius 0.4 }} }}"
     ));
-    let settings = Settings { bounces: 3, ..Job::default().settings };
+    let settings = WhittedOptions { bounces: 3, ..Job::default().settings };
     for (direction, color) in [(-1.0, ColorMode::Rgb), (-0.7, ColorMode::Rgb), (-1.0, ColorMode::Spectral)] {
         let ray = Ray::new(Vec3::new(2.0, 2.0, 0.0), Vec3::new(direction, -1.0, 0.0).normalize());
         let ways = by_ways(&world, ray, settings, color);
@@ -290,7 +290,7 @@ fn several_directions_to_an_environment_have_the_mean_of_one() {
         MaterialIndex 4 Plane { normal 0 1 0 offset -1 } }";
     let (world, found) = testing::try_read(text, Dialect::Durer.rules(), AccelKind::Bvh, folder.path());
     let world = world.unwrap_or_else(|| panic!("{found:?}"));
-    let settings = Settings { bounces: 3, ..Job::default().settings };
+    let settings = WhittedOptions { bounces: 3, ..Job::default().settings };
     for (x, y) in
         [(-2.0, 0.5), (-1.6, 0.2), (-2.5, -0.1), (0.3, 0.4), (-0.2, -0.3), (2.0, 0.6), (2.5, 0.3), (1.0, -0.9)]
     {
@@ -312,7 +312,7 @@ fn several_directions_to_an_environment_have_the_mean_of_one() {
             });
             below.sum()
         }
-        let path = Path::new(&world, settings, Transport::default());
+        let path = Path::new(&world, settings, PathOptions::default());
         let directions = if (x, y) == (1.0, -0.9) { 1 } else { 2 };
         let rays: usize = (0..64).map(|sample| follow(&terms::tree(&path, &ray, sample).root, directions)).sum();
         assert!(rays > 48, "{x} {y}: {rays}");
@@ -371,9 +371,9 @@ fn absorbing_slab_follows_beer_and_fresnel() {
     // radiance of 1.
     let (f, a) = (0.04_f64, 0.3_f64);
     let glass = "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 transmissionColor 0.3 0.3 0.3 transmissionDepth 2 }";
-    let lamp = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1 }";
+    let light = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1 }";
     let world = scene(
-        &format!("{glass} {lamp}"),
+        &format!("{glass} {light}"),
         "",
         "MaterialIndex 0 Box { min -9 -9 -1 max 9 9 1 } MaterialIndex 1 Rectangle { corner -9 -9 -3 edge0 18 0 0 edge1 0 18 0 }",
     );

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::compile::{AccelKind, testing};
-use crate::integrator::{Integrate, Path as PathTracer, Settings, Transport, Whitted};
+use crate::integrator::{Integrate, Path as PathTracer, PathOptions, Whitted, WhittedOptions};
 use crate::world::World;
 use durer_scene::dialect::Dialect;
 use durer_scene::math::Ray;
@@ -63,7 +63,7 @@ fn triangles(at: Vec3) -> String {
 /// Builds a room of size 2 around a point, with a point light and an area light outside, whose
 /// light could only enter through a crack.
 fn room(walls: &str, at: Vec3, folder: &Path) -> World {
-    let (p, lamp) = (at, at + Vec3::new(3.0, 4.0, 2.5));
+    let (p, light) = (at, at + Vec3::new(3.0, 4.0, 2.5));
     let text = format!(
         "PerspectiveCamera {{ center 0 0 0 direction 0 0 -1 up 0 1 0 angle 60 }}
          Lights {{ PointLight {{ position {} {} {} color 1 1 1 }} }}
@@ -73,13 +73,13 @@ fn room(walls: &str, at: Vec3, folder: &Path) -> World {
              PrincipledMaterial {{ emissionLuminance 1 emissionColor 1 1 1 }}
          }}
          Group {{ MaterialIndex 0 {} MaterialIndex 1 Sphere {{ center {} {} {} radius 0.5 }} }}",
-        lamp.x,
-        lamp.y,
-        lamp.z,
+        light.x,
+        light.y,
+        light.z,
         walls.replace("PLACE", &format!("{} {} {}", p.x, p.y, p.z)),
-        lamp.x,
-        lamp.y + 1.0,
-        lamp.z,
+        light.x,
+        light.y + 1.0,
+        light.z,
     );
     let (world, found) = testing::try_read(&text, Dialect::Durer.rules(), AccelKind::Bvh, folder);
     world.unwrap_or_else(|| panic!("{found:?}"))
@@ -88,7 +88,7 @@ fn room(walls: &str, at: Vec3, folder: &Path) -> World {
 /// Counts the rays from inside a room, `count` squared in all directions, that see light directly
 /// or by a path.
 fn leaks(world: &World, at: Vec3, count: usize) -> usize {
-    let settings = Settings {
+    let settings = WhittedOptions {
         bounces: 0,
         shadows: true,
         shade_back: true,
@@ -98,7 +98,7 @@ fn leaks(world: &World, at: Vec3, count: usize) -> usize {
         least_weight: 0.0,
     };
     let whitted = Whitted { world, settings, cancel: None };
-    let path = PathTracer::new(world, Settings { bounces: 5, ..settings }, Transport::default());
+    let path = PathTracer::new(world, WhittedOptions { bounces: 5, ..settings }, PathOptions::default());
     let eye = at + Vec3::new(0.25, -0.125, 0.5);
     let sees = |i: usize| {
         let (u, v) = ((i % count) as f32 + 0.5, (i / count) as f32 + 0.5);

@@ -1,11 +1,11 @@
 //! Direct light.
 
-use super::{Lit, Shaded, Whitted};
+use super::{ShadedMaterial, ShadingPoint, Whitted};
 use crate::integrator::spawn::{spawn_ray, to_light};
 use crate::integrator::trace::{NodeId, Shadow, TermKind, TraceListener};
-use crate::world::{HighlightModel, Hit, Material, Phong, TOGETHER};
+use crate::world::{HighlightModel, Hit, MAX_BATCH, Material, Phong};
 use durer_bvh::internal::{PlainKernel, run_plain};
-use durer_scene::light::Illumination;
+use durer_scene::light::LightLiSample;
 use durer_scene::math::{Color, Ray64, Vec3, fp, gamma, reflect};
 use durer_scene::shape::Surface;
 
@@ -14,14 +14,14 @@ const MOST_LAYERS: u32 = 64;
 
 impl Whitted<'_> {
     /// The shadow ray to a light, for listeners.
-    pub(super) fn shadow(&self, surface: &Surface, light: usize, seen: &Illumination, share: Color) -> Shadow {
+    pub(super) fn shadow(&self, surface: &Surface, light: usize, seen: &LightLiSample, share: Color) -> Shadow {
         let ray = self.shadow_ray(surface, light, seen);
         let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
         Shadow { ray: (&ray).into(), blocker, share: share.into() }
     }
 
     #[inline(always)]
-    pub(super) fn shadow_ray(&self, surface: &Surface, light: usize, seen: &Illumination) -> Ray64 {
+    pub(super) fn shadow_ray(&self, surface: &Surface, light: usize, seen: &LightLiSample) -> Ray64 {
         let epsilon = self.world.shading_rules().epsilon;
         if epsilon.is_none() {
             // Objects exactly at the light do not block it.
@@ -35,7 +35,7 @@ impl Whitted<'_> {
     /// Computes the visibility of lights along shadow rays: 0 if occluded, or the transmittance of
     /// transparent objects.
     pub(super) fn visible<T: TraceListener>(&self, shadows: &mut [Ray64], shares: &mut [Color], tally: &mut T) {
-        let mut found = [None; TOGETHER];
+        let mut found = [None; MAX_BATCH];
         if self.world.shading_rules().shadow_fronts {
             self.world.first_hits(shadows, &mut found[..shadows.len()], tally);
             for ((ray, share), hit) in shadows.iter().zip(shares).zip(found) {
@@ -49,7 +49,7 @@ impl Whitted<'_> {
                 *share = self.let_through(*ray, hit, tally);
             }
         } else {
-            let mut blocked = [false; TOGETHER];
+            let mut blocked = [false; MAX_BATCH];
             self.world.any_hits(shadows, &mut blocked[..shadows.len()], tally);
             for (share, blocked) in shares.iter_mut().zip(blocked) {
                 *share = if blocked { Color::ZERO } else { Color::ONE };
@@ -97,10 +97,10 @@ pub(super) struct Direct {
 impl Direct {
     /// Computes the terms except the highlight's power.
     #[inline(always)]
-    pub(super) fn of(phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, seen: &Illumination) -> Self {
+    pub(super) fn of(phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, seen: &LightLiSample) -> Self {
         let cosine = n.dot(seen.to_light);
-        let shines = |model| cosine > 0.0 || model == HighlightModel::Phong { behind: true };
-        let highlight = phong.highlight.filter(|highlight| shines(highlight.2));
+        let emits = |model| cosine > 0.0 || model == HighlightModel::Phong { behind: true };
+        let highlight = phong.highlight.filter(|highlight| emits(highlight.2));
         let base = highlight.map(|(_, _, model)| match model {
             // Cosine between the normal and the half vector of light and eye.
             HighlightModel::Blinn => n.dot((seen.to_light - view).normalize_or_zero()),
@@ -122,7 +122,7 @@ impl Direct {
 
     /// Returns the radiance towards the ray's origin.
     #[inline(always)]
-    pub(super) fn color(&self, phong: &Phong, seen: &Illumination) -> Color {
+    pub(super) fn color(&self, phong: &Phong, seen: &LightLiSample) -> Color {
         match (self.base, phong.highlight) {
             (Some(_), Some((specular, ..))) => (self.diffuse + self.strength * specular) * seen.color,
             _ => self.diffuse * seen.color,
@@ -130,7 +130,7 @@ impl Direct {
     }
 
     /// Reports both terms. `parent` is the light's node in the trace.
-    pub(super) fn tell<T: TraceListener>(&self, phong: &Phong, diffuse: Color, parent: NodeId, tally: &mut T) {
+    pub(super) fn report<T: TraceListener>(&self, phong: &Phong, diffuse: Color, parent: NodeId, tally: &mut T) {
         let cosine = self.cosine;
         let node = tally.begin(parent, || TermKind::Diffuse { cosine });
         tally.end(node, Color::splat(cosine.max(0.0)), Color::ONE, diffuse);
@@ -143,12 +143,12 @@ impl Direct {
 }
 
 /// Computes the powers of the highlights of several points with SIMD.
-pub(super) fn take_powers(points: &[Shaded], parts: &mut [Lit], some: impl Iterator<Item = usize>) {
-    let mut powers = Powers { bases: [0.0; TOGETHER], exponents: [1.0; TOGETHER], count: 0 };
-    let mut places = [0; TOGETHER];
+pub(super) fn take_powers(points: &[ShadingPoint], parts: &mut [ShadedMaterial], some: impl Iterator<Item = usize>) {
+    let mut powers = Powers { bases: [0.0; MAX_BATCH], exponents: [1.0; MAX_BATCH], count: 0 };
+    let mut places = [0; MAX_BATCH];
     for point in some.map(|i| &points[i]) {
         for place in point.first_part..point.first_part + point.parts {
-            let Lit { part, direct, .. } = &mut parts[place];
+            let ShadedMaterial { part, direct, .. } = &mut parts[place];
             let (Some(base), Some((_, exponent, _))) = (direct.base, part.phong.highlight) else { continue };
             if base.is_nan() || base <= 0.0 {
                 direct.strength = if exponent > 0.0 { 0.0 } else { fp::pow(0.0, exponent) };
@@ -157,7 +157,7 @@ pub(super) fn take_powers(points: &[Shaded], parts: &mut [Lit], some: impl Itera
             let at = powers.count;
             (powers.bases[at], powers.exponents[at], places[at]) = (base, exponent, place);
             powers.count += 1;
-            if powers.count == TOGETHER {
+            if powers.count == MAX_BATCH {
                 powers.give(&places, parts);
             }
         }
@@ -167,14 +167,14 @@ pub(super) fn take_powers(points: &[Shaded], parts: &mut [Lit], some: impl Itera
 
 /// A batch of powers.
 struct Powers {
-    bases: [f32; TOGETHER],
-    exponents: [f32; TOGETHER],
+    bases: [f32; MAX_BATCH],
+    exponents: [f32; MAX_BATCH],
     count: usize,
 }
 
 impl Powers {
     /// Computes the powers, stores them, and starts a new batch.
-    fn give(&mut self, places: &[usize; TOGETHER], parts: &mut [Lit]) {
+    fn give(&mut self, places: &[usize; MAX_BATCH], parts: &mut [ShadedMaterial]) {
         let count = std::mem::take(&mut self.count);
         if count == 0 {
             return;
@@ -192,12 +192,12 @@ impl Powers {
 struct PowerKernel<'p>(&'p Powers, usize);
 
 impl PlainKernel for PowerKernel<'_> {
-    type Output = [f32; TOGETHER];
+    type Output = [f32; MAX_BATCH];
 
     #[inline(always)]
-    fn run(self) -> [f32; TOGETHER] {
+    fn run(self) -> [f32; MAX_BATCH] {
         let PowerKernel(Powers { bases, exponents, .. }, count) = self;
-        let mut powers = [0.0; TOGETHER];
+        let mut powers = [0.0; MAX_BATCH];
         for start in (0..count).step_by(8) {
             for i in start..start + 8 {
                 powers[i] = fp::usual_pow(bases[i], exponents[i]);

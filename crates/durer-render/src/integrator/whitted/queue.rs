@@ -2,7 +2,7 @@
 
 use crate::integrator::media::Media;
 use crate::integrator::trace::{NodeId, TraceListener};
-use crate::world::TOGETHER;
+use crate::world::MAX_BATCH;
 use durer_scene::math::{Color, Ray, Ray64, Vec3};
 
 /// Parent index of a camera ray.
@@ -17,7 +17,7 @@ pub(super) struct Segment {
     pub(super) media: Media,
     /// Remaining depth of secondary rays.
     pub(super) bounces: u32,
-    /// Throughput relative to the pixel; see [`super::Settings::least_weight`].
+    /// Throughput relative to the pixel; see [`super::WhittedOptions::least_weight`].
     pub(super) weight: f32,
     /// Index of its camera ray.
     pub(super) camera: u32,
@@ -116,9 +116,9 @@ impl Queue {
         self.waiting.push(number);
     }
 
-    /// Takes up to [`TOGETHER`] of the segments added last; returns their number.
-    pub(super) fn take(&mut self, batch: &mut [u32; TOGETHER]) -> usize {
-        let count = self.waiting.len().min(TOGETHER);
+    /// Takes up to [`MAX_BATCH`] of the segments added last; returns their number.
+    pub(super) fn take(&mut self, batch: &mut [u32; MAX_BATCH]) -> usize {
+        let count = self.waiting.len().min(MAX_BATCH);
         let start = self.waiting.len() - count;
         batch[..count].copy_from_slice(&self.waiting[start..]);
         self.waiting.truncate(start);

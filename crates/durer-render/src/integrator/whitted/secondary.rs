@@ -1,16 +1,16 @@
 //! Reflected and transmitted light.
 
 use super::queue::{Queue, Segment};
-use super::{Lit, Shaded, Whitted};
+use super::{ShadedMaterial, ShadingPoint, Whitted};
 use crate::integrator::media::{Body, Media, Passage};
 use crate::integrator::spawn::spawn_ray;
 use crate::integrator::trace::{RayKind, TermKind, TraceListener};
-use crate::world::{Interaction, Material, WeightedMaterial};
+use crate::world::{Material, SurfaceInteraction, WeightedMaterial};
 use durer_scene::math::{Color, Vec3, reflect};
 use durer_scene::shape::Surface;
 
 /// Split of light at a hit: directions and weights.
-struct Parted {
+struct SecondaryRays {
     mirrored: Vec3,
     reflective: Color,
     /// `None` for total reflection or opaque materials.
@@ -25,8 +25,8 @@ impl Whitted<'_> {
     /// none.
     pub(super) fn secondary<T: TraceListener>(
         &self,
-        point: &mut Shaded,
-        parts: &[Lit],
+        point: &mut ShadingPoint,
+        parts: &[ShadedMaterial],
         queue: &mut Queue,
         colors: &mut [Color],
         tally: &mut T,
@@ -46,22 +46,30 @@ impl Whitted<'_> {
         if !blend.is_some() || spoiled {
             return queue.finish(number, point.color, colors, tally);
         }
-        let parted = self.parted(&point.at, blend, &point.passage);
-        let total = blend.transparent != Color::ZERO && parted.transmitted.is_none();
+        let secondary_rays = self.secondary_rays(&point.at, blend, &point.passage);
+        let total = blend.transparent != Color::ZERO && secondary_rays.transmitted.is_none();
         let Passage { here, there, .. } = point.passage;
-        let secondary = tally.begin(node, || TermKind::Secondary { here, there, fresnel: parted.fresnel, total });
+        let secondary =
+            tally.begin(node, || TermKind::Secondary { here, there, fresnel: secondary_rays.fresnel, total });
         let segment = queue.segment(number);
         (segment.local, segment.branches, segment.pending) = (point.color, [Color::ZERO; 2], 0);
         segment.secondary = secondary;
         let surface = &point.at.surface;
         if self.settings.reflection {
             let inside = |queue: &mut Queue| queue.segment(number).media.clone();
-            let branch = (parted.mirrored, parted.reflective);
+            let branch = (secondary_rays.mirrored, secondary_rays.reflective);
             self.spawn((number, RayKind::Reflected), surface, branch, inside, queue, tally);
         }
-        if let Some(dir) = parted.transmitted.filter(|_| self.settings.refraction) {
+        if let Some(dir) = secondary_rays.transmitted.filter(|_| self.settings.refraction) {
             let inside = |_: &mut Queue| std::mem::take(&mut point.passage.behind);
-            self.spawn((number, RayKind::Transmitted), surface, (dir, parted.transparent), inside, queue, tally);
+            self.spawn(
+                (number, RayKind::Transmitted),
+                surface,
+                (dir, secondary_rays.transparent),
+                inside,
+                queue,
+                tally,
+            );
         }
         if queue.segment(number).pending == 0 {
             tally.end(secondary, Color::ONE, Color::ONE, Color::ZERO);
@@ -71,7 +79,12 @@ impl Whitted<'_> {
 
     /// Splits the light at a hit.
     #[inline]
-    fn parted(&self, at: &Interaction, blend: Blend, &Passage { here, there, .. }: &Passage) -> Parted {
+    fn secondary_rays(
+        &self,
+        at: &SurfaceInteraction,
+        blend: Blend,
+        &Passage { here, there, .. }: &Passage,
+    ) -> SecondaryRays {
         let Blend { mut reflective, mut transparent, fresnel, .. } = blend;
         let (rules, leaving, dir) = (self.world.shading_rules(), self.sees_back(at), at.ray.dir());
         // Normals on the ray's side.
@@ -101,12 +114,12 @@ impl Whitted<'_> {
             reflective *= share;
             transparent *= 1.0 - share;
         }
-        Parted { mirrored, reflective, transmitted, transparent, fresnel: share }
+        SecondaryRays { mirrored, reflective, transmitted, transparent, fresnel: share }
     }
 
     /// Returns the transmission at a hit; `None` if the surface is opaque.
     #[inline]
-    pub fn passage(&self, at: &Interaction, media: &Media) -> Option<Passage> {
+    pub fn passage(&self, at: &SurfaceInteraction, media: &Media) -> Option<Passage> {
         if !self.world.may_enter(at) {
             return None;
         }

@@ -11,7 +11,7 @@ use durer_scene::math::random::Random;
 use durer_scene::math::{Vec3, reflect};
 use std::path::Path;
 
-const ALL: Settings = Settings {
+const ALL: WhittedOptions = WhittedOptions {
     bounces: 8,
     shadows: true,
     shade_back: true,
@@ -23,7 +23,7 @@ const ALL: Settings = Settings {
 
 const CAMERA: &str = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }\n";
 
-fn seen(text: &str, settings: Settings, origin: [f32; 3], dir: [f32; 3]) -> Vec3 {
+fn seen(text: &str, settings: WhittedOptions, origin: [f32; 3], dir: [f32; 3]) -> Vec3 {
     let world = testing::read(&format!("{CAMERA}{text}"));
     let dir = Vec3::from(dir).normalize();
     Whitted { world: &world, settings, cancel: None }.radiance(&Ray::new(origin.into(), dir), &mut ())
@@ -101,20 +101,20 @@ fn facing_mirrors_sum_a_geometric_series() {
     for bounces in 0..12 {
         expected += libm::ldexpf(1.0, -(bounces as i32));
         for dir in [[1.0, 0.0, 0.0], [1.0, 0.2, 0.1]] {
-            let color = seen(hall, Settings { bounces, ..ALL }, [0.0; 3], dir);
+            let color = seen(hall, WhittedOptions { bounces, ..ALL }, [0.0; 3], dir);
             assert!((color.x - expected).abs() < 1e-5, "{bounces} {color} {expected}");
         }
     }
-    let off = Settings { reflection: false, ..ALL };
+    let off = WhittedOptions { reflection: false, ..ALL };
     assert!((seen(hall, off, [0.0; 3], [1.0, 0.0, 0.0]).x - 1.0).abs() < 1e-5);
     // With Dürer's own rules the throughput is 1/2 after one bounce, and 1/4 after two.
-    let cut = Settings { least_weight: 0.3, ..ALL };
+    let cut = WhittedOptions { least_weight: 0.3, ..ALL };
     assert!((seen(hall, cut, [0.0; 3], [1.0, 0.0, 0.0]).x - 1.5).abs() < 1e-5);
     // The course uses the length of the colour: sqrt(3) / 2 after one bounce, 3/4 after two.
     let mut world = testing::read(&format!("{CAMERA}{hall}"));
     let rules = Dialect::Durer.rules();
     world.edit().set_rules(durer_scene::dialect::Rules { epsilon: Some(1e-4), ..rules.clone() });
-    let cut = Settings { least_weight: 0.7, ..ALL };
+    let cut = WhittedOptions { least_weight: 0.7, ..ALL };
     let old = Whitted { world: &world, settings: cut, cancel: None }.radiance(&Ray::new(Vec3::ZERO, Vec3::X), &mut ());
     assert!((old.x - 1.75).abs() < 1e-5, "{old}");
 }
@@ -126,13 +126,13 @@ fn deep_recursion_needs_no_deep_stack() {
         Lights { DirectionalLight { direction 0 -1 0 color 0.001 0.001 0.001 } }
         Materials { Material { diffuseColor 1 1 1 reflectiveColor 1 1 1 } }
         Group { MaterialIndex 0 Plane { normal 1 0 0 offset -1 } Plane { normal -1 0 0 offset -1 } }";
-    let settings = Settings { bounces: Settings::MAX_BOUNCES, ..ALL };
+    let settings = WhittedOptions { bounces: WhittedOptions::MAX_BOUNCES, ..ALL };
     let world = &testing::read(&format!("{CAMERA}{hall}"));
     let light = || Whitted { world, settings, cancel: None }.radiance(&Ray::new(Vec3::ZERO, Vec3::X), &mut ());
     // A kilobyte of stack for each level would overflow this.
     let thread = std::thread::Builder::new().stack_size(192 << 10);
     let light = std::thread::scope(|scope| thread.spawn_scoped(scope, light).unwrap().join().unwrap());
-    assert_eq!(light, Vec3::splat(Settings::MAX_BOUNCES as f32 + 1.0));
+    assert_eq!(light, Vec3::splat(WhittedOptions::MAX_BOUNCES as f32 + 1.0));
 }
 
 #[test]
@@ -155,7 +155,7 @@ fn shadows_end_at_the_light() {
         "Lights { DirectionalLight { direction 0 -1 0 color 1 1 1 } } Materials { Material { diffuseColor 1 1 1 } }
         Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } Sphere { center 0 1e6 0 radius 1 } }";
     assert_eq!(seen(text, ALL, [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]), Vec3::ZERO);
-    assert_eq!(seen(text, Settings { shadows: false, ..ALL }, [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]), Vec3::ONE);
+    assert_eq!(seen(text, WhittedOptions { shadows: false, ..ALL }, [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]), Vec3::ONE);
 }
 
 #[test]
@@ -223,7 +223,7 @@ fn coloured_glass_casts_coloured_shadows_if_enabled() {
     let down = |settings| seen(text, settings, [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]);
     assert_eq!(down(ALL), Vec3::ZERO);
     // Through two walls of the sphere.
-    assert_eq!(down(Settings { transparent_shadows: true, ..ALL }), Vec3::new(0.25, 1.0, 0.0));
+    assert_eq!(down(WhittedOptions { transparent_shadows: true, ..ALL }), Vec3::new(0.25, 1.0, 0.0));
 }
 
 #[test]
@@ -280,7 +280,7 @@ fn backs_are_black_only_with_the_quirk_black_backs() {
     let below = |dialect: Dialect, shade_back: bool| {
         let (world, _) = testing::try_read(&text, dialect.rules(), AccelKind::Bvh, Path::new("."));
         let world = world.unwrap();
-        let settings = Settings { shade_back, ..ALL };
+        let settings = WhittedOptions { shade_back, ..ALL };
         Whitted { world: &world, settings, cancel: None }.radiance(&Ray::new(Vec3::NEG_Y, Vec3::Y), &mut ()).x
     };
     assert_eq!(below(Dialect::F04, false), 0.0);
@@ -307,7 +307,7 @@ fn traced_terms_sum_to_the_radiance_without_a_trace() {
             let (world, findings) = testing::try_read(&text, dialect.rules(), AccelKind::Bvh, &folder);
             let world = world.unwrap_or_else(|| panic!("{findings:?}"));
             let settings =
-                Settings { bounces: 5, transparent_shadows: random.below(2) == 0, least_weight: 0.01, ..ALL };
+                WhittedOptions { bounces: 5, transparent_shadows: random.below(2) == 0, least_weight: 0.01, ..ALL };
             let whitted = Whitted { world: &world, settings, cancel: None };
             for _ in 0..60 {
                 let forward = world.camera_frame().forward + 0.3 * random.direction();

@@ -5,15 +5,15 @@ use crate::compile::testing;
 use crate::film::Filter;
 use crate::film::aov::Aov;
 use crate::film::course::CourseFilter;
-use crate::integrator::{Direct, Method, Transport};
-use crate::render::verify::Way;
+use crate::integrator::{Direct, IntegratorKind, PathOptions};
+use crate::render::verify::RenderVariant;
 use crate::render::*;
 use crate::world::World;
 use durer_scene::source::Digest;
 use std::sync::atomic::AtomicBool;
 
 fn all(world: &World, job: &Job) -> PartialRender {
-    Way::PLAIN.make(world, job, &AtomicBool::new(false)).unwrap()
+    RenderVariant::PLAIN.make(world, job, &AtomicBool::new(false)).unwrap()
 }
 
 /// A sphere lit by an area light out of view, found by BSDF sampling only, in front of a uniform
@@ -29,8 +29,8 @@ Group { numObjects 2
 
 /// Returns a job with BSDF sampling only, which rarely hits the light.
 fn uneven(adaptive: bool, seed: u64) -> Job {
-    let Method::Path(paths) = Method::PATH else { unreachable!("`PATH` is a path tracer") };
-    let method = Method::Path(Transport { direct: Direct::Bsdf, ..paths });
+    let IntegratorKind::Path(paths) = IntegratorKind::PATH else { unreachable!("`PATH` is a path tracer") };
+    let method = IntegratorKind::Path(PathOptions { direct: Direct::Bsdf, ..paths });
     let sampling = Sampling::Filtered { samples: 32, filter: Filter::Box { radius: 0.5 } };
     Job { width: 40, height: 32, sampling, adaptive, seed, method, ..Job::default() }
 }
@@ -135,7 +135,7 @@ fn unsuitable_jobs_for_adaptive_sampling_are_rejected() {
         (Job { sampling: filtered(15), ..job.clone() }, "at least 16"),
         (Job { sampling: Sampling::Center, ..job.clone() }, "at least 16"),
         (Job { noise: Some(0.1), ..job.clone() }, "either"),
-        (Job { method: Method::Photons(Default::default()), ..job.clone() }, "photons"),
+        (Job { method: IntegratorKind::Photons(Default::default()), ..job.clone() }, "photons"),
         (Job { sampling: kept(Sampler::Jittered, None), ..job.clone() }, "cannot be adaptive"),
         (
             Job { sampling: kept(Sampler::Random, Some(CourseFilter::Tent { radius: 1.0 })), ..job.clone() },

@@ -3,7 +3,7 @@
 use super::*;
 use crate::compile::testing::read;
 use crate::film::Filter;
-use crate::integrator::{PhotonParameters, Settings};
+use crate::integrator::{PhotonParameters, WhittedOptions};
 use crate::render::explain::explain;
 use crate::render::{Sampling, Shard};
 
@@ -27,14 +27,14 @@ fn pane() -> World {
     )
 }
 
-fn job(method: Method, size: u32, samples: u32, seed: u64) -> Job {
+fn job(method: IntegratorKind, size: u32, samples: u32, seed: u64) -> Job {
     let sampling = Sampling::Filtered { samples, filter: Filter::default() };
-    let settings = Settings { bounces: 12, ..Job::default().settings };
+    let settings = WhittedOptions { bounces: 12, ..Job::default().settings };
     Job { width: size, height: size, method, sampling, settings, seed, ..Job::default() }
 }
 
-fn photons(count: u32, radius: f32) -> Method {
-    Method::Photons(PhotonParameters { count, radius: Some(radius), ..PhotonParameters::default() })
+fn photons(count: u32, radius: f32) -> IntegratorKind {
+    IntegratorKind::Photons(PhotonParameters { count, radius: Some(radius), ..PhotonParameters::default() })
 }
 
 #[test]
@@ -76,7 +76,7 @@ fn pictures_and_explanations_have_equal_errors_on_any_number_of_threads() {
          Materials { PrincipledMaterial { baseColor 0.5 0.4 0.3 specularWeight 0 } PrincipledMaterial { preset glass } }
          Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 1 0 radius 0.7 } }",
     );
-    for method in [photons(3000, 0.2), Method::PATH] {
+    for method in [photons(3000, 0.2), IntegratorKind::PATH] {
         let job = job(method, 12, 4, 1);
         let of = |threads| {
             let part = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
@@ -94,7 +94,7 @@ fn pictures_and_explanations_have_equal_errors_on_any_number_of_threads() {
             assert_eq!(values.image.get(x, y).unwrap().x, error.bound as f32, "{x},{y}");
             biased += u32::from(error.bias != 0.0);
         }
-        assert_eq!(biased > 0, method != Method::PATH);
+        assert_eq!(biased > 0, method != IntegratorKind::PATH);
         // Without a colour picture, the error takes its own samples.
         let alone = PartialRender::new(&world, &Job { color: false, ..job.clone() }, Shard::WHOLE).unwrap();
         assert_eq!(alone.error(&world, None).unwrap()[0], values);

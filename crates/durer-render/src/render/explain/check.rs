@@ -10,22 +10,22 @@ use durer_scene::math::Color;
 use durer_scene::sampler::{Sampler, hash};
 
 /// A sampling, its noise threshold, and true for adaptive sampling.
-type Way = (Sampling, Option<f32>, bool);
+type SamplingCase = (Sampling, Option<f32>, bool);
 
-const fn kept(sampler: Sampler, samples: u32, filter: Option<CourseFilter>) -> Way {
+const fn kept(sampler: Sampler, samples: u32, filter: Option<CourseFilter>) -> SamplingCase {
     (Sampling::Course2004 { sampler, samples, filter }, None, false)
 }
 
-const fn filtered(samples: u32, noise: Option<f32>, adaptive: bool) -> Way {
+const fn filtered(samples: u32, noise: Option<f32>, adaptive: bool) -> SamplingCase {
     (Sampling::Filtered { samples, filter: Filter::BlackmanHarris { radius: 1.5 } }, noise, adaptive)
 }
 
-const fn sub_pixels(jitter: bool, blur: bool) -> Way {
+const fn sub_pixels(jitter: bool, blur: bool) -> SamplingCase {
     (Sampling::Course2012 { jitter, blur }, None, false)
 }
 
 /// Every way of combining samples. One filter is so narrow that often no sample counts.
-pub const SAMPLINGS: [Way; 12] = [
+pub const SAMPLINGS: [SamplingCase; 12] = [
     (Sampling::Center, None, false),
     filtered(3, None, false),
     filtered(40, Some(0.02), false),

@@ -33,13 +33,13 @@ impl Explanation {
     /// Explains in sentences why that sample is so bright; empty if none stands out.
     pub fn firefly(&self) -> Vec<String> {
         let Some((number, share)) = self.outlier() else { return Vec::new() };
-        let mut said = vec![format!("sample {number} alone is {:.0} % of the pixel", 100.0 * share)];
-        said.extend(self.samples[number].light.iter().flat_map(cause));
-        said.push(
+        let mut causes = vec![format!("sample {number} alone is {:.0} % of the pixel", 100.0 * share)];
+        causes.extend(self.samples[number].light.iter().flat_map(cause));
+        causes.push(
             "more samples make such pixels rarer, not darker; `--clamp 10` limits them but also removes some light"
                 .into(),
         );
-        said
+        causes
     }
 }
 
@@ -61,36 +61,36 @@ fn cause(light: &Tree) -> Vec<String> {
     // Delta lobes have no density.
     let single = chosen.last().is_some_and(|last| last.pdf == 0.0);
     let seldom = chosen.iter().filter(|bounce| bounce.pdf > 0.0).min_by(|a, b| a.pdf.total_cmp(&b.pdf));
-    let told = |what: &str| match chosen.is_empty() {
+    let text = |what: &str| match chosen.is_empty() {
         true => format!("{what} is seen directly"),
         false => format!("BSDF sampling hit {what} after {way}"),
     };
-    let mut said = Vec::new();
+    let mut causes = Vec::new();
     match &node.what {
         TermKind::Emission { .. } | TermKind::Sky if single && seldom.is_some() => {
             let what = if matches!(node.what, TermKind::Sky) { "the sky" } else { "an emitter" };
-            said.push(told(what));
-            said.push(
+            causes.push(text(what));
+            causes.push(
                 "light sampling cannot follow mirrors and glass, so such light is found rarely and then has a large \
                  weight: `--integrator photons` traces it from the light instead"
                     .into(),
             );
         }
         TermKind::Emission { mis } => {
-            said.push(told("an emitter"));
-            said.push(format!("its MIS weight is {}: light sampling finds this light even less often", number(*mis)));
+            causes.push(text("an emitter"));
+            causes.push(format!("its MIS weight is {}: light sampling finds this light even less often", number(*mis)));
         }
-        TermKind::Sky => said.push(told("the sky")),
+        TermKind::Sky => causes.push(text("the sky")),
         TermKind::Direct { choice, pdf, mis, .. } => {
             let way = if chosen.is_empty() { "at the first hit".into() } else { format!("after {way}") };
-            said.push(format!(
+            causes.push(format!(
                 "light sampling found a light {way}, with probability {} and density {} /sr (MIS weight {})",
                 number(*choice),
                 number(*pdf),
                 number(*mis)
             ));
             if *choice < 0.1 {
-                said.push(
+                causes.push(
                     "the light tree estimated this light as dim, and the sample is divided by that low \
                            probability"
                         .into(),
@@ -100,11 +100,11 @@ fn cause(light: &Tree) -> Vec<String> {
         _ => {}
     }
     if let Some(seldom) = seldom.filter(|seldom| seldom.pdf < 0.05) {
-        said.push(format!(
+        causes.push(format!(
             "the direction sampled by {} has a density of only {} /sr: all light from there is divided by it",
             seldom.lobe,
             number(seldom.pdf)
         ));
     }
-    said
+    causes
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::compile::{AccelKind, testing};
-use crate::integrator::{Method, Settings, Transport};
+use crate::integrator::{IntegratorKind, PathOptions, WhittedOptions};
 use durer_scene::dialect::Dialect;
 use durer_scene::spectrum::ColorMode;
 use std::path::Path;
@@ -19,7 +19,7 @@ fn explanations_sum_to_the_pixels_of_all_scenes() {
         let dialect = [Dialect::Durer, Dialect::F12a4, Dialect::F04, Dialect::F12a5][i % 4];
         let (world, findings) = testing::try_read(&text, dialect.rules(), AccelKind::Bvh, &folder);
         let world = world.unwrap_or_else(|| panic!("{}: {findings:?}", scene.display()));
-        let settings = Settings {
+        let settings = WhittedOptions {
             bounces: 4,
             shadows: true,
             shade_back: i % 2 == 0,
@@ -31,7 +31,11 @@ fn explanations_sum_to_the_pixels_of_all_scenes() {
         // Scenes for path tracing, and some others.
         let paths = text.contains("PrincipledMaterial") || i % 5 == 0;
         let color = [ColorMode::Rgb, ColorMode::Spectral][i % 2];
-        let method = if paths { Method::Path(Transport { color, ..Transport::default() }) } else { Method::WHITTED };
+        let method = if paths {
+            IntegratorKind::Path(PathOptions { color, ..PathOptions::default() })
+        } else {
+            IntegratorKind::WHITTED
+        };
         let job = Job { width: 20, height: 18, seed: 5, settings, method, ..Job::default() };
         let differences = check::check(&world, &job, 6, i as u64).unwrap();
         assert!(differences.is_empty(), "{}: {differences:?}", scene.display());
@@ -50,15 +54,15 @@ fn brightest_sample_below_glass_is_explained_as_a_caustic() {
          MaterialIndex 2 Sphere { center 0 4 0 radius 0.1 } }",
     );
     let sampling = Sampling::Filtered { filter: crate::film::Filter::default(), samples: 64 };
-    let settings = Settings { bounces: 8, ..Job::default().settings };
-    let job = Job { width: 24, height: 24, sampling, settings, method: Method::PATH, ..Job::default() };
+    let settings = WhittedOptions { bounces: 8, ..Job::default().settings };
+    let job = Job { width: 24, height: 24, sampling, settings, method: IntegratorKind::PATH, ..Job::default() };
     let explained = (0..job.height).flat_map(|y| (0..job.width).map(move |x| (x, y)));
     let explained = explained.map(|(x, y)| explain(&world, &job, x, y).unwrap());
     let adds = |pixel: &Explanation| pixel.brightest().map_or(0.0, |(_, adds)| adds);
     let worst = explained.max_by(|a, b| adds(a).total_cmp(&adds(b))).unwrap();
-    let said = worst.firefly();
-    assert!(said.len() >= 3 && said[0].starts_with("sample "), "{said:?}");
-    assert!(said.iter().any(|sentence| sentence.contains("--integrator photons")), "{said:?}");
+    let causes = worst.firefly();
+    assert!(causes.len() >= 3 && causes[0].starts_with("sample "), "{causes:?}");
+    assert!(causes.iter().any(|sentence| sentence.contains("--integrator photons")), "{causes:?}");
     // The brightest sample adds no more than the pixel has.
     let (number, most) = worst.brightest().unwrap();
     let light = worst.samples[number].light.as_ref().unwrap();

@@ -43,7 +43,7 @@ pub struct TextLine {
 
 /// Level of detail.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Telling {
+pub struct ExplainOptions {
     /// Minimum share of the total; terms below are omitted.
     pub least: f32,
     /// Maximum depth; deeper terms are omitted.
@@ -59,10 +59,10 @@ impl TextLine {
     }
 }
 
-impl Default for Telling {
+impl Default for ExplainOptions {
     /// Full detail.
     fn default() -> Self {
-        Telling { least: 0.0, deepest: usize::MAX, transfer: Transfer::default() }
+        ExplainOptions { least: 0.0, deepest: usize::MAX, transfer: Transfer::default() }
     }
 }
 
@@ -195,11 +195,11 @@ impl Names<'_> {
 impl Explanation {
     /// Returns the explanation as lines: the pixel, its samples, and the tree of the sample at
     /// index `wanted`.
-    pub fn lines(&self, names: &Names, wanted: usize, telling: &Telling) -> Vec<TextLine> {
+    pub fn lines(&self, names: &Names, wanted: usize, options: &ExplainOptions) -> Vec<TextLine> {
         let mut lines = Vec::new();
         let mut say = |depth, text: String| lines.push(TextLine::plain(depth, text));
-        let [r, g, b] = telling.transfer.encode_pixel(self.color);
-        let curve = telling.transfer.name();
+        let [r, g, b] = options.transfer.encode_pixel(self.color);
+        let curve = options.transfer.name();
         say(0, format!("pixel {},{} = {}, in eight bits {r} {g} {b} ({curve})", self.x, self.y, rgb(self.color)));
         if self.coverage < 1.0 {
             say(1, format!("coverage {:.1} %", 100.0 * self.coverage));
@@ -229,7 +229,7 @@ impl Explanation {
         }
         let nothing = |i: usize| i != wanted && self.samples[i].weight == 0.0 && self.mean != Mean::Own;
         for (i, sample) in self.samples.iter().enumerate().filter(|(i, _)| !nothing(*i)) {
-            sample_lines(sample, self.number(i), names, (i == wanted).then_some(telling), &mut lines);
+            sample_lines(sample, self.number(i), names, (i == wanted).then_some(options), &mut lines);
         }
         match (0..all).filter(|&i| nothing(i)).count() {
             0 => {}
@@ -255,35 +255,35 @@ fn sample_lines(
     sample: &SampleAccount,
     name: String,
     names: &Names,
-    whole: Option<&Telling>,
+    whole: Option<&ExplainOptions>,
     lines: &mut Vec<TextLine>,
 ) {
     let SampleAccount { place, weight, light, .. } = sample;
     let seen = light.as_ref().map_or("the camera sees nothing here".into(), |light| rgb(light.sum()));
     let text = format!("{name} at {}, {}, weight {}: {seen}", place.x, place.y, number(*weight));
     lines.push(TextLine::plain(1, text));
-    if let (Some(light), Some(telling)) = (light, whole) {
-        tree_lines(light, names, 2, telling, lines);
+    if let (Some(light), Some(options)) = (light, whole) {
+        tree_lines(light, names, 2, options, lines);
     }
 }
 
 /// Returns the lines of a tree.
-pub fn ray_text(light: &Tree, names: &Names, telling: &Telling) -> Vec<TextLine> {
+pub fn ray_text(light: &Tree, names: &Names, options: &ExplainOptions) -> Vec<TextLine> {
     let mut lines = Vec::new();
-    tree_lines(light, names, 0, telling, &mut lines);
+    tree_lines(light, names, 0, options, &mut lines);
     lines
 }
 
-fn tree_lines(tree: &Tree, names: &Names, depth: usize, telling: &Telling, lines: &mut Vec<TextLine>) {
+fn tree_lines(tree: &Tree, names: &Names, depth: usize, options: &ExplainOptions, lines: &mut Vec<TextLine>) {
     if let Lanes::Waves(waves) = &tree.lanes {
-        let told = |numbers: Spectrum| numbers.to_array().map(number).join(", ");
-        let text = format!("light at {} nm; converted to RGB", told(waves.nm));
+        let list = |numbers: Spectrum| numbers.to_array().map(number).join(", ");
+        let text = format!("light at {} nm; converted to RGB", list(waves.nm));
         lines.push(TextLine::plain(depth, text));
         for (name, observer) in ["red", "green", "blue"].into_iter().zip(waves.observer()) {
-            lines.push(TextLine::plain(depth + 1, format!("{name}: ({}) · light", told(*observer))));
+            lines.push(TextLine::plain(depth + 1, format!("{name}: ({}) · light", list(*observer))));
         }
     }
-    node_lines(&tree.root, names, depth, telling, Context::of(tree), lines);
+    node_lines(&tree.root, names, depth, options, Context::of(tree), lines);
 }
 
 impl<'a> Context<'a> {
@@ -299,7 +299,7 @@ fn node_lines(
     node: &TraceNode,
     names: &Names,
     depth: usize,
-    telling: &Telling,
+    options: &ExplainOptions,
     at: Context,
     lines: &mut Vec<TextLine>,
 ) {
@@ -416,18 +416,18 @@ fn node_lines(
     let adds = node.added().unwrap_or_else(|| node.contribution());
     let color = at.tree.color(adds);
     lines.push(TextLine { depth, adds: Some(adds), color, share: of_whole(node, at.gain), text });
-    let mut tell = |text: String| lines.push(TextLine::plain(depth + 1, text));
-    more.into_iter().for_each(&mut tell);
-    if depth >= telling.deepest && !node.terms.is_empty() {
-        return tell(format!("{} below (--depth)", terms(node.terms.len())));
+    let mut report = |text: String| lines.push(TextLine::plain(depth + 1, text));
+    more.into_iter().for_each(&mut report);
+    if depth >= options.deepest && !node.terms.is_empty() {
+        return report(format!("{} below (--depth)", terms(node.terms.len())));
     }
-    let small = |term: &&TraceNode| of_whole(term, below.gain).abs() < telling.least;
+    let small = |term: &&TraceNode| of_whole(term, below.gain).abs() < options.least;
     let left = node.terms.iter().filter(small).count();
     for term in node.terms.iter().filter(|term| !small(term)) {
-        node_lines(term, names, depth + 1, telling, below, lines);
+        node_lines(term, names, depth + 1, options, below, lines);
     }
     if left > 0 {
-        let text = format!("{} of less than {} % each (--min)", terms(left), number(100.0 * telling.least));
+        let text = format!("{} of less than {} % each (--min)", terms(left), number(100.0 * options.least));
         lines.push(TextLine::plain(depth + 1, text));
     }
 }

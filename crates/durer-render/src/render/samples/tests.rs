@@ -4,7 +4,7 @@
 use super::*;
 use crate::compile::{AccelKind, testing};
 use crate::film::Filter;
-use crate::integrator::Method;
+use crate::integrator::IntegratorKind;
 use crate::render::{Control, PartialRender, Shard};
 use durer_scene::dialect::Dialect;
 
@@ -24,7 +24,7 @@ Group {
   MaterialIndex 3 Rectangle { corner -1 4 -1 edge0 2 0 0 edge1 0 0 2 } }";
 
 /// Returns a job of `width` columns with `samples` samples.
-fn job(width: u32, samples: u32, method: Method) -> Job {
+fn job(width: u32, samples: u32, method: IntegratorKind) -> Job {
     let sampling = Sampling::Filtered { samples, filter: Filter::default() };
     Job { width, height: 32, sampling, method, ..Job::default() }
 }
@@ -40,7 +40,9 @@ fn samples_do_not_allocate() {
     let read = |text: &str| testing::try_read(text, Dialect::Durer.rules(), AccelKind::Bvh, folder.path()).0.unwrap();
     let (stop, at) = (AtomicBool::new(false), Cell::new((0, 0, None)));
     let [world, of_mesh] = [read(TEXT), read(&of_mesh)];
-    for (world, method) in [(&world, Method::WHITTED), (&of_mesh, Method::WHITTED), (&world, Method::PATH)] {
+    for (world, method) in
+        [(&world, IntegratorKind::WHITTED), (&of_mesh, IntegratorKind::WHITTED), (&world, IntegratorKind::PATH)]
+    {
         let job = job(32, 64, method);
         let part = job.whole();
         let samples = Samples::new(world, &job, &stop);
@@ -59,7 +61,7 @@ fn samples_do_not_allocate() {
 fn tile_locks_twice_per_pass() {
     let world = testing::read(TEXT);
     let locks = |width: u32| {
-        let part = PartialRender::new(&world, &job(width, 1, Method::WHITTED), Shard::WHOLE).unwrap();
+        let part = PartialRender::new(&world, &job(width, 1, IntegratorKind::WHITTED), Shard::WHOLE).unwrap();
         let control = Control { tile: Some(16), threads: Some(2), ..Control::default() };
         part.render(&world, &control, &mut |_, _| {}).unwrap();
         part.locked.load(Relaxed)

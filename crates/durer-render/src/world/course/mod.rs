@@ -11,7 +11,7 @@ mod shapes;
 
 use super::{Accel, Geometry, Hit, MeshTree, Object, World};
 use durer_bvh::{Bvh, TraversalCounter};
-use durer_scene::light::{Emitter as _, Light};
+use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::{Aabb, Ray, Ray64, Vec3};
 use durer_scene::shape::Primitive;
 pub use matrix::Matrix;
@@ -81,21 +81,21 @@ pub struct HitRules {
 #[derive(Clone, Debug)]
 pub struct CourseHits {
     rules: HitRules,
-    things: Vec<Thing>,
+    objects: Vec<CourseObject>,
 }
 
 /// An object.
 #[derive(Clone, Debug)]
-struct Thing {
+struct CourseObject {
     /// Inverses of the enclosing transforms, outermost first.
     inverses: Vec<Matrix>,
     /// Traversal of a mesh.
-    walk: Option<Arc<Walk>>,
+    walk: Option<Arc<MeshOrder>>,
 }
 
 /// Traversal order of the triangles of a mesh.
 #[derive(Debug)]
-enum Walk {
+enum MeshOrder {
     /// BVH of all triangles; their order does not matter.
     Boxes(Bvh),
     /// Triangles of the cells that the starter code's octree visits.
@@ -106,26 +106,26 @@ impl CourseHits {
     /// Prepares the objects of a world.
     pub(crate) fn new(rules: HitRules, objects: &[Object]) -> Self {
         // Objects may share meshes.
-        let mut walks: HashMap<*const MeshTree, Arc<Walk>> = HashMap::new();
-        let things = objects.iter().map(|object| {
+        let mut walks: HashMap<*const MeshTree, Arc<MeshOrder>> = HashMap::new();
+        let objects = objects.iter().map(|object| {
             let walk = match &object.geometry {
                 Geometry::Mesh(tree) => {
-                    let make = || Arc::new(Walk::new(rules, tree));
+                    let make = || Arc::new(MeshOrder::new(rules, tree));
                     Some(walks.entry(Arc::as_ptr(tree)).or_insert_with(make).clone())
                 }
                 _ => None,
             };
             let inverses = object.matrices.iter().map(|matrix| matrix.inverse(rules.vectors)).collect();
-            Thing { inverses, walk }
+            CourseObject { inverses, walk }
         });
-        CourseHits { rules, things: things.collect() }
+        CourseHits { rules, objects: objects.collect() }
     }
 
     /// Finds the first hit in a ray's interval.
     pub(crate) fn closest<T: TraversalCounter>(&self, objects: &[Object], ray: &Ray64, counter: &mut T) -> Option<Hit> {
         let mut best: Option<Hit> = None;
-        for (number, (thing, object)) in (0..).zip(self.things.iter().zip(objects)) {
-            let local = self.local(thing, &ray.rounded);
+        for (number, (prepared, object)) in (0..).zip(self.objects.iter().zip(objects)) {
+            let local = self.local(prepared, &ray.rounded);
             let limits = Limits { t_min: ray.rounded.t_min, t_max: ray.rounded.t_max, best: best.map(|hit| hit.t) };
             let mut offer = |crossing: Option<Crossing>, part: u32| {
                 if let Some(Crossing { t, uv }) = crossing {
@@ -146,7 +146,7 @@ impl CourseHits {
                     offer(shapes::triangle(triangle.corners(), &local, limits, self.rules), 0);
                 }
                 Geometry::Mesh(tree) => {
-                    if let Some((crossing, part)) = thing.mesh(tree, &local, limits, self.rules, counter) {
+                    if let Some((crossing, part)) = prepared.mesh(tree, &local, limits, self.rules, counter) {
                         offer(Some(crossing), part);
                     }
                 }
@@ -164,17 +164,17 @@ impl CourseHits {
     }
 
     /// Transforms a ray to the space of an object.
-    fn local(&self, thing: &Thing, ray: &Ray) -> Ray {
+    fn local(&self, object: &CourseObject, ray: &Ray) -> Ray {
         let mut local = *ray;
         match self.rules.vectors {
             Vectors::Vecmath => {
-                for inverse in &thing.inverses {
+                for inverse in &object.inverses {
                     local.origin = inverse.point(local.origin, Vectors::Vecmath);
                     local.dir = inverse.vector(local.dir);
                 }
             }
             Vectors::Glm => {
-                let inverse = thing.inverses.first().unwrap_or(&Matrix::IDENTITY);
+                let inverse = object.inverses.first().unwrap_or(&Matrix::IDENTITY);
                 local.origin = inverse.point(ray.origin, Vectors::Glm);
                 local.dir = inverse.point(ray.origin + ray.dir, Vectors::Glm) - local.origin;
             }
@@ -186,10 +186,10 @@ impl CourseHits {
     /// radius 1000, or a plane of another length than 1, its rounding decides where mirrored rays
     /// hit the ground again.
     fn normal(&self, objects: &[Object], ray: &Ray, hit: &Hit) -> Option<Vec3> {
-        let (thing, vectors) = (&self.things[hit.object as usize], self.rules.vectors);
+        let (object, vectors) = (&self.objects[hit.object as usize], self.rules.vectors);
         let own = match &objects[hit.object as usize].geometry {
             Geometry::Primitive(Primitive::Sphere(sphere)) => {
-                let local = self.local(thing, ray);
+                let local = self.local(object, ray);
                 vectors.unit(local.origin + hit.t * local.dir - sphere.center)
             }
             Geometry::Primitive(Primitive::Plane(plane)) if self.rules.raw_normals || vectors == Vectors::Glm => {
@@ -200,24 +200,24 @@ impl CourseHits {
         };
         let moved = |n, inverse: &Matrix| vectors.unit(inverse.across(n, vectors));
         let n = match vectors {
-            Vectors::Vecmath => thing.inverses.iter().rev().fold(own, moved),
-            Vectors::Glm => moved(own, thing.inverses.first().unwrap_or(&Matrix::IDENTITY)),
+            Vectors::Vecmath => object.inverses.iter().rev().fold(own, moved),
+            Vectors::Glm => moved(own, object.inverses.first().unwrap_or(&Matrix::IDENTITY)),
         };
         n.is_finite().then_some(n)
     }
 
     /// Returns the size in bytes.
     pub fn memory_usage(&self) -> usize {
-        let walk = |thing: &Thing| match thing.walk.as_deref() {
-            Some(Walk::Boxes(bvh)) => bvh.memory_usage(),
-            Some(Walk::Octree(octree)) => octree.memory_usage(),
+        let walk = |object: &CourseObject| match object.walk.as_deref() {
+            Some(MeshOrder::Boxes(bvh)) => bvh.memory_usage(),
+            Some(MeshOrder::Octree(octree)) => octree.memory_usage(),
             None => 0,
         };
-        self.things.iter().map(|thing| size_of::<Thing>() + walk(thing)).sum()
+        self.objects.iter().map(|object| size_of::<CourseObject>() + walk(object)).sum()
     }
 }
 
-impl Thing {
+impl CourseObject {
     /// Finds the first hit of a mesh, and its triangle.
     fn mesh<T: TraversalCounter>(
         &self,
@@ -229,14 +229,14 @@ impl Thing {
     ) -> Option<(Crossing, u32)> {
         let mut best: Option<(Crossing, u32)> = None;
         match self.walk.as_deref()? {
-            Walk::Octree(octree) => octree.walk(ray.origin, rules.vectors.walked(ray.dir), &mut |part| {
+            MeshOrder::Octree(octree) => octree.walk(ray.origin, rules.vectors.walked(ray.dir), &mut |part| {
                 counter.work(0, 1);
                 if let Some(crossing) = shapes::triangle(tree.mesh.corners(part), ray, limits, rules) {
                     limits.best = Some(crossing.t);
                     best = Some((crossing, part));
                 }
             }),
-            Walk::Boxes(bvh) => bvh.traverse(ray, counter, |item, t_max, _| {
+            MeshOrder::Boxes(bvh) => bvh.traverse(ray, counter, |item, t_max, _| {
                 let part = bvh.primitive_indices()[item];
                 let Some(crossing) = shapes::triangle(tree.mesh.corners(part), ray, limits, rules) else {
                     return t_max;
@@ -255,18 +255,18 @@ impl Thing {
     }
 }
 
-impl Walk {
+impl MeshOrder {
     fn new(rules: HitRules, tree: &MeshTree) -> Self {
         let corners = |part| tree.mesh.corners(part);
         let boxes = (0..tree.mesh.len() as u32).map(|part| Aabb::around(corners(part)));
         if rules.octree {
-            return Walk::Octree(Octree::new(boxes.collect()));
+            return MeshOrder::Octree(Octree::new(boxes.collect()));
         }
         // In this arithmetic, a ray may hit a triangle slightly outside its box.
         let whole = tree.bvh.bounds();
         let pad = 1e-5 * (whole.min.abs().max(whole.max.abs()) + whole.size());
         let padded: Vec<Aabb> = boxes.map(|b| Aabb { min: b.min - pad, max: b.max + pad }).collect();
-        Walk::Boxes(Bvh::build(&padded))
+        MeshOrder::Boxes(Bvh::build(&padded))
     }
 }
 
@@ -284,8 +284,8 @@ impl World {
     pub fn course_way(&self, light: usize, point: Vec3) -> Option<(Vec3, f32)> {
         let vectors = self.hit_rules()?.vectors;
         match &self.lights()[light] {
-            Light::Point(lamp) => {
-                let way = lamp.position - point;
+            Light::Point(emitter) => {
+                let way = emitter.position - point;
                 Some((vectors.unit(way), way.length()))
             }
             Light::Directional(sun) => Some((-vectors.unit(sun.direction().unwrap_or(Vec3::NEG_Y)), f32::MAX)),

@@ -3,7 +3,7 @@
 use super::*;
 use crate::compile::{AccelKind, testing};
 use crate::integrator::spawn::spawn_ray;
-use crate::world::{Hit, Interaction, World};
+use crate::world::{Hit, SurfaceInteraction, World};
 use durer_scene::math::Vec3;
 use durer_scene::math::random::Random;
 use durer_scene::scene::{self, Group, MatrixOp, MatrixRules, Node, Operation};
@@ -338,7 +338,7 @@ fn surfaces_have_the_material_of_their_part() {
     let world = testing::read(text);
     let seen = |origin: [f32; 3], dir: [f32; 3]| {
         let ray = Ray::new(origin.into(), dir.into());
-        let list = |at: Interaction| (at.material, at.hit.t, at.surface.n_geo.to_array());
+        let list = |at: SurfaceInteraction| (at.material, at.hit.t, at.surface.n_geo.to_array());
         world.all_hits(&ray).map(|hit| list(world.interaction(&ray, hit))).collect::<Vec<_>>()
     };
     // Into the dent, whose surface is inverted, and out at the back.
@@ -495,7 +495,7 @@ fn rays_that_leave_a_solid_do_not_hit_it_at_their_start() {
             let [from, to] =
                 [3.0, 1.0].map(|reach| map.transform_point3((reach * random.point()).as_dvec3()).as_vec3());
             let ray = Ray::new(from, to - from);
-            let Some(Interaction { surface, .. }) = world.intersect(&ray, &mut ()) else { continue };
+            let Some(SurfaceInteraction { surface, .. }) = world.intersect(&ray, &mut ()) else { continue };
             if surface.position.length() > 1e4 {
                 continue;
             }

@@ -1,9 +1,9 @@
 //! Emission of photons from lights towards reflective or refractive objects.
 
-use super::{Apart, AreaLight, Source, of_light};
+use super::{AreaLight, InfiniteLight, LightEntry, of_light};
 use crate::world::{Geometry, Material, Object, World};
 use durer_scene::bsdf::{Frame, warp};
-use durer_scene::light::Emitter as _;
+use durer_scene::light::Illuminate as _;
 use durer_scene::math::{Aabb, Color, Ray64, Vec2, Vec3};
 use durer_scene::shape::Primitive;
 use durer_scene::texture::Environment;
@@ -25,7 +25,7 @@ pub struct Target {
 #[derive(Clone, Debug, Default)]
 pub struct Beams {
     targets: Vec<Target>,
-    lamps: Vec<Lamp>,
+    sources: Vec<PhotonSource>,
     /// Cumulative power of the sources.
     sums: Vec<f32>,
     /// Distance from which the whole scene is ahead.
@@ -34,7 +34,7 @@ pub struct Beams {
 
 /// A source of photons.
 #[derive(Clone, Copy, Debug)]
-enum Lamp {
+enum PhotonSource {
     /// An emissive surface.
     Area(AreaLight),
     /// A light with a position, by index.
@@ -73,38 +73,40 @@ impl Beams {
         let emitters = world.emitters();
         for source in emitters.as_given() {
             match source {
-                Source::Area(area) => {
+                LightEntry::Area(area) => {
                     let sides = if area.two_sided { 2.0 } else { 1.0 };
-                    beams.add(Lamp::Area(*area), PI * sides * area.form.area() * area.radiance.max_element());
+                    beams.add(PhotonSource::Area(*area), PI * sides * area.form.area() * area.radiance.max_element());
                 }
-                Source::Light(number) => beams.add(Lamp::Near(*number), 4.0 * PI * PI * strength(world, *number)),
+                LightEntry::Light(number) => {
+                    beams.add(PhotonSource::Near(*number), 4.0 * PI * PI * strength(world, *number))
+                }
             }
         }
-        for &Apart { light, way, .. } in &emitters.apart {
+        for &InfiniteLight { light, way, .. } in &emitters.apart {
             let color = world.lights()[light as usize].color().max_element();
             match way != Vec3::ZERO {
-                true => beams.add(Lamp::Far(light), PI * color * area),
+                true => beams.add(PhotonSource::Far(light), PI * color * area),
                 // Attenuation may differ from the inverse square: use the strength at the scene's
                 // own size.
-                false => beams.add(Lamp::Near(light), 4.0 * PI * PI * color * reach * reach),
+                false => beams.add(PhotonSource::Near(light), 4.0 * PI * PI * color * reach * reach),
             }
         }
         if let Some(sky) = world.environment() {
-            beams.add(Lamp::Sky, 4.0 * PI * sky.mean().max_element() * area);
+            beams.add(PhotonSource::Sky, 4.0 * PI * sky.mean().max_element() * area);
         }
         beams
     }
 
-    fn add(&mut self, lamp: Lamp, power: f32) {
+    fn add(&mut self, source: PhotonSource, power: f32) {
         if power > 0.0 && power.is_finite() {
-            self.lamps.push(lamp);
+            self.sources.push(source);
             self.sums.push(self.sums.last().unwrap_or(&0.0) + power);
         }
     }
 
     /// Returns true if photons are sent to an object.
     pub fn reaches(&self, object: u32) -> bool {
-        !self.lamps.is_empty() && self.targets.binary_search_by_key(&object, |target| target.object).is_ok()
+        !self.sources.is_empty() && self.targets.binary_search_by_key(&object, |target| target.object).is_ok()
     }
 
     /// Returns the radius of the smallest target.
@@ -121,8 +123,8 @@ impl Beams {
         let before = if i > 0 { self.sums[i - 1] } else { 0.0 };
         let choice = (self.sums[i] - before) / all;
         let target = ((choices.y * self.targets.len() as f32) as usize).min(self.targets.len() - 1);
-        match self.lamps[i] {
-            Lamp::Area(area) => {
+        match self.sources[i] {
+            PhotonSource::Area(area) => {
                 let (point, normal, density) = area.form.point(area.normal, place)?;
                 let (dir, pdf) = self.towards(point, target, direction)?;
                 let cosine = normal.dot(dir);
@@ -140,19 +142,19 @@ impl Beams {
                     material: Some(world.objects()[area.object as usize].material),
                 })
             }
-            Lamp::Near(light) => {
+            PhotonSource::Near(light) => {
                 let origin = world.illuminate(light as usize, DVec3::ZERO);
                 let point = f64::from(origin.distance) * origin.to_light.as_dvec3();
                 let (dir, pdf) = self.towards(point, target, direction)?;
                 let ray = Ray64::new(point, dir, 0.0, f32::INFINITY);
                 Some(Emitted { ray, power: Color::splat(1.0 / (pdf * choice)), light: Some(light), material: None })
             }
-            Lamp::Far(light) => {
+            PhotonSource::Far(light) => {
                 let sample = super::spread(world, light, of_light(world, light, DVec3::ZERO, 1.0), place);
                 let (ray, density) = self.across(-sample.wi, target, direction);
                 Some(Emitted { ray, power: sample.radiance / (density * choice), light: None, material: None })
             }
-            Lamp::Sky => {
+            PhotonSource::Sky => {
                 let (wi, radiance, pdf) = from_all_around(world.environment()?, place)?;
                 let (ray, density) = self.across(-wi, target, direction);
                 Some(Emitted { ray, power: radiance / (density * pdf * choice), light: None, material: None })

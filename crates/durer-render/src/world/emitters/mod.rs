@@ -8,7 +8,7 @@ use super::object::Geometry;
 use super::{Hit, Object, World};
 use durer_bvh::internal::{bring_near, room};
 use durer_scene::bsdf::{Frame, warp};
-use durer_scene::light::{Emitter as _, EmitterShape, Placement};
+use durer_scene::light::{EmitterShape, Illuminate as _, Placement};
 use durer_scene::math::{Aabb, Color, Vec2, Vec3, fp, gamma};
 use durer_scene::shape::Shape as _;
 use glam::DVec3;
@@ -40,7 +40,7 @@ pub struct AreaLight {
 
 /// An emitter in the light tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Source {
+enum LightEntry {
     /// An emissive surface.
     Area(AreaLight),
     /// A light of the scene with a position, by index.
@@ -49,14 +49,14 @@ enum Source {
 
 /// Every emitter of a world, and the tree for light sampling.
 #[derive(Clone, Debug, Default)]
-pub struct Emitters {
-    sources: Vec<Source>,
+pub struct LightSampler {
+    sources: Vec<LightEntry>,
     /// Index in `parts` of each object's first part; `u32::MAX` for objects that do not emit.
     first: Vec<u32>,
     /// Source of each part.
     parts: Vec<u32>,
     /// Lights of the scene that are not in the tree.
-    apart: Vec<Apart>,
+    apart: Vec<InfiniteLight>,
     /// Lights in `apart` with an angular extent.
     suns: Vec<Sun>,
     tree: LightTree,
@@ -64,7 +64,7 @@ pub struct Emitters {
 
 /// A light of the scene at infinity, or with another attenuation than the inverse square.
 #[derive(Clone, Copy, Debug)]
-struct Apart {
+struct InfiniteLight {
     light: u32,
     /// Direction to the light; zero if it is not at infinity.
     way: Vec3,
@@ -72,11 +72,11 @@ struct Apart {
     irradiance: f32,
 }
 
-impl Apart {
-    fn of(world: &World, light: u32) -> Apart {
+impl InfiniteLight {
+    fn of(world: &World, light: u32) -> InfiniteLight {
         let (seen, color) = (of_light(world, light, DVec3::ZERO, 1.0), world.lights()[light as usize].color());
         let way = if seen.reach.is_infinite() { seen.wi } else { Vec3::ZERO };
-        Apart { light, way, irradiance: PI * color.max_element().max(0.0) }
+        InfiniteLight { light, way, irradiance: PI * color.max_element().max(0.0) }
     }
 
     /// Estimates the irradiance on a surface with a normal (zero: any).
@@ -91,7 +91,7 @@ impl Apart {
 
 /// Estimated irradiances at a point, for choosing among the lights apart, the environment and the
 /// tree.
-struct Chances {
+struct LightWeights {
     choices: f32,
     /// Sum of all estimates.
     total: f32,
@@ -102,7 +102,7 @@ struct Chances {
 /// Share of uniform choices, because estimates may be wrong.
 const EVENLY: f32 = 0.1;
 
-impl Chances {
+impl LightWeights {
     /// Returns the probability of choosing a light with an estimated irradiance.
     fn of(&self, brings: f32) -> f32 {
         if self.choices == 1.0 {
@@ -168,14 +168,14 @@ impl Receiver {
 
 /// A light chosen for a point, and the probability.
 pub struct Choice {
-    of: Of,
+    of: ChosenLight,
     probability: f32,
 }
 
 impl Choice {
     /// Returns true for the environment.
     pub fn is_sky(&self) -> bool {
-        matches!(self.of, Of::Sky)
+        matches!(self.of, ChosenLight::Sky)
     }
 
     /// Returns the probability of the choice.
@@ -185,7 +185,7 @@ impl Choice {
 }
 
 /// The chosen light.
-enum Of {
+enum ChosenLight {
     /// A light of the scene outside the tree, by index.
     Apart(u32),
     /// The environment.
@@ -237,10 +237,10 @@ impl LightSample {
     }
 }
 
-impl Emitters {
+impl LightSampler {
     /// Collects the emitters of a world.
     pub(crate) fn new(world: &World) -> Self {
-        let mut emitters = Emitters { first: vec![u32::MAX; world.objects().len()], ..Emitters::default() };
+        let mut emitters = LightSampler { first: vec![u32::MAX; world.objects().len()], ..LightSampler::default() };
         let mut bounds = Vec::new();
         for (number, object) in world.objects().iter().enumerate() {
             let Some(Emission { radiance, two_sided, .. }) = world.emission_of(object.material) else { continue };
@@ -250,7 +250,7 @@ impl Emitters {
                 let Some((form, normal)) = emitter_of(object, part) else { break };
                 let area = AreaLight { form, normal, object: number as u32, part, two_sided, error, radiance };
                 bounds.push(area.bounds());
-                emitters.sources.push(Source::Area(area));
+                emitters.sources.push(LightEntry::Area(area));
             }
             if emitters.sources.len() > start {
                 emitters.first[number] = start as u32;
@@ -262,7 +262,7 @@ impl Emitters {
                     let profile = world.profiles().get(number).and_then(Option::as_ref);
                     let most = profile.map_or(1.0, |profile| profile.most());
                     let power = PI * most * intensity.max_element().max(0.0);
-                    emitters.sources.push(Source::Light(number as u32));
+                    emitters.sources.push(LightEntry::Light(number as u32));
                     bounds.push(Bounds {
                         bounds: Aabb { min: position, max: position },
                         power,
@@ -274,7 +274,7 @@ impl Emitters {
                     });
                 }
                 None => {
-                    emitters.apart.push(Apart::of(world, number as u32));
+                    emitters.apart.push(InfiniteLight::of(world, number as u32));
                     emitters.suns.extend(Sun::of(world, number as u32));
                 }
             }
@@ -301,15 +301,15 @@ impl Emitters {
     }
 
     /// Iterates over the sources in the order of the scene.
-    fn as_given(&self) -> impl Iterator<Item = &Source> {
+    fn as_given(&self) -> impl Iterator<Item = &LightEntry> {
         self.parts.iter().map(|&source| &self.sources[source as usize])
     }
 
     /// Estimates the irradiances at a point; `None` without emitters.
-    fn chances(&self, world: &World, to: &Receiver) -> Option<Chances> {
+    fn chances(&self, world: &World, to: &Receiver) -> Option<LightWeights> {
         let (environment, has_tree) = (world.environment(), !self.tree.is_empty());
         let choices = self.apart.len() + usize::from(environment.is_some()) + usize::from(has_tree);
-        let mut chances = Chances { choices: choices as f32, total: 0.0, sky: 0.0, tree: 0.0 };
+        let mut chances = LightWeights { choices: choices as f32, total: 0.0, sky: 0.0, tree: 0.0 };
         if choices > 1 {
             chances.sky = environment.map_or(0.0, |sky| PI * sky.mean_above().max_element());
             chances.tree = self.tree.importance(to);
@@ -330,14 +330,14 @@ impl Emitters {
             let chance = chances.of(apart.brings(to.n));
             let is_last = i + 1 == self.apart.len() && !has_sky && !has_tree;
             if rest < chance || is_last {
-                return Some(Choice { of: Of::Apart(apart.light), probability: chance });
+                return Some(Choice { of: ChosenLight::Apart(apart.light), probability: chance });
             }
             rest -= chance;
         }
         if has_sky {
             let chance = chances.of(chances.sky);
             if rest < chance || !has_tree {
-                return Some(Choice { of: Of::Sky, probability: chance });
+                return Some(Choice { of: ChosenLight::Sky, probability: chance });
             }
             rest -= chance;
         }
@@ -347,32 +347,32 @@ impl Emitters {
         if let Some(source) = self.sources.get(source as usize) {
             bring_near(source);
         }
-        Some(Choice { of: Of::Source(source), probability: chance * probability })
+        Some(Choice { of: ChosenLight::Source(source), probability: chance * probability })
     }
 
     /// Samples a direction to a chosen light by two random numbers.
     pub fn sample(&self, world: &World, choice: &Choice, point: DVec3, u: Vec2) -> Option<LightSample> {
         let probability = choice.probability;
         match choice.of {
-            Of::Apart(light) => Some(spread(world, light, of_light(world, light, point, probability), u)),
-            Of::Sky => {
+            ChosenLight::Apart(light) => Some(spread(world, light, of_light(world, light, point, probability), u)),
+            ChosenLight::Sky => {
                 let (wi, radiance, pdf) = world.environment()?.sample(u)?;
                 Some(LightSample::of_sky(choice, wi, radiance, pdf))
             }
-            Of::Source(source) => match &self.sources[source as usize] {
-                Source::Light(light) => Some(of_light(world, *light, point, probability)),
-                Source::Area(area) => area.sample(point, probability, u),
+            ChosenLight::Source(source) => match &self.sources[source as usize] {
+                LightEntry::Light(light) => Some(of_light(world, *light, point, probability)),
+                LightEntry::Area(area) => area.sample(point, probability, u),
             },
         }
     }
 
-    /// Returns the random numbers with which [`Emitters::sample`] samples the centre of a surface
+    /// Returns the random numbers with which [`LightSampler::sample`] samples the centre of a surface
     /// as seen from the point; for a triangle or cylinder, some fixed point. `None` if the emitter
     /// is not a surface.
     pub fn middle(&self, light: LightId) -> Option<Vec2> {
         let source = *self.parts.get(self.first[light.object()? as usize] as usize)? as usize;
         match self.sources.get(source)? {
-            Source::Area(area) if area.form.is_ball() => Some(Vec2::ZERO),
+            LightEntry::Area(area) if area.form.is_ball() => Some(Vec2::ZERO),
             _ => Some(Vec2::splat(0.5)),
         }
     }
@@ -381,7 +381,7 @@ impl Emitters {
     fn chosen(&self, hit: &Hit, dir: Vec3) -> Option<(u32, &AreaLight)> {
         let source = *self.parts.get(self.first[hit.object as usize].checked_add(hit.part)? as usize)?;
         match self.sources.get(source as usize)? {
-            Source::Area(area) if area.two_sided || area.normal.dot(dir) <= 0.0 => Some((source, area)),
+            LightEntry::Area(area) if area.two_sided || area.normal.dot(dir) <= 0.0 => Some((source, area)),
             _ => None,
         }
     }
@@ -391,7 +391,7 @@ impl Emitters {
         self.chosen(hit, dir).is_some()
     }
 
-    /// Returns the density per solid angle with which [`Emitters::sample`] samples an emissive hit;
+    /// Returns the density per solid angle with which [`LightSampler::sample`] samples an emissive hit;
     /// 0 if it never does.
     pub fn pdf_of_hit(&self, world: &World, hit: &Hit, to: &Receiver, wi: Vec3, distance: f32) -> f32 {
         let Some((source, area)) = self.chosen(hit, wi) else { return 0.0 };
@@ -557,10 +557,10 @@ mod tests {
             let to = Receiver { point, n, far: Receiver::FAR };
             let chances = emitters.chances(&world, &to).unwrap();
             let apart: f32 = emitters.apart.iter().map(|apart| chances.of(apart.brings(n))).sum();
-            let said = [apart, chances.of(chances.sky), chances.of(chances.tree)];
-            assert!((said.iter().sum::<f32>() - 1.0).abs() < 1e-5, "{said:?}");
-            assert!(said.iter().all(|&chance| chance > 0.02), "{said:?}");
-            assert_eq!(said[1], emitters.chance_of_sky(&world, &to));
+            let expected = [apart, chances.of(chances.sky), chances.of(chances.tree)];
+            assert!((expected.iter().sum::<f32>() - 1.0).abs() < 1e-5, "{expected:?}");
+            assert!(expected.iter().all(|&chance| chance > 0.02), "{expected:?}");
+            assert_eq!(expected[1], emitters.chance_of_sky(&world, &to));
             let (mut found, count) = ([0_u32; 3], 1 << 14);
             for i in 0..count {
                 let [choice, u] = [0, 2].map(|dimension| sample_2d(1, 0, 0, i, dimension));
@@ -578,12 +578,15 @@ mod tests {
                 } else {
                     2
                 };
-                assert!(kind != 1 || light.choice == said[1]);
+                assert!(kind != 1 || light.choice == expected[1]);
                 found[kind] += 1;
             }
             // Sobol points are nearly uniform.
-            for (found, said) in found.iter().zip(said) {
-                assert!((*found as f32 / count as f32 - said).abs() < 2e-3, "{n}: {found} of {count}, expected {said}");
+            for (found, expected) in found.iter().zip(expected) {
+                assert!(
+                    (*found as f32 / count as f32 - expected).abs() < 2e-3,
+                    "{n}: {found} of {count}, expected {expected}"
+                );
             }
         }
     }

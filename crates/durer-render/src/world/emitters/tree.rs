@@ -295,14 +295,14 @@ pub struct LightTree {
 
 /// A node of the binary tree that is built first: its children are at `first` and `first + 1`, or
 /// it is a single emitter.
-struct Half {
+struct BuildNode {
     bounds: Bounds,
     first: usize,
     /// Range of its emitters in the tree's order.
     range: (u32, u32),
 }
 
-impl Half {
+impl BuildNode {
     fn is_leaf(&self) -> bool {
         self.range.1 - self.range.0 == 1
     }
@@ -406,12 +406,12 @@ impl LightTree {
 }
 
 /// Builds a binary tree; also returns the emitters in its order.
-fn halved(emitters: &[Bounds]) -> (Vec<Half>, Vec<u32>) {
+fn halved(emitters: &[Bounds]) -> (Vec<BuildNode>, Vec<u32>) {
     let mut order: Vec<u32> = (0..emitters.len() as u32).filter(|&i| emitters[i as usize].power > 0.0).collect();
     if order.is_empty() {
         return (Vec::new(), order);
     }
-    let mut halves = vec![Half { bounds: emitters[order[0] as usize], first: 0, range: (0, order.len() as u32) }];
+    let mut halves = vec![BuildNode { bounds: emitters[order[0] as usize], first: 0, range: (0, order.len() as u32) }];
     let mut open = vec![0];
     while let Some(node) = open.pop() {
         let (start, end) = halves[node].range;
@@ -425,7 +425,7 @@ fn halved(emitters: &[Bounds]) -> (Vec<Half>, Vec<u32>) {
         let middle = start + split(emitters, range, &whole) as u32;
         let first = halves.len();
         halves[node].first = first;
-        halves.extend([(start, middle), (middle, end)].map(|range| Half { bounds: whole, first: 0, range }));
+        halves.extend([(start, middle), (middle, end)].map(|range| BuildNode { bounds: whole, first: 0, range }));
         open.extend([first + 1, first]);
     }
     (halves, order)

@@ -1,7 +1,7 @@
 //! Tests of textures: each changes its parameter, and bump and normal maps match closed forms.
 
 use crate::compile::{AccelKind, testing};
-use crate::world::{Interaction, Material, Principled, World};
+use crate::world::{Material, Principled, SurfaceInteraction, World};
 use durer_image as image;
 use durer_scene::describe::{Describe, Value};
 use durer_scene::dialect::Dialect;
@@ -12,10 +12,10 @@ use std::path::Path;
 const FOLDER: &str = "maps";
 
 /// Name, side and texels (by column and row) of a picture.
-type Drawn<'a> = (&'a str, u32, &'a dyn Fn(u32, u32) -> [u8; 3]);
+type FaceCase<'a> = (&'a str, u32, &'a dyn Fn(u32, u32) -> [u8; 3]);
 
 /// Writes pictures in the PPM format into a folder.
-fn folder(name: &str, pictures: &[Drawn]) -> tempfile::TempDir {
+fn folder(name: &str, pictures: &[FaceCase]) -> tempfile::TempDir {
     let folder = tempfile::Builder::new().prefix(&format!("{FOLDER}-{name}")).tempdir().unwrap();
     for (name, side, texel) in pictures {
         let mut bytes = format!("P6 {side} {side} 255\n").into_bytes();
@@ -47,7 +47,7 @@ fn material(world: &World, number: usize) -> &Principled {
     phong.principled.as_ref().unwrap()
 }
 
-fn hit(world: &World, origin: Vec3, dir: Vec3) -> Interaction {
+fn hit(world: &World, origin: Vec3, dir: Vec3) -> SurfaceInteraction {
     world.intersect(Ray::new(origin, dir), &mut ()).expect("a hit")
 }
 

@@ -1,6 +1,6 @@
 //! Highlights of the course as lobes.
 
-use super::{LobeKind, NOTHING, Scatter, Scattered};
+use super::{LobeKind, LobeSample, NOTHING, Scatter};
 use crate::bsdf::warp;
 use crate::math::{Vec2, Vec3, fp, reflect};
 use crate::spectrum::Spectrum;
@@ -48,12 +48,12 @@ impl Scatter for Blinn {
         (self.color * (wi.z * power), density)
     }
 
-    fn sample(&self, wo: Vec3, _: f32, u: Vec2) -> Option<Scattered> {
+    fn sample(&self, wo: Vec3, _: f32, u: Vec2) -> Option<LobeSample> {
         let about = warp::polar(fp::pow(u.x, 1.0 / (self.exponent + 1.0)), u.y);
         let wi = match self.phong {
             true => crate::bsdf::Frame::around(reflect(-wo, Vec3::Z)).to_world(about),
             false => 2.0 * wo.dot(about) * about - wo,
         };
-        (wi.z > 0.0).then_some(Scattered { wi, value: Spectrum::ONE })
+        (wi.z > 0.0).then_some(LobeSample { wi, value: Spectrum::ONE })
     }
 }

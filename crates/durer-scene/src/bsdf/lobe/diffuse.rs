@@ -3,7 +3,7 @@
 //! Source: Portsmouth, Kutz and Hill, *EON: A practical energy-preserving rough diffuse BRDF*, JCGT
 //! 14(1), 2025: Fujii's version of the model of Oren and Nayar, and a term for multiple scattering.
 
-use super::{LobeKind, NOTHING, Scatter, Scattered};
+use super::{LobeKind, LobeSample, NOTHING, Scatter};
 use crate::bsdf::albedo::Dielectric;
 use crate::bsdf::{Frame, warp};
 use crate::math::{Vec2, Vec3, fp};
@@ -47,7 +47,7 @@ impl Boundary<'_> {
     /// with Importance Sampling*, Eurographics 2001.
     fn entering(&self, cosine: f32) -> f32 {
         let passing = |reflected: f32| 1.0 - self.reflection * reflected;
-        let (own, mean) = (self.dielectric.given(cosine, self.roughness), self.dielectric.mean(self.roughness));
+        let (own, mean) = (self.dielectric.reflectance(cosine, self.roughness), self.dielectric.mean(self.roughness));
         passing(own) / passing(mean)
     }
 }
@@ -115,7 +115,7 @@ impl Scatter for Diffuse<'_> {
         (into * self.value(wo.dot(wi), out, into), FRAC_1_PI * into)
     }
 
-    fn sample(&self, _: Vec3, _: f32, u: Vec2) -> Option<Scattered> {
+    fn sample(&self, _: Vec3, _: f32, u: Vec2) -> Option<LobeSample> {
         let mut wi = warp::cosine_hemisphere(u);
         if self.normal != Vec3::Z {
             wi = Frame::around(self.normal).to_world(wi);
@@ -124,7 +124,7 @@ impl Scatter for Diffuse<'_> {
                 return None;
             }
         }
-        Some(Scattered { wi, value: Spectrum::ONE })
+        Some(LobeSample { wi, value: Spectrum::ONE })
     }
 }
 
@@ -146,8 +146,8 @@ impl Scatter for DiffuseTransmission {
         (self.color * share, share)
     }
 
-    fn sample(&self, _: Vec3, _: f32, u: Vec2) -> Option<Scattered> {
+    fn sample(&self, _: Vec3, _: f32, u: Vec2) -> Option<LobeSample> {
         let above = warp::cosine_hemisphere(u);
-        Some(Scattered { wi: Vec3::new(above.x, above.y, -above.z), value: Spectrum::ONE })
+        Some(LobeSample { wi: Vec3::new(above.x, above.y, -above.z), value: Spectrum::ONE })
     }
 }

@@ -4,7 +4,7 @@
 //! Neubelt and Pettineo, *Crafting a Next-Gen Material Pipeline for The Order: 1886*, 2013 (the
 //! masking).
 
-use super::{LobeKind, NOTHING, Scatter, Scattered};
+use super::{LobeKind, LobeSample, NOTHING, Scatter};
 use crate::bsdf::microfacet::fuzz_value;
 use crate::bsdf::warp;
 use crate::math::{Vec2, Vec3};
@@ -31,7 +31,7 @@ impl Scatter for Fuzz {
         }
     }
 
-    fn sample(&self, _: Vec3, _: f32, u: Vec2) -> Option<Scattered> {
-        Some(Scattered { wi: warp::polar(u.x, u.y), value: Spectrum::ONE })
+    fn sample(&self, _: Vec3, _: f32, u: Vec2) -> Option<LobeSample> {
+        Some(LobeSample { wi: warp::polar(u.x, u.y), value: Spectrum::ONE })
     }
 }

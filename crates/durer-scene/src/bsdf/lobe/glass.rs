@@ -1,6 +1,6 @@
 //! Lobes of single directions: mirrors, smooth glass, and straight transmission.
 
-use super::{LobeKind, NOTHING, Scatter, Scattered};
+use super::{LobeKind, LobeSample, NOTHING, Scatter};
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
@@ -33,7 +33,7 @@ macro_rules! single_direction {
             fn eval(&self, _: Vec3, _: Vec3) -> (Spectrum, f32) {
                 NOTHING
             }
-            fn sample(&self, $wo: Vec3, _: f32, _: Vec2) -> Option<Scattered> {
+            fn sample(&self, $wo: Vec3, _: f32, _: Vec2) -> Option<LobeSample> {
                 let $lobe = self;
                 $scattered
             }
@@ -46,14 +46,14 @@ macro_rules! single_direction {
     };
 }
 
-single_direction!(Mirror, |_lobe| LobeKind::MIRROR, |_lobe, wo| Some(Scattered {
+single_direction!(Mirror, |_lobe| LobeKind::MIRROR, |_lobe, wo| Some(LobeSample {
     wi: Vec3::new(-wo.x, -wo.y, wo.z),
     value: Spectrum::ONE
 }));
 single_direction!(
     Through,
     |_lobe| LobeKind { is_straight: true, ..LobeKind::MIRROR.transmitting() },
-    |_lobe, wo| Some(Scattered { wi: -wo, value: Spectrum::ONE })
+    |_lobe, wo| Some(LobeSample { wi: -wo, value: Spectrum::ONE })
 );
 // Radiance scales with the square of the index: L / n^2 is invariant. Source: Veach's thesis,
 // section 5.2.
@@ -62,4 +62,4 @@ single_direction!(Refraction, |lobe| LobeKind::MIRROR.refracting(lobe.eta), |lob
     Vec3::Z,
     lobe.eta
 )
-.map(|wi| Scattered { wi, value: Spectrum::splat(1.0 / (lobe.eta * lobe.eta)) }));
+.map(|wi| LobeSample { wi, value: Spectrum::splat(1.0 / (lobe.eta * lobe.eta)) }));

@@ -11,7 +11,7 @@
 //! Chiang, Bitterli, Tappan and Burley, *A Practical and Controllable Hair and Fur Model for
 //! Production Path Tracing*, Eurographics 2016 (the spread around it, roughness and colour).
 
-use super::{LobeKind, Scatter, Scattered};
+use super::{LobeKind, LobeSample, Scatter};
 use crate::bsdf::fresnel;
 use crate::material::HairMaterial;
 use crate::math::{Color, Vec2, Vec3, fp};
@@ -129,7 +129,7 @@ impl Direction {
 }
 
 /// Shares of light among the paths.
-struct Ways {
+struct PathLobes {
     shares: [Spectrum; WAYS],
     /// Sampling weight of each path, and their sum.
     chances: [f32; WAYS],
@@ -138,7 +138,7 @@ struct Ways {
     angles: [f32; 2],
 }
 
-impl Ways {
+impl PathLobes {
     /// Angle by which a path turns light around the fibre.
     fn turn(&self, way: usize) -> f32 {
         let way = way as f32;
@@ -147,7 +147,7 @@ impl Ways {
 }
 
 impl Hair<'_> {
-    fn ways(&self, wo: Vec3, out: &Direction) -> Ways {
+    fn ways(&self, wo: Vec3, out: &Direction) -> PathLobes {
         let eta = self.fibre.eta;
         let (sine, cosine) = (out.along.x, out.along.y.max(1e-6));
         let outside = out.around - FRAC_PI_2;
@@ -164,11 +164,11 @@ impl Hair<'_> {
         let rest = inside * inside / (Spectrum::ONE - inside).max(Spectrum::splat(1e-6));
         let shares = [Spectrum::splat(mirrored), once, once * inside, once * rest];
         let chances = shares.map(|share| share.element_sum());
-        Ways { shares, chances, total: chances.iter().sum(), angles: [outside, fp::asin(sine_inside)] }
+        PathLobes { shares, chances, total: chances.iter().sum(), angles: [outside, fp::asin(sine_inside)] }
     }
 
     /// Pdf of a path: per sine along the fibre times per radian around it.
-    fn density(&self, way: usize, ways: &Ways, out: &Direction, coming: &Direction) -> f32 {
+    fn density(&self, way: usize, ways: &PathLobes, out: &Direction, coming: &Direction) -> f32 {
         let along = longitudinal(self.fibre.variances[way], self.fibre.turned(way, out), coming.along);
         if way == MORE {
             return along / TAU;
@@ -196,7 +196,7 @@ impl Scatter for Hair<'_> {
         (value, density / ways.total)
     }
 
-    fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<Scattered> {
+    fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<LobeSample> {
         let out = Direction::of(wo);
         let ways = self.ways(wo, &out);
         let (mut rest, mut way) = (choice * ways.total, 0);
@@ -218,7 +218,7 @@ impl Scatter for Hair<'_> {
         };
         let (sin, cos) = fp::sin_cos_turn((out.around + turn) / TAU);
         let across = (1.0 - along * along).max(0.0).sqrt();
-        Some(Scattered { wi: Vec3::new(along, across * cos, across * sin), value: Spectrum::ONE })
+        Some(LobeSample { wi: Vec3::new(along, across * cos, across * sin), value: Spectrum::ONE })
     }
 }
 

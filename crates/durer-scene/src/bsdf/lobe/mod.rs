@@ -13,7 +13,7 @@ use crate::spectrum::Spectrum;
 
 /// Direction sampled from a lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scattered {
+pub struct LobeSample {
     /// Local direction to the incident light.
     pub wi: Vec3,
     /// Throughput factor of a delta lobe. Ignored for other lobes.
@@ -31,7 +31,7 @@ pub trait Scatter {
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32);
 
     /// Samples a direction. `choice` and `u` are uniform in [0, 1]. `None` if the sample fails.
-    fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<Scattered>;
+    fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<LobeSample>;
 
     /// Properties that a path tracer needs beyond the values.
     fn kind(&self) -> LobeKind;
@@ -108,7 +108,7 @@ macro_rules! lobes {
             fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
                 match self { $(Lobe::$name(lobe) => lobe.eval(wo, wi),)+ }
             }
-            fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<Scattered> {
+            fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<LobeSample> {
                 match self { $(Lobe::$name(lobe) => lobe.sample(wo, choice, u),)+ }
             }
             #[inline]

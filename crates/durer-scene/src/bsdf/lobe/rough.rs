@@ -1,6 +1,6 @@
 //! Rough mirrors: GGX with the reflectance of a metal or a dielectric.
 
-use super::{LobeKind, NOTHING, Scatter, Scattered};
+use super::{LobeKind, LobeSample, NOTHING, Scatter};
 use crate::bsdf::film::Film;
 use crate::bsdf::fresnel::{self, F82, Sheet};
 use crate::bsdf::microfacet::Ggx;
@@ -70,9 +70,9 @@ impl Scatter for Rough {
         (value, density / (1.0 + hidden_o))
     }
 
-    fn sample(&self, wo: Vec3, _: f32, u: Vec2) -> Option<Scattered> {
+    fn sample(&self, wo: Vec3, _: f32, u: Vec2) -> Option<LobeSample> {
         let h = self.ggx.sample_visible(wo, u);
         let wi = 2.0 * wo.dot(h) * h - wo;
-        (wi.z > 0.0).then(|| Scattered { wi: self.above(wi), value: Spectrum::ONE })
+        (wi.z > 0.0).then(|| LobeSample { wi: self.above(wi), value: Spectrum::ONE })
     }
 }

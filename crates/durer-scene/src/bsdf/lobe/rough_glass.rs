@@ -3,7 +3,7 @@
 //! Source: Walter and others, *Microfacet Models for Refraction through Rough Surfaces*, EGSR 2007.
 
 use super::glass::refracted;
-use super::{LobeKind, NOTHING, Scatter, Scattered};
+use super::{LobeKind, LobeSample, NOTHING, Scatter};
 use crate::bsdf::fresnel;
 use crate::bsdf::microfacet::Ggx;
 use crate::math::{Vec2, Vec3};
@@ -71,12 +71,12 @@ impl Scatter for RoughGlass {
         (value, facets / (1.0 + hidden_o))
     }
 
-    fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<Scattered> {
+    fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<LobeSample> {
         let h = self.ggx.sample_visible(wo, u);
         let wi = match choice < fresnel::dielectric(wo.dot(h).max(0.0), self.eta) {
             true => Some(2.0 * wo.dot(h) * h - wo).filter(|wi| wi.z > 0.0),
             false => refracted(wo, h, self.eta).filter(|wi| wi.z < 0.0),
         }?;
-        Some(Scattered { wi, value: Spectrum::ONE })
+        Some(LobeSample { wi, value: Spectrum::ONE })
     }
 }

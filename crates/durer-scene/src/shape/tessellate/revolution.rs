@@ -17,10 +17,10 @@ const ROWS: u32 = 64;
 const COLUMNS: u32 = 128;
 
 /// A point of the profile and its tangent.
-type Place = (DVec3, DVec3);
+type ProfilePoint = (DVec3, DVec3);
 
 /// Surface of a profile that rotates about z by an angle in degrees.
-fn turned(degrees: f64, rows: u32, line: impl Fn(f64) -> Place) -> MeshData {
+fn turned(degrees: f64, rows: u32, line: impl Fn(f64) -> ProfilePoint) -> MeshData {
     let mut data = MeshData::default();
     let columns = (SIDES * degrees / 360.0).ceil().max(4.0) as u32;
     for i in 0..=columns {

@@ -19,7 +19,7 @@ const MAX_STEPS: usize = 1 << 15;
 pub type Piece = [DVec4; 4];
 
 /// A sample of a curve with the data to sweep a cross section through it.
-pub struct Place {
+pub struct CurvePoint {
     /// The point.
     pub point: DVec3,
     /// Unit tangent.
@@ -53,8 +53,8 @@ pub fn straight([a, b]: [DVec4; 2]) -> Piece {
 
 /// Samples a curve such that the chords deviate by at most a fiftieth of the width. The steps are
 /// coarser if `all_pieces`, the number of segments of all curves together, is very large.
-pub fn places(pieces: &[Piece], all_pieces: usize) -> Vec<Place> {
-    let mut all: Vec<Place> = Vec::new();
+pub fn places(pieces: &[Piece], all_pieces: usize) -> Vec<CurvePoint> {
+    let mut all: Vec<CurvePoint> = Vec::new();
     let width = pieces.iter().flatten().map(|p| p.w).fold(0.0, f64::max);
     let most = ((MAX_STEPS / all_pieces.max(1)) as f64).clamp(STEPS[0], STEPS[1]);
     for (i, piece) in pieces.iter().enumerate() {
@@ -70,22 +70,22 @@ pub fn places(pieces: &[Piece], all_pieces: usize) -> Vec<Place> {
             let (point, chord) = (abc.lerp(bcd, part), (p[3] - p[0]).normalize_or(DVec3::X));
             let along = (bcd - abc).truncate().normalize_or(chord);
             let share = (i as f64 + part) / pieces.len() as f64;
-            all.push(Place { point: point.truncate(), along, width: point.w, lean: 0.0, share, piece: i, part });
+            all.push(CurvePoint { point: point.truncate(), along, width: point.w, lean: 0.0, share, piece: i, part });
         }
     }
     all
 }
 
 /// Adds a hemisphere at either end.
-pub fn rounded(mut places: Vec<Place>) -> Vec<Place> {
-    let cap = |end: &Place, side: f64, step: u32| {
+pub fn rounded(mut places: Vec<CurvePoint>) -> Vec<CurvePoint> {
+    let cap = |end: &CurvePoint, side: f64, step: u32| {
         let (sin, cos) = fp::sin_cos_degrees(f64::from(90 * step) / f64::from(CAP));
         let lean = side * sin;
-        Place { point: end.point + 0.5 * lean * end.width * end.along, width: cos * end.width, lean, ..*end }
+        CurvePoint { point: end.point + 0.5 * lean * end.width * end.along, width: cos * end.width, lean, ..*end }
     };
     let (Some(first), Some(last)) = (places.first(), places.last()) else { return places };
-    let before: Vec<Place> = (1..=CAP).rev().map(|step| cap(first, -1.0, step)).collect();
-    let after: Vec<Place> = (1..=CAP).map(|step| cap(last, 1.0, step)).collect();
+    let before: Vec<CurvePoint> = (1..=CAP).rev().map(|step| cap(first, -1.0, step)).collect();
+    let after: Vec<CurvePoint> = (1..=CAP).map(|step| cap(last, 1.0, step)).collect();
     places.splice(0..0, before);
     places.extend(after);
     places
@@ -93,7 +93,7 @@ pub fn rounded(mut places: Vec<Place>) -> Vec<Place> {
 
 /// Adds a tube through sample points, with fewer sides if there are `many` tubes: u grows along it,
 /// v around it.
-pub fn add_tube(data: &mut MeshData, places: &[Place], many: bool) {
+pub fn add_tube(data: &mut MeshData, places: &[CurvePoint], many: bool) {
     let Some(first) = places.first() else { return };
     let sides = SIDES[usize::from(many)];
     // Radius halfway between the inscribed and the circumscribed polygon.
@@ -136,7 +136,7 @@ fn add_strip(data: &mut MeshData, begin: u32, rows: usize, count: u32) {
 
 /// A ribbon through sample points that turns from normal to normal; there is one normal more than
 /// segments. u grows along it, v across it.
-pub fn ribbon(places: &[Place], normals: &[DVec3]) -> MeshData {
+pub fn ribbon(places: &[CurvePoint], normals: &[DVec3]) -> MeshData {
     let mut data = MeshData::default();
     for place in places {
         let normal = turned_between([normals[place.piece], normals[place.piece + 1]], place.part);

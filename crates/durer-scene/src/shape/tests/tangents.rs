@@ -6,9 +6,9 @@ use crate::shape::MeshData;
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 
 /// A mesh in the interface of the other implementation, and the tangents that it computes.
-struct Other<'a>(&'a MeshData, Vec<[f32; 4]>);
+struct ReferenceMesh<'a>(&'a MeshData, Vec<[f32; 4]>);
 
-impl Geometry for Other<'_> {
+impl Geometry for ReferenceMesh<'_> {
     fn num_faces(&self) -> usize {
         self.0.triangles.len()
     }
@@ -53,7 +53,7 @@ fn index(mut data: MeshData) -> MeshData {
 
 /// Compares every corner; returns the number of vertices added by splitting.
 fn agree(mut data: MeshData) -> usize {
-    let mut other = Other(&data, vec![[0.0; 4]; 3 * data.triangles.len()]);
+    let mut other = ReferenceMesh(&data, vec![[0.0; 4]; 3 * data.triangles.len()]);
     generate_tangents(&mut other).unwrap();
     let theirs = other.1;
     let before = data.positions.clone();

@@ -13,7 +13,7 @@ use durer_scene::describe::FileName;
 use durer_scene::math::Aabb;
 use durer_scene::scene::{Group, Node, Object};
 use durer_scene::shape::MeshData;
-use normals::Given;
+use normals::OddNormals;
 use topology::Topology;
 
 /// Size in bytes above which a file is skipped, to keep the check interactive.
@@ -31,7 +31,7 @@ pub(in crate::check) struct MeshFile<'s> {
     pub(super) data: MeshData,
     pub(super) topology: Topology,
     /// Normals from the file, if the dialect uses them.
-    pub(super) given: Option<Given>,
+    pub(super) odd_normals: Option<OddNormals>,
 }
 
 /// Returns all mesh files of a scene.
@@ -91,8 +91,8 @@ fn read<'s>(grid: &ProbeGrid<'s>, name: &'s FileName, objects: Vec<&'s Object>) 
 impl<'s> MeshFile<'s> {
     fn new(grid: &ProbeGrid, name: &'s FileName, file: u32, objects: Vec<&'s Object>, data: MeshData) -> Self {
         let topology = Topology::of(&data.positions, &data.triangles);
-        let given = Given::of(&data).filter(|_| grid.world().rules().file_normals);
-        MeshFile { name, file, objects, data, topology, given }
+        let odd_normals = OddNormals::of(&data).filter(|_| grid.world().rules().file_normals);
+        MeshFile { name, file, objects, data, topology, odd_normals }
     }
 }
 
@@ -177,7 +177,7 @@ impl MeshFile<'_> {
     /// Returns true if the mesh is closed and its normals point inwards.
     pub(super) fn is_inside_out(&self) -> bool {
         let Topology { turned, volume, .. } = &self.topology;
-        let against = self.given.as_ref().is_some_and(Given::is_against_all);
+        let against = self.odd_normals.as_ref().is_some_and(OddNormals::is_against_all);
         self.topology.is_nearly_closed() && turned.is_empty() && *volume != 0.0 && (*volume < 0.0) != against
     }
 }

@@ -5,7 +5,7 @@ use durer_scene::shape::mesh::NO_INDEX;
 
 /// Triangles with odd normals, by index.
 #[derive(Debug, Default)]
-pub(in crate::check) struct Given {
+pub(in crate::check) struct OddNormals {
     /// Triangles whose normals oppose their winding.
     pub against: Vec<u32>,
     /// Triangles without normals in a file where others have some.
@@ -16,28 +16,28 @@ pub(in crate::check) struct Given {
     pub count: usize,
 }
 
-impl Given {
+impl OddNormals {
     /// Examines a mesh as stored in its file; `None` if it has no normals.
-    pub fn of(data: &MeshData) -> Option<Given> {
-        let mut given = Given::default();
+    pub fn of(data: &MeshData) -> Option<OddNormals> {
+        let mut odd_normals = OddNormals::default();
         for (i, triangle) in data.triangles.iter().enumerate() {
             let [a, b, c] = triangle.map(|corner| data.positions[corner as usize].as_dvec3());
             let indices = data.triangle_normals.get(i).filter(|indices| !indices.contains(&NO_INDEX));
             let Some(normals) = indices.map(|indices| indices.map(|n| data.normals[n as usize].as_dvec3())) else {
-                given.missing.push(i as u32);
+                odd_normals.missing.push(i as u32);
                 continue;
             };
-            given.count += 1;
+            odd_normals.count += 1;
             if normals.iter().any(|normal| normal.length_squared() == 0.0) {
-                given.zero.push(i as u32);
+                odd_normals.zero.push(i as u32);
             }
             let face = (b - a).cross(c - a);
             // A single smooth normal may lean over an edge; all three never do.
             if normals.iter().all(|normal| normal.dot(face) < 0.0) {
-                given.against.push(i as u32);
+                odd_normals.against.push(i as u32);
             }
         }
-        (given.count > 0).then_some(given)
+        (odd_normals.count > 0).then_some(odd_normals)
     }
 
     /// Returns true if nearly all normals oppose their winding.

@@ -3,7 +3,7 @@
 use super::walker::Walker;
 use crate::mistakes::path_habits::Mean;
 use crate::mistakes::pictures::View;
-use crate::mistakes::variant::Variant;
+use crate::mistakes::variant::SceneVariant;
 use durer_render::render::sample_places;
 use durer_scene::math::{Color, Vec2, Vec3};
 use rayon::prelude::*;
@@ -56,7 +56,7 @@ impl Blocks {
     }
 
     /// Renders the means of a variant's picture.
-    pub fn render(&self, view: &View, variant: &Variant, seed: u64) -> Means {
+    pub fn render(&self, view: &View, variant: &SceneVariant, seed: u64) -> Means {
         let (walker, raster) = (Walker::new(variant), variant.raster(view.job.width, view.job.height));
         let places = sample_places(&variant.world, view.job);
         let exposed = |light: Color| view.values(variant.output, &[light])[0];

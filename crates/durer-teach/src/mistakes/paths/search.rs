@@ -3,13 +3,13 @@
 use super::blocks::{Blocks, Means};
 use super::table::MISTAKES;
 use crate::mistakes::pictures::View;
-use crate::mistakes::question::{Diagnosis, Named, Question, prepared, values};
+use crate::mistakes::question::{Diagnosis, DiagnosisInput, Explanation, prepared, values};
 use crate::mistakes::table::{Formulas, Mistake};
-use crate::mistakes::variant::Variant;
+use crate::mistakes::variant::SceneVariant;
 use durer_scene::math::Vec3;
 
 /// Share of the blocks that may differ significantly from the scene's own picture; above it nothing
-/// is reported.
+/// is progress.
 const MAX_OFF: f64 = 0.15;
 /// Share of the blocks that must differ for there to be more than noise.
 const LEAST: f64 = 0.02;
@@ -30,7 +30,7 @@ struct Trial {
 
 /// Returns the share of the blocks in which the scene's own picture differs from the reference by
 /// more than noise.
-pub fn off(question: &Question) -> f64 {
+pub fn off(question: &DiagnosisInput) -> f64 {
     let (reference, view, base) = prepared(question);
     let blocks = blocks(question);
     let reference = blocks.of_picture(question.job.width, &reference);
@@ -38,7 +38,7 @@ pub fn off(question: &Question) -> f64 {
     share_off(&base, &reference)
 }
 
-fn blocks(question: &Question) -> Blocks {
+fn blocks(question: &DiagnosisInput) -> Blocks {
     Blocks::new(question.job.width, question.job.height, question.job.sampling.samples())
 }
 
@@ -52,15 +52,15 @@ fn share_off(base: &Means, reference: &Means) -> f64 {
     beyond.iter().filter(|block| block.1).count() as f64 / beyond.len().max(1) as f64
 }
 
-/// Tries the mistakes of path tracers. `told` receives the progress, from 0 to 1.
-pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
+/// Tries the mistakes of path tracers. `progress` receives the progress, from 0 to 1.
+pub fn diagnose(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     let (reference_pixels, view, base) = prepared(question);
     let test_pixels = values(question.test, view.scale, question.transfer);
     let (width, seed) = (question.job.width, question.job.seed);
     let blocks = blocks(question);
     let [reference, test] = [&reference_pixels, &test_pixels].map(|pixels| blocks.of_picture(width, pixels));
     let own = blocks.render(&view, &base, seed);
-    told(0.1);
+    progress(0.1);
     let off = share_off(&own, &reference);
     let found =
         Diagnosis { off, formulas: Formulas::of(question.scene, question.world.rules()), ..Diagnosis::default() };
@@ -72,7 +72,7 @@ pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     if (differing as f64) < LEAST * total.len() as f64 {
         return Diagnosis { remark: Some(of_noise(&reference_pixels, &test_pixels, width as usize)), ..found };
     }
-    let trials = trials(&view, &base, &blocks, &test, &own, seed, told);
+    let trials = trials(&view, &base, &blocks, &test, &own, seed, progress);
     let named = decided(trials, &test);
     Diagnosis { named, ..found }
 }
@@ -80,12 +80,12 @@ pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
 /// Renders all mistakes and measures how much of the difference they explain.
 fn trials(
     view: &View,
-    base: &Variant,
+    base: &SceneVariant,
     blocks: &Blocks,
     test: &Means,
     own: &Means,
     seed: u64,
-    told: &(dyn Fn(f64) + Sync),
+    progress: &(dyn Fn(f64) + Sync),
 ) -> Vec<Trial> {
     let lights = base.world.lights().len();
     let rows = MISTAKES.iter().flat_map(|row| row.values.numbers(lights).into_iter().map(move |value| (row, value)));
@@ -95,7 +95,7 @@ fn trials(
         let mut variant = base.clone();
         (mistake.0.make)(&mut variant, mistake.1);
         let made = blocks.render(view, &variant, seed);
-        told(0.1 + 0.9 * (i + 1) as f64 / count as f64);
+        progress(0.1 + 0.9 * (i + 1) as f64 / count as f64);
         let noise = noise(&made, test);
         let (before, rest) = (own.beyond(test, &noise), made.beyond(test, &noise));
         let sum = |beyond: &[(f64, bool)]| beyond.iter().map(|block| block.0).sum::<f64>();
@@ -109,7 +109,7 @@ fn trials(
 }
 
 /// Returns the mistakes that explain the picture; none if none does, or too many do.
-fn decided(mut trials: Vec<Trial>, test: &Means) -> Vec<Named> {
+fn decided(mut trials: Vec<Trial>, test: &Means) -> Vec<Explanation> {
     trials.sort_by(|a, b| b.explained.total_cmp(&a.explained));
     let passes = |trial: &&Trial| trial.explained >= EXPLAINED && trial.matched >= MATCHED;
     let Some(best) = trials.iter().find(passes) else { return Vec::new() };
@@ -124,8 +124,11 @@ fn decided(mut trials: Vec<Trial>, test: &Means) -> Vec<Named> {
     if rivals.len() > 3 || !rivals.iter().all(|rival| alike(rival)) {
         return Vec::new();
     }
-    let named =
-        |trial: &&Trial| Named { mistakes: vec![trial.mistake], explained: trial.explained, matched: trial.matched };
+    let named = |trial: &&Trial| Explanation {
+        mistakes: vec![trial.mistake],
+        explained: trial.explained,
+        matched: trial.matched,
+    };
     rivals.iter().map(named).collect()
 }
 

@@ -145,8 +145,8 @@ pub const MISTAKES: &[Mistake] = &[
         "value = srgb(c) * 255",
         "value = {c|srgb(srgb(c))} * 255",
         |v, more| {
-            use crate::mistakes::habits::Output;
-            v.output = if more == 0.0 { Output::CurveLess(0.0) } else { Output::CurveMore(0.0) };
+            use crate::mistakes::bugs::OutputBug;
+            v.output = if more == 0.0 { OutputBug::CurveLess(0.0) } else { OutputBug::CurveMore(0.0) };
         },
     )
     .with(Values::Only(&[0.0, 1.0])),
@@ -157,8 +157,8 @@ pub const MISTAKES: &[Mistake] = &[
         "L",
         "{} * L",
         |v, factor| {
-            use crate::mistakes::habits::Output;
-            v.output = Output::Times(factor);
+            use crate::mistakes::bugs::OutputBug;
+            v.output = OutputBug::Times(factor);
         },
     )
     .with(Values::Only(&[0.5, 2.0, std::f32::consts::PI, std::f32::consts::FRAC_1_PI])),

@@ -3,12 +3,12 @@
 //! mean as its path tracer for scenes without fog.
 
 use crate::mistakes::path_habits::{Chosen, Lacks, Paths, Sky, Slant};
-use crate::mistakes::variant::Variant;
+use crate::mistakes::variant::SceneVariant;
 use durer_render::integrator::media::Media;
 use durer_render::integrator::spawn::{offset_bound, spawn_ray, to_point};
-use durer_render::integrator::{Settings, Whitted};
+use durer_render::integrator::{Whitted, WhittedOptions};
 use durer_render::world::emitters::{LightId, LightSample, Receiver};
-use durer_render::world::{Geometry, Interaction, Shading, World};
+use durer_render::world::{Geometry, Shading, SurfaceInteraction, World};
 use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3, fp};
 use durer_scene::shape::{Primitive, Shape as _};
 use durer_scene::spectrum::{ColorMode, Lanes, Spectrum};
@@ -45,18 +45,18 @@ const SURE: u32 = 3;
 /// The tracer of a variant.
 pub struct Walker<'w> {
     world: &'w World,
-    settings: Settings,
-    habits: Paths,
+    settings: WhittedOptions,
+    bugs: Paths,
     right: Whitted<'w>,
     lanes: Lanes,
 }
 
 impl<'w> Walker<'w> {
     /// Creates the tracer of a variant.
-    pub fn new(variant: &'w Variant) -> Self {
+    pub fn new(variant: &'w SceneVariant) -> Self {
         let (world, settings) = (&variant.world, variant.settings);
         let right = Whitted { world, settings, cancel: None };
-        Walker { world, settings, habits: variant.paths, right, lanes: Lanes::new(ColorMode::Rgb, 0.5) }
+        Walker { world, settings, bugs: variant.paths, right, lanes: Lanes::new(ColorMode::Rgb, 0.5) }
     }
 
     /// Returns the radiance along a camera ray, as sample `sample` of a pixel.
@@ -108,7 +108,7 @@ impl<'w> Walker<'w> {
             if numbers.next() >= survival {
                 return sum;
             }
-            if !self.habits.roulette {
+            if !self.bugs.roulette {
                 throughput /= survival;
             }
             if pdf > 0.0 {
@@ -127,11 +127,11 @@ impl<'w> Walker<'w> {
 
     /// Returns the weight of a light that a scattered direction hits.
     fn weight(&self, pdf: f32, light: f32) -> f32 {
-        if self.habits.unweighted { 1.0 } else { power(pdf, light) }
+        if self.bugs.unweighted { 1.0 } else { power(pdf, light) }
     }
 
     fn turned(&self, dir: Vec3) -> Vec3 {
-        if self.habits.sky == Sky::UpsideDown { Vec3::new(dir.x, -dir.y, dir.z) } else { dir }
+        if self.bugs.sky == Sky::UpsideDown { Vec3::new(dir.x, -dir.y, dir.z) } else { dir }
     }
 
     fn background(&self, dir: Vec3, last: Option<(Receiver, f32)>, from_eye: bool) -> Spectrum {
@@ -146,10 +146,10 @@ impl<'w> Walker<'w> {
         last.map_or(1.0, |(to, own)| self.weight(own, chance(&to))) * light
     }
 
-    fn emission(&self, at: &Interaction, last: Option<(Receiver, f32)>) -> Spectrum {
+    fn emission(&self, at: &SurfaceInteraction, last: Option<(Receiver, f32)>) -> Spectrum {
         let mut color = self.world.emission(at);
         let emitters = self.world.emitters();
-        if color == Color::ZERO && self.habits.two_sided && self.world.may_shine(at.material) {
+        if color == Color::ZERO && self.bugs.two_sided && self.world.may_emit(at.material) {
             let mut turned = at.clone();
             turned.surface.n_geo = -turned.surface.n_geo;
             turned.surface.n_shade = -turned.surface.n_shade;
@@ -168,7 +168,7 @@ impl<'w> Walker<'w> {
     }
 
     /// Returns the light of a sampled light, BSDF and cosine included.
-    fn direct(&self, at: &Interaction, shading: &Shading, to: &Receiver, numbers: &mut Numbers) -> Spectrum {
+    fn direct(&self, at: &SurfaceInteraction, shading: &Shading, to: &Receiver, numbers: &mut Numbers) -> Spectrum {
         let emitters = self.world.emitters();
         let (choice, u) = (numbers.next(), numbers.pair());
         let Some(choice) = emitters.choose(self.world, to, choice) else { return Spectrum::ZERO };
@@ -184,8 +184,8 @@ impl<'w> Walker<'w> {
             return Spectrum::ZERO;
         }
         let pdf = if light.pdf > 0.0 { light.choice * light.pdf } else { light.choice };
-        let weight = if light.pdf == 0.0 || self.habits.unweighted { 1.0 } else { power(pdf, bsdf_pdf) };
-        let radiance = match (choice.is_sky(), self.habits.sky) {
+        let weight = if light.pdf == 0.0 || self.bugs.unweighted { 1.0 } else { power(pdf, bsdf_pdf) };
+        let radiance = match (choice.is_sky(), self.bugs.sky) {
             (true, Sky::UpsideDown) => emitters.sky(self.world, self.turned(light.wi)).0,
             (true, Sky::NoSine) => light.radiance / (1.0 - light.wi.y * light.wi.y).max(1e-4).sqrt(),
             _ => light.radiance,
@@ -208,7 +208,7 @@ impl<'w> Walker<'w> {
     /// Returns the factor by which a light sample is wrong.
     fn lacking(&self, light: &LightSample, pdf: f32) -> f32 {
         let extended = light.pdf > 0.0 && light.reach.is_finite();
-        match self.habits.lacks {
+        match self.bugs.lacks {
             Lacks::Nothing => 1.0,
             Lacks::Distance if light.reach.is_finite() => light.reach * light.reach,
             Lacks::Cosine if extended => 1.0 / light.cosine.max(1e-3),
@@ -246,12 +246,12 @@ impl<'w> Walker<'w> {
     /// Applies mistakes of the cosine and of 1/π to a value of BSDF · cosine.
     fn scaled(&self, value: Spectrum, shading: &Shading, wi: Vec3, sampled_light: bool) -> Spectrum {
         let cosine = shading.frame.normal.dot(wi).abs().max(1e-3);
-        let value = match self.habits.slant {
+        let value = match self.bugs.slant {
             Slant::Right => value,
             Slant::None => value / cosine,
             Slant::Twice => value * cosine,
         };
-        match self.habits.no_pi {
+        match self.bugs.no_pi {
             Some(lights_only) if sampled_light || !lights_only => value * PI,
             _ => value,
         }
@@ -260,14 +260,14 @@ impl<'w> Walker<'w> {
     /// Returns a scattered direction, its weight, and its density; 0 for a single direction.
     fn scattered(&self, shading: &Shading, numbers: &mut Numbers) -> Option<(Vec3, Spectrum, f32)> {
         let (choice, mut u) = (numbers.next(), numbers.pair());
-        if self.habits.chosen == Chosen::OneNumber {
+        if self.bugs.chosen == Chosen::OneNumber {
             u = Vec2::splat(u.x);
         }
         let sample = shading.bsdf.sample(shading.wo, choice, u)?;
         if sample.pdf == 0.0 {
             return Some((shading.frame.to_world(sample.wi), sample.weight, 0.0));
         }
-        if self.habits.chosen == Chosen::Uniform {
+        if self.bugs.chosen == Chosen::Uniform {
             let (sin, cos) = fp::sin_cos_degrees(f64::from(360.0 * u.x));
             let side = (1.0 - u.y * u.y).max(0.0).sqrt();
             let local = Vec3::new(side * cos as f32, side * sin as f32, u.y.max(1e-4));
@@ -281,7 +281,7 @@ impl<'w> Walker<'w> {
             return None;
         }
         let weight = self.scaled(sample.weight, shading, wi, false);
-        Some(match self.habits.chosen {
+        Some(match self.bugs.chosen {
             Chosen::Undivided => (wi, weight * sample.pdf, sample.pdf),
             Chosen::LocalFrame => (sample.wi, weight, sample.pdf),
             _ => (wi, weight, sample.pdf),

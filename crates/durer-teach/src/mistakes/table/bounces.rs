@@ -1,7 +1,7 @@
 //! Mistakes of mirrors and glass.
 
 use super::{Mistake, Values, row};
-use crate::mistakes::habits::{Fresnel, Glass, Mirror};
+use crate::mistakes::bugs::{Fresnel, Glass, Mirror};
 use durer_scene::math::Color;
 
 pub(super) const MISTAKES: &[Mistake] = &[
@@ -11,7 +11,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "reflections are missing",
         "color += kr * trace(p, R, bounces - 1)",
         "(nothing)",
-        |v, divided| if divided == 0.0 { v.settings.reflection = false } else { v.habits.bounces.no_mirror = true },
+        |v, divided| if divided == 0.0 { v.settings.reflection = false } else { v.bugs.bounces.no_mirror = true },
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
@@ -20,7 +20,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "glass is opaque: the transmitted ray is missing",
         "color += kt * trace(p, T, bounces - 1)",
         "(nothing)",
-        |v, divided| if divided == 0.0 { v.settings.refraction = false } else { v.habits.bounces.no_glass = true },
+        |v, divided| if divided == 0.0 { v.settings.refraction = false } else { v.bugs.bounces.no_glass = true },
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
@@ -63,7 +63,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "mirrored light is not multiplied by the mirror's colour",
         "color += kr * trace(p, R)",
         "color += trace(p, R)",
-        |v, _| v.habits.bounces.mirror_in_full = true,
+        |v, _| v.bugs.bounces.mirror_in_full = true,
     ),
     row(
         "glass-in-full",
@@ -71,7 +71,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "transmitted light is not multiplied by the glass's colour",
         "color += kt * trace(p, T)",
         "color += trace(p, T)",
-        |v, _| v.habits.bounces.glass_in_full = true,
+        |v, _| v.bugs.bounces.glass_in_full = true,
     ),
     row(
         "mirror-negated",
@@ -79,7 +79,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the mirrored direction is negated",
         "R = d - 2 (d.N) N",
         "R = 2 (d.N) N - d",
-        |v, _| v.habits.bounces.mirror = Mirror::Negated,
+        |v, _| v.bugs.bounces.mirror = Mirror::Negated,
     ),
     row(
         "mirror-along",
@@ -87,7 +87,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the factor 2 of the mirrored direction is missing",
         "R = d - 2 (d.N) N",
         "R = {d - (d.N) N|normalize(d - (d.N) N)}",
-        |v, unit| (v.habits.bounces.mirror, v.habits.bounces.unit) = (Mirror::Along, unit > 0.0),
+        |v, unit| (v.bugs.bounces.mirror, v.bugs.bounces.unit) = (Mirror::Along, unit > 0.0),
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
@@ -96,7 +96,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the mirrored direction has a wrong sign inside",
         "R = d - 2 (d.N) N",
         "R = d + 2 (d.N) N",
-        |v, _| v.habits.bounces.mirror = Mirror::Plus,
+        |v, _| v.bugs.bounces.mirror = Mirror::Plus,
     ),
     row(
         "mirror-normal",
@@ -104,7 +104,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "mirrored rays go along the normal",
         "R = d - 2 (d.N) N",
         "R = N",
-        |v, _| v.habits.bounces.mirror = Mirror::Normal,
+        |v, _| v.bugs.bounces.mirror = Mirror::Normal,
     ),
     row(
         "secondary-each-light",
@@ -112,7 +112,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "secondary rays are added once per light, inside the loop",
         "for each light { local }; color += kr * trace(p, R)",
         "for each light { local; color += kr * trace(p, R) }",
-        |v, _| v.habits.bounces.each_light = true,
+        |v, _| v.bugs.bounces.each_light = true,
     ),
     row(
         "secondary-black-sky",
@@ -120,7 +120,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "mirrored and transmitted rays that miss return black instead of the background",
         "if (!hit) return background(d)",
         "if (!hit) return 0, for secondary rays",
-        |v, _| v.habits.bounces.black_sky = true,
+        |v, _| v.bugs.bounces.black_sky = true,
     ),
     row(
         "secondary-unshadowed",
@@ -128,7 +128,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "shadows are missing in mirrors and behind glass",
         "shadow rays at every hit",
         "shadow rays at the first hit only",
-        |v, _| v.habits.bounces.unshadowed = true,
+        |v, _| v.bugs.bounces.unshadowed = true,
     ),
     row(
         "secondary-epsilon",
@@ -136,7 +136,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the epsilon of mirrored and transmitted rays is far too large: {}",
         "hits count at t > 1e-4",
         "hits count at t > {}",
-        |v, epsilon| v.habits.bounces.epsilon = Some(epsilon),
+        |v, epsilon| v.bugs.bounces.epsilon = Some(epsilon),
     )
     .with(Values::Numbers(&[0.1, 0.5, 1.0, 2.0])),
     row(
@@ -146,8 +146,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "hits count at t > 1e-4",
         "hits count at t > {}",
         |v, epsilon| {
-            v.habits.shadows.epsilon = Some(epsilon);
-            v.habits.bounces.epsilon = Some(epsilon);
+            v.bugs.shadows.epsilon = Some(epsilon);
+            v.bugs.bounces.epsilon = Some(epsilon);
         },
     )
     .with(Values::Numbers(&[0.1, 0.5, 0.02, 1.0, 2.0])),
@@ -165,7 +165,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the ratio of the indices of refraction is inverted",
         "eta = n1 / n2 (from, to)",
         "eta = n2 / n1",
-        |v, _| v.habits.bounces.glass = Glass::Inverted,
+        |v, _| v.bugs.bounces.glass = Glass::Inverted,
     ),
     row(
         "exit-not-swapped",
@@ -173,7 +173,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the indices are not swapped when a ray leaves the glass",
         "leaving: eta = n / 1",
         "leaving: eta = 1 / n",
-        |v, _| v.habits.bounces.glass = Glass::NotSwapped,
+        |v, _| v.bugs.bounces.glass = Glass::NotSwapped,
     ),
     row(
         "not-bent",
@@ -181,7 +181,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "rays pass straight through glass, as if its index were 1",
         "T by Snell's law",
         "T = d",
-        |v, _| v.habits.bounces.glass = Glass::Straight,
+        |v, _| v.bugs.bounces.glass = Glass::Straight,
     ),
     row(
         "fresnel-constant",
@@ -189,7 +189,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "glass reflects the same fraction at every angle: R0 instead of Schlick's formula",
         "R = R0 + (1 - R0) (1 - c)^5",
         "R = R0",
-        |v, _| v.habits.bounces.fresnel = Fresnel::Constant,
+        |v, _| v.bugs.bounces.fresnel = Fresnel::Constant,
     ),
     row(
         "no-fresnel",
@@ -197,7 +197,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "Fresnel's law is missing: the mirrored and transmitted light of glass are both added in full",
         "R * trace(R) + (1 - R) * trace(T)",
         "trace(R) + trace(T)",
-        |v, _| v.habits.bounces.fresnel = Fresnel::None,
+        |v, _| v.bugs.bounces.fresnel = Fresnel::None,
     ),
     row(
         "fresnel-share",
@@ -205,7 +205,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "glass reflects the same fraction of light at every angle: {}",
         "R = R0 + (1 - R0) (1 - c)^5",
         "R = {}",
-        |v, share| v.habits.bounces.fresnel = Fresnel::Share(share),
+        |v, share| v.bugs.bounces.fresnel = Fresnel::Share(share),
     )
     .with(Values::Only(&[0.0, 0.5, 1.0])),
     row(
@@ -214,7 +214,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the mirrored and transmitted shares of glass are swapped",
         "R * trace(R) + (1 - R) * trace(T)",
         "(1 - R) * trace(R) + R * trace(T)",
-        |v, _| v.habits.bounces.fresnel = Fresnel::Exchanged,
+        |v, _| v.bugs.bounces.fresnel = Fresnel::Exchanged,
     ),
     row(
         "mirror-mixed",
@@ -222,7 +222,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the local light of mirrors is scaled by 1 minus the mirror's colour",
         "local + kr * trace(p, R)",
         "(1 - kr) * local + kr * trace(p, R)",
-        |v, _| v.habits.bounces.mixed = true,
+        |v, _| v.bugs.bounces.mixed = true,
     ),
     row(
         "mirror-instead",
@@ -230,7 +230,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "mirrored light replaces the local light of mirrors",
         "color = local + kr * trace(p, R)",
         "color = kr * trace(p, R)",
-        |v, _| v.habits.bounces.instead = true,
+        |v, _| v.bugs.bounces.instead = true,
     ),
     row(
         "exit-not-turned",
@@ -238,7 +238,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the normal is not flipped when a ray leaves the glass",
         "leaving: T of -N",
         "leaving: T of N",
-        |v, _| v.habits.bounces.glass = Glass::Outward,
+        |v, _| v.bugs.bounces.glass = Glass::Outward,
     ),
     row(
         "exit-r0",
@@ -246,7 +246,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "R0 differs when a ray leaves glass",
         "R0 = ((n2 - n1) / (n2 + n1))^2 on both sides",
         "R0 = 0 on the way out",
-        |v, _| v.toggle(durer_scene::dialect::Compat::ExitR0),
+        |v, _| v.toggle(durer_scene::dialect::Quirk::ExitR0),
     ),
     row(
         "mirror-diffuse",
@@ -254,7 +254,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "mirrored light is also multiplied by the diffuse colour",
         "color += kr * trace(p, R)",
         "color += kd * kr * trace(p, R), or kd * (local + kr * trace(p, R))",
-        |v, _| v.habits.bounces.times_diffuse = true,
+        |v, _| v.bugs.bounces.times_diffuse = true,
     ),
     row(
         "secondary-diffuse",
@@ -310,7 +310,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "Schlick's formula uses the angle of the incoming ray even when it leaves the glass",
         "c = cosine on the side of air",
         "c = dot(-d, N) always",
-        |v, _| v.habits.bounces.fresnel = Fresnel::Incoming,
+        |v, _| v.bugs.bounces.fresnel = Fresnel::Incoming,
     ),
     row(
         "root-added",
@@ -318,7 +318,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the root of Snell's law has the wrong sign",
         "T = eta d + (eta c - sqrt(1 - eta^2 (1 - c^2))) N",
         "T = eta d + (eta c + sqrt(1 - eta^2 (1 - c^2))) N",
-        |v, _| v.habits.bounces.glass = Glass::RootAdded,
+        |v, _| v.bugs.bounces.glass = Glass::RootAdded,
     ),
     row(
         "refraction-formula",
@@ -327,8 +327,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "T = eta d + (eta c - sqrt(1 - eta^2 (1 - c^2))) N",
         "T = {eta d - (eta c - sqrt(1 - eta^2 (1 - c^2))) N|eta d + (eta c - (1 - eta^2 (1 - c^2))) N|eta d + (eta c - sqrt(1 - eta (1 - c^2))) N|eta d - (eta c - sqrt(1 - eta^2 (1 - c^2))) N|eta d + (eta c - (1 - eta^2 (1 - c^2))) N|eta d + (eta c - sqrt(1 - eta (1 - c^2))) N}",
         |v, how| {
-            v.habits.bounces.glass = [Glass::SignChanged, Glass::NoRoot, Glass::Unsquared][how as usize % 3];
-            v.habits.bounces.unit = how >= 3.0;
+            v.bugs.bounces.glass = [Glass::SignChanged, Glass::NoRoot, Glass::Unsquared][how as usize % 3];
+            v.bugs.bounces.unit = how >= 3.0;
         },
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0])),
@@ -362,7 +362,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the two indices of refraction are swapped, and so is the angle in Schlick's formula",
         "n1 outside, n2 inside; swapped when leaving",
         "n1 inside, n2 outside",
-        |v, _| v.habits.bounces.glass = Glass::Exchanged,
+        |v, _| v.bugs.bounces.glass = Glass::Exchanged,
     ),
     row(
         "fresnel-not-squared",
@@ -370,7 +370,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "R0 of Schlick's formula is not squared",
         "R0 = ((n2 - n1) / (n2 + n1))^2",
         "R0 = |n2 - n1| / (n2 + n1)",
-        |v, _| v.habits.bounces.fresnel = Fresnel::Unsquared,
+        |v, _| v.bugs.bounces.fresnel = Fresnel::Unsquared,
     ),
     row(
         "fresnel-power",
@@ -378,7 +378,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "Schlick's formula has the power {} instead of 5",
         "R = R0 + (1 - R0) (1 - c)^5",
         "R = R0 + (1 - R0) (1 - c)^{}",
-        |v, power| v.habits.bounces.fresnel = Fresnel::Power(power),
+        |v, power| v.bugs.bounces.fresnel = Fresnel::Power(power),
     )
     .with(Values::Only(&[1.0, 2.0, 3.0, 4.0, 6.0])),
     row(
@@ -388,8 +388,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "t_min = epsilon",
         "t_min = -epsilon",
         |v, _| {
-            v.habits.shadows.epsilon = Some(-1e-3);
-            v.habits.bounces.epsilon = Some(-1e-3);
+            v.bugs.shadows.epsilon = Some(-1e-3);
+            v.bugs.bounces.epsilon = Some(-1e-3);
         },
     ),
 ];

@@ -1,10 +1,10 @@
 //! Mistakes of the camera and of sample positions.
 
 use super::{Mistake, Values, row};
-use crate::mistakes::habits::{Aspect, Rays};
+use crate::mistakes::bugs::{Aspect, RayCount};
 use durer_scene::camera::Projection;
 use durer_scene::camera::UpRule;
-use durer_scene::dialect::Compat;
+use durer_scene::dialect::Quirk;
 use durer_scene::math::{Vec2, Vec3, fp};
 
 pub(super) const MISTAKES: &[Mistake] = &[
@@ -23,7 +23,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "there is one ray per pixel, but the reference uses many",
         "the mean of many samples",
         "one ray through the center of each pixel",
-        |v, _| v.aim.rays = Rays::One,
+        |v, _| v.aim.rays = RayCount::One,
     ),
     row(
         "many-rays",
@@ -31,7 +31,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "each pixel is the mean of many rays, but the reference uses one",
         "one ray through the center of each pixel",
         "the mean of many samples",
-        |v, _| v.aim.rays = Rays::Sixteen,
+        |v, _| v.aim.rays = RayCount::Sixteen,
     ),
     row(
         "border-pixels",
@@ -39,7 +39,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the first and last pixels are centered on the picture's border instead of inside it, or the reverse",
         "as in that year's program: (i + 0.5) / n, or i / (n - 1)",
         "the other",
-        |v, _| v.toggle(Compat::BorderPixels),
+        |v, _| v.toggle(Quirk::BorderPixels),
     ),
     row(
         "stretch",
@@ -47,7 +47,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "a non-square picture is stretched instead of cropped, or the reverse",
         "as in that year's program: both axes in units of the larger side, or each in its own",
         "the other",
-        |v, _| v.toggle(Compat::Stretch),
+        |v, _| v.toggle(Quirk::Stretch),
     ),
     row(
         "aspect-smaller-side",
@@ -209,7 +209,7 @@ fn tan(degrees: f32) -> f32 {
 }
 
 /// Widens the picture of a perspective camera by a factor that depends on its angle.
-fn scale(v: &mut super::Variant, factor: impl Fn(f32) -> f32) {
+fn scale(v: &mut super::SceneVariant, factor: impl Fn(f32) -> f32) {
     if let Some(angle) = v.angle() {
         v.aim.scale *= factor(angle);
     }

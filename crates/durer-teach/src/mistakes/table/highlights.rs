@@ -1,7 +1,7 @@
 //! Mistakes of highlights.
 
 use super::{Mistake, Values, row};
-use crate::mistakes::habits::{Half, Mirror};
+use crate::mistakes::bugs::{HalfVector, Mirror};
 use durer_render::world::HighlightModel;
 use durer_scene::math::Color;
 
@@ -73,7 +73,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the direction R of the highlights {lacks the factor 2|is negated|is the normal}",
         "R = d - 2 (d.N) N",
         "R = {d - (d.N) N|2 (d.N) N - d|N}",
-        |v, how| v.habits.highlights.mirror = [Mirror::Along, Mirror::Negated, Mirror::Normal][(how as usize).min(2)],
+        |v, how| v.bugs.highlights.mirror = [Mirror::Along, Mirror::Negated, Mirror::Normal][(how as usize).min(2)],
     )
     .with(Values::Only(&[0.0, 1.0, 2.0])),
     row(
@@ -82,7 +82,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the highlights are multiplied by {}",
         "color += ks * pow(max(0, N.H), s) * I",
         "color += {} * ks * pow(max(0, N.H), s) * I",
-        |v, factor| v.habits.highlights.factor = Some(factor),
+        |v, factor| v.bugs.highlights.factor = Some(factor),
     )
     .with(Values::Numbers(&[0.1, 0.5, 2.0])),
     row(
@@ -99,7 +99,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the highlights are multiplied by N.L",
         "color += ks * pow(base, s) * I",
         "color += ks * pow(base, s) * max(0, N.L) * I",
-        |v, _| v.habits.highlights.times_cosine = true,
+        |v, _| v.bugs.highlights.times_cosine = true,
     ),
     row(
         "highlight-diffuse",
@@ -107,7 +107,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the highlights are multiplied by the diffuse colour",
         "color += (kd * N.L + ks * pow(base, s)) * I",
         "color += kd * (N.L + ks * pow(base, s)) * I",
-        |v, _| v.habits.highlights.times_diffuse = true,
+        |v, _| v.bugs.highlights.times_diffuse = true,
     ),
     row(
         "highlight-bare",
@@ -117,7 +117,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "pow(base, s) * I",
         |v, _| {
             v.highlights_everywhere();
-            v.habits.highlights.bare = true;
+            v.bugs.highlights.bare = true;
         },
     ),
     row(
@@ -126,7 +126,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the half vector H of the highlights is not normalised",
         "H = normalize(L + V)",
         "H = L + V",
-        |v, _| v.habits.highlights.half = Half::Sum,
+        |v, _| v.bugs.highlights.half = HalfVector::Sum,
     ),
     row(
         "half-mean",
@@ -134,7 +134,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the half vector H of the highlights is halved instead of normalised",
         "H = normalize(L + V)",
         "H = (L + V) / 2",
-        |v, _| v.habits.highlights.half = Half::Mean,
+        |v, _| v.bugs.highlights.half = HalfVector::Mean,
     ),
     row(
         "highlight-behind",
@@ -156,7 +156,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the direction to the eye has the wrong sign in the highlights",
         "V = -d: H = normalize(L - d), R.L with R = d - 2 (d.N) N",
         "V = d: H = normalize(L + d), R = 2 (d.N) N - d",
-        |v, _| v.habits.highlights.eye_negated = true,
+        |v, _| v.bugs.highlights.eye_negated = true,
     ),
     row(
         "highlight-two-sided",
@@ -164,7 +164,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the highlights ignore the sign of their base: there is one on the other side too",
         "pow(max(0, base), s)",
         "pow(abs(base), s)",
-        |v, _| v.habits.highlights.two_sided = true,
+        |v, _| v.bugs.highlights.two_sided = true,
     ),
     row(
         "highlight-lightless",
@@ -172,7 +172,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the highlights are not multiplied by the light's colour",
         "color += ks * pow(base, s) * I",
         "color += ks * pow(base, s)",
-        |v, _| v.habits.highlights.lightless = true,
+        |v, _| v.bugs.highlights.lightless = true,
     ),
     row(
         "highlight-white",
@@ -211,6 +211,6 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "there are highlights on surfaces that face away from the light",
         "if (dot(N, L) > 0) color += ks * pow(max(0, N.H), s) * I",
         "color += ks * pow(max(0, N.H), s) * I",
-        |v, _| v.habits.highlights.everywhere = true,
+        |v, _| v.bugs.highlights.everywhere = true,
     ),
 ];

@@ -1,7 +1,7 @@
 //! Mistakes of local light: ambient, diffuse, lights, sums.
 
 use super::{Mistake, Values, row};
-use crate::mistakes::habits::{Ambient, Cosine, Fading, PointLamp, Sum};
+use crate::mistakes::bugs::{Ambient, Attenuation, Cosine, LightSum, PointLightDirection};
 use durer_scene::light::Light;
 use durer_scene::math::{Color, Vec3};
 
@@ -20,7 +20,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the ambient light is added once per light, inside the loop",
         "color = ambient * kd; for each light color += ...",
         "for each light color += ambient * kd + ...",
-        |v, _| v.habits.ambient = Ambient::EachLight,
+        |v, _| v.bugs.ambient = Ambient::EachLight,
     ),
     row(
         "ambient-bare",
@@ -28,7 +28,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the ambient light is not multiplied by the diffuse colour",
         "color = ambient * kd",
         "color = ambient",
-        |v, _| v.habits.ambient = Ambient::Bare,
+        |v, _| v.bugs.ambient = Ambient::Bare,
     ),
     row(
         "ambient-textured",
@@ -44,7 +44,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the diffuse term is missing",
         "color += kd * max(0, N.L) * I",
         "(nothing)",
-        |v, _| v.habits.cosine = Cosine::None,
+        |v, _| v.bugs.cosine = Cosine::None,
     ),
     row(
         "no-cosine",
@@ -52,7 +52,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the diffuse term is not multiplied by N.L: surfaces have a flat colour",
         "color += kd * max(0, N.L) * I",
         "color += kd * I",
-        |v, _| v.habits.cosine = Cosine::One,
+        |v, _| v.bugs.cosine = Cosine::One,
     ),
     row(
         "two-sided",
@@ -60,7 +60,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "surfaces are lit from behind too: the sign of N.L is ignored",
         "max(0, dot(N, L))",
         "abs(dot(N, L))",
-        |v, _| v.habits.cosine = Cosine::TwoSided,
+        |v, _| v.bugs.cosine = Cosine::TwoSided,
     ),
     row(
         "not-clamped-below",
@@ -68,7 +68,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "light from behind is subtracted: negative N.L is not clamped",
         "max(0, dot(N, L))",
         "dot(N, L)",
-        |v, _| v.habits.cosine = Cosine::Signed,
+        |v, _| v.bugs.cosine = Cosine::Signed,
     ),
     row(
         "white-diffuse",
@@ -77,7 +77,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "color += kd * max(0, N.L) * I",
         "color += max(0, N.L) * I",
         |v, which| {
-            v.habits.plain_diffuse = true;
+            v.bugs.plain_diffuse = true;
             if which > 0.0 {
                 v.phongs(|phong| (phong.diffuse, phong.texture, phong.noise) = (Color::ONE, None, None));
             }
@@ -90,7 +90,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the diffuse term is not multiplied by the light's colour",
         "color += kd * max(0, N.L) * I",
         "color += kd * max(0, N.L)",
-        |v, _| v.habits.diffuse_lightless = true,
+        |v, _| v.bugs.diffuse_lightless = true,
     ),
     row(
         "no-texture",
@@ -108,7 +108,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "if (!hit) return {0|0|1|1}",
         |v, how| {
             let color = if how < 2.0 { Color::ZERO } else { Color::ONE };
-            v.habits.sky = Some((color, how % 2.0 > 0.0));
+            v.bugs.sky = Some((color, how % 2.0 > 0.0));
         },
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
@@ -143,7 +143,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "each light replaces the ones before it, so only the last one is visible",
         "color += ...",
         "color = ambient * kd + ...",
-        |v, seen| v.habits.sum = if seen == 0.0 { Sum::LastOnly } else { Sum::LastSeen },
+        |v, seen| v.bugs.sum = if seen == 0.0 { LightSum::LastOnly } else { LightSum::LastSeen },
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
@@ -164,7 +164,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the direction to every light has the wrong sign, and shadow rays use it too",
         "L = normalize(position - p), or normalize(-direction)",
         "L = normalize(p - position), or normalize(direction)",
-        |v, _| v.habits.lamps.all_negated = true,
+        |v, _| v.bugs.lights.all_negated = true,
     ),
     row(
         "light-negated",
@@ -172,7 +172,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "directional lights shine from the opposite side: L is the direction itself",
         "L = normalize(-direction)",
         "L = normalize(direction)",
-        |v, _| v.habits.lamps.negated = true,
+        |v, _| v.bugs.lights.negated = true,
     ),
     row(
         "point-light-negated",
@@ -180,7 +180,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the direction to point lights has the wrong sign",
         "L = normalize(position - p)",
         "L = normalize(p - position)",
-        |v, _| v.habits.lamps.points = PointLamp::Negated,
+        |v, _| v.bugs.lights.points = PointLightDirection::Negated,
     ),
     row(
         "light-long",
@@ -188,7 +188,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the direction of directional lights is not normalised",
         "L = normalize(-direction)",
         "L = -direction",
-        |v, _| v.habits.lamps.long = true,
+        |v, _| v.bugs.lights.long = true,
     ),
     row(
         "point-light-long",
@@ -196,7 +196,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the direction to point lights is not normalised",
         "L = normalize(position - p)",
         "L = position - p",
-        |v, _| v.habits.lamps.long_points = true,
+        |v, _| v.bugs.lights.long_points = true,
     ),
     row(
         "no-falloff",
@@ -224,7 +224,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "light is divided by its distance, regardless of the scene",
         "I = color / (a0 + a1 d + a2 d^2)",
         "I = color / d",
-        |v, _| v.habits.lamps.fading = Fading::Linear,
+        |v, _| v.bugs.lights.fading = Attenuation::Linear,
     ),
     row(
         "falloff-1-over-d2",
@@ -232,7 +232,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "light is divided by the square of its distance, regardless of the scene",
         "I = color / (a0 + a1 d + a2 d^2)",
         "I = color / (d * d)",
-        |v, _| v.habits.lamps.fading = Fading::Square,
+        |v, _| v.bugs.lights.fading = Attenuation::Square,
     ),
     row(
         "falloff-multiplied",
@@ -240,7 +240,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "light increases with distance: it is multiplied by the falloff instead of divided",
         "I = color / (a0 + a1 d + a2 d^2)",
         "I = color * (a0 + a1 d + a2 d^2)",
-        |v, _| v.habits.lamps.fading = Fading::Multiplied,
+        |v, _| v.bugs.lights.fading = Attenuation::Multiplied,
     ),
     row(
         "falloff-without-one",
@@ -315,7 +315,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the local colour is clamped to 1 before mirrored and transmitted light is added",
         "clamp once when the pixel is written",
         "color = min(1, local) + kr * trace(R)",
-        |v, _| v.habits.sum = Sum::ClampedLocal,
+        |v, _| v.bugs.sum = LightSum::ClampedLocal,
     ),
     row(
         "clamped-light",
@@ -323,7 +323,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the contribution of each light is clamped to 1",
         "sum all, clamp once when the pixel is written",
         "for each light color += min(1, ...)",
-        |v, _| v.habits.sum = Sum::ClampedLight,
+        |v, _| v.bugs.sum = LightSum::ClampedLight,
     ),
     row(
         "clamped-rays",
@@ -331,7 +331,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the colour that each ray returns is clamped to 1",
         "clamp once when the pixel is written",
         "trace(ray) returns min(1, color)",
-        |v, _| v.habits.clamped_rays = true,
+        |v, _| v.bugs.clamped_rays = true,
     ),
     row(
         "clamped-each-light",
@@ -339,7 +339,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the colour is clamped to 1 after each light",
         "sum all, clamp once when the pixel is written",
         "for each light color = min(1, color + ...)",
-        |v, _| v.habits.sum = Sum::ClampedEach,
+        |v, _| v.bugs.sum = LightSum::ClampedEach,
     ),
     row(
         "cosine-squared",
@@ -347,7 +347,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "N.L is squared in the diffuse term",
         "color += kd * max(0, N.L) * I",
         "color += kd * pow(max(0, N.L), 2) * I",
-        |v, _| v.habits.cosine = Cosine::Squared,
+        |v, _| v.bugs.cosine = Cosine::Squared,
     ),
     row(
         "cosine-half",
@@ -355,7 +355,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the diffuse term extends to the dark side: (N.L + 1) / 2",
         "color += kd * max(0, N.L) * I",
         "color += kd * (0.5 * N.L + 0.5) * I",
-        |v, _| v.habits.cosine = Cosine::Half,
+        |v, _| v.bugs.cosine = Cosine::Half,
     ),
     row(
         "cosine-step",
@@ -363,7 +363,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the diffuse term is either 0 or 1: it is 1 where N.L > 0",
         "color += kd * max(0, N.L) * I",
         "if (N.L > 0) color += kd * I",
-        |v, _| v.habits.cosine = Cosine::Step,
+        |v, _| v.bugs.cosine = Cosine::Step,
     ),
     row(
         "cosine-of-view",
@@ -371,7 +371,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the diffuse term is times N.V, the direction to the eye, not N.L",
         "color += kd * max(0, N.L) * I",
         "color += kd * max(0, N.V) * I",
-        |v, _| v.habits.cosine = Cosine::View,
+        |v, _| v.bugs.cosine = Cosine::View,
     ),
     row(
         "diffuse-twice",
@@ -380,7 +380,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "color += kd * max(0, N.L) * I",
         "color += kd * kd * max(0, N.L) * I",
         |v, ambient| match ambient == 0.0 {
-            true => v.habits.diffuse_twice = true,
+            true => v.bugs.diffuse_twice = true,
             false => v.phongs(|phong| phong.diffuse *= phong.diffuse),
         },
     )
@@ -391,7 +391,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the greatest of the lights counts, not their sum{|, the ambient light among them}",
         "for each light color += ...",
         "for each light color = max(color, ...)",
-        |v, all| v.habits.sum = if all == 0.0 { Sum::Greatest } else { Sum::GreatestOfAll },
+        |v, all| v.bugs.sum = if all == 0.0 { LightSum::Greatest } else { LightSum::GreatestOfAll },
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
@@ -400,7 +400,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the direction to point lights is taken from the eye, not from the surface{|, and their distance too}",
         "L = normalize(position - p)",
         "L = normalize(position - eye)",
-        |v, all| v.habits.lamps.points = PointLamp::FromEye(all > 0.0),
+        |v, all| v.bugs.lights.points = PointLightDirection::FromEye(all > 0.0),
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
@@ -409,7 +409,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the diffuse term is divided by pi, unlike in this year's program",
         "color += kd * max(0, N.L) * I",
         "color += kd / pi * max(0, N.L) * I",
-        |v, _| v.habits.cosine = Cosine::OverPi,
+        |v, _| v.bugs.cosine = Cosine::OverPi,
     ),
     row(
         "point-light-position",
@@ -418,8 +418,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "L = normalize(position - p)",
         "L = normalize({position|-position|position}){||, d = length(position)}",
         |v, how| {
-            v.habits.lamps.points =
-                [PointLamp::Position, PointLamp::MinusPosition, PointLamp::PositionAlone][(how as usize).min(2)];
+            v.bugs.lights.points =
+                [PointLightDirection::Position, PointLightDirection::MinusPosition, PointLightDirection::PositionAlone][(how as usize).min(2)];
         },
     )
     .with(Values::Only(&[0.0, 1.0, 2.0])),
@@ -429,7 +429,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "light is divided by the square root of its falloff",
         "I = color / (a0 + a1 d + a2 d^2)",
         "I = color / sqrt(a0 + a1 d + a2 d^2)",
-        |v, _| v.habits.lamps.fading = Fading::Root,
+        |v, _| v.bugs.lights.fading = Attenuation::Root,
     ),
     row(
         "falloff-squared-twice",
@@ -437,7 +437,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the distance is squared twice before light is divided by it",
         "I = color / (a0 + a1 d + a2 d^2)",
         "d = dot(v, v), I = color / (a0 + a1 d + a2 d^2)",
-        |v, _| v.habits.lamps.fading = Fading::SquaredTwice,
+        |v, _| v.bugs.lights.fading = Attenuation::SquaredTwice,
     ),
     row(
         "ambient-factor",
@@ -454,7 +454,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the diffuse term is multiplied by {}",
         "color += kd * max(0, N.L) * I",
         "color += {} * kd * max(0, N.L) * I",
-        |v, factor| v.habits.diffuse_factor = Some(factor),
+        |v, factor| v.bugs.diffuse_factor = Some(factor),
     )
     .with(Values::Numbers(&[0.5, 0.9, 2.0])),
     row(

@@ -3,13 +3,13 @@
 
 mod bounces;
 mod camera;
+mod geometry;
 mod highlights;
 mod light;
 mod output;
 mod shadows;
-mod things;
 
-use super::Variant;
+use super::SceneVariant;
 use super::variant::three_factors;
 use durer_scene::dialect::{Falloff, Highlight, Rules};
 use durer_scene::scene::Scene;
@@ -31,7 +31,7 @@ pub struct Mistake {
     /// Values to try.
     pub values: Values,
     /// Applies the mistake to a variant.
-    pub make: fn(&mut Variant, f32),
+    pub make: fn(&mut SceneVariant, f32),
 }
 
 /// Values with which a mistake is tried.
@@ -65,7 +65,7 @@ pub const MISTAKES: [&[Mistake]; 7] = [
     highlights::MISTAKES,
     shadows::MISTAKES,
     bounces::MISTAKES,
-    things::MISTAKES,
+    geometry::MISTAKES,
     camera::MISTAKES,
     output::MISTAKES,
 ];
@@ -82,7 +82,7 @@ pub(in crate::mistakes) const fn row(
     words: &'static str,
     right: &'static str,
     wrong: &'static str,
-    make: fn(&mut Variant, f32),
+    make: fn(&mut SceneVariant, f32),
 ) -> Mistake {
     Mistake { name, words, right, wrong, step, values: Values::One, make }
 }
@@ -99,14 +99,15 @@ impl Mistake {
     }
 
     /// Returns the description with a value filled in.
-    pub fn told(&self, value: f32) -> String {
+    pub fn describe(&self, value: f32) -> String {
         filled(self.words, value)
     }
 
     /// Returns the correct and the probable wrong code in the formulas of a scene.
     pub fn forms(&self, value: f32, formulas: &Formulas) -> [String; 2] {
-        let said = |form| filled(form, value).replace(ATTENUATION, formulas.fading).replace("N.H", formulas.highlight);
-        [self.right, self.wrong].map(said)
+        let messages =
+            |form| filled(form, value).replace(ATTENUATION, formulas.fading).replace("N.H", formulas.highlight);
+        [self.right, self.wrong].map(messages)
     }
 }
 

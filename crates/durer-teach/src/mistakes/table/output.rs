@@ -2,7 +2,7 @@
 //! alone.
 
 use super::{Mistake, Values, row};
-use crate::mistakes::habits::{Output, Turn};
+use crate::mistakes::bugs::{OutputBug, PictureTurn};
 
 /// Usual exponents; 0 is the sRGB curve itself.
 const POWERS: Values = Values::Only(&[0.0, 2.2, 2.0, 1.8, 2.4]);
@@ -68,12 +68,12 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "rows or columns from 1",
         |v, way| {
             const WAYS: [(i32, i32); 4] = [(0, -1), (0, 1), (-1, 0), (1, 0)];
-            v.turn = Turn { moved: WAYS[way as usize % 4], black_border: way < 4.0, rolled: way >= 8.0, ..v.turn };
+            v.turn = PictureTurn { moved: WAYS[way as usize % 4], black_border: way < 4.0, rolled: way >= 8.0, ..v.turn };
         },
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0])),
     row("tone-mapped", "flat", "light is compressed instead of clamped to 1", "min(1, c)", "c / (1 + c)", |v, _| {
-        v.output = Output::Toned
+        v.output = OutputBug::Toned
     }),
     row(
         "wrapped",
@@ -81,7 +81,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "values beyond 1 wrap around in eight bits{|, and are multiplied by 256}",
         "(unsigned char) (min(1, c) * 255)",
         "(unsigned char) (c * {255|256})",
-        |v, more| v.output = Output::Wrapped(255 + more as u16),
+        |v, more| v.output = OutputBug::Wrapped(255 + more as u16),
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
@@ -90,7 +90,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the picture is divided by its brightest value instead of clamped to 1",
         "min(1, c) * 255",
         "c / max(all c) * 255",
-        |v, _| v.output = Output::Scaled,
+        |v, _| v.output = OutputBug::Scaled,
     ),
     row(
         "other-rounding",
@@ -98,7 +98,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "values are rounded instead of truncated, or the reverse: they differ by 1",
         "as in that year's program: (int) (c * 255), or round(c * 255)",
         "the other",
-        |v, _| v.output = Output::OtherRounding,
+        |v, _| v.output = OutputBug::OtherRounding,
     ),
     row(
         "curve-more",
@@ -106,7 +106,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the sRGB curve (gamma) is applied once too often",
         "value = c * 255",
         "value = pow(c, 1 / 2.2) * 255",
-        |v, power| v.output = Output::CurveMore(power),
+        |v, power| v.output = OutputBug::CurveMore(power),
     )
     .with(POWERS),
     row(
@@ -115,7 +115,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the sRGB curve (gamma) is missing once, or undone",
         "value = srgb(c) * 255 if the reference has the curve, else c * 255",
         "one curve less: value = c * 255, or pow(c, 2.2) * 255",
-        |v, power| v.output = Output::CurveLess(power),
+        |v, power| v.output = OutputBug::CurveLess(power),
     )
     .with(POWERS),
     row(
@@ -130,7 +130,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         },
     ),
     row("negative", "flat", "the picture is a negative: bright and dark are swapped", "c", "1 - c", |v, _| {
-        v.output = Output::Negative;
+        v.output = OutputBug::Negative;
     }),
     row(
         "grey",
@@ -138,7 +138,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the picture is grey{||||, from red only|, from green only|, from blue only}",
         "three channels",
         "one, three times",
-        |v, how| v.output = Output::Grey(how as u32),
+        |v, how| v.output = OutputBug::Grey(how as u32),
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0])),
     row(
@@ -147,7 +147,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "there are only {} levels of each colour",
         "256 levels",
         "{} levels",
-        |v, steps| v.output = Output::Steps(steps as u32),
+        |v, steps| v.output = OutputBug::Steps(steps as u32),
     )
     .with(Values::Only(&[2.0, 3.0, 4.0, 8.0, 16.0, 32.0, 64.0])),
     row(
@@ -156,7 +156,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the whole picture is {} times as bright as it should be",
         "c * 255",
         "{} * c * 255",
-        |v, factor| v.output = Output::Times(factor),
+        |v, factor| v.output = OutputBug::Times(factor),
     )
     .with(Values::Numbers(&[0.5, 0.75, 1.3, 2.0])),
 ];

@@ -1,7 +1,7 @@
 //! Mistakes of shadows.
 
 use super::{Mistake, Values, row};
-use crate::mistakes::habits::{Reach, ShadowWay};
+use crate::mistakes::bugs::{Reach, ShadowDirection};
 
 pub(super) const MISTAKES: &[Mistake] = &[
     row("no-shadows", "shadows", "there are no shadows", "if (occluded(p, L, d)) continue", "(nothing)", |v, _| {
@@ -21,7 +21,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "shadow rays do not end at the light: objects behind it block it too",
         "occluded if hit at eps < t < distance to the light",
         "occluded if hit at t > eps",
-        |v, _| v.habits.shadows.endless = true,
+        |v, _| v.bugs.shadows.endless = true,
     ),
     row(
         "shadows-ambient",
@@ -29,7 +29,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "in shadow the ambient light is missing too",
         "color = ambient * kd; if (!occluded) color += ...",
         "if (!occluded) color += ambient * kd + ...",
-        |v, _| v.habits.shadows.ambient_too = true,
+        |v, _| v.bugs.shadows.ambient_too = true,
     ),
     row(
         "shadows-later",
@@ -37,7 +37,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "if one light is blocked, all lights after it are missing too",
         "if (occluded) continue",
         "if (occluded) break",
-        |v, _| v.habits.shadows.later_too = true,
+        |v, _| v.bugs.shadows.later_too = true,
     ),
     row(
         "shadows-black",
@@ -45,7 +45,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "if one light is blocked, all direct and ambient light is missing{, but not the light from mirrors and glass|, and the light from mirrors and glass}",
         "if (occluded) continue",
         "if (occluded) return black",
-        |v, all| v.habits.shadows.black = Some(all > 0.0),
+        |v, all| v.bugs.shadows.black = Some(all > 0.0),
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
@@ -54,7 +54,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "in its shadow, a light still contributes a fraction of {}",
         "if (occluded) continue",
         "if (occluded) I *= {}",
-        |v, left| v.habits.shadows.left = left,
+        |v, left| v.bugs.shadows.left = left,
     )
     .with(Values::Numbers(&[0.5, 0.2])),
     row(
@@ -71,7 +71,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "if any light is blocked, the ambient light is missing too",
         "color = ambient * kd; if (!occluded) color += ...",
         "if (occluded) the ambient light is subtracted, or never added",
-        |v, _| v.habits.shadows.ambient_of_any = true,
+        |v, _| v.bugs.shadows.ambient_of_any = true,
     ),
     row(
         "shadows-of-one-light",
@@ -81,7 +81,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "a shadow ray for light {} only",
         |v, light| {
             if v.world.lights().len() > 1 {
-                v.habits.shadows.only_light = Some(light as usize);
+                v.bugs.shadows.only_light = Some(light as usize);
             }
         },
     )
@@ -92,7 +92,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "shadow rays point away from the light",
         "Ray(p, L)",
         "Ray(p, -L)",
-        |v, _| v.habits.shadows.way = ShadowWay::Away,
+        |v, _| v.bugs.shadows.way = ShadowDirection::Away,
     ),
     row(
         "shadows-along-normal",
@@ -100,7 +100,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "shadow rays follow the normal instead of pointing to the light",
         "Ray(p, L)",
         "Ray(p, N)",
-        |v, _| v.habits.shadows.way = ShadowWay::Normal,
+        |v, _| v.bugs.shadows.way = ShadowDirection::Normal,
     ),
     row(
         "shadows-not-of-glass",
@@ -108,7 +108,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "transparent objects cast no shadow",
         "occluded by any hit",
         "occluded by hits that are not transparent",
-        |v, _| v.habits.shadows.no_glass = true,
+        |v, _| v.bugs.shadows.no_glass = true,
     ),
     row(
         "shadows-inverted",
@@ -116,7 +116,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "light is added where it is blocked instead of where it arrives",
         "if (!occluded) color += ...",
         "if (occluded) color += ...",
-        |v, _| v.habits.shadows.inverted = true,
+        |v, _| v.bugs.shadows.inverted = true,
     ),
     row(
         "shadows-short",
@@ -124,7 +124,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "shadow rays to directional lights end at distance 1",
         "directional: t_max = infinity",
         "t_max = length(L) = 1",
-        |v, _| v.habits.shadows.short = true,
+        |v, _| v.bugs.shadows.short = true,
     ),
     row(
         "shadows-reach",
@@ -132,7 +132,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "shadow rays to point lights end {at distance 1|behind the light: the ray is not normalised, and t goes to the distance}",
         "occluded if hit at eps < t < distance to the light",
         "{t < 1 with L = normalize(position - p)|t < distance with L = position - p}",
-        |v, squared| v.habits.shadows.reach = if squared == 0.0 { Reach::One } else { Reach::Squared },
+        |v, squared| v.bugs.shadows.reach = if squared == 0.0 { Reach::One } else { Reach::Squared },
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
@@ -141,7 +141,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "shadow rays start at the eye, not at the surface",
         "Ray(p, L)",
         "Ray(eye, L)",
-        |v, _| v.habits.shadows.from_eye = true,
+        |v, _| v.bugs.shadows.from_eye = true,
     ),
     row(
         "shadows-diffuse",
@@ -149,7 +149,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "diffuse light is there in shadow too: only highlights are missing",
         "if (!occluded) color += diffuse + specular",
         "color += diffuse; if (!occluded) color += specular",
-        |v, _| v.habits.shadows.diffuse_left = true,
+        |v, _| v.bugs.shadows.diffuse_left = true,
     ),
     row(
         "shadows-highlights",
@@ -157,7 +157,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "highlights remain in shadow",
         "if (!occluded) color += diffuse + specular",
         "color += specular; if (!occluded) color += diffuse",
-        |v, _| v.habits.shadows.highlights_left = true,
+        |v, _| v.bugs.shadows.highlights_left = true,
     ),
     row(
         "shadows-epsilon",
@@ -165,7 +165,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the epsilon of shadow rays is far too large: {}",
         "occluded if hit at t > 1e-4",
         "occluded if hit at t > {}",
-        |v, epsilon| v.habits.shadows.epsilon = Some(epsilon),
+        |v, epsilon| v.bugs.shadows.epsilon = Some(epsilon),
     )
     .with(Values::Numbers(&[0.1, 0.5, 0.02, 1.0, 2.0])),
 ];

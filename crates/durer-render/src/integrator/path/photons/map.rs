@@ -19,12 +19,12 @@ pub(super) struct Photon {
     power: Spectrum,
     /// Number of delta bounces since the light.
     bounces: u32,
-    pub(super) rest: Rest,
+    pub(super) rest: Absorber,
 }
 
 /// Absorber of a photon.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Rest {
+pub(super) enum Absorber {
     Surface,
     /// Medium of an object, by number; `None` for air.
     Medium(Option<u32>),
@@ -40,7 +40,7 @@ pub struct PhotonMap {
 
 /// Density estimate at a point.
 #[derive(Clone, Copy, Debug)]
-pub struct Gathered {
+pub struct DensityEstimate {
     /// Radiance scattered towards the path.
     pub light: Spectrum,
     /// Number of photons within the radius that contribute.
@@ -68,7 +68,7 @@ fn cell_of(place: glam::I64Vec3) -> u64 {
 
 impl Photon {
     /// `None` if the power is infinite or NaN.
-    pub(super) fn new(position: Vec3, wi: Vec3, power: Spectrum, bounces: u32, rest: Rest) -> Option<Self> {
+    pub(super) fn new(position: Vec3, wi: Vec3, power: Spectrum, bounces: u32, rest: Absorber) -> Option<Self> {
         power.is_finite().then_some(Photon { position, wi, power, bounces, rest })
     }
 }
@@ -85,8 +85,8 @@ impl Cells {
 
     /// Sums `value` over the photons within the radius of a point with at most `max_bounces`
     /// bounces. `value` gets the vector to the photon and its squared length.
-    fn gather(&self, point: Vec3, max_bounces: u32, value: impl Fn(&Photon, Vec3, f32) -> Spectrum) -> Gathered {
-        let mut gathered = Gathered { light: Spectrum::ZERO, photons: 0, radius: self.radius };
+    fn gather(&self, point: Vec3, max_bounces: u32, value: impl Fn(&Photon, Vec3, f32) -> Spectrum) -> DensityEstimate {
+        let mut gathered = DensityEstimate { light: Spectrum::ZERO, photons: 0, radius: self.radius };
         // Cells are two radii wide, so the nearest 2 x 2 x 2 cells contain all photons within a
         // radius.
         let low = place(point, self.radius, -0.5);
@@ -137,7 +137,7 @@ impl PhotonMap {
 
     /// Radiance scattered at a surface point from nearby photons. Ignores photons with more than
     /// `max_bounces` bounces.
-    pub fn on_surface(&self, surface: &Surface, shading: &Shading, max_bounces: u32) -> Gathered {
+    pub fn on_surface(&self, surface: &Surface, shading: &Shading, max_bounces: u32) -> DensityEstimate {
         let cells = &self.on_surfaces;
         cells.gather(surface.position, max_bounces, |photon, way, distance| {
             let beside = way.dot(surface.n_geo);
@@ -159,9 +159,9 @@ impl PhotonMap {
         object: Option<u32>,
         phase: &HenyeyGreenstein,
         max_bounces: u32,
-    ) -> Gathered {
+    ) -> DensityEstimate {
         let cells = &self.in_media;
-        cells.gather(point, max_bounces, |photon, _, distance| match photon.rest == Rest::Medium(object) {
+        cells.gather(point, max_bounces, |photon, _, distance| match photon.rest == Absorber::Medium(object) {
             true => photon.power * (phase.value(dir, photon.wi) * cells.kernel(distance, 0.0, ball)),
             false => Spectrum::ZERO,
         })

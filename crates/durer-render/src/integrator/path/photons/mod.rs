@@ -18,12 +18,12 @@ use super::vertex::VertexKind;
 use crate::integrator::media::Passage;
 use crate::world::emitters::LightId;
 use crate::world::emitters::emission::Beams;
-use crate::world::{Interaction, World};
+use crate::world::{SurfaceInteraction, World};
 use durer_scene::math::Color;
 use durer_scene::sampler::SampleId;
 use durer_scene::spectrum::{Lanes, Spectrum};
-use map::{Cells, Photon, Rest};
-pub use map::{Gathered, PhotonMap};
+use map::{Absorber, Cells, Photon};
+pub use map::{DensityEstimate, PhotonMap};
 use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::f32::consts::PI;
@@ -46,11 +46,11 @@ pub struct Photons {
     radius: f32,
     /// True if the bias of the estimate is removed to second order.
     corrected: bool,
-    kept: Mutex<Kept>,
+    kept: Mutex<MapCache>,
 }
 
 /// Cached maps with their samples, the oldest first.
-type Kept = VecDeque<(u32, Arc<PhotonMap>)>;
+type MapCache = VecDeque<(u32, Arc<PhotonMap>)>;
 
 /// Pairs of random numbers per emission.
 const FIRST_DIMENSION: u32 = 3;
@@ -101,11 +101,11 @@ impl Photons {
         }
     }
 
-    fn found(kept: &Kept, sample: u32) -> Option<Arc<PhotonMap>> {
+    fn found(kept: &MapCache, sample: u32) -> Option<Arc<PhotonMap>> {
         kept.iter().find(|(number, _)| *number == sample).map(|(_, map)| map.clone())
     }
 
-    fn keep(kept: &mut Kept, sample: u32, map: PhotonMap) -> Arc<PhotonMap> {
+    fn keep(kept: &mut MapCache, sample: u32, map: PhotonMap) -> Arc<PhotonMap> {
         let map = Arc::new(map);
         kept.push_back((sample, map.clone()));
         if kept.len() > MAX_KEPT {
@@ -122,7 +122,8 @@ impl Photons {
             true => (0..self.count).into_par_iter().flat_map_iter(one).collect(),
             false => (0..self.count).flat_map(one).collect(),
         };
-        let (surfaces, media): (Vec<_>, Vec<_>) = found.into_iter().partition(|photon| photon.rest == Rest::Surface);
+        let (surfaces, media): (Vec<_>, Vec<_>) =
+            found.into_iter().partition(|photon| photon.rest == Absorber::Surface);
         let radius = self.radius(sample);
         PhotonMap {
             lanes,
@@ -140,7 +141,7 @@ impl Photons {
         let power = emitted.power / self.count as f32;
         let context = SampleContext { lanes, photons: None };
         let mut state = path.start(emitted.ray, id);
-        let mut at = Interaction::NOWHERE;
+        let mut at = SurfaceInteraction::NOWHERE;
         let mut is_first = true;
         loop {
             let hit = path.world.closest_along(&mut state.ray, &mut ());
@@ -153,7 +154,7 @@ impl Photons {
                 let scattering = path.world.medium(object)?.scattering(point, &lanes);
                 let power =
                     Spectrum::select(scattering.cmpgt(Spectrum::ZERO), state.throughput / scattering, Spectrum::ZERO);
-                return Photon::new(point.as_vec3(), -dir, power, state.depth, Rest::Medium(object));
+                return Photon::new(point.as_vec3(), -dir, power, state.depth, Absorber::Medium(object));
             }
             let Event::Surface(passage) = event else { return None };
             if is_first {
@@ -179,7 +180,7 @@ impl Photons {
             // Black surfaces reflect nothing, but their irradiance may be measured.
             if !is_first && (shading.bsdf.is_broad() || shading.bsdf.is_black()) {
                 let wi = -state.ray.dir().normalize();
-                return Photon::new(at.surface.position, wi, state.throughput, state.depth, Rest::Surface);
+                return Photon::new(at.surface.position, wi, state.throughput, state.depth, Absorber::Surface);
             }
             let vertex = VertexKind::Surface(&at.surface, &shading, passage.as_ref());
             let numbers = id.at(FIRST_DIMENSION + state.depth * DIMENSIONS as u32);

@@ -4,9 +4,9 @@ use super::*;
 
 /// Returns the mean radiance of a ray over samples with photons, and its standard error.
 pub(super) fn by_photons(world: &World, ray: Ray, (count, radius): (u32, f32), samples: u32) -> (f64, f64) {
-    let settings = Settings { bounces: 12, ..Job::default().settings };
+    let settings = WhittedOptions { bounces: 12, ..Job::default().settings };
     let photons = Some(Arc::new(Photons::new(world, 3, count, Some(radius))));
-    let path = Path { photons, ..Path::new(world, settings, Transport::default()) };
+    let path = Path { photons, ..Path::new(world, settings, PathOptions::default()) };
     let values: Vec<f64> = (0..samples)
         .map(|sample| f64::from(path.radiance(&ray, SampleId::new(7, (3, 5), sample), &mut ()).x))
         .collect();
@@ -37,9 +37,9 @@ fn slab_transmits_light_by_fresnel() {
 
 #[test]
 fn photons_and_paths_agree_if_both_find_the_light() {
-    let lamp = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 6 }";
+    let emitter = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 6 }";
     let world = scene(
-        &format!("{MATTE} {GLASS} {lamp}"),
+        &format!("{MATTE} {GLASS} {emitter}"),
         "",
         "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 1 0 radius 0.7 } \
          MaterialIndex 2 Rectangle { corner -1 4 -1 edge0 2 0 0 edge1 0 0 2 }",
@@ -58,9 +58,9 @@ fn fog_and_rough_glass_scatter_equal_light_with_and_without_photons() {
     // All light leaves a glass sphere with a light inside. Photons carry the light that delta lobes
     // send to surfaces; paths account for light that fog or rough glass scatters after that. No
     // light is counted twice or lost.
-    let lamp = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 6 }";
+    let emitter = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 6 }";
     let rough = "PrincipledMaterial { transmissionWeight 1 specularRoughness 0.4 }";
-    let things = "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 1 0 radius 0.6 } \
+    let objects = "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 1 0 radius 0.6 } \
         MaterialIndex 2 Sphere { center 0 1 0 radius 0.35 }";
     let ball = "MaterialIndex 3 Sphere { center 1 0.45 0 radius 0.4 }";
     let fog = "Fog { extinction 0.4 color 0.95 0.95 0.95 min -3 0 -3 max 3 4 3 }";
@@ -73,7 +73,7 @@ fn fog_and_rough_glass_scatter_equal_light_with_and_without_photons() {
     {
         let world = read(&format!(
             "{air} PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }} Background {{ color 0 0 0 }}
-             Materials {{ {MATTE} {GLASS} {lamp} {rough} }} Group {{ {things} {more} }}"
+             Materials {{ {MATTE} {GLASS} {emitter} {rough} }} Group {{ {objects} {more} }}"
         ));
         let ray = Ray::new(from, (to - from).normalize());
         let (a, ea) = light(&world, ray, 12, 1 << 15);
@@ -92,17 +92,17 @@ fn photon_beams_in_fog_match_their_integral() {
     // horizontal ray to a black surface is (1 - F)^2 E / (4 pi) e^(-s h) a (1 - e^(-s l)).
     let fog = "Fog { extinction 1 color 0.8 0.8 0.8 min -1 -2 -1 max 1 0.9 1 }";
     let black = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 }";
-    let things = "MaterialIndex 0 Box { min -1.5 1 -1.5 max 1.5 1.2 1.5 }
+    let objects = "MaterialIndex 0 Box { min -1.5 1 -1.5 max 1.5 1.2 1.5 }
         MaterialIndex 1 Rectangle { corner 0.5 -0.1 -0.1 edge0 0 0.2 0 edge1 0 0 0.2 }";
     let world = read(&format!(
         "{fog} PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }} Background {{ color 0 0 0 }}
-         Lights {{ DirectionalLight {{ direction 0 -1 0 color 2 2 2 }} }} Materials {{ {GLASS} {black} }} Group {{ {things} }}"
+         Lights {{ DirectionalLight {{ direction 0 -1 0 color 2 2 2 }} }} Materials {{ {GLASS} {black} }} Group {{ {objects} }}"
     ));
     let ray = Ray::new(Vec3::new(-0.5, 0.0, 0.0), Vec3::X);
     // Depth for two refractions, and none after another scattering.
-    let settings = Settings { bounces: 2, ..Job::default().settings };
+    let settings = WhittedOptions { bounces: 2, ..Job::default().settings };
     let photons = Some(Arc::new(Photons::new(&world, 3, 1_000, Some(0.2))));
-    let path = Path { photons, ..Path::new(&world, settings, Transport::default()) };
+    let path = Path { photons, ..Path::new(&world, settings, PathOptions::default()) };
     let n = 1 << 12;
     let values: Vec<f64> =
         (0..n).map(|i| f64::from(path.radiance(&ray, SampleId::new(7, (3, 5), i), &mut ()).x)).collect();
@@ -118,17 +118,17 @@ fn photons_and_paths_start_in_the_surrounding_medium() {
     // A light, a sphere of glass and the floor below it in a box of fog with an index-matched
     // surface.
     let fog = "PrincipledMaterial { transmissionWeight 1 specularIor 1 specularWeight 0 transmissionDepth 1 transmissionColor 0.6 0.6 0.6 specularRoughness 0 }";
-    let lamp = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 6 }";
-    let things = "MaterialIndex 0 Rectangle { corner -2 0 2 edge0 4 0 0 edge1 0 0 -4 } MaterialIndex 1 Sphere { center 0 1 0 radius 0.7 }
+    let emitter = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 6 }";
+    let objects = "MaterialIndex 0 Rectangle { corner -2 0 2 edge0 4 0 0 edge1 0 0 -4 } MaterialIndex 1 Sphere { center 0 1 0 radius 0.7 }
         MaterialIndex 2 Rectangle { corner -1 3 -1 edge0 2 0 0 edge1 0 0 2 } MaterialIndex 3 Box { min -4 -1 -4 max 4 5 4 }";
-    let world = scene(&format!("{MATTE} {GLASS} {lamp} {fog}"), "", things);
+    let world = scene(&format!("{MATTE} {GLASS} {emitter} {fog}"), "", objects);
     let ray = Ray::new(Vec3::new(3.0, 0.4, 0.0), Vec3::new(-3.0, -0.4, 0.0).normalize());
     let (a, ea) = light(&world, ray, 12, 1 << 15);
     let (b, eb) = by_photons(&world, ray, (20_000, 0.1), 48);
     assert!((a - b).abs() < 3.5 * (ea * ea + eb * eb).sqrt() + 0.01 * a, "{a} ± {ea}, {b} ± {eb}");
     // Seen from inside, the fog dims a light.
-    let lamp = Ray::new(Vec3::new(-0.9, 0.5, 0.9), Vec3::Y);
-    let (seen, _) = light(&world, lamp, 12, 64);
+    let emitter = Ray::new(Vec3::new(-0.9, 0.5, 0.9), Vec3::Y);
+    let (seen, _) = light(&world, emitter, 12, 64);
     let expected = 6.0 * libm::pow(0.6, 2.5);
     assert!((seen - expected).abs() < 1e-3 * expected, "{seen}, expected {expected}");
 }
@@ -144,7 +144,7 @@ fn photon_maps_do_not_depend_on_how_they_are_built() {
     let ray = Ray::new(Vec3::new(3.0, 0.4, 0.0), Vec3::new(-3.0, -0.4, 0.0).normalize());
     let made = |prepared: bool| {
         let photons = Arc::new(Photons::new(&world, 3, 5_000, None));
-        let path = Path { photons: Some(photons.clone()), ..Path::new(&world, settings, Transport::default()) };
+        let path = Path { photons: Some(photons.clone()), ..Path::new(&world, settings, PathOptions::default()) };
         if prepared {
             photons.prepare(&path, 2);
         }

@@ -58,11 +58,11 @@ fn single_scattering_of_a_beam_matches_its_integral() {
 #[test]
 fn light_sampling_passes_index_matched_surfaces() {
     // A box of smoke, once as fog and once as an object with an index-matched surface.
-    let lamp = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 5 }";
+    let emitter = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 5 }";
     let at = |fog: &str, material: &str, group: &str| {
         read(&format!(
             "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }}\nBackground {{ color 0 0 0 }}\n{fog}\n\
-             Materials {{ {lamp} {material} }}\nGroup {{ MaterialIndex 0 Sphere {{ center 0 3 0 radius 0.5 }} {group} }}"
+             Materials {{ {emitter} {material} }}\nGroup {{ MaterialIndex 0 Sphere {{ center 0 3 0 radius 0.5 }} {group} }}"
         ))
     };
     let fog = at("Fog { extinction 1 color 0.8 0.8 0.8 anisotropy 0.3 min -1 -1 -1 max 1 1 1 }", "", "");
@@ -78,8 +78,8 @@ fn light_sampling_passes_index_matched_surfaces() {
 #[test]
 fn spectral_rendering_keeps_grey_and_approximates_colours() {
     let world = over_floor("", "Sphere { center 0 3 0 radius 0.5 }");
-    let settings = Settings { bounces: 2, ..Job::default().settings };
-    let path = |color| Path::new(&world, settings, Transport { color, ..Transport::default() });
+    let settings = WhittedOptions { bounces: 2, ..Job::default().settings };
+    let path = |color| Path::new(&world, settings, PathOptions { color, ..PathOptions::default() });
     let samples = 1 << 14;
     let mean = |color| {
         let path = path(color);

@@ -3,7 +3,7 @@
 use super::caustics::by_photons;
 use super::*;
 
-const LAMPS: [(&str, f64); 3] = [
+const LIGHTS: [(&str, f64); 3] = [
     // A light of colour c gives an irradiance of pi c at distance 1; a directional light at any
     // distance.
     ("PointLight { position 0 2 0 color 1 1 1 attenuation 0 0 1 }", 0.25),
@@ -12,10 +12,10 @@ const LAMPS: [(&str, f64); 3] = [
 ];
 
 /// Builds a pane of a material over a floor.
-fn under(pane: &str, lamp: &str) -> World {
+fn under(pane: &str, light: &str) -> World {
     scene(
         &format!("{MATTE} PrincipledMaterial {{ {pane} }}"),
-        lamp,
+        light,
         "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Rectangle { corner -1 1 -1 edge0 2 0 0 edge1 0 0 2 }",
     )
 }
@@ -29,7 +29,7 @@ fn below() -> Ray {
 fn pane_transmits_light_by_fresnel_and_its_colour() {
     // With all inter-reflections, T = (1 - F) / (1 + F) with F = 0.04.
     let clear = 0.96 / 1.04;
-    for (lamp, distance) in LAMPS {
+    for (emitter, distance) in LIGHTS {
         for (pane, share) in [
             ("transmissionWeight 1 specularRoughness 0 walls thin", clear),
             ("transmissionWeight 1 specularRoughness 0 transmissionColor 0.5 0.5 0.5 walls thin", 0.5 * clear),
@@ -44,11 +44,11 @@ fn pane_transmits_light_by_fresnel_and_its_colour() {
             ("transmissionWeight 1 specularRoughness 0.5 walls thin", 0.0),
             ("transmissionWeight 1 specularRoughness 0", 0.0),
         ] {
-            let (mean, error) = light(&under(pane, lamp), below(), 0, 256);
+            let (mean, error) = light(&under(pane, emitter), below(), 0, 256);
             let expected = 0.5 * distance * share;
             assert!(
                 (mean - expected).abs() <= 3.0 * error + 1e-3 * expected,
-                "{pane} {lamp}: {mean}, expected {expected}"
+                "{pane} {emitter}: {mean}, expected {expected}"
             );
         }
     }
@@ -60,14 +60,14 @@ fn transmittances_of_two_panes_multiply() {
         "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 transmissionColor 0.8 0.8 0.8 walls thin }";
     let panes = "MaterialIndex 1 Rectangle { corner -1 1 -1 edge0 2 0 0 edge1 0 0 2 } Rectangle { corner -1 1.5 -1 edge0 0 0 2 edge1 2 0 0 }";
     let floor = "MaterialIndex 0 Plane { normal 0 1 0 offset 0 }";
-    let world = scene(&format!("{MATTE} {glass}"), LAMPS[1].0, &format!("{floor} {panes}"));
+    let world = scene(&format!("{MATTE} {glass}"), LIGHTS[1].0, &format!("{floor} {panes}"));
     let share = 0.8 * 0.96 / 1.04;
     assert_light("two panes", &world, below(), 0, 0.5 * share * share);
 }
 
 #[test]
 fn photons_do_not_count_light_through_a_pane_twice() {
-    let world = under("transmissionWeight 1 specularRoughness 0 walls thin", LAMPS[1].0);
+    let world = under("transmissionWeight 1 specularRoughness 0 walls thin", LIGHTS[1].0);
     let (a, _) = light(&world, below(), 12, 256);
     let (b, error) = by_photons(&world, below(), (20_000, 0.3), 24);
     assert!((a - b).abs() < 3.5 * error + 0.005 * a, "{a}, {b} ± {error}");
@@ -75,9 +75,9 @@ fn photons_do_not_count_light_through_a_pane_twice() {
 
 /// Builds a floor below an infinite pane, which is below a disc of radiance 3.
 fn below_disc(pane: &str) -> World {
-    let shining = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 3 }";
+    let emissive = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 3 }";
     scene(
-        &format!("{MATTE} PrincipledMaterial {{ {pane} }} {shining}"),
+        &format!("{MATTE} PrincipledMaterial {{ {pane} }} {emissive}"),
         "",
         "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Plane { normal 0 1 0 offset 1 }
          MaterialIndex 2 Disc { center 0 2 0 normal 0 -1 0 radius 0.2 }",
@@ -107,19 +107,19 @@ fn pane_transmits_the_light_of_a_small_disc() {
 
 #[test]
 fn light_and_bsdf_sampling_agree_through_panes() {
-    let settings = Settings { bounces: 4, ..Job::default().settings };
+    let settings = WhittedOptions { bounces: 4, ..Job::default().settings };
     let glossy = "PrincipledMaterial { baseColor 0.5 0.4 0.3 specularRoughness 0.3 }";
     let glass =
         "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 transmissionColor 0.9 0.8 0.7 walls thin }";
-    let shining = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 3 }";
+    let emissive = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 3 }";
     let panes =
         "MaterialIndex 1 Rectangle { corner -2 1 -2 edge0 4 0 0 edge1 0 0 4 } Sphere { center 0.8 0.5 0 radius 0.4 }";
     let floor = "MaterialIndex 0 Plane { normal 0 1 0 offset 0 }";
-    let lamps = "MaterialIndex 2 Sphere { center 0 2 0.5 radius 0.5 } Rectangle { corner 0.6 0.4 -0.2 edge0 0.3 0 0 edge1 0 0.3 0 }";
-    for (background, lamps) in [("color 0.1 0.1 0.1", lamps), ("sun 0.3 0.9 0.2 turbidity 4", "")] {
+    let lights = "MaterialIndex 2 Sphere { center 0 2 0.5 radius 0.5 } Rectangle { corner 0.6 0.4 -0.2 edge0 0.3 0 0 edge1 0 0.3 0 }";
+    for (background, lights) in [("color 0.1 0.1 0.1", lights), ("sun 0.3 0.9 0.2 turbidity 4", "")] {
         let world = read(&format!(
             "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }} Background {{ {background} }}
-             Materials {{ {glossy} {glass} {shining} }} Group {{ {floor} {panes} {lamps} }}"
+             Materials {{ {glossy} {glass} {emissive} }} Group {{ {floor} {panes} {lights} }}"
         ));
         for color in [ColorMode::Rgb, ColorMode::Spectral] {
             let ways = by_ways(&world, below(), settings, color);

@@ -35,8 +35,8 @@ fn world(folder: &FilePath, group: &str) -> World {
          Materials {{ {MATTE} PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 3 walls thin }}
          PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 3 }} }} Group {{ {group} }}"
     );
-    let (world, told) = try_read(&text, Dialect::Durer.rules(), AccelKind::Bvh, folder);
-    world.unwrap_or_else(|| panic!("{told:?}"))
+    let (world, list) = try_read(&text, Dialect::Durer.rules(), AccelKind::Bvh, folder);
+    world.unwrap_or_else(|| panic!("{list:?}"))
 }
 
 #[test]
@@ -62,9 +62,9 @@ fn emissive_meshes_light_their_inside() {
 fn light_sampling_skips_insides_of_closed_emitters() {
     let folder = cubes(0.5);
     let lit = |name: &str, material: u32| {
-        let lamp =
+        let emitter =
             format!("MaterialIndex {material} Transform {{ Translate 0 1.5 0 TriangleMesh {{ obj_file {name} }} }}");
-        let world = world(folder.path(), &format!("MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} {lamp}"));
+        let world = world(folder.path(), &format!("MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} {emitter}"));
         light(&world, to_origin(), 0, 1 << 14)
     };
     let ((one, e1), (both, e2), (turned, e3)) = (lit("out.obj", 2), lit("out.obj", 1), lit("in.obj", 1));

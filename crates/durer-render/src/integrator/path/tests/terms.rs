@@ -61,10 +61,10 @@ fn from_center() -> Ray {
 #[test]
 fn clamping_limits_contributions_after_more_than_one_scattering() {
     let world = closed_room();
-    let settings = Settings { bounces: 6, ..Job::default().settings };
+    let settings = WhittedOptions { bounces: 6, ..Job::default().settings };
     let limit = 0.02;
     let all = |clamp, sample| {
-        let path = Path::new(&world, settings, Transport { clamp, ..Transport::default() });
+        let path = Path::new(&world, settings, PathOptions { clamp, ..PathOptions::default() });
         let mut found = Vec::new();
         sources(&tree(&path, &from_center(), sample).root, 0, &mut found);
         found
@@ -87,9 +87,9 @@ fn clamping_limits_contributions_after_more_than_one_scattering() {
 #[test]
 fn reported_terms_of_a_path_sum_to_its_radiance() {
     let world = closed_room();
-    let settings = Settings { bounces: 6, ..Job::default().settings };
+    let settings = WhittedOptions { bounces: 6, ..Job::default().settings };
     for (sample, color) in (0..200).zip([ColorMode::Rgb, ColorMode::Spectral].into_iter().cycle()) {
-        let path = Path::new(&world, settings, Transport { clamp: Some(0.02), color, ..Transport::default() });
+        let path = Path::new(&world, settings, PathOptions { clamp: Some(0.02), color, ..PathOptions::default() });
         let tree = tree(&path, &from_center(), sample);
         let lanes = if color == ColorMode::Rgb { 3 } else { 4 };
         assert_eq!(tree.root.value.numbers().len(), lanes);

@@ -19,7 +19,7 @@ fn indices(objects: &str, origin: [f32; 3], sine: f32) -> Vec<f32> {
 }
 
 fn along(world: &World, origin: [f32; 3], sine: f32) -> Vec<f32> {
-    let settings = Settings {
+    let settings = WhittedOptions {
         bounces: 10,
         shadows: false,
         shade_back: true,

@@ -60,8 +60,8 @@ fn axis_parallel_ray_loses_the_far_half_of_divided_cells() {
     let found = down(1.0, 1.0, Vec3::new(-1e-6, -1e-6, -1.0));
     assert!(found.contains(&7) && found.contains(&6), "{found:?}");
     // A cell of seven triangles is not divided, and none is lost.
-    let few = Octree::new((0..7).map(|i| small(7 - i)).collect());
-    assert_eq!(visited(&few, &Ray::new(Vec3::new(1.0, 1.0, 5.0), Vec3::NEG_Z)).len(), 7);
+    let small_world = Octree::new((0..7).map(|i| small(7 - i)).collect());
+    assert_eq!(visited(&small_world, &Ray::new(Vec3::new(1.0, 1.0, 5.0), Vec3::NEG_Z)).len(), 7);
 }
 
 #[test]

@@ -81,15 +81,15 @@ fn every_light_that_reaches_a_point_can_be_chosen() {
         let to = Receiver { point: p.as_dvec3(), n: Vec3::ZERO, far: Receiver::FAR };
         for (i, light) in all.iter().enumerate().filter(|(_, light)| light.power > 0.0) {
             let to_point = p - light.bounds.center();
-            let shines = light.cos_normals < 0.0
+            let emits = light.cos_normals < 0.0
                 || light.axis.dot(to_point) > 0.2
                 || (light.two_sided && light.axis.dot(to_point).abs() > 0.2);
             let place = order.iter().position(|&number| number as usize == i).unwrap();
             let probability = |n| tree.probability(&Receiver { n, ..to }, place as u32);
-            assert!(!shines || probability(Vec3::ZERO) > 0.0, "{i} of {light:?} at {p}");
+            assert!(!emits || probability(Vec3::ZERO) > 0.0, "{i} of {light:?} at {p}");
             let n = random.direction();
             let is_above = n.dot(to_point) < -light.bounds.size().length();
-            assert!(!shines || !is_above || probability(n) > 0.0, "{i} of {light:?} at {p}, {n}");
+            assert!(!emits || !is_above || probability(n) > 0.0, "{i} of {light:?} at {p}, {n}");
         }
     }
 }

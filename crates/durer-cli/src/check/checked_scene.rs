@@ -1,0 +1,54 @@
+//! A checked scene.
+
+use super::args::CheckArgs;
+use crate::failure::Failure;
+use crate::job::job;
+use crate::open::load_options;
+use crate::options::{accel, aspect};
+use durer::check::{Finding, Subject, check, reported};
+use durer::diag::{Diagnostics, Files};
+use durer::load_text;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A scene and its findings.
+pub struct CheckedScene {
+    pub path: PathBuf,
+    pub files: Files,
+    pub findings: Vec<Finding>,
+    /// Dialect; `None` if the scene could not be read.
+    pub dialect: Option<&'static str>,
+    /// True if the scene can be rendered.
+    pub readable: bool,
+    /// Files named by the scene.
+    pub named: Vec<PathBuf>,
+}
+
+impl CheckedScene {
+    pub fn count(&self, wanted: impl Fn(&Finding) -> bool) -> usize {
+        self.findings.iter().filter(|finding| wanted(finding)).count()
+    }
+}
+
+/// Reads and checks the text of a scene file, which need not be saved yet.
+pub fn look(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<CheckedScene, Failure> {
+    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+    let mut options = load_options(&args.reading);
+    options.accel = accel(&args.job)?;
+    options.scene_defaults.aspect = aspect(&args.job);
+    let loaded = load_text(path, bytes, &options, &mut files, &mut diagnostics);
+    let dialect = loaded.as_ref().map(|loaded| loaded.dialect.name());
+    let world = loaded.as_ref().and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics));
+    let readable = world.is_some();
+    let findings = match (&loaded, &world) {
+        (Some(loaded), Some(world)) => {
+            let job = job(&args.job, Some(&args.view), loaded, false)?;
+            let exposure = args.exposure.factor()?;
+            let (scene, dialect, files) = (&loaded.scene, loaded.dialect, &files);
+            check(&Subject { scene, world, dialect, files, job: &job, exposure, rejected: None }, &diagnostics)
+        }
+        _ => reported(&diagnostics),
+    };
+    let named = loaded.map(|loaded| loaded.files()).unwrap_or_default();
+    Ok(CheckedScene { path: path.into(), files, findings, dialect, readable, named })
+}

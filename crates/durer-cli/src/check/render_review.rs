@@ -1,0 +1,92 @@
+//! Diagnosis after a render whose result looks wrong.
+
+use crate::open::CompiledInput;
+use crate::report;
+use crate::terminal::complain;
+use codespan_reporting::term::termcolor::StandardStream;
+use durer::check::picture::{Oddity, PictureScan};
+use durer::check::{Subject, check};
+use durer::diag::Diagnostic;
+use durer::image::{Display, Layer, Tone};
+use durer::math::Color;
+use durer::render::{Job, Statistics};
+
+/// Maximum number of findings printed.
+const MOST: usize = 3;
+
+/// Returns statistics of the first picture, if it is the colour picture.
+pub fn looks(job: &Job, pictures: &[Layer], exposure: f32) -> Option<PictureScan> {
+    let color = pictures.first().filter(|_| job.color)?;
+    let mut looks = PictureScan::new(exposure);
+    looks.add(&color.image.pixels);
+    Some(looks)
+}
+
+/// Reports every oddity of a picture made by `durer render`.
+pub fn after_render(
+    compiled: &CompiledInput,
+    job: &Job,
+    looks: Option<&PictureScan>,
+    pictures: &[Layer],
+    statistics: &Statistics,
+    display: Display,
+) {
+    // A tone curve maps values above white back into range.
+    let is_odd = |oddity: &Oddity| display.tone == Tone::default() || *oddity != Oddity::White;
+    RenderReview { compiled, job, statistics, exposure: display.exposure }.look(looks, pictures, is_odd);
+}
+
+/// Reports only single-colour pictures made by `durer course`: no year intends those.
+pub fn after_course(compiled: &CompiledInput, job: &Job, pictures: &[Layer], statistics: &Statistics) {
+    let is_odd = |oddity: &Oddity| matches!(oddity, Oddity::Black | Oddity::OneColor);
+    let looks = looks(job, pictures, 1.0);
+    RenderReview { compiled, job, statistics, exposure: 1.0 }.look(looks.as_ref(), pictures, is_odd);
+}
+
+/// A finished render.
+struct RenderReview<'a> {
+    compiled: &'a CompiledInput,
+    job: &'a Job,
+    statistics: &'a Statistics,
+    exposure: f32,
+}
+
+impl RenderReview<'_> {
+    fn look(&self, looks: Option<&PictureScan>, pictures: &[Layer], is_odd: impl Fn(&Oddity) -> bool) {
+        match looks.and_then(|looks| looks.oddity(self.statistics)).filter(is_odd) {
+            Some(oddity) => self.report(&format!("the picture {}", oddity.words())),
+            None => self.depths(pictures),
+        }
+    }
+
+    /// Warns of a depth picture without any grey if its range was given.
+    fn depths(&self, pictures: &[Layer]) {
+        let is_requested = self.job.depth_range.is_some();
+        let Some(layer) = pictures.iter().find(|layer| layer.name == "depth").filter(|_| is_requested) else { return };
+        let grey = |pixel: &Color| pixel.x > 0.0 && pixel.x < 1.0;
+        if !layer.image.pixels.iter().any(grey) {
+            self.report("the depth picture contains only black and white, with no grey between");
+        }
+    }
+
+    fn report(&self, what: &str) {
+        let rejected = self.statistics.first_rejected.first().map(|first| (first.x, first.y, first.sample));
+        let (loaded, files) = (&self.compiled.loaded, &self.compiled.files);
+        let (scene, world, dialect) = (&loaded.scene, &self.compiled.world, loaded.dialect);
+        let subject = Subject { scene, world, dialect, files, job: self.job, exposure: self.exposure, rejected };
+        let found = check(&subject, &self.compiled.diagnostics);
+        let serious: Vec<_> = found.iter().filter(|f| f.is_serious()).map(|finding| &finding.diagnostic).collect();
+        // Skip findings that were printed before the render.
+        let is_known = |diagnostic: &Diagnostic| {
+            let same = |known: &Diagnostic| known.code == diagnostic.code && known.message == diagnostic.message;
+            self.compiled.diagnostics.iter().any(same)
+        };
+        let reported: Vec<_> = serious.iter().filter(|diagnostic| !is_known(diagnostic)).take(MOST).copied().collect();
+        complain(&match (serious.is_empty(), reported.is_empty()) {
+            (true, _) => format!("warning: {what}"),
+            (false, true) => format!("warning: {what}; the findings above explain why"),
+            (false, false) => format!("warning: {what}; `durer check` reports:"),
+        });
+        report::print_to(StandardStream::stderr(report::colors(&std::io::stderr())), files, &reported);
+    }
+}

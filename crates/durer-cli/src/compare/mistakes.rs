@@ -1,0 +1,87 @@
+//! Mistakes of a student's program, as text and JSON.
+
+use super::stage::Stage;
+use crate::progress;
+use durer::image::compare::Picture;
+use durer::mistakes::{Diagnosis, DiagnosisInput, Explanation, diagnose};
+use serde_json::{Value, json};
+
+/// Tries the known mistakes on a pair of pictures.
+pub fn named(stage: &Stage, reference: &Picture, test: &Picture) -> Diagnosis {
+    let Stage { compiled, job, transfer, .. } = stage;
+    let scene = &compiled.loaded.scene;
+    let question = DiagnosisInput { scene, world: &compiled.world, job, transfer: *transfer, reference, test };
+    progress::shares("trying mistakes", |share| diagnose(&question, share))
+}
+
+/// Formats a diagnosis as lines: the mistake first, then the code.
+pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
+    if !diagnosis.is_of_scene() {
+        return vec![format!(
+            "cause unknown: with these options, {:.0} % of this scene's pixels differ from the reference; pass the \
+             options that it was rendered with (--dialect, --shadows, --bounces, --samples, --transfer)",
+            100.0 * diagnosis.off
+        )];
+    }
+    if let Some(nearly) = &diagnosis.nearly {
+        return vec![format!(
+            "nearly: {}: explains {} of the squared difference, but something more is different",
+            words(nearly),
+            percent(nearly.explained)
+        )];
+    }
+    if let Some(remark) = &diagnosis.remark {
+        return vec![remark.clone()];
+    }
+    let Some(first) = diagnosis.named.first() else {
+        return vec!["cause unknown: none of the known mistakes explains the difference".into()];
+    };
+    let mut lines = vec![format!("{}: explains {} of the squared difference", words(first), percent(first.explained))];
+    for (mistake, value) in &first.mistakes {
+        let [right, wrong] = mistake.forms(*value, &diagnosis.formulas);
+        lines.push(format!("  should be:  {right}"));
+        lines.push(format!("  may be:     {wrong}"));
+        lines.push(format!("  see the step `{}` of `durer lesson`", mistake.step));
+    }
+    lines.extend(
+        diagnosis.named.iter().skip(1).take(4).map(|named| format!("  or, equivalent in this scene: {}", words(named))),
+    );
+    lines
+}
+
+/// Formats a share in percent, rounded down so that only a whole is 100 %.
+pub fn percent(share: f64) -> String {
+    format!("{:.1} %", (1000.0 * share + 1e-6).floor() / 10.0)
+}
+
+/// Describes one or two mistakes.
+pub fn words(named: &Explanation) -> String {
+    let each: Vec<String> = named.mistakes.iter().map(|(mistake, value)| mistake.describe(*value)).collect();
+    each.join("; and ")
+}
+
+/// Returns the diagnosis as JSON.
+pub fn json(diagnosis: &Diagnosis) -> Value {
+    let one = |named: &Explanation| {
+        let mistake = |(mistake, value): &(&durer::mistakes::Mistake, f32)| {
+            let [right, wrong] = mistake.forms(*value, &diagnosis.formulas);
+            json!({
+                "name": mistake.name, "words": mistake.describe(*value), "value": value,
+                "right": right, "wrong": wrong, "step": mistake.step,
+            })
+        };
+        json!({
+            "mistakes": named.mistakes.iter().map(mistake).collect::<Vec<_>>(),
+            "words": words(named), "explained": named.explained, "matched": named.matched,
+        })
+    };
+    json!({
+        "reference_off": diagnosis.off,
+        "told": !diagnosis.named.is_empty(),
+        "nearest": diagnosis.tried.iter().map(|n| json!([words(n), n.explained, n.matched])).collect::<Vec<_>>(),
+        "remark": diagnosis.remark,
+        "nearly": diagnosis.nearly.as_ref().map(one),
+        "named": diagnosis.named.iter().map(one).collect::<Vec<_>>(),
+        "lines": lines(diagnosis),
+    })
+}

@@ -1,0 +1,109 @@
+//! Options for models: files that contain objects but no whole scene.
+
+use clap::{Args, ValueEnum};
+use durer::options::doc;
+use durer::scene::{Axis, DefaultLighting, SceneDefaults, View};
+use std::path::PathBuf;
+
+/// Options that turn a model into a scene (glTF, pbrt, Radiance, OBJ, PLY, STL); scene files ignore
+/// them
+#[derive(Args)]
+#[command(next_help_heading = "Models")]
+pub struct SceneDefaultsArgs {
+    #[arg(long, value_name = "AXIS", value_enum, help = doc("up"))]
+    pub up: Option<Up>,
+    #[arg(long, value_name = "FROM", value_enum, help = doc("view"))]
+    pub view: Option<From>,
+    #[arg(long, value_name = "LIGHT", value_enum, help = doc("studio"))]
+    pub studio: Option<Light>,
+    #[arg(long, value_name = "FILE", help = doc("environment"))]
+    pub environment: Option<PathBuf>,
+    #[arg(long, value_name = "FILE", conflicts_with = "view", help = doc("view-file"))]
+    pub view_file: Option<PathBuf>,
+    #[arg(long, value_name = "NAME", help = doc("camera"))]
+    pub camera: Option<String>,
+    #[arg(long, value_name = "NAME", help = doc("variant"))]
+    pub variant: Option<String>,
+    #[arg(long, conflicts_with = "view", help = doc("fit"))]
+    pub fit: bool,
+    #[arg(long, value_name = "DEGREES", value_parser = degrees, allow_negative_numbers = true, help = doc("turned"))]
+    pub turned: Option<f32>,
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, help = doc("at"))]
+    pub at: Option<f32>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Up {
+    X,
+    Y,
+    Z,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum From {
+    /// From the front, slightly from the right and above, in perspective
+    ThreeQuarter,
+    /// From the front, without perspective
+    Front,
+    /// From the right, without perspective
+    Side,
+    /// From above, without perspective
+    Top,
+    /// Isometric: without perspective, with the same scale along all three axes
+    Iso,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Light {
+    /// No lights and no ground
+    None,
+    /// A soft key light, a fill light and a bright ground
+    Soft,
+    /// A low sun under a blue sky
+    Sun,
+}
+
+fn seconds(text: &str) -> Result<f32, String> {
+    let at = text.parse().ok().filter(|&at: &f64| at.is_finite() && at >= 0.0);
+    at.map(|at| at as f32).ok_or("expected seconds, 0 or more".into())
+}
+
+fn degrees(text: &str) -> Result<f32, String> {
+    let turned = text.parse().ok().filter(|turned: &f64| turned.is_finite());
+    turned.map(|turned| turned as f32).ok_or("expected a number of degrees".into())
+}
+
+impl SceneDefaultsArgs {
+    /// Converts the options for the library.
+    pub fn scene_defaults(&self) -> SceneDefaults {
+        SceneDefaults {
+            up: self.up.map(|up| match up {
+                Up::X => Axis::X,
+                Up::Y => Axis::Y,
+                Up::Z => Axis::Z,
+            }),
+            view: self.view.map(|view| match view {
+                From::ThreeQuarter => View::ThreeQuarter,
+                From::Front => View::Front,
+                From::Side => View::Side,
+                From::Top => View::Top,
+                From::Iso => View::Iso,
+            }),
+            studio: self.studio.map(|studio| match studio {
+                Light::None => DefaultLighting::None,
+                Light::Soft => DefaultLighting::Soft,
+                Light::Sun => DefaultLighting::Sun,
+            }),
+            camera: self.camera.clone(),
+            variant: self.variant.clone(),
+            at: self.at,
+            fit: self.fit,
+            turned: self.turned,
+            bare: false,
+            own_light: false,
+            view_file: self.view_file.clone(),
+            environment: self.environment.clone(),
+            aspect: None,
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! Export of a scene's in-memory assets as files beside its text: meshes as PLY, light profiles as
+//! IES, densities as Mitsuba's volumes, pictures unchanged.
+
+use super::ply::write_whole;
+use super::{extension, photometry, vol};
+use durer_image as image;
+use durer_scene::describe::{DescribedList, FileName, Value};
+use durer_scene::scene::{Assets, Group, Material, Node, Picture, PictureBytes, Scene};
+use durer_scene::source::AssetSource;
+use durer_scene::texture::Mapping;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Path of a file relative to the scene, and its bytes.
+pub type AssetFile = (String, Vec<u8>);
+
+/// Makes a name valid in a scene file: letters, digits and `-_.` stay, others become `_`.
+pub fn plain(name: &str) -> String {
+    name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect()
+}
+
+/// Returns the scene with all its meshes and pictures in files of a folder beside it, together with
+/// these files. Files that the scene names are copied there; unreadable ones keep their names.
+pub fn export_assets(scene: &Scene, folder: &str, source: &dyn AssetSource) -> (Scene, Vec<AssetFile>) {
+    let (files, taken, known, textures) = Default::default();
+    let mut put = AssetExport { scene, folder, source, files, taken, known, textures };
+    let mut made = scene.clone();
+    if let Some(root) = &mut made.root {
+        put.group(root);
+    }
+    for material in &mut made.materials {
+        match &mut material.value {
+            Material::Principled(layers) => put.fields(&mut **layers),
+            Material::Solid(solid, _) => put.fields(solid),
+            _ => {}
+        }
+    }
+    put.fields(&mut made.background);
+    for light in made.lights.iter_mut().flatten() {
+        put.fields(&mut light.value);
+    }
+    if let Some(name) = made.fog.as_mut().and_then(|fog| fog.value.density.as_mut()) {
+        name.path = put.named(&name.path);
+    }
+    made.assets = Assets { pictures: put.textures.into_values().collect(), ..Assets::default() };
+    (made, put.files)
+}
+
+struct AssetExport<'a> {
+    scene: &'a Scene,
+    folder: &'a str,
+    source: &'a dyn AssetSource,
+    files: Vec<AssetFile>,
+    /// Names of files and textures in use, in lower case, since some file systems ignore case.
+    taken: BTreeSet<String>,
+    /// New names by kind and old name.
+    known: BTreeMap<(&'static str, String), String>,
+    /// Named textures by their old names.
+    textures: BTreeMap<String, (String, Picture)>,
+}
+
+impl AssetExport<'_> {
+    /// Returns an unused, valid name similar to `of`.
+    fn name(&mut self, of: &str, extension: &str) -> String {
+        let ending = if extension.is_empty() { String::new() } else { format!(".{extension}") };
+        let last = of.rsplit(['/', '\\']).next().unwrap_or_default();
+        let stem: String = plain(last.strip_suffix(&ending).unwrap_or(last)).chars().take(60).collect();
+        let stem = if stem.trim_matches('.').is_empty() { "unnamed" } else { stem.trim_start_matches('.') };
+        let numbered = (0..).map(|i| if i == 0 { format!("{stem}{ending}") } else { format!("{stem}-{i}{ending}") });
+        let free = |name: &String| !self.taken.contains(&name.to_lowercase());
+        let name = numbered.into_iter().find(free).unwrap_or_default();
+        self.taken.insert(name.to_lowercase());
+        name
+    }
+
+    /// Adds a file; returns its path relative to the scene.
+    fn file(&mut self, of: &str, extension: &str, bytes: Vec<u8>) -> String {
+        let (folder, name) = (self.folder, self.name(of, extension));
+        let path = format!("{folder}/{name}");
+        self.files.push((path.clone(), bytes));
+        path
+    }
+
+    fn group(&mut self, group: &mut Group) {
+        group.objects.iter_mut().for_each(|object| self.node(&mut object.node));
+    }
+
+    fn node(&mut self, node: &mut Node) {
+        match node {
+            Node::Group(group) => self.group(group),
+            Node::Transform(_, inner) => self.node(&mut inner.node),
+            Node::Solid(_, parts) => parts.iter_mut().for_each(|part| self.node(&mut part.node)),
+            Node::Mesh(mesh) => mesh.obj_file.path = self.mesh(&mesh.obj_file.path),
+            Node::Primitive(_) | Node::Voxels(..) | Node::HeightField(_) => {}
+        }
+    }
+
+    fn mesh(&mut self, name: &str) -> String {
+        let scene = self.scene;
+        self.once("mesh", name, |put| match scene.assets.meshes.get(name) {
+            Some(data) => put.file(name, "ply", write_whole(data)),
+            None => put.copied(name),
+        })
+    }
+
+    /// Returns the new name of an asset; calls `put` on the first use.
+    fn once(&mut self, kind: &'static str, name: &str, put: impl FnOnce(&mut Self) -> String) -> String {
+        let key = (kind, name.to_string());
+        if let Some(known) = self.known.get(&key) {
+            return known.clone();
+        }
+        let made = put(self);
+        self.known.insert(key, made.clone());
+        made
+    }
+
+    /// Copies a file that the scene names.
+    fn copied(&mut self, name: &str) -> String {
+        match self.source.read(name) {
+            Ok(bytes) => self.file(name, &extension(name), bytes.to_vec()),
+            Err(_) => name.to_string(),
+        }
+    }
+
+    /// Exports the files that a statement's fields name.
+    fn fields<T: DescribedList>(&mut self, item: &mut T) {
+        for i in 0..item.fields().len() {
+            let Some(Value::Path(file)) = DescribedList::get(item, i) else { continue };
+            let path = self.named(&file.path);
+            DescribedList::set(item, i, Value::Path(FileName { path, ..file }));
+        }
+    }
+
+    /// New name of a light profile, of densities, or of a picture: the name of its file, or of a
+    /// texture if it has a mapping.
+    fn named(&mut self, name: &str) -> String {
+        if let Some((known, _)) = self.textures.get(name) {
+            return known.clone();
+        }
+        let scene = self.scene;
+        if let Some(profile) = scene.assets.profiles.get(name) {
+            return self.once("lamp", name, |put| put.file(name, "ies", photometry::write(profile)));
+        }
+        if let Some((bounds, grid)) = scene.assets.densities.get(name) {
+            return self.once("densities", name, |put| put.file(name, "vol", vol::write(bounds, grid)));
+        }
+        let Some(Picture { bytes, mapping }) = scene.assets.pictures.get(name) else {
+            // `light.csv:red` and `picture.png:g` are a column and a channel of a file.
+            let parted = name.rsplit_once(':').filter(|_| !self.source.contains(name));
+            let (path, what) = parted.map_or((name, String::new()), |(path, what)| (path, format!(":{what}")));
+            return self.once("picture", path, |put| put.copied(path)) + &what;
+        };
+        let path = bytes.path();
+        let file = self.once("picture", path, |put| match bytes {
+            PictureBytes::File(_) => put.copied(path),
+            PictureBytes::Here(_, bytes) => {
+                let own = extension(path);
+                put.file(path, image::extension_of(bytes, path).unwrap_or(&own), bytes.to_vec())
+            }
+        });
+        if *mapping == Mapping::default() {
+            return file;
+        }
+        let own = self.name(&file, "");
+        let picture = Picture { bytes: PictureBytes::File(file), mapping: *mapping };
+        self.textures.insert(name.to_string(), (own.clone(), picture));
+        own
+    }
+}

@@ -1,0 +1,123 @@
+//! Suggestions for words that the language or the dialect lacks.
+
+use super::words::dialects_of;
+use durer_scene::dialect::Dialect;
+
+/// Words of the first grammar and their counterparts in the grammar of nodes.
+const COUNTERPARTS: [(&str, &str); 20] = [
+    ("angle", "fov"),
+    ("ambientLight", "ambient_light"),
+    ("cubeMap", "cube_map"),
+    ("diffuseColor", "diffuse"),
+    ("specularColor", "specular"),
+    ("falloff", "attenuation"),
+    ("PerspectiveCamera", "Camera"),
+    ("Group", "Node"),
+    ("MaterialIndex", "Component<Material>"),
+    ("Lights", "Component<Light>"),
+    ("PointLight", "Component<Light>"),
+    ("DirectionalLight", "Component<Light>"),
+    ("Sphere", "Component<Object>"),
+    ("Plane", "Component<Object>"),
+    ("TriangleMesh", "Component<Object>"),
+    ("Translate", "translate"),
+    ("Scale", "scale"),
+    ("XRotate", "x_rotate"),
+    ("YRotate", "y_rotate"),
+    ("ZRotate", "z_rotate"),
+];
+
+/// Common slips: the slip, the words that it may stand for, and a remark. The first of these words
+/// that is known in the block is suggested.
+const SLIPS: [(&str, &[&str], &str); 29] = [
+    ("plain", &["Plane", "plane"], ""),
+    ("ball", &["Sphere", "sphere"], ""),
+    ("mesh", &["TriangleMesh"], ""),
+    ("model", &["TriangleMesh", "mesh"], ""),
+    ("file", &["obj_file"], ""),
+    ("obj", &["obj_file", "TriangleMesh", "mesh"], ""),
+    ("arealight", &["PointLight"], "a surface emits light with the `emissionLuminance` of its `PrincipledMaterial`"),
+    ("light", &["PointLight", "DirectionalLight"], ""),
+    ("sun", &["DirectionalLight"], ""),
+    ("camera", &["PerspectiveCamera", "Camera"], ""),
+    (
+        "rotation",
+        &["YRotate", "y_rotate"],
+        "`XRotate`, `YRotate` and `ZRotate` turn about an axis, `Rotate { x y z angle }` about any",
+    ),
+    (
+        "rotate",
+        &["YRotate", "y_rotate"],
+        "`XRotate`, `YRotate` and `ZRotate` turn about an axis, `Rotate { x y z angle }` about any",
+    ),
+    ("move", &["Translate", "translate"], ""),
+    ("translation", &["Translate", "translate"], ""),
+    ("size", &["radius", "Scale", "scale"], ""),
+    ("scaling", &["Scale", "scale"], ""),
+    ("scale", &["Scale", "UniformScale"], ""),
+    ("eye", &["center"], ""),
+    ("lookat", &["direction"], "`direction` is a direction, not a point to look at"),
+    ("target", &["direction"], "`direction` is a direction, not a point to look at"),
+    ("from", &["center"], ""),
+    ("fovy", &["angle", "fov"], ""),
+    ("intensity", &["color"], "the colour includes the intensity"),
+    ("colour", &["color"], ""),
+    ("ambient", &["ambientLight", "ambient_light"], ""),
+    ("reflection", &["reflectiveColor"], ""),
+    ("refraction", &["indexOfRefraction", "refractionIndex"], ""),
+    ("ior", &["indexOfRefraction", "refractionIndex"], ""),
+    ("material", &["MaterialIndex"], ""),
+];
+
+/// Word of this dialect's grammar for a word of the other grammar.
+pub(super) fn counterpart(word: &str, dialect: Dialect) -> Option<&'static str> {
+    let nodes = dialect == Dialect::F23;
+    let row = COUNTERPARTS.iter().find(|(classic, node)| if nodes { *classic == word } else { *node == word })?;
+    let there = if nodes { row.1 } else { row.0 };
+    dialects_of(there).filter(|set| dialect.is_in(*set) || dialect == Dialect::Durer).map(|_| there)
+}
+
+/// Words with the same meaning in different years of the first grammar.
+const YEARS: [(&str, &str); 5] = [
+    ("exponent", "shininess"),
+    ("falloff", "attenuation"),
+    ("refractionIndex", "indexOfRefraction"),
+    ("num_objects", "numObjects"),
+    ("Matrix", "Matrix4f"),
+];
+
+/// Word of this dialect for a word of another year.
+pub(super) fn here(word: &str, dialect: Dialect) -> Option<&'static str> {
+    let other = YEARS.iter().find_map(|&(a, b)| (a == word).then_some(b).or((b == word).then_some(a)));
+    let known = |word: &&str| dialects_of(word).is_some_and(|set| dialect.is_in(set));
+    counterpart(word, dialect).or(other.filter(known))
+}
+
+/// Returns the known word that a slip stands for, with a remark.
+pub(super) fn slip<'w>(word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<(&'w str, &'static str)> {
+    let known: Vec<&str> = known.into_iter().collect();
+    let row = SLIPS.iter().find(|row| row.0.eq_ignore_ascii_case(word))?;
+    let suggestion = row.1.iter().find_map(|suggestion| known.iter().find(|known| *known == suggestion))?;
+    (*suggestion != word).then_some((suggestion, row.2))
+}
+
+/// Remark on a word of the language in a block that uses another word for it.
+pub(super) fn misplaced(word: &str, place: &str) -> Option<&'static str> {
+    let within = |block: &str| place.contains(block);
+    Some(match word {
+        "position" if within("DirectionalLight") || within("directional") => {
+            "a directional light has a `direction` in which it shines, but no position; a `PointLight` has a `position`"
+        }
+        "direction" if within("PointLight") || within("point") => {
+            "a point light has a `position` and shines in all directions; a `DirectionalLight` has a `direction`"
+        }
+        "position" if within("Camera") => "the position of a camera is its `center`",
+        "position" => "the position of a sphere is its `center`",
+        "color" if within("Material") => {
+            "a material's colour is its `diffuseColor` (`diffuse` in the grammar of nodes)"
+        }
+        "angle" if within("Orthographic") => "an orthographic camera has a `size`, not an angle",
+        "size" if within("Perspective") => "a perspective camera has an `angle`, not a size",
+        _ => return None,
+    })
+}

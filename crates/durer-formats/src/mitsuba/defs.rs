@@ -1,0 +1,100 @@
+//! Results of plugins: materials, emission and infinite lights.
+
+use super::plugin::Key;
+use durer_diag::Span;
+use durer_scene::describe::FileName;
+use durer_scene::material::{HairMaterial, PrincipledMaterial};
+use durer_scene::math::{Color, Vec3};
+use durer_scene::scene::Picture;
+use durer_scene::texture::Sky;
+use glam::DAffine3;
+use std::rc::Rc;
+
+/// Material as declared.
+pub(super) enum MaterialDef {
+    Layers(Box<PrincipledMaterial>),
+    Hair(HairMaterial),
+    /// Mix of two materials, with the share of the first and a picture that multiplies it.
+    Mix(Rc<MaterialDef>, Rc<MaterialDef>, f32, Option<FileName>),
+    /// One material on the front and another on the back.
+    Sides(Rc<MaterialDef>, Rc<MaterialDef>),
+    /// Material of a surface that is not rendered.
+    Nothing,
+}
+
+impl MaterialDef {
+    /// Matte grey. 0.5 is the default material of shapes.
+    pub fn matte(grey: f32) -> MaterialDef {
+        MaterialDef::Layers(Box::new(matte(Vec3::splat(grey))))
+    }
+
+    /// Number of materials in it, at most `most + 1`: a material may stand in it many times.
+    pub fn count(&self, most: usize) -> usize {
+        match self {
+            MaterialDef::Mix(a, b, ..) | MaterialDef::Sides(a, b) => {
+                let first = 1 + a.count(most);
+                if first > most { first } else { first + b.count(most - first) }
+            }
+            _ => 1,
+        }
+    }
+
+    /// Copy with `change` applied to all layers.
+    pub fn changed(&self, change: &impl Fn(&mut PrincipledMaterial)) -> MaterialDef {
+        match self {
+            MaterialDef::Layers(layers) => {
+                let mut layers = layers.clone();
+                change(&mut layers);
+                MaterialDef::Layers(layers)
+            }
+            MaterialDef::Mix(a, b, share, picture) => {
+                MaterialDef::Mix(a.changed(change).into(), b.changed(change).into(), *share, picture.clone())
+            }
+            MaterialDef::Sides(front, back) => {
+                MaterialDef::Sides(front.changed(change).into(), back.changed(change).into())
+            }
+            MaterialDef::Hair(hair) => MaterialDef::Hair(hair.clone()),
+            MaterialDef::Nothing => MaterialDef::Nothing,
+        }
+    }
+}
+
+/// Diffuse material without a specular boundary.
+pub(super) fn matte(base_color: Color) -> PrincipledMaterial {
+    PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
+}
+
+/// Emission of a shape: radiance, and a picture that multiplies it.
+pub(super) struct AreaEmitter {
+    pub color: Color,
+    pub picture: Option<Picture>,
+    /// True if both sides emit.
+    pub both: bool,
+    pub at: Span,
+    pub key: Key,
+}
+
+/// Infinite light. A scene of Mitsuba has at most one.
+pub(super) enum InfiniteLight {
+    Even(Color, Span),
+    Picture {
+        name: String,
+        at: Span,
+        scale: f32,
+        to_world: DAffine3,
+    },
+    /// Clear sky with y up, and its transform to world space.
+    Sky {
+        sky: Sky,
+        at: Span,
+        scale: f32,
+        to_world: DAffine3,
+    },
+}
+
+impl InfiniteLight {
+    pub fn at(&self) -> Span {
+        let (InfiniteLight::Even(_, at) | InfiniteLight::Picture { at, .. } | InfiniteLight::Sky { at, .. }) = self;
+        *at
+    }
+}

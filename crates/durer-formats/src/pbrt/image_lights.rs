@@ -1,0 +1,144 @@
+//! Goniometric lights and projectors, as measured point lights: one each for red, green and blue.
+//!
+//! Source: *Physically Based Rendering*, 3rd edition, sections 12.3.2 and 12.3.3, and 4th edition,
+//! sections 12.2.2 and 12.2.3.
+
+use super::environment::equal_area;
+use super::language::Language;
+use super::params::Params;
+use super::state::Reader;
+use crate::panorama::between;
+use crate::pictures::{Pictures, unusable};
+use crate::profile_lights::{Axes, ProfileLights, steps};
+use durer_image::{self as image, Encoded, Image};
+use durer_scene::math::{Color, Vec2, Vec3, fp};
+use glam::DAffine3;
+use std::f32::consts::{PI, TAU};
+
+/// Maximum number of steps of an angle.
+const STEPS: u32 = 720;
+
+/// Number of steps of a projector's vertical and horizontal angles.
+const PROJECTED: [u32; 2] = [360, 720];
+
+/// Directional distribution of a light, and the vertical and horizontal angles in degrees at which
+/// it is sampled.
+struct Pattern {
+    axes: Axes,
+    angles: [Vec<f32>; 2],
+    light: Box<dyn Fn(Vec3) -> Color>,
+}
+
+impl Reader<'_> {
+    /// Adds a light at the origin of the current space; `color` is its intensity where the picture
+    /// is 1.
+    pub fn pictured_light(&mut self, kind: &str, params: &Params, map: DAffine3, (color, power): (Color, Option<f32>)) {
+        let third = self.language == Language::Third;
+        let fov = if kind == "projection" { Some(self.fov(params, third)) } else { None };
+        let Some(image) = self.light_picture(kind, params, third) else { return };
+        let Pattern { axes, angles: [vertical, horizontal], light } = match fov {
+            Some(fov) => {
+                let screen = Screen::new(&image, fov);
+                let axes = Axes::about_z(&map);
+                let angles = [steps(screen.widest(), PROJECTED[0]), steps(360.0, PROJECTED[1])];
+                Pattern { axes, angles, light: Box::new(move |dir| screen.at(&image, dir)) }
+            }
+            None => {
+                let axes = Axes::about_y(&map);
+                let count = |texels: u32| (2 * texels).clamp(90, STEPS);
+                let angles = [steps(180.0, count(image.height)), steps(360.0, count(image.width))];
+                let light = move |dir| if third { of_angles(&image, dir) } else { of_areas(&image, dir) };
+                Pattern { axes, angles, light: Box::new(light) }
+            }
+        };
+        let lights = ProfileLights::new([vertical, horizontal], &axes, light);
+        let strength = power.map_or(1.0, |power| {
+            let flux = lights.flux();
+            if flux > 0.0 { power / flux } else { 0.0 }
+        });
+        lights.add(&mut self.scene, self.input.name, (map, axes), color * strength, params.at);
+    }
+
+    /// Field of view of a projector across the shorter side of its picture, in degrees.
+    fn fov(&self, params: &Params, third: bool) -> f32 {
+        let fov = params.float("fov").unwrap_or(if third { 45.0 } else { 90.0 });
+        if !(fov > 0.0 && fov < 180.0) {
+            params.report.bad(params.place("fov"), "a field of view must be more than 0 and less than 180 degrees");
+        }
+        fov.clamp(1e-2, 179.0)
+    }
+
+    /// Picture of a light; white if pbrt-v3 gives none.
+    fn light_picture(&self, kind: &str, params: &Params, third: bool) -> Option<Image> {
+        let name = if third { "mapname" } else { "filename" };
+        let Some(file) = params.text(name).filter(|file| !file.is_empty()).map(str::to_string) else {
+            if third {
+                return Image::from_pixels(1, 1, vec![Color::ONE]).ok();
+            }
+            self.report.bad(params.at, format!("a light of type `{kind}` needs a `filename`"));
+            return None;
+        };
+        let at = params.get(name).map_or(params.at, |param| param.values_at);
+        let bytes = Pictures { input: self.input, report: self.report }.bytes(&file, at)?;
+        // pbrt-v3 reads the bytes of a light's picture as linear values.
+        let decode = if third { image::decode_linear } else { image::decode_srgb };
+        let image = match Encoded::open(&bytes, &file).and_then(|encoded| encoded.read(self.input.memory, decode)) {
+            Ok(image) => image,
+            Err(error) => {
+                self.report.push(unusable(&file, &error).at(at));
+                return None;
+            }
+        };
+        if !third && kind == "goniometric" && image.width != image.height {
+            let message = format!(
+                "the picture of a `goniometric` light must be square, found {} x {} pixels",
+                image.width, image.height
+            );
+            self.report.bad_with(at, message, Some("pbrt's `imgtool makeequiarea` makes such a picture".into()));
+            return None;
+        }
+        Some(image)
+    }
+}
+
+/// Half extent of a projector's picture on the plane at distance 1.
+struct Screen {
+    half: Vec2,
+}
+
+impl Screen {
+    fn new(image: &Image, fov: f32) -> Self {
+        let aspect = image.width as f32 / image.height as f32;
+        let short = fp::tan_f64(f64::from(fov).to_radians() / 2.0) as f32;
+        Screen { half: short * Vec2::new(aspect.max(1.0), (1.0 / aspect).max(1.0)) }
+    }
+
+    /// Angle between the axis and a corner, in degrees.
+    fn widest(&self) -> f32 {
+        fp::atan2(self.half.length(), 1.0).to_degrees()
+    }
+
+    /// Value of a direction. The first row of the picture is at the least y, as in pbrt.
+    fn at(&self, image: &Image, dir: Vec3) -> Color {
+        let place = Vec2::new(dir.x, dir.y) / (dir.z * self.half);
+        if dir.z <= 0.0 || place.abs().max_element() > 1.0 {
+            return Color::ZERO;
+        }
+        between(image, 0.5 * (place + 1.0))
+    }
+}
+
+/// Value of a direction in a picture of longitude, from x towards z, and of the polar angle from y.
+fn of_angles(image: &Image, dir: Vec3) -> Color {
+    let turn = fp::atan2(dir.z, dir.x) / TAU;
+    let down = fp::atan2((dir.x * dir.x + dir.z * dir.z).sqrt(), dir.y) / PI;
+    between(image, Vec2::new(turn - turn.floor(), down))
+}
+
+/// Grey value of a direction in a square equal-area picture: the mean of its channels.
+fn of_areas(image: &Image, dir: Vec3) -> Color {
+    let place = equal_area(dir);
+    let texel = |share: f32, count: u32| ((share * count as f32) as u32).min(count - 1);
+    let value = image.get(texel(place.x, image.width), texel(place.y, image.height)).unwrap_or_default();
+    Color::splat(value.element_sum() / 3.0)
+}

@@ -1,0 +1,373 @@
+//! Defaults for models: a camera that shows the whole model, light, a ground, and a material.
+
+use super::extent::points;
+use super::{Background, Group, Material, Node, Object, Scene, Spanned};
+use crate::camera::{Camera, OrthographicCamera, PerspectiveCamera, Projection};
+use crate::light::{DirectionalLight, Light};
+use crate::material::PrincipledMaterial;
+use crate::math::{Vec3, fp};
+use crate::shape::plane::Plane;
+use durer_diag::Span;
+use glam::{DMat3, DVec3};
+use std::path::PathBuf;
+
+/// An axis of space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// The x axis.
+    X,
+    /// The y axis.
+    Y,
+    /// The z axis.
+    Z,
+}
+
+/// View of a model without a camera.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum View {
+    /// Perspective, from the front, slightly from the right and from above.
+    #[default]
+    ThreeQuarter,
+    /// Parallel, from the front.
+    Front,
+    /// Parallel, from the right.
+    Side,
+    /// Parallel, from above.
+    Top,
+    /// Parallel, such that edges along all three axes have equal lengths.
+    Iso,
+}
+
+/// Light for a model without lights.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DefaultLighting {
+    /// No light and no ground.
+    None,
+    /// A key light from the upper left, a weaker light from the right, a bright ground.
+    #[default]
+    Soft,
+    /// A low sun under a blue sky, a bright ground.
+    Sun,
+}
+
+/// Options for turning a model into a scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SceneDefaults {
+    /// Up axis; `None`: the usual one of the format.
+    pub up: Option<Axis>,
+    /// View; `None`: the model's own camera, else a three-quarter view.
+    pub view: Option<View>,
+    /// Light; `None`: the model's own, else [`DefaultLighting::Soft`].
+    pub studio: Option<DefaultLighting>,
+    /// Name of the camera to use; `None`: the first.
+    pub camera: Option<String>,
+    /// Name of the glTF material variant to use (KHR_materials_variants); `None`: the default
+    /// materials.
+    pub variant: Option<String>,
+    /// Time of the animation in seconds; `None`: without animation.
+    pub at: Option<f32>,
+    /// File of Radiance views, of which the last is the camera.
+    pub view_file: Option<PathBuf>,
+    /// Environment map that lights the model instead of the default lights.
+    pub environment: Option<PathBuf>,
+    /// True to move the model's own camera to where it shows the whole model.
+    pub fit: bool,
+    /// Degrees by which the camera orbits the model, counter-clockwise seen from above, at a
+    /// distance from which the whole model is visible from all angles; `None` for a single picture.
+    pub turned: Option<f32>,
+    /// True to add and replace nothing, since the scene is written in another format.
+    pub bare: bool,
+    /// True to use the model's own light only, even if there is none.
+    pub own_light: bool,
+    /// Width over height of the picture that the camera should fill; `None`: 1.
+    pub aspect: Option<f32>,
+}
+
+/// Axes of a model as a viewer in front of it sees them.
+pub struct Sides {
+    /// Direction to the viewer's right.
+    pub right: DVec3,
+    /// Direction upwards.
+    pub up: DVec3,
+    /// Direction from the model towards the viewer.
+    pub front: DVec3,
+}
+
+impl Sides {
+    /// Axes for a model with this up axis.
+    pub fn new(up: Axis) -> Self {
+        let (right, up) = match up {
+            Axis::X => (DVec3::NEG_Y, DVec3::X),
+            Axis::Y => (DVec3::X, DVec3::Y),
+            Axis::Z => (DVec3::X, DVec3::Z),
+        };
+        Sides { right, up, front: right.cross(up) }
+    }
+}
+
+/// Field of view across the larger side of the picture, in degrees.
+const ANGLE: f32 = 30.0;
+/// Number of angles of an orbiting camera at which the model must be visible.
+const PLACES: u32 = 48;
+/// Fraction of the picture's width or height that a model fills.
+const FILLED: f64 = 0.86;
+
+impl SceneDefaults {
+    /// Adds what a scene lacks. `up` is the usual up axis of its format. With `dark`, a scene with
+    /// a camera or emitters but without lights is complete.
+    pub fn complete(&self, scene: &mut Scene, up: Axis, dark: bool) {
+        let sides = Sides::new(self.up.unwrap_or(up));
+        let framed = scene.camera.is_none() || self.view.is_some() || self.turned.is_some();
+        let lit = (dark && (scene.camera.is_some() || scene.emits_light()))
+            || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
+        if framed {
+            scene.camera = Some(self.camera(scene, &sides, self.view.unwrap_or_default()));
+        } else if let (Some(pose), true) = (scene.camera.as_ref().map(Projection::pose), self.fit) {
+            let [forward, up] = [pose.direction, pose.up].map(|v| v.as_dvec3().normalize_or(sides.up));
+            scene.camera = Some(self.framed(scene, &sides, (-forward, up), true));
+        }
+        give_material(scene);
+        let surrounded = self.environment.is_some() && self.studio.is_none();
+        let missing = !lit && !surrounded && !self.own_light;
+        let studio = self.studio.or(missing.then(DefaultLighting::default));
+        if let Some(studio) = studio {
+            self.light(scene, &sides, studio, framed);
+        }
+        // The background of a scene with its own light is black, unless the file sets it.
+        let emits = scene.emits_light() || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
+        if (emits || self.own_light) && scene.background == Background::default() {
+            scene.background.color = Vec3::ZERO;
+        }
+    }
+
+    /// A camera that shows the whole scene, centred.
+    fn camera(&self, scene: &Scene, sides: &Sides, view: View) -> Camera {
+        let &Sides { right, up, front } = sides;
+        let (back, above) = match view {
+            // 35 degrees to the right and 22 degrees up.
+            View::ThreeQuarter => (0.927 * (0.819 * front + 0.574 * right) + 0.375 * up, up),
+            View::Front => (front, up),
+            View::Side => (right, up),
+            View::Top => (up, -front),
+            View::Iso => (front + right + up, up),
+        };
+        self.framed(scene, sides, (back, above), view == View::ThreeQuarter)
+    }
+
+    /// A camera that shows the whole scene from a direction.
+    fn framed(&self, scene: &Scene, sides: &Sides, (back, above): (DVec3, DVec3), perspective: bool) -> Camera {
+        let forward = -back.normalize();
+        let across = forward.cross(above).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
+        let upwards = across.cross(forward);
+        let aspect = f64::from(self.aspect.unwrap_or(1.0)).clamp(1e-3, 1e3);
+        // Half the width and height of the picture, whose larger side is from -1 to 1.
+        let (wide, high) = (aspect.min(1.0), (1.0 / aspect).min(1.0));
+        let mut seen = VisibleExtent::new(half_angle() * FILLED * wide, half_angle() * FILLED * high);
+        let mut add = |p: DVec3| seen.add(p.dot(across), p.dot(upwards), p.dot(forward));
+        let axis = self.turned.map(|_| axis(scene, sides));
+        match axis {
+            None => points(scene, &mut add),
+            // The points at all angles of the orbit.
+            Some(axis) => points(scene, &mut |p| {
+                (0..PLACES)
+                    .for_each(|i| add(axis + turn(sides.up, 360.0 * f64::from(i) / f64::from(PLACES)) * (p - axis)));
+            }),
+        }
+        let turned = turn(sides.up, f64::from(self.turned.unwrap_or(0.0)));
+        let (direction, up) = ((turned * forward).as_vec3(), (turned * above).as_vec3());
+        let middle = axis.unwrap_or_default();
+        let place =
+            |[x, y, z]: [f64; 3]| (middle + turned * (x * across + y * upwards + z * forward - middle)).as_vec3();
+        if perspective {
+            return PerspectiveCamera { center: place(seen.eye()), direction, up, angle: ANGLE }.into();
+        }
+        let [half_x, half_y] = seen.half_sizes();
+        let size = (2.0 * (half_x / wide).max(half_y / high) / FILLED) as f32;
+        let size = if size > 0.0 { size } else { 2.0 };
+        let center = place(seen.before(f64::from(size)));
+        OrthographicCamera { center, direction, up, size, ..Default::default() }.into()
+    }
+
+    /// Adds light and, with a default camera, a ground.
+    fn light(&self, scene: &mut Scene, sides: &Sides, studio: DefaultLighting, framed: bool) {
+        if studio == DefaultLighting::None {
+            scene.lights.get_or_insert_default();
+            return;
+        }
+        let pose = scene.camera.as_ref().map(crate::camera::Projection::pose);
+        let forward = pose.map_or(-sides.front, |pose| pose.direction.as_dvec3().normalize_or(-sides.front));
+        // Horizontal, so that light comes from above even if the camera looks down.
+        let forward = forward.reject_from(sides.up).try_normalize().unwrap_or(-sides.front);
+        let right = forward.cross(sides.up);
+        let from = |x: f64, y: f64, z: f64| -(x * right + y * sides.up - z * forward).normalize().as_vec3();
+        let light = |direction: Vec3, color: Vec3| Spanned {
+            value: Light::from(DirectionalLight { direction, color, ..DirectionalLight::default() }),
+            span: Span::default(),
+        };
+        let (lights, ambient, sky, ground) = match studio {
+            DefaultLighting::Sun => (
+                vec![light(from(-0.7, 0.75, 0.45), Vec3::new(0.95, 0.86, 0.7))],
+                Vec3::new(0.2, 0.24, 0.3),
+                Vec3::new(0.3, 0.5, 0.85),
+                Vec3::new(0.55, 0.5, 0.42),
+            ),
+            // Chosen so that a white object is brighter than the background, for path tracing and
+            // for Whitted's method.
+            _ => (
+                vec![
+                    light(from(-0.6, 1.0, 0.7), Vec3::splat(0.75)),
+                    light(from(1.0, 0.5, 0.5), Vec3::new(0.095, 0.1, 0.11)),
+                ],
+                Vec3::splat(0.25),
+                Vec3::splat(0.4),
+                Vec3::splat(0.5),
+            ),
+        };
+        scene.lights = Some(lights);
+        scene.background.color = sky;
+        scene.background.ambient_light = ambient;
+        if framed {
+            let mut lowest = f64::INFINITY;
+            points(scene, &mut |p| lowest = lowest.min(p.dot(sides.up)));
+            let material = PrincipledMaterial {
+                base_color: ground,
+                specular_weight: 0.0,
+                specular_roughness: 1.0,
+                ..PrincipledMaterial::default()
+            };
+            let plane = Plane { normal: sides.up.as_vec3(), offset: lowest as f32 };
+            if lowest.is_finite() {
+                let material = Some(scene.add_material(Material::Principled(Box::new(material))));
+                let node = Node::Primitive(plane.into());
+                let objects = &mut scene.root.get_or_insert_default().objects;
+                objects.push(Object { node, material, span: Span::default() });
+            }
+        }
+    }
+}
+
+impl Scene {
+    /// Adds a material and returns its number.
+    pub fn add_material(&mut self, material: Material) -> u32 {
+        self.materials.push(Spanned { value: material, span: Span::default() });
+        (self.materials.len() - 1) as u32
+    }
+}
+
+/// A point of the axis about which the camera orbits: the centre of the bounds.
+fn axis(scene: &Scene, sides: &Sides) -> DVec3 {
+    let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    points(scene, &mut |p| (least, most) = (least.min(p), most.max(p)));
+    let middle = 0.5 * (least + most);
+    if middle.is_finite() { middle.reject_from(sides.up) } else { DVec3::ZERO }
+}
+
+/// Rotation about an axis by degrees.
+fn turn(axis: DVec3, degrees: f64) -> DMat3 {
+    let (sin, cos) = fp::sin_cos_degrees(degrees);
+    let (x, y, z) = (axis.x, axis.y, axis.z);
+    let cross = DMat3::from_cols(DVec3::new(0.0, z, -y), DVec3::new(-z, 0.0, x), DVec3::new(y, -x, 0.0));
+    DMat3::IDENTITY + cross * sin + cross * cross * (1.0 - cos)
+}
+
+/// Tangent of half the field of view.
+fn half_angle() -> f64 {
+    crate::math::fp::tan_f64(f64::from(ANGLE).to_radians() / 2.0)
+}
+
+/// Assigns a neutral material to objects without one.
+fn give_material(scene: &mut Scene) {
+    fn visit(object: &mut Object, material: u32, used: &mut bool) {
+        match &mut object.node {
+            Node::Group(group) => group.objects.iter_mut().for_each(|object| visit(object, material, used)),
+            Node::Transform(_, inner) => visit(inner, material, used),
+            Node::Solid(_, parts) => parts.iter_mut().for_each(|part| visit(part, material, used)),
+            _ if object.material.is_none() => {
+                object.material = Some(material);
+                *used = true;
+            }
+            _ => {}
+        }
+    }
+    let (number, mut used) = (scene.materials.len() as u32, false);
+    if let Some(Group { objects }) = &mut scene.root {
+        objects.iter_mut().for_each(|object| visit(object, number, &mut used));
+    }
+    if used {
+        let neutral = PrincipledMaterial {
+            base_color: Vec3::splat(0.7),
+            specular_roughness: 0.4,
+            ..PrincipledMaterial::default()
+        };
+        scene.add_material(Material::Principled(Box::new(neutral)));
+    }
+}
+
+/// Extent of the visible points in the camera's axes, from which the closest camera that shows them
+/// follows.
+struct VisibleExtent {
+    /// Half the picture's width and height at distance 1.
+    slopes: [f64; 2],
+    /// Maximum of p - slope z and minimum of p + slope z, for both picture axes.
+    reach: [[f64; 2]; 2],
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl VisibleExtent {
+    fn new(across: f64, upwards: f64) -> Self {
+        let none = [f64::NEG_INFINITY, f64::INFINITY];
+        VisibleExtent {
+            slopes: [across, upwards],
+            reach: [none; 2],
+            low: [f64::INFINITY; 3],
+            high: [f64::NEG_INFINITY; 3],
+        }
+    }
+
+    fn add(&mut self, x: f64, y: f64, z: f64) {
+        for (i, p) in [x, y].into_iter().enumerate() {
+            let [greatest, least] = &mut self.reach[i];
+            *greatest = greatest.max(p - self.slopes[i] * z);
+            *least = least.min(p + self.slopes[i] * z);
+        }
+        for (i, p) in [x, y, z].into_iter().enumerate() {
+            (self.low[i], self.high[i]) = (self.low[i].min(p), self.high[i].max(p));
+        }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.low[0] > self.high[0]
+    }
+
+    /// Position of a perspective camera. Each side plane of the frustum touches a point: x = A + s
+    /// z and x = B - s z meet in the eye.
+    fn eye(&self) -> [f64; 3] {
+        if self.is_empty() {
+            return [0.0, 0.0, -4.0];
+        }
+        let [x, y] = self.reach.map(|[a, b]| 0.5 * (a + b));
+        let far = |i: usize| (self.reach[i][1] - self.reach[i][0]) / (2.0 * self.slopes[i]);
+        let z = far(0).min(far(1));
+        // A single point needs a distance too.
+        let size = (0..3).map(|i| self.high[i] - self.low[i]).fold(0.0, f64::max);
+        let near = self.low[2] - z;
+        [x, y, if near > 1e-6 * size && size > 0.0 { z } else { self.low[2] - size.max(1.0) }]
+    }
+
+    fn half_sizes(&self) -> [f64; 2] {
+        if self.is_empty() { [1.0; 2] } else { std::array::from_fn(|i| 0.5 * (self.high[i] - self.low[i])) }
+    }
+
+    /// Position of a parallel camera at a distance in front of all points.
+    fn before(&self, distance: f64) -> [f64; 3] {
+        if self.is_empty() {
+            return [0.0; 3];
+        }
+        let middle = |i: usize| 0.5 * (self.low[i] + self.high[i]);
+        [middle(0), middle(1), self.low[2] - distance]
+    }
+}
+
+#[cfg(test)]
+mod tests;

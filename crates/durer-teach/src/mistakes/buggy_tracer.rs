@@ -1,0 +1,562 @@
+//! A student's tracer: a second implementation of Whitted's algorithm with optional mistakes.
+//!
+//! It is separate from [`Whitted`], so that the renderer never checks for mistakes. Without
+//! mistakes it returns the same colours bit for bit, which a test verifies.
+
+mod hits;
+
+use super::bugs::{
+    Ambient, Attenuation, Ball, BehindOrigin, Bugs, Cosine, Fresnel, Glass, HalfVector, HitChoice, LightSum, Mirror,
+    Normals, PointLightDirection, Reach, ShadowDirection,
+};
+use super::variant::{TaughtShapes, taught_shapes};
+use durer_render::integrator::media::Media;
+use durer_render::integrator::media::Passage;
+use durer_render::integrator::spawn::{spawn_ray, to_light};
+use durer_render::integrator::whitted::secondary::{Blend, fresnel_share};
+use durer_render::integrator::{Whitted, WhittedOptions, refract};
+use durer_render::world::{Epsilon, Geometry, HighlightModel, Phong, SurfaceInteraction, WeightedMaterial, World};
+use durer_scene::camera::Projection;
+use durer_scene::light::{Illuminate, Light, LightLiSample};
+use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3, fp, gamma, reflect};
+use durer_scene::shape::{Primitive, Surface};
+use glam::DVec3;
+use smallvec::SmallVec;
+
+/// A student's tracer.
+#[derive(Clone, Copy, Debug)]
+pub struct BuggyTracer<'w> {
+    world: &'w World,
+    settings: WhittedOptions,
+    bugs: &'w Bugs,
+    right: Whitted<'w>,
+}
+
+/// State of a ray from bounce to bounce.
+#[derive(Clone)]
+struct RayState {
+    bounces: u32,
+    media: Media,
+    weight: f32,
+    first: bool,
+}
+
+impl<'w> BuggyTracer<'w> {
+    /// Creates a tracer for a world with settings and mistakes.
+    pub fn new(world: &'w World, settings: WhittedOptions, bugs: &'w Bugs) -> Self {
+        BuggyTracer { world, settings, bugs, right: Whitted { world, settings, cancel: None } }
+    }
+
+    /// Returns the radiance along a camera ray.
+    pub fn radiance(&self, ray: &Ray) -> Color {
+        let path = RayState { bounces: self.settings.bounces, media: Media::default(), weight: 1.0, first: true };
+        self.trace(&ray.into(), path)
+    }
+
+    fn trace(&self, ray: &Ray64, mut path: RayState) -> Color {
+        let mut rest = *ray;
+        // Some mistakes find the same hidden surface again; limit the loop.
+        for _ in 0..64 {
+            let behind = self.bugs.behind.is_some_and(|rays| rays == BehindOrigin::All || path.first);
+            let from = if behind { f32::NEG_INFINITY } else { rest.rounded.t_min };
+            let reaching = Ray64 { rounded: Ray { t_min: from, ..rest.rounded }, ..rest };
+            let Some((hit, t)) = self.closest(&reaching) else { break };
+            let mut at = self.world.interaction(self.own_ray(ray, hit.object), hit);
+            if self.bugs.pick == HitChoice::MovedDirection {
+                (at.ray, at.surface.position, at.surface.rest) = (*ray, ray.rounded.at(t), Vec3::ZERO);
+            }
+            match self.right.passage(&at, &path.media) {
+                Some(Passage { hidden: true, behind, .. }) => (path.media, rest.rounded.t_min) = (behind, hit.t),
+                passage => {
+                    let color = self.shade(&self.met(at, t), passage, path);
+                    let clamped = self.bugs.clamped_rays;
+                    return if clamped { color.clamp(Color::ZERO, Color::ONE) } else { color };
+                }
+            }
+        }
+        match self.bugs.sky.filter(|(_, all)| path.first || *all) {
+            Some((color, _)) => color,
+            None if self.bugs.bounces.black_sky && !path.first => Color::ZERO,
+            None => self.world.sky(ray.dir()),
+        }
+    }
+
+    /// Adjusts position and normals of an interaction.
+    fn met(&self, mut at: SurfaceInteraction, t: f32) -> SurfaceInteraction {
+        let (bugs, object) = (self.bugs, &self.world.objects()[at.hit.object as usize]);
+        let SurfaceInteraction { ray, hit, surface, .. } = &mut at;
+        if t != hit.t {
+            (surface.position, surface.rest) = (ray.rounded.at(t), Vec3::ZERO);
+        }
+        if let (Geometry::Mesh(tree), true) = (&object.geometry, bugs.long_mixed)
+            && let Some(mixed) = tree.mesh.mixed_normal(hit.part, hit.uv)
+        {
+            // Rotations and uniform scales preserve the length that interpolation lost.
+            surface.n_shade *= mixed.length();
+        }
+        if let (Geometry::Mesh(tree), true) = (&object.geometry, bugs.mixed_otherwise > 0) {
+            const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [0, 2, 1], [2, 1, 0]];
+            let weights = [1.0 - hit.uv.x - hit.uv.y, hit.uv.x, hit.uv.y];
+            let [_, u, v] = ORDERS[bugs.mixed_otherwise.min(5)].map(|i| weights[i]);
+            if let Some(mixed) = tree.mesh.mixed_normal(hit.part, Vec2::new(u, v)) {
+                let world = object.to_world.as_ref().map_or(mixed, |to_world| to_world.long_normal(mixed));
+                surface.n_shade = world.normalize_or(surface.n_shade);
+            }
+        }
+        if bugs.flat {
+            surface.n_shade = surface.n_geo;
+        }
+        if let (Some(to_world), true) = (&object.to_world, bugs.normals != Normals::Right) {
+            let local = to_world.local_normal(surface.n_shade);
+            surface.n_shade = match bugs.normals {
+                Normals::Right => surface.n_shade,
+                Normals::Local => local,
+                Normals::Long => to_world.long_normal(local),
+                Normals::ByInverse => to_world.inverse_ray(&Ray::new(Vec3::ZERO, local)).dir.normalize_or(local),
+            };
+        }
+        if let (Geometry::Primitive(Primitive::Sphere(sphere)), ball @ (Ball::Position | Ball::Long)) =
+            (&object.geometry, bugs.balls)
+        {
+            let to_world = object.to_world.as_ref();
+            let local = to_world.map_or(surface.position, |to_world| to_world.inverse_point(surface.position));
+            surface.n_shade = match (ball, to_world) {
+                (Ball::Position, Some(to_world)) => to_world.normal((local + object.center).normalize_or_zero()),
+                (Ball::Position, None) => (local + object.center).normalize_or_zero(),
+                (_, Some(_)) => surface.n_shade,
+                (_, None) => surface.n_shade * sphere.radius,
+            };
+        }
+        let is_turned = match taught_shapes(&object.geometry) {
+            Some(TaughtShapes::Mesh | TaughtShapes::Triangle) => bugs.triangles_turned,
+            Some(TaughtShapes::Sphere) => bugs.spheres_turned,
+            Some(TaughtShapes::Plane) => bugs.planes_turned,
+            None => false,
+        };
+        if is_turned {
+            (surface.n_shade, surface.n_geo) = (-surface.n_shade, -surface.n_geo);
+        }
+        at
+    }
+
+    fn shade(&self, at: &SurfaceInteraction, passage: Option<Passage>, path: RayState) -> Color {
+        let (world, bugs) = (self.world, self.bugs);
+        let SurfaceInteraction { ray, surface, .. } = at;
+        let from_behind = self.right.sees_back(at);
+        let black = from_behind && !self.settings.shade_back && world.shading_rules().black_backs;
+        let turned = from_behind && (self.settings.shade_back || bugs.faced);
+        let n = if turned { -surface.n_shade } else { surface.n_shade };
+        let n = if world.shading_rules().unit_light { n.normalize_or(n) } else { n };
+        if world.shading_rules().spoiled_normals && n.is_nan() {
+            return Color::ZERO;
+        }
+        let parts = world.parts(at);
+        let (mut color, mut blocked) = (Color::ZERO, false);
+        if !black || bugs.faced {
+            let diffuse: SmallVec<[Color; 2]> =
+                parts.iter().map(|p| self.world.diffuse_color(p.phong, surface)).collect();
+            let rounds = if bugs.ambient == Ambient::EachLight { world.lights().len() } else { 1 };
+            let mut ambient_seen = Color::ZERO;
+            for (part, &diffuse) in parts.iter().zip(&diffuse) {
+                let met = part.phong.ambient.unwrap_or(diffuse);
+                let met = if bugs.ambient == Ambient::Bare { Color::ONE } else { met };
+                for _ in 0..rounds {
+                    let ambient = part.share * world.ambient();
+                    color += ambient * met;
+                    ambient_seen += ambient * met;
+                }
+            }
+            let mut any = world.lights().is_empty();
+            let mut greatest = Color::ZERO;
+            for (number, light) in world.lights().iter().enumerate() {
+                let seen = self.illuminated(light, surface.point());
+                let casts = bugs.shadows.only_light.is_none_or(|only| only == number);
+                let visible = if casts { self.visible(surface, number, &seen, path.first) } else { Color::ONE };
+                let visible = if bugs.shadows.later_too && blocked { Color::ZERO } else { visible };
+                blocked |= visible == Color::ZERO;
+                let visible = visible.max(Color::splat(bugs.shadows.left));
+                let visible = if bugs.shadows.inverted { Color::ONE - visible } else { visible };
+                any |= visible != Color::ZERO;
+                let replaced = bugs.sum == LightSum::LastSeen && visible != Color::ZERO;
+                if bugs.sum == LightSum::LastOnly || replaced {
+                    color = ambient_seen;
+                }
+                let before = color;
+                for (part, &diffuse) in parts.iter().zip(&diffuse) {
+                    let direct = |diffuse| self.direct(part.phong, diffuse, n, ray.dir(), light, &seen);
+                    if bugs.shadows.diffuse_left && visible != Color::ONE {
+                        color += part.share * (Color::ONE - visible) * (direct(diffuse) - direct(Color::ZERO));
+                    }
+                    if visible != Color::ZERO {
+                        let light = part.share * visible * direct(diffuse);
+                        let alone = bugs.sum == LightSum::ClampedLight;
+                        color += if alone { light.clamp(Color::ZERO, Color::ONE) } else { light };
+                    }
+                    if bugs.shadows.highlights_left && visible != Color::ONE {
+                        color += part.share * (Color::ONE - visible) * direct(Color::ZERO);
+                    }
+                }
+                if matches!(bugs.sum, LightSum::Greatest | LightSum::GreatestOfAll) {
+                    greatest = greatest.max(color - before);
+                    color = before;
+                }
+                if bugs.sum == LightSum::ClampedEach {
+                    color = color.clamp(Color::ZERO, Color::ONE);
+                }
+            }
+            match bugs.sum {
+                LightSum::Greatest => color += greatest,
+                LightSum::GreatestOfAll => color = color.max(greatest),
+                _ => {}
+            }
+            if bugs.shadows.ambient_too && !any || bugs.shadows.ambient_of_any && blocked {
+                color -= ambient_seen;
+            }
+        }
+        if bugs.sum == LightSum::ClampedLocal {
+            color = color.clamp(Color::ZERO, Color::ONE);
+        }
+        match bugs.shadows.black {
+            Some(true) if blocked => return Color::ZERO,
+            Some(false) if blocked => color = Color::ZERO,
+            _ => {}
+        }
+        if bugs.bounces.instead && path.bounces > 0 && Blend::of(&parts).reflective != Color::ZERO {
+            color = Color::ZERO;
+        }
+        if bugs.bounces.mixed && path.bounces > 0 {
+            color *= Color::ONE - Blend::of(&parts).reflective;
+        }
+        if path.bounces > 0 {
+            let rounds = if bugs.bounces.each_light { world.lights().len() } else { 1 };
+            let secondary = self.secondary(at, &parts, passage.unwrap_or_default(), path);
+            for _ in 0..rounds {
+                color += secondary;
+            }
+        }
+        color
+    }
+
+    /// Returns the light that arrives, with the tracer's mistakes.
+    fn illuminated(&self, light: &Light, point: DVec3) -> LightLiSample {
+        let mut seen = light.illuminate(point);
+        if self.bugs.lights.all_negated {
+            seen.to_light = -seen.to_light;
+        }
+        match light {
+            Light::Directional(_) => {
+                if self.bugs.lights.negated {
+                    seen.to_light = -seen.to_light;
+                }
+            }
+            Light::Point(point) => {
+                let d = seen.distance;
+                match self.bugs.lights.fading {
+                    Attenuation::Right => {}
+                    Attenuation::Multiplied => {
+                        let a = point.attenuation.unwrap_or(Vec3::X);
+                        seen.color = point.color * (a.x + a.y * d + a.z * d * d);
+                    }
+                    Attenuation::Linear => seen.color = point.color / d,
+                    Attenuation::Square => seen.color = point.color / (d * d),
+                    Attenuation::SquaredTwice => {
+                        let a = point.attenuation.unwrap_or(Vec3::X);
+                        seen.color = point.color / (a.x + a.y * d * d + a.z * d * d * d * d);
+                    }
+                    Attenuation::Root => {
+                        let a = point.attenuation.unwrap_or(Vec3::X);
+                        seen.color = point.color / (a.x + a.y * d + a.z * d * d).sqrt();
+                    }
+                }
+                match self.bugs.lights.points {
+                    PointLightDirection::Right => {}
+                    PointLightDirection::Negated => seen.to_light = -seen.to_light,
+                    PointLightDirection::Position => seen.to_light = point.position.normalize_or(seen.to_light),
+                    PointLightDirection::PositionAlone => {
+                        let (a, d) = (point.attenuation.unwrap_or(Vec3::X), point.position.length());
+                        seen.to_light = point.position.normalize_or(seen.to_light);
+                        (seen.color, seen.distance) = (point.color / (a.x + a.y * d + a.z * d * d), d);
+                    }
+                    PointLightDirection::FromEye(whole) => {
+                        let way = point.position - self.world.camera().pose().center;
+                        seen.to_light = way.normalize_or(seen.to_light);
+                        if whole {
+                            let (a, d) = (point.attenuation.unwrap_or(Vec3::X), way.length());
+                            (seen.color, seen.distance) = (point.color / (a.x + a.y * d + a.z * d * d), d);
+                        }
+                    }
+                    PointLightDirection::MinusPosition => seen.to_light = -point.position.normalize_or(seen.to_light),
+                }
+            }
+            // The course has neither.
+            Light::Spot(_) | Light::Photometric(_) => {}
+        }
+        seen
+    }
+
+    /// Returns the light vector used in products; unit length unless a mistake changes that.
+    fn light_vector(&self, light: &Light, seen: &LightLiSample) -> Vec3 {
+        match light {
+            Light::Directional(sun) if self.bugs.lights.long => seen.to_light * sun.direction.length(),
+            Light::Point(_) if self.bugs.lights.long_points => seen.to_light * seen.distance,
+            Light::Directional(_) | Light::Point(_) | Light::Spot(_) | Light::Photometric(_) => seen.to_light,
+        }
+    }
+
+    /// Returns the diffuse term and highlight of one light.
+    fn direct(&self, phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, light: &Light, seen: &LightLiSample) -> Color {
+        let bugs = self.bugs.highlights;
+        let to_light = self.light_vector(light, seen);
+        let view = if bugs.eye_negated { -view } else { view };
+        let cosine = n.dot(to_light);
+        let factor = match self.bugs.cosine {
+            Cosine::Clamped => cosine.max(0.0),
+            Cosine::TwoSided => cosine.abs(),
+            Cosine::Signed => cosine,
+            Cosine::One => 1.0,
+            Cosine::None => 0.0,
+            Cosine::Squared => cosine.max(0.0) * cosine.max(0.0),
+            Cosine::Half => 0.5 * cosine + 0.5,
+            Cosine::Step => f32::from(cosine > 0.0),
+            Cosine::OverPi => cosine.max(0.0) / std::f32::consts::PI,
+            Cosine::View => n.dot(-view).max(0.0),
+        };
+        let factor = factor * self.bugs.diffuse_factor.unwrap_or(1.0);
+        let diffuse = if self.bugs.diffuse_twice { diffuse * diffuse } else { diffuse };
+        let plain = self.bugs.plain_diffuse && diffuse != Color::ZERO;
+        let mut color = factor * if plain { Color::ONE } else { diffuse };
+        if self.bugs.diffuse_lightless {
+            // Cancels the multiplication below.
+            color /= seen.color.max(Color::splat(1e-6));
+        }
+        if let Some((specular, exponent, model)) = phong.highlight {
+            let half = |sum: Vec3| match bugs.half {
+                HalfVector::Unit => sum.normalize_or_zero(),
+                HalfVector::Sum => sum,
+                HalfVector::Mean => 0.5 * sum,
+            };
+            let base = match model {
+                HighlightModel::Blinn => (cosine > 0.0 || bugs.everywhere).then(|| n.dot(half(to_light - view))),
+                HighlightModel::Phong { behind } => {
+                    (behind || cosine > 0.0).then(|| mirrored(view, n, bugs.mirror).dot(to_light))
+                }
+            };
+            if let Some(base) = base {
+                let base = if bugs.two_sided { base.abs() } else { base.max(0.0) };
+                let mut strength = fp::pow(base, exponent);
+                if bugs.times_cosine {
+                    strength *= cosine.max(0.0);
+                }
+                strength *= bugs.factor.unwrap_or(1.0);
+                let specular = if bugs.bare { Color::ONE } else { specular };
+                let specular = if bugs.times_diffuse { specular * diffuse } else { specular };
+                if bugs.lightless {
+                    return color * seen.color + strength * specular;
+                }
+                color += strength * specular;
+            }
+        }
+        color * seen.color
+    }
+
+    /// Returns the share of a light that arrives.
+    fn visible(&self, surface: &Surface, light: usize, seen: &LightLiSample, first: bool) -> Color {
+        let bugs = self.bugs.shadows;
+        let unshadowed = self.bugs.bounces.unshadowed && !first;
+        if !self.settings.shadows || unshadowed || seen.color == Color::ZERO {
+            return Color::ONE;
+        }
+        let rules = self.world.shading_rules();
+        let way = rules.epsilon.and_then(|_| self.world.course_way(light, surface.position));
+        let seen = match way {
+            Some((to_light, distance)) => &LightLiSample { to_light, distance, color: seen.color },
+            None => seen,
+        };
+        let reach = match (bugs.endless, rules.epsilon.is_some()) {
+            (true, _) => f32::INFINITY,
+            (false, true) => seen.distance,
+            (false, false) => seen.distance * (1.0 - gamma(16)),
+        };
+        let reach = match bugs.reach {
+            _ if seen.distance.is_infinite() => reach,
+            Reach::Right => reach,
+            Reach::One => 1.0,
+            Reach::Squared => seen.distance * seen.distance,
+        };
+        let reach = if bugs.short && seen.distance.is_infinite() { 1.0 } else { reach };
+        let epsilon = bugs.epsilon.map(Epsilon::Least).or(rules.epsilon);
+        let way = match bugs.way {
+            ShadowDirection::Light => seen.to_light,
+            ShadowDirection::Away => -seen.to_light,
+            ShadowDirection::Normal => surface.n_shade,
+        };
+        let mut ray = to_light(surface, way, reach, epsilon);
+        if bugs.from_eye {
+            let eye = self.world.camera().pose().center;
+            ray = Ray { t_min: 1e-4, t_max: reach, ..Ray::new(eye, way) }.into();
+        }
+        if bugs.no_glass {
+            return self.visible_through_glass(ray, epsilon);
+        }
+        if rules.shadow_fronts {
+            let nearest = self.closest(&ray).map(|(hit, _)| self.world.interaction(ray, hit));
+            let blocked = nearest.is_some_and(|blocker| blocker.surface.n_shade.dot(ray.dir()) <= 0.0);
+            return if blocked { Color::ZERO } else { Color::ONE };
+        }
+        if !self.settings.transparent_shadows {
+            return if self.occluded(&ray) { Color::ZERO } else { Color::ONE };
+        }
+        let mut share = Color::ONE;
+        for _ in 0..64 {
+            let Some((hit, _)) = self.closest(&ray) else { return share };
+            let blocker = self.world.interaction(ray, hit);
+            let parts = self.world.parts(&blocker);
+            share *= parts.iter().map(|part| part.share * part.phong.transparent).sum::<Color>();
+            if share == Color::ZERO {
+                break;
+            }
+            ray = spawn_ray(&blocker.surface, seen.to_light, ray.rounded.t_max - hit.t, epsilon);
+        }
+        Color::ZERO
+    }
+
+    /// Returns 1 if all occluders along the ray are transparent, else 0.
+    fn visible_through_glass(&self, mut ray: Ray64, epsilon: Option<Epsilon>) -> Color {
+        for _ in 0..64 {
+            let Some((hit, _)) = self.closest(&ray) else { return Color::ONE };
+            let blocker = self.world.interaction(ray, hit);
+            let parts = self.world.parts(&blocker);
+            if parts.iter().all(|part| part.phong.transparent == Color::ZERO) {
+                return Color::ZERO;
+            }
+            ray = spawn_ray(&blocker.surface, ray.dir(), ray.rounded.t_max - hit.t, epsilon);
+        }
+        Color::ZERO
+    }
+
+    /// Returns reflected and transmitted light.
+    fn secondary(
+        &self,
+        at: &SurfaceInteraction,
+        parts: &[WeightedMaterial],
+        passage: Passage,
+        path: RayState,
+    ) -> Color {
+        let bugs = self.bugs.bounces;
+        let Blend { mut reflective, mut transparent, ior, fresnel } = Blend::of(parts);
+        if reflective == Color::ZERO && transparent == Color::ZERO {
+            return Color::ZERO;
+        }
+        let SurfaceInteraction { ray, surface, .. } = at;
+        let leaving = self.right.sees_back(at);
+        let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if leaving { -n } else { n });
+        let n = if ray.dir().dot(n) < 0.0 { n } else { n_geo };
+        let Passage { here, there, behind, .. } = passage;
+        let eta = match bugs.glass {
+            Glass::Right
+            | Glass::Straight
+            | Glass::Outward
+            | Glass::RootAdded
+            | Glass::SignChanged
+            | Glass::NoRoot
+            | Glass::Unsquared => here / there,
+            Glass::Inverted | Glass::Exchanged => there / here,
+            Glass::NotSwapped => 1.0 / ior,
+        };
+        let mirrored = mirrored(ray.dir(), n, bugs.mirror);
+        let rules = self.world.shading_rules();
+        let mirrored = if rules.raw_normals && !rules.long_mirrors { mirrored.normalize_or(n_geo) } else { mirrored };
+        let n = if rules.raw_normals && !rules.raw_refraction { n.normalize_or(n_geo) } else { n };
+        let transmitted = match (transparent == Color::ZERO, bugs.glass) {
+            (true, _) => None,
+            (false, Glass::Straight) => Some(ray.dir()),
+            (false, Glass::RootAdded) => refract(ray.dir(), n, eta).map(|t| t - 2.0 * t.dot(n) * n),
+            (false, Glass::Outward) if leaving => refract(ray.dir(), n, eta).map(|t| t - 2.0 * t.dot(n) * n),
+            (false, Glass::SignChanged | Glass::NoRoot | Glass::Unsquared) => {
+                let c = -ray.dir().dot(n);
+                let squared = if bugs.glass == Glass::Unsquared { eta } else { eta * eta };
+                let k = 1.0 - squared * (1.0 - c * c);
+                let root = if bugs.glass == Glass::NoRoot { k } else { k.max(0.0).sqrt() };
+                let along = eta * c - root;
+                let along = if bugs.glass == Glass::SignChanged { -along } else { along };
+                (k >= 0.0).then_some(eta * ray.dir() + along * n)
+            }
+            (false, _) => refract(ray.dir(), n, eta),
+        };
+        let transmitted = match rules.raw_refraction {
+            true => transmitted.map(|through| through.normalize_or(ray.dir())),
+            false => transmitted,
+        };
+        let divided = fresnel && self.settings.reflection && self.settings.refraction;
+        if divided && bugs.fresnel != Fresnel::None {
+            let ratio = (there - here) / (there + here);
+            let schlick = |t| match bugs.fresnel {
+                Fresnel::Constant => ratio * ratio,
+                Fresnel::Share(share) => share,
+                Fresnel::Unsquared | Fresnel::Power(_) => {
+                    let slow = if there < here { t } else { ray.dir() };
+                    let rest = 1.0 - slow.dot(n).abs();
+                    let r0 = if bugs.fresnel == Fresnel::Unsquared { ratio.abs() } else { ratio * ratio };
+                    let power = if let Fresnel::Power(power) = bugs.fresnel { power } else { 5.0 };
+                    r0 + (1.0 - r0) * fp::pow(rest.max(0.0), power)
+                }
+                Fresnel::Incoming => {
+                    let rest = 1.0 - ray.dir().dot(n).abs();
+                    let r0 = ratio * ratio;
+                    r0 + (1.0 - r0) * rest * rest * rest * rest * rest
+                }
+                _ => {
+                    let indices = if bugs.glass == Glass::Exchanged { (there, here) } else { (here, there) };
+                    let before = if rules.exit_r0 { 1.0 } else { indices.0 };
+                    fresnel_share(ray.dir(), n, t, indices, before)
+                }
+            };
+            let r = transmitted.map_or(1.0, schlick);
+            let r = if bugs.fresnel == Fresnel::Exchanged { 1.0 - r } else { r };
+            reflective *= r;
+            transparent *= 1.0 - r;
+        }
+        let mut color = Color::ZERO;
+        if self.settings.reflection && !bugs.no_mirror {
+            let full = bugs.mirror_in_full && reflective != Color::ZERO;
+            let weight = if full { Color::ONE } else { reflective };
+            let weight = match bugs.times_diffuse {
+                true => {
+                    weight * parts.iter().map(|p| p.share * self.world.diffuse_color(p.phong, surface)).sum::<Color>()
+                }
+                false => weight,
+            };
+            color += self.bounce(surface, mirrored, weight, path.clone());
+        }
+        if let Some(transmitted) = transmitted.filter(|_| self.settings.refraction && !bugs.no_glass) {
+            let weight = if bugs.glass_in_full { Color::ONE } else { transparent };
+            color += self.bounce(surface, transmitted, weight, RayState { media: behind, ..path });
+        }
+        color
+    }
+
+    fn bounce(&self, surface: &Surface, dir: Vec3, weight: Color, path: RayState) -> Color {
+        if weight.max_element() <= 0.0 {
+            return Color::ZERO;
+        }
+        let total = self.right.weight_after(path.weight, weight);
+        if total < self.settings.least_weight {
+            return Color::ZERO;
+        }
+        let epsilon = self.bugs.bounces.epsilon.map(Epsilon::Least).or(self.world.shading_rules().epsilon);
+        let dir = if self.bugs.bounces.unit { dir.normalize_or(dir) } else { dir };
+        let ray = spawn_ray(surface, dir, f32::INFINITY, epsilon);
+        weight * self.trace(&ray, RayState { bounces: path.bounces - 1, weight: total, first: false, ..path })
+    }
+}
+
+/// Returns the direction of a reflected ray.
+fn mirrored(d: Vec3, n: Vec3, how: Mirror) -> Vec3 {
+    match how {
+        Mirror::Right => reflect(d, n),
+        Mirror::Negated => -reflect(d, n),
+        Mirror::Along => d - d.dot(n) * n,
+        Mirror::Plus => d + 2.0 * d.dot(n) * n,
+        Mirror::Normal => n,
+    }
+}

@@ -1,0 +1,543 @@
+//! Mistakes of hits, normals and transforms.
+
+use super::{Mistake, Values, row};
+use crate::mistakes::bugs::{Ball, BehindOrigin, HitChoice, Normals, Roots};
+use crate::mistakes::variant::{TaughtShapes, taught_shapes};
+use durer_render::world::Geometry;
+use durer_scene::dialect::{MeshNormals, Quirk};
+use durer_scene::scene::{MatrixOp, MatrixRules};
+use durer_scene::shape::Primitive;
+use glam::DAffine3;
+use std::sync::Arc;
+
+pub(super) const MISTAKES: &[Mistake] = &[
+    row(
+        "normals-local",
+        "transforms",
+        "normals of transformed objects are not transformed",
+        "N = normalize(M^-T n)",
+        "N = n",
+        |v, _| v.bugs.normals = Normals::Local,
+    ),
+    row(
+        "normals-moved",
+        "transforms",
+        "normals of transformed objects are transformed by M instead of its inverse transpose",
+        "N = normalize(M^-T n)",
+        "N = normalize(M n)",
+        |v, _| v.world.edit().shading.moved_normals = true,
+    ),
+    row(
+        "normals-inverse",
+        "transforms",
+        "normals of transformed objects are transformed by the inverse of M without the transpose",
+        "N = normalize(M^-T n)",
+        "N = normalize(M^-1 n)",
+        |v, _| v.bugs.normals = Normals::ByInverse,
+    ),
+    row(
+        "normals-long",
+        "transforms",
+        "normals of transformed objects are not normalised",
+        "N = normalize(M^-T n)",
+        "N = M^-T n",
+        |v, _| v.bugs.normals = Normals::Long,
+    ),
+    row(
+        "normals-mixed-long",
+        "normals",
+        "interpolated normals of a smooth mesh are not normalised",
+        "N = normalize(a Na + b Nb + c Nc)",
+        "N = a Na + b Nb + c Nc",
+        |v, _| v.bugs.long_mixed = true,
+    ),
+    row(
+        "normals-flat",
+        "normals",
+        "smooth meshes are shaded flat, with one normal per triangle",
+        "N = normalize(a Na + b Nb + c Nc)",
+        "N = normalize(cross(b - a, c - a))",
+        |v, _| v.bugs.flat = true,
+    ),
+    row(
+        "normals-smooth",
+        "normals",
+        "flat meshes are shaded smoothly, with vertex normals averaged {by area|evenly}",
+        "N = normalize(cross(b - a, c - a))",
+        "N = normalize(a Na + b Nb + c Nc)",
+        |v, weight| {
+            let rule = if weight == 0.0 { MeshNormals::SmoothByArea } else { MeshNormals::SmoothByFace };
+            v.objects(|geometry| {
+                if let Geometry::Mesh(tree) = geometry
+                    && tree.mesh.is_flat()
+                {
+                    *tree = Arc::new(tree.with_normals(rule));
+                }
+            });
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "triangles-turned",
+        "normals",
+        "normals of triangles are flipped",
+        "N = normalize(cross(b - a, c - a))",
+        "N = normalize(cross(c - a, b - a))",
+        |v, _| v.bugs.triangles_turned = true,
+    ),
+    row(
+        "spheres-turned",
+        "normals",
+        "normals of spheres point inwards",
+        "N = normalize(p - center)",
+        "N = normalize(center - p)",
+        |v, _| v.bugs.spheres_turned = true,
+    ),
+    row(
+        "planes-turned",
+        "normals",
+        "normals of planes are flipped",
+        "N = normalize(normal)",
+        "N = -normalize(normal)",
+        |v, _| v.bugs.planes_turned = true,
+    ),
+    row(
+        "normals-exchanged",
+        "normals",
+        "the weights of smooth normals belong to the wrong corners: {a b c|b c a|c a b|b a c|a c b|c b a} for a b c",
+        "N = (1 - b - c) Na + b Nb + c Nc",
+        "the weights or the normals in another order",
+        |v, order| v.bugs.mixed_otherwise = order as usize,
+    )
+    .with(Values::Only(&[1.0, 2.0, 3.0, 4.0, 5.0])),
+    row(
+        "sphere-normals",
+        "normals",
+        "normals of spheres {are taken from the origin, not from the centre|are not normalised}",
+        "N = normalize(p - center)",
+        "N = {normalize(p)|p - center}",
+        |v, how| v.bugs.balls = if how == 0.0 { Ball::Position } else { Ball::Long },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "sphere-roots",
+        "distance",
+        "the roots of spheres mix two forms of the formula: {4 a c with half of b|4 a c with half of b, and a in place of 2 a|2 a with half of b}",
+        "D = b^2 - 4 a c with b = 2 d.(o - center), t = (-b - sqrt(D)) / 2a; or D = b^2 - a c with b = d.(o - center), t = (-b - sqrt(D)) / a",
+        "b = d.(o - center), {D = b^2 - 4 a c, t = (-b - sqrt(D)) / 2a|D = b^2 - 4 a c, t = (-b - sqrt(D)) / a|D = b^2 - a c, t = (-b - sqrt(D)) / 2a}",
+        |v, how| {
+            v.bugs.pick = HitChoice::Roots([Roots::FourHalf, Roots::FourWhole, Roots::TwiceA][(how as usize).min(2)]);
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
+    row(
+        "triangle-test",
+        "distance",
+        "triangles lack the test {a >= 0, which is b + c <= 1|b >= 0|c >= 0}: they go on beyond that side",
+        "b >= 0 && c >= 0 && b + c <= 1",
+        "{b >= 0 && c >= 0|c >= 0 && b + c <= 1|b >= 0 && b + c <= 1}",
+        |v, corner| v.wedges(corner as usize),
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
+    row(
+        "backs-culled",
+        "distance",
+        "{surfaces|triangles} that are seen from behind are not hit",
+        "every root counts, from whichever side",
+        "if (dot(N, d) > 0) return false",
+        |v, triangles| v.bugs.pick = HitChoice::Fronts(triangles > 0.0),
+    )
+    .with(Values::Only(&[1.0, 0.0])),
+    row(
+        "mesh-first",
+        "distance",
+        "of a mesh the {first|last} triangle that is hit counts, not the nearest",
+        "for each triangle if (t < best) best = t",
+        "for each triangle {if (hit) return true|if (hit) best = t}",
+        |v, last| v.bugs.pick = if last == 0.0 { HitChoice::FirstOfMesh } else { HitChoice::LastOfMesh },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "direction-moved",
+        "transforms",
+        "the ray's direction is moved into object space like a point, with the translation",
+        "d' = M^-1 (d, 0)",
+        "d' = M^-1 (d, 1)",
+        |v, _| v.bugs.pick = HitChoice::MovedDirection,
+    ),
+    row(
+        "parallelograms",
+        "distance",
+        "triangles are parallelograms: the test b + c <= 1 is missing",
+        "b >= 0 && c >= 0 && b + c <= 1",
+        "b >= 0 && c >= 0",
+        |v, _| v.parallelograms(),
+    ),
+    row(
+        "other-material",
+        "flat",
+        "objects have the {next|previous|next|previous} material{||, except for the last one|, except for the first one}",
+        "materials[index], index from 0",
+        "materials[index + 1], or - 1",
+        |v, which| {
+            let count = v.world.materials().len().max(1) as u32;
+            for object in &mut v.world.edit().objects {
+                object.material = match which as u32 {
+                    0 => (object.material + 1) % count,
+                    1 => (object.material + count - 1) % count,
+                    2 => (object.material + 1).min(count - 1),
+                    _ => object.material.saturating_sub(1),
+                };
+            }
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
+    row(
+        "far-spheres",
+        "distance",
+        "the far side of spheres is visible: the greater root is used",
+        "t = (-b - sqrt(D)) / 2a, unless that is less than t_min",
+        "t = (-b + sqrt(D)) / 2a",
+        |v, _| v.bugs.pick = HitChoice::FarSpheres,
+    ),
+    row(
+        "normals-faced",
+        "diffuse",
+        "back faces are shaded with a flipped normal, without `-shade_back`",
+        "N as is (without -shade_back)",
+        "if (dot(N, d) > 0) N = -N",
+        |v, _| v.bugs.faced = !v.settings.shade_back,
+    ),
+    row(
+        "backs-not-shaded",
+        "diffuse",
+        "back faces are not shaded with a flipped normal",
+        "if (dot(N, d) > 0) N = -N",
+        "N as is",
+        |v, _| v.settings.shade_back = false,
+    ),
+    row(
+        "black-backs",
+        "diffuse",
+        "back faces are black although they should not be, or the reverse",
+        "as in that year's program",
+        "the reverse",
+        |v, _| v.toggle(Quirk::BlackBacks),
+    ),
+    row(
+        "local-direction-unit",
+        "transforms",
+        "the ray's direction is normalised in object space, so t differs from world space",
+        "d' = M^-1 d, with t unchanged",
+        "d' = normalize(M^-1 d)",
+        |v, _| v.bugs.local_unit = true,
+    ),
+    row(
+        "matrices-reversed",
+        "transforms",
+        "the matrices of a transform are multiplied in the wrong order",
+        "M = M1 * M2 * M3",
+        "M = M3 * M2 * M1",
+        |v, _| {
+            v.place(&|ops, rules| {
+                let reversed: Vec<MatrixOp> = ops.iter().rev().copied().collect();
+                MatrixOp::product(&reversed, rules)
+            });
+        },
+    ),
+    row(
+        "rotation-radians",
+        "transforms",
+        "angles of rotations are interpreted as radians",
+        "angle * pi / 180",
+        "angle",
+        |v, _| v.place(&|ops, rules| turned(ops, rules, f32::to_degrees)),
+    ),
+    row(
+        "rotation-negated",
+        "transforms",
+        "rotations have the wrong sign",
+        "rotation by angle",
+        "rotation by -angle, or the transposed matrix",
+        |v, _| v.place(&|ops, rules| turned(ops, rules, |angle| -angle)),
+    ),
+    row(
+        "rotation-axis",
+        "transforms",
+        "rotations turn about another axis: {x and y|y and z|x and z} are exchanged",
+        "XRotate about (1, 0, 0), YRotate about (0, 1, 0), ZRotate about (0, 0, 1)",
+        "two of them exchanged",
+        |v, which| {
+            let axes: fn(&MatrixOp) -> MatrixOp = match which as u32 {
+                0 => |op| exchanged(op, 0, 1),
+                1 => |op| exchanged(op, 1, 2),
+                _ => |op| exchanged(op, 0, 2),
+            };
+            v.place(&|ops: &[MatrixOp], rules| MatrixOp::product(&ops.iter().map(axes).collect::<Vec<_>>(), rules));
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
+    row(
+        "translation-negated",
+        "transforms",
+        "translations go the other way",
+        "translation by (x, y, z)",
+        "translation by (-x, -y, -z)",
+        |v, _| {
+            v.place(&|ops: &[MatrixOp], rules| {
+                let back = |op: &MatrixOp| if let MatrixOp::Translate(by) = *op { MatrixOp::Translate(-by) } else { *op };
+                MatrixOp::product(&ops.iter().map(back).collect::<Vec<_>>(), rules)
+            });
+        },
+    ),
+    row(
+        "scale-inverted",
+        "transforms",
+        "scales make smaller what they should make larger",
+        "scale by s",
+        "scale by 1 / s",
+        |v, _| {
+            v.place(&|ops: &[MatrixOp], rules| {
+                let inverse = |op: &MatrixOp| match *op {
+                    MatrixOp::Scale(by) => MatrixOp::Scale(by.recip()),
+                    MatrixOp::UniformScale(by) => MatrixOp::UniformScale(by.recip()),
+                    other => other,
+                };
+                MatrixOp::product(&ops.iter().map(inverse).collect::<Vec<_>>(), rules)
+            });
+        },
+    ),
+    row("transforms-ignored", "transforms", "transforms have no effect", "M = M1 * M2 * M3", "M = identity", |v, _| {
+        v.place(&|_, _| DAffine3::IDENTITY)
+    }),
+    row(
+        "transforms-inverted",
+        "transforms",
+        "objects are transformed by the inverse of M",
+        "ray to object space by M^-1",
+        "ray to object space by M",
+        |v, _| v.place(&|ops, rules| MatrixOp::product(ops, rules).inverse()),
+    ),
+    row(
+        "plane-negated",
+        "distance",
+        "the offset of planes has the wrong sign",
+        "t = (offset - n.o) / n.d",
+        "t = -(offset + n.o) / n.d",
+        |v, _| {
+            v.objects(|geometry| {
+                if let Geometry::Primitive(Primitive::Plane(plane)) = geometry {
+                    plane.offset = -plane.offset;
+                }
+            });
+        },
+    ),
+    row(
+        "plane-through-origin",
+        "distance",
+        "the offset of planes is ignored",
+        "t = (offset - n.o) / n.d",
+        "t = -n.o / n.d",
+        |v, _| {
+            v.objects(|geometry| {
+                if let Geometry::Primitive(Primitive::Plane(plane)) = geometry {
+                    plane.offset = 0.0;
+                }
+            });
+        },
+    ),
+    row(
+        "radius",
+        "distance",
+        "spheres have {} times the correct radius",
+        "b^2 - 4 a c with c = |o - center|^2 - r^2",
+        "a wrong factor inside",
+        |v, factor| {
+            v.objects(|geometry| {
+                if let Geometry::Primitive(Primitive::Sphere(sphere)) = geometry {
+                    sphere.radius *= factor;
+                }
+            });
+        },
+    )
+    .with(Values::Numbers(&[0.5, 2.0])),
+    row(
+        "radius-not-squared",
+        "distance",
+        "the radius of spheres is not squared",
+        "c = |o - center|^2 - r * r",
+        "c = |o - center|^2 - r",
+        |v, _| {
+            v.objects(|geometry| {
+                if let Geometry::Primitive(Primitive::Sphere(sphere)) = geometry {
+                    sphere.radius = sphere.radius.max(0.0).sqrt();
+                }
+            });
+        },
+    ),
+    row(
+        "center-ignored",
+        "distance",
+        "the centre of spheres {is ignored|has the wrong sign}",
+        "o - center",
+        "o{| + center}",
+        |v, sign| {
+            v.objects(|geometry| {
+                if let Geometry::Primitive(Primitive::Sphere(sphere)) = geometry {
+                    sphere.center *= -sign;
+                }
+            });
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "farthest-object",
+        "distance",
+        "the farthest object is visible instead of the nearest",
+        "if (t < best) best = t",
+        "if (t > best) best = t",
+        |v, _| v.bugs.pick = HitChoice::FarthestObject,
+    ),
+    row(
+        "farthest-triangle",
+        "distance",
+        "the farthest object is visible, and of meshes the farthest triangle",
+        "if (t < best) best = t",
+        "if (t > best) best = t",
+        |v, _| v.bugs.pick = HitChoice::FarthestTriangle,
+    ),
+    row(
+        "last-triangle",
+        "distance",
+        "the last object in the file hides all others, and the last triangle of a mesh hides its others",
+        "if (t < best) best = t",
+        "if (hit) best = t",
+        |v, _| v.bugs.pick = HitChoice::LastTriangle,
+    ),
+    row(
+        "near-roots",
+        "distance",
+        "only the nearer root of spheres is tested: rays that start inside do not hit them",
+        "t = the least root > t_min",
+        "t = the lesser root, or nothing",
+        |v, _| v.bugs.pick = HitChoice::NearRoots,
+    ),
+    row(
+        "last-hit",
+        "distance",
+        "the last hit along the ray is used instead of the first, such as the far root of spheres",
+        "t = the least root > t_min",
+        "t = the greatest root",
+        |v, _| v.bugs.pick = HitChoice::Last,
+    ),
+    row(
+        "last-written",
+        "distance",
+        "the last object in the file hides all others: hits are not compared by t",
+        "if (t < best) best = t",
+        "best = t",
+        |v, _| v.bugs.pick = HitChoice::LastWritten,
+    ),
+    row(
+        "first-written",
+        "distance",
+        "the first object in the file hides all others: a group stops at its first hit",
+        "for each object hit |= object.intersect(...)",
+        "for each object if (object.intersect(...)) return true",
+        |v, _| v.bugs.pick = HitChoice::FirstWritten,
+    ),
+    row(
+        "hits-behind",
+        "distance",
+        "hits behind the ray's origin count: t_min is ignored{| for the camera's rays}",
+        "t > t_min && t < best",
+        "t < best",
+        |v, rays| v.bugs.behind = Some([BehindOrigin::All, BehindOrigin::Camera][(rays as usize).min(1)]),
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "thing-missing",
+        "distance",
+        "all {spheres|planes|triangles|meshes} are missing",
+        "every kind has a working intersect(...)",
+        "one that always returns false",
+        |v, kind| {
+            v.world.edit().objects.retain(|object| match taught_shapes(&object.geometry) {
+                Some(TaughtShapes::Sphere) => kind != 0.0,
+                Some(TaughtShapes::Plane) => kind != 1.0,
+                Some(TaughtShapes::Triangle) => kind != 2.0,
+                Some(TaughtShapes::Mesh) => kind != 3.0,
+                None => true,
+            });
+            v.objects(|_| {});
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
+    row("translations-ignored", "transforms", "translations have no effect", "M = T * R * S", "M without T", |v, _| {
+        v.place(&|ops, rules| without(ops, rules, |op| matches!(op, MatrixOp::Translate(_))))
+    }),
+    row("scales-ignored", "transforms", "scales have no effect", "M = T * R * S", "M without S", |v, _| {
+        v.place(&|ops, rules| without(ops, rules, |op| matches!(op, MatrixOp::Scale(_) | MatrixOp::UniformScale(_))));
+    }),
+    row("rotations-ignored", "transforms", "rotations have no effect", "M = T * R * S", "M without R", |v, _| {
+        v.place(&|ops, rules| {
+            without(ops, rules, |op| {
+                matches!(op, MatrixOp::XRotate(_) | MatrixOp::YRotate(_) | MatrixOp::ZRotate(_) | MatrixOp::Rotate(..))
+            })
+        });
+    }),
+    row(
+        "one-material",
+        "flat",
+        "all objects have the {first|last} material",
+        "materials[index]",
+        "materials[0], or the one read last",
+        |v, last| {
+            let count = v.world.materials().len().max(1) as u32;
+            let all = if last == 0.0 { 0 } else { count - 1 };
+            v.world.edit().objects.iter_mut().for_each(|object| object.material = all);
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+];
+
+/// Exchanges two axes of a rotation.
+fn exchanged(op: &MatrixOp, a: usize, b: usize) -> MatrixOp {
+    let (axis, angle) = match *op {
+        MatrixOp::XRotate(angle) => (0, angle),
+        MatrixOp::YRotate(angle) => (1, angle),
+        MatrixOp::ZRotate(angle) => (2, angle),
+        MatrixOp::Rotate(mut axis, angle) => {
+            (axis[a], axis[b]) = (axis[b], axis[a]);
+            return MatrixOp::Rotate(axis, angle);
+        }
+        other => return other,
+    };
+    let turned = if axis == a {
+        b
+    } else if axis == b {
+        a
+    } else {
+        axis
+    };
+    [MatrixOp::XRotate(angle), MatrixOp::YRotate(angle), MatrixOp::ZRotate(angle)][turned]
+}
+
+/// Returns the product without some of its matrices.
+fn without(ops: &[MatrixOp], rules: MatrixRules, left_out: fn(&MatrixOp) -> bool) -> DAffine3 {
+    let kept: Vec<MatrixOp> = ops.iter().filter(|op| !left_out(op)).copied().collect();
+    MatrixOp::product(&kept, rules)
+}
+
+/// Returns the product with changed rotation angles.
+fn turned(ops: &[MatrixOp], rules: MatrixRules, change: fn(f32) -> f32) -> DAffine3 {
+    let change = |op: &MatrixOp| match *op {
+        MatrixOp::XRotate(angle) => MatrixOp::XRotate(change(angle)),
+        MatrixOp::YRotate(angle) => MatrixOp::YRotate(change(angle)),
+        MatrixOp::ZRotate(angle) => MatrixOp::ZRotate(change(angle)),
+        MatrixOp::Rotate(axis, angle) => MatrixOp::Rotate(axis, change(angle)),
+        other => other,
+    };
+    let changed: Vec<MatrixOp> = ops.iter().map(change).collect();
+    MatrixOp::product(&changed, rules)
+}
