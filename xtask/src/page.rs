@@ -48,8 +48,8 @@ fn measure(web: &Path) -> Result<ExitCode> {
         }
         let mut live = Command::new(&durer).arg("live").arg(&scene).stdout(Stdio::piped()).spawn()?;
         let mut address = String::new();
-        let output = live.stdout.take().context("the server prints nothing")?;
-        BufReader::new(output).read_line(&mut address)?;
+        let mut output = BufReader::new(live.stdout.take().context("the server prints nothing")?);
+        output.read_line(&mut address)?;
         println!("{}", scene.display());
         let measured = call(Command::new("node").args(["tests/measure.mjs", address.trim()]).current_dir(web));
         live.kill()?;

@@ -246,8 +246,8 @@ fn requests_of_any_size_and_form_are_answered() {
         "null",
         "[]",
         "{}",
-        &deep,
-        &long,
+        deep.as_str(),
+        long.as_str(),
         r#"{"session":-1,"id":1,"request":{"kind":"outlines"}}"#,
         r#"{"session":1,"id":1e99,"request":{"kind":"outlines"}}"#,
         r#"{"session":1,"id":1,"request":{"kind":"size","width":-1,"height":4}}"#,
@@ -260,7 +260,7 @@ fn requests_of_any_size_and_form_are_answered() {
         r#"{"session":1,"id":1,"request":{"kind":"export","name":"../../etc/passwd"}}"#,
         r#"{"session":1,"id":1,"request":{"kind":"save","force":true}}"#,
     ] {
-        page.send(Message::text(message)).unwrap();
+        page.send(Message::text(message.to_string())).unwrap();
         let why = hear(&mut page, "refused");
         assert!(why["why"].as_str().is_some_and(|why| why.len() < 1000), "{message:.80}: {why}");
     }

@@ -76,7 +76,7 @@ await test("numbers: epsilon", wide, async (page) => {
   await open(page, "#/lecture/epsilon");
   const wrong = () => told(page, /([\d,]+) of 76,800 pixels are wrong/).then(([count]) => count);
   await page.waitForTimeout(2500);
-  if (!((await wrong()) > 500)) throw new Error(`only ${await wrong()} wrong pixels without an epsilon`);
+  if (!((await wrong()) > 20)) throw new Error(`only ${await wrong()} wrong pixels without an epsilon`);
   await page.getByRole("slider", { name: "epsilon" }).fill("75");
   await page.waitForFunction(
     () => /light leaks/.test(document.querySelector(".equations").textContent),
