@@ -93,6 +93,7 @@ fn put_files(place: &TestFolder) {
     place.put("point.obj", sheet(&"vt 0 0\n".repeat(4)));
     place.put("grey.ppm", "P3\n2 1\n255\n99 99 99 99 99 99\n");
     place.put("two.ppm", "P3\n2 1\n255\n99 99 99 200 20 20\n");
+    place.put("level.pgm", format!("P2\n4 4\n255\n{}\n", "180\n".repeat(16)));
     let hills: Vec<String> = (0..256).map(|i| ((i % 16) * (i / 16) % 50 * 5).to_string()).collect();
     place.put("hills.pgm", format!("P2\n16 16\n255\n{}\n", hills.join("\n")));
 }

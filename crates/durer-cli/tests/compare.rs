@@ -370,14 +370,14 @@ fn pictures_of_paths_are_judged_against_their_noise() {
     let place = TestFolder::new();
     place.put("room.txt", ROOM);
     let options = "--integrator path --samples 32 --bounces 6";
-    let render = |name: &str, more: &str| {
-        place.expect_exit(0, &format!("render room.txt -o {name}.png -q --size 64x48 {options} {more}"));
+    let render = |name: &str, options: &str| {
+        place.expect_exit(0, &format!("render room.txt -o {name}.png -q --size 64x48 --integrator path {options}"));
     };
-    render("right", "");
-    render("other", "--seed 5");
-    render("few", "--samples 4 --seed 3");
-    render("direct", "--bounces 0");
-    render("one", "--bounces 1 --seed 9");
+    render("right", "--samples 32 --bounces 6");
+    render("other", "--samples 32 --bounces 6 --seed 5");
+    render("few", "--samples 4 --bounces 6 --seed 3");
+    render("direct", "--samples 32 --bounces 0");
+    render("one", "--samples 32 --bounces 1 --seed 9");
     let text = |name: &str| {
         let output = place.expect_exit(1, &format!("compare right.png {name}.png --scene room.txt {options} --json"));
         assert!(!output.err.contains("error["), "{}", output.err);

@@ -36,7 +36,9 @@ fn white(scout: &SceneProbe) -> Vec<Finding> {
     // What shines itself may be white, and a background that is not seen to be lit says nothing.
     let lit = |probe: &Probe| probe.seen.as_ref().is_some_and(|seen| !scout.world().may_emit(seen.material));
     let all = scout.light();
-    let objects: Vec<Color> = scout.lit_probes().filter(|(probe, _)| lit(probe)).map(|(_, color)| color).collect();
+    let objects: Vec<Color> = (scout.lit_probes().filter(|(probe, color)| lit(probe) && color.max_element() > VISIBLE))
+        .map(|(_, color)| color)
+        .collect();
     let is_white = |color: &&Color| color.min_element() > 1.1;
     let over = |shown: &[Color], share: f32| shown.iter().filter(is_white).count() as f32 > share * shown.len() as f32;
     let (shown, what) = if over(all, MAX_WHITE) {

@@ -7,7 +7,8 @@ use super::verdict::Verdict;
 use super::visibility::{Visibility, pixels};
 use durer_diag::{Diagnostic, Span};
 use durer_scene::camera::{Camera, Projection};
-use durer_scene::math::{Aabb, fp};
+use durer_scene::light::{Emitter as _, Light};
+use durer_scene::math::{Aabb, Vec3, fp};
 use durer_scene::scene::{MatrixOp, Node, Object};
 
 /// Minimum size in pixels of a recognisable object.
@@ -176,6 +177,56 @@ fn swallows(scout: &SceneProbe, object: u32) -> bool {
     harms && super::within::around(scout.world(), eye).contains(&object)
 }
 
+/// Returns true if the camera is inside an object that can be neither a sky nor a room: a ground ball
+/// that reaches too high, or a dark shell.
+pub(super) fn swallows_wrongly(scout: &SceneProbe, object: u32) -> bool {
+    is_ground(scout, object) || is_dark_shell(scout, object)
+}
+
+/// Returns true if an object around the camera is a ball meant as the ground: it is far larger than
+/// all else, and the camera is near its top, far from its middle.
+fn is_ground(scout: &SceneProbe, object: u32) -> bool {
+    let own = &scout.world().objects()[object as usize];
+    let Some(bounds) = own.bounds().filter(|_| is_ball(own)) else { return false };
+    let pose = scout.world().camera().pose();
+    let off = pose.center - bounds.center();
+    let radius = 0.5 * bounds.size().max_element();
+    let high = off.dot(pose.up.normalize_or(Vec3::Y)) > 0.7 * off.length();
+    times_larger(scout, object).is_some() && off.length() > 0.8 * radius && high
+}
+
+/// Returns true if an object around the camera is far larger than all else, and so dark that it is
+/// no sky and no room.
+fn is_dark_shell(scout: &SceneProbe, object: u32) -> bool {
+    let own = &scout.world().objects()[object as usize];
+    if !scout.is_physical()
+        || times_larger(scout, object).is_none()
+        || scout.world().may_emit(own.material)
+        || scout.is_glass(object)
+    {
+        return false;
+    }
+    let shown = scout.lit_probes().filter(|(probe, _)| probe.seen.as_ref().is_some_and(|seen| seen.object == object));
+    let (all, dark) =
+        shown.fold((0, 0), |(all, dark), (_, color)| (all + 1, dark + usize::from(color.max_element() < 0.02)));
+    dark * 10 >= all * 9
+}
+
+/// Returns true if an object is a sky: a ball far around the camera, and lights outside of it are the
+/// ones that it blocks.
+fn is_sky_before_lights(scout: &SceneProbe, object: u32) -> bool {
+    let own = &scout.world().objects()[object as usize];
+    let Some(bounds) = own.bounds().filter(|_| is_ball(own)) else { return false };
+    let eye = scout.world().camera().pose().center;
+    let outside = |light: &Light| light.position().is_none_or(|place| !own.contains(place));
+    let mut blocked = (scout.verdicts().iter().zip(scout.world().lights()))
+        .filter(|(verdict, _)| **verdict == Verdict::Blocked(object))
+        .peekable();
+    blocked.peek().is_some()
+        && blocked.all(|(_, light)| outside(light))
+        && (eye - bounds.center()).length() < 0.25 * bounds.size().max_element()
+}
+
 /// Reports objects far larger or smaller than most.
 pub(super) fn out_of_scale(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
@@ -214,6 +265,8 @@ pub(super) fn out_of_scale(scout: &SceneProbe) -> Vec<Finding> {
         _ => sizes[sizes.len() / 2].1,
     };
     let mut found = Vec::new();
+    let around = super::within::around(world, eye);
+    let holds_eye = |object: u32| around.contains(&object) && swallows_wrongly(scout, object);
     for &(object, size) in &sizes {
         let ratio = if size > middle { size / middle } else { middle / size };
         // Of two objects either may be wrong: the small one is invisible, the large one hides.
@@ -230,8 +283,9 @@ pub(super) fn out_of_scale(scout: &SceneProbe) -> Vec<Finding> {
         {
             continue;
         }
-        // A huge ball may be the ground or the sky.
-        if size > middle && !spoils {
+        // A huge ball may be the ground or the sky. What holds the camera has its own finding, as a
+        // light behind the sky.
+        if size > middle && (!spoils || holds_eye(object) || is_sky_before_lights(scout, object)) {
             continue;
         }
         let word = if size > middle { "larger" } else { "smaller" };

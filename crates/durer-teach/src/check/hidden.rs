@@ -1,7 +1,6 @@
 //! Checks of one object, often a plane, in front of all or most others.
 
 use super::finding::{Finding, counted, number, percent, vector};
-use super::objects::empty_solids;
 use super::scene_probe::SceneProbe;
 use super::shapes::plane;
 use super::visibility::{Visibility, has_eye, points, rays_to};
@@ -124,7 +123,7 @@ fn in_the_way(scout: &SceneProbe) -> Vec<Finding> {
 pub(super) fn below_plane(scout: &SceneProbe) -> Vec<Finding> {
     let objects = scout.world().objects();
     let mut front = None;
-    let empty = empty_solids(scout);
+    let empty = super::objects::nothing_of(scout);
     let there =
         |(i, (object, _)): &(usize, (&Object, &Visibility))| object.bounds().is_some() && !empty.contains(&(*i as u32));
     for (_, (object, sight)) in objects.iter().zip(scout.visibilities()).enumerate().filter(there) {

@@ -55,7 +55,7 @@ pub(super) fn black_sky(scout: &SceneProbe) -> Vec<Finding> {
 
 /// Reports a path-traced picture in which nearly all surfaces are black although something shines.
 pub(super) fn mostly_black(scout: &SceneProbe) -> Vec<Finding> {
-    if !scout.is_physical() || scout.is_dark() {
+    if !scout.is_physical() || scout.is_dark() || scout.world().fog().is_some() {
         return Vec::new();
     }
     let world = scout.world();

@@ -4,7 +4,7 @@
 use super::finding::{Finding, MAX_SOUGHT, number, percent};
 use super::layers::{layers, thickness};
 use super::scene_probe::SceneProbe;
-use durer_diag::{Diagnostic, Severity};
+use durer_diag::Diagnostic;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Walls;
 use durer_scene::scene::{Material as Written, Spanned};
@@ -13,7 +13,7 @@ use durer_scene::spectrum::ColorMode;
 /// Thickness in micrometres above which a film shows no colours.
 const THICKEST_FILM: f32 = 10.0;
 /// Mean free path, as a multiple of a body's thickness, above which the body hardly scatters.
-const LONGEST_WAY: f32 = 3.0;
+const LONGEST_WAY: f32 = 30.0;
 /// Index of refraction that bends light.
 const BENDS: f32 = 1e-3;
 
@@ -69,14 +69,13 @@ pub(super) fn no_spectrum(scout: &SceneProbe) -> Vec<Finding> {
         if m.transmission_dispersion_scale <= 0.0 || m.transmission_weight < 0.5 || m.walls == Walls::Thin {
             return None;
         }
-        let value = scout.value(written.span, &["transmissionDispersionScale"]);
-        let diagnostic = Diagnostic::warning(format!("material {index} spreads colours, and light has none to spread"))
+        // Some presets and models spread colours for those who look for them.
+        let value = scout.value(written.span, &["transmissionDispersionScale"])?;
+        let diagnostic = Diagnostic::note(format!("material {index} spreads colours, and light has none to spread"))
+            .at(value)
             .effect("light is red, green and blue here, and bent by one index: no colours are seen")
             .help("ask for light by wavelength: `--color spectral`");
-        // A model may be made for programs that show it.
-        let severity = if value.is_some() { Severity::Warning } else { Severity::Note };
-        let diagnostic = Diagnostic { severity, ..diagnostic };
-        Some(Finding::from(scout.at_value(diagnostic, written.span, &["transmissionDispersionScale"])))
+        Some(Finding::from(diagnostic))
     };
     layers(scout).into_iter().filter_map(say).take(MAX_SOUGHT).collect()
 }

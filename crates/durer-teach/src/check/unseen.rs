@@ -218,7 +218,13 @@ fn even_field(scout: &SceneProbe, object: &durer_scene::scene::Object, size: Vec
         Geometry::Primitive(_) | Geometry::Solid(_) => None,
     })?;
     let step = (mesh.len() / 2000).max(1);
-    let corners = (0..mesh.len()).step_by(step).flat_map(|part| mesh.corners(part as u32));
+    // Its sides and its underside say nothing.
+    let upper = |[a, b, c]: &[Vec3; 3]| {
+        let n = (*b - *a).cross(*c - *a);
+        n.y.abs() > 1e-3 * n.length() && n.y > 0.0
+    };
+    let faces = (0..mesh.len()).step_by(step).map(|part| mesh.corners(part as u32)).filter(upper);
+    let corners = faces.flatten();
     let (low, high) = corners.fold((f32::MAX, f32::MIN), |(low, high), p| (low.min(p.y), high.max(p.y)));
     if high - low > 0.002 * size.y {
         return None;

@@ -4,7 +4,7 @@ use super::finding::{Finding, number, vector};
 use super::hidden::{ground, plane_before};
 use super::lights::all_fail;
 use super::scene_probe::SceneProbe;
-use super::shapes::{is_ball, plane};
+use super::shapes::plane;
 use super::verdict::Verdict;
 use super::visibility::{Visibility, aims, has_eye, pixels};
 use super::within::around;
@@ -46,7 +46,7 @@ pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
         // Unshaded backs are not the walls of a room.
         let backs = scout.seen().filter(|(_, seen)| seen.object == object && seen.from_behind).count();
         let walls = !physical && !scout.subject.job.settings.shade_back && backs * 50 > rays;
-        let swallowed = is_ground(scout, object) || is_dark_shell(scout, object) || is_alone(scout, object);
+        let swallowed = super::extent::swallows_wrongly(scout, object) || is_alone(scout, object);
         if own * 100 < rays * 99 && !dark && !walls && !swallowed {
             continue;
         }
@@ -80,37 +80,8 @@ pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Returns true if an object around the camera is a ball meant as the ground: it is far larger than
-/// all else, and the camera is near its top, far from its middle.
-fn is_ground(scout: &SceneProbe, object: u32) -> bool {
-    let own = &scout.world().objects()[object as usize];
-    let Some(bounds) = own.bounds().filter(|_| is_ball(own)) else { return false };
-    let pose = scout.world().camera().pose();
-    let off = pose.center - bounds.center();
-    let radius = 0.5 * bounds.size().max_element();
-    let high = off.dot(pose.up.normalize_or(Vec3::Y)) > 0.7 * off.length();
-    super::extent::times_larger(scout, object).is_some() && off.length() > 0.8 * radius && high
-}
-
-/// Returns true if an object around the camera is far larger than all else, and so dark that it is
-/// no sky and no room.
-fn is_dark_shell(scout: &SceneProbe, object: u32) -> bool {
-    let own = &scout.world().objects()[object as usize];
-    if !scout.is_physical()
-        || super::extent::times_larger(scout, object).is_none()
-        || scout.world().may_emit(own.material)
-        || scout.is_glass(object)
-    {
-        return false;
-    }
-    let shown = scout.lit_probes().filter(|(probe, _)| probe.seen.as_ref().is_some_and(|seen| seen.object == object));
-    let (all, dark) =
-        shown.fold((0, 0), |(all, dark), (_, color)| (all + 1, dark + usize::from(color.max_element() < 0.02)));
-    dark * 10 >= all * 9
-}
-
 /// Returns true if an object around the camera is the only thing that ends, is seen from behind
-/// alone, and fills most of the picture.
+/// alone, and fills much of the picture.
 fn is_alone(scout: &SceneProbe, object: u32) -> bool {
     let world = scout.world();
     let ended = world.objects().iter().filter(|object| object.bounds().is_some()).count();
@@ -120,7 +91,7 @@ fn is_alone(scout: &SceneProbe, object: u32) -> bool {
     };
     let own = scout.seen().filter(|(_, seen)| seen.object == object);
     let (all, backs) = own.fold((0, 0), |(all, backs), (_, seen)| (all + 1, backs + usize::from(seen.from_behind)));
-    ended == 1 && !scout.is_physical() && !textured && all == backs && all * 2 > scout.probes.len()
+    ended == 1 && !scout.is_physical() && !textured && all == backs && all * 4 > scout.probes.len()
 }
 
 /// Returns a point outside a box, a little beyond the exit of a ray that starts inside.

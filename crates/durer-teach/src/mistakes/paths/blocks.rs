@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 /// Number of blocks along the larger side, and paths that a picture takes at most.
 const BLOCKS: u32 = 20;
-const MOST_PATHS: u32 = 300_000;
+const MOST_PATHS: u32 = 150_000;
 /// Samples a pixel at most.
 const MOST_SAMPLES: u32 = 64;
 /// Variance of rounding to eight bits.
@@ -100,6 +100,14 @@ impl Blocks {
 }
 
 impl Means {
+    /// Gives another picture this one's variance, times a ratio, beside its rounding.
+    pub fn lend(&self, mut other: Means, ratio: f64) -> Means {
+        for (own, other) in self.variance.iter().zip(&mut other.variance) {
+            *other += ratio * own;
+        }
+        other
+    }
+
     /// Returns the squared difference of each block beyond what noise explains, and true if it is
     /// significant. `noise`: variances of both pictures.
     pub fn beyond(&self, other: &Means, noise: &[f64]) -> Vec<(f64, bool)> {

@@ -35,16 +35,16 @@ pub fn off(question: &DiagnosisInput) -> f64 {
     let blocks = blocks(question);
     let reference = blocks.of_picture(question.job.width, &reference);
     let base = blocks.render(&view, &base, question.job.seed);
-    share_off(&base, &reference)
+    share_off(&base, &base.lend(reference, 1.0))
 }
 
 fn blocks(question: &DiagnosisInput) -> Blocks {
     Blocks::new(question.job.width, question.job.height, question.job.sampling.samples())
 }
 
-/// Variances of two pictures of one kind.
-fn noise(base: &Means, other: &Means) -> Vec<f64> {
-    base.variance.iter().zip(&other.variance).map(|(a, b)| 2.0 * a + b).collect()
+/// Variances of the difference of two pictures.
+fn noise(a: &Means, b: &Means) -> Vec<f64> {
+    a.variance.iter().zip(&b.variance).map(|(a, b)| a + b).collect()
 }
 
 fn share_off(base: &Means, reference: &Means) -> f64 {
@@ -60,6 +60,8 @@ pub fn diagnose(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> D
     let blocks = blocks(question);
     let [reference, test] = [&reference_pixels, &test_pixels].map(|pixels| blocks.of_picture(width, pixels));
     let own = blocks.render(&view, &base, seed);
+    let reference = own.lend(reference, 1.0);
+    let test = own.lend(test, noise_ratio(&reference_pixels, &test_pixels, width as usize).clamp(0.2, 200.0));
     progress(0.1);
     let off = share_off(&own, &reference);
     let found =
@@ -132,20 +134,24 @@ fn decided(mut trials: Vec<Trial>, test: &Means) -> Vec<Explanation> {
     rivals.iter().map(named).collect()
 }
 
-/// Compares the noise of two pictures with the same mean.
-fn of_noise(reference: &[Vec3], test: &[Vec3], width: usize) -> String {
-    // Second differences along rows vanish for smooth shading.
+/// Estimates how many times the variance of the reference's noise a picture has.
+fn noise_ratio(reference: &[Vec3], test: &[Vec3], width: usize) -> f64 {
+    // Second differences along rows vanish for smooth shading; edges are the upper part of them.
     let energy = |pixels: &[Vec3]| {
         let mut all: Vec<f32> = pixels
             .chunks(width)
             .flat_map(|row| row.windows(3).map(|p| (p[0] - 2.0 * p[1] + p[2]).length_squared()))
             .collect();
         all.sort_by(f32::total_cmp);
-        // Edges are the upper part.
         let kept = (all.len() * 3 / 4).max(1).min(all.len());
         all[..kept].iter().map(|e| f64::from(*e)).sum::<f64>().max(1e-9)
     };
-    let ratio = energy(test) / energy(reference);
+    energy(test) / energy(reference)
+}
+
+/// Compares the noise of two pictures with the same mean.
+fn of_noise(reference: &[Vec3], test: &[Vec3], width: usize) -> String {
+    let ratio = noise_ratio(reference, test, width);
     let times = |ratio: f64| if ratio > 20.0 { "far more than ten".to_string() } else { format!("about {ratio:.1}") };
     if ratio > NOISIER {
         format!(

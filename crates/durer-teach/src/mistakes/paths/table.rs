@@ -7,7 +7,7 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-depth",
         "bounces",
-        "paths have {one bounce less|two bounces less|one bounce more|no bounces: direct light alone|one bounce} than asked for",
+        "paths {have one bounce less than asked for|have two bounces less than asked for|have one bounce more than asked for|stop at direct light|have one bounce, not as many as asked for}",
         "for (depth = 0; depth <= bounces; depth++)",
         "another end of the loop",
         |v, how| {
