@@ -7,7 +7,7 @@ use super::verdict::Verdict;
 use super::visibility::{Visibility, pixels};
 use durer_diag::{Diagnostic, Span};
 use durer_scene::camera::{Camera, Projection};
-use durer_scene::light::{Emitter as _, Light};
+use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::{Aabb, Vec3, fp};
 use durer_scene::scene::{MatrixOp, Node, Object};
 
