@@ -32,7 +32,7 @@ const KINDS: [Kind; 7] = [
     Kind { name: "mutated", count: 20_000, of: "mutated files", run: mutated::run },
 ];
 
-/// What an attack uses.
+/// Environment of an attack.
 struct Attack {
     durer: PathBuf,
     folder: tempfile::TempDir,
@@ -42,7 +42,7 @@ struct Attack {
     only: String,
 }
 
-/// What an attack found.
+/// Result of an attack.
 struct Outcome {
     tried: u64,
     /// A line for each that fell.

@@ -35,8 +35,8 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(ExitCode::FAILURE)
 }
 
-/// Measures the page: pictures a second and the time to the first, in Chromium, for a small scene and
-/// a large one; then 10,000 random edits, memory over 1,000, and hostile clients.
+/// Measures the page: pictures a second and the time to the first, in Chromium, for a small scene
+/// and a large one; then 10,000 random edits, memory over 1,000, and hostile clients.
 fn measure(web: &Path) -> Result<ExitCode> {
     let root = root()?;
     let durer = crate::build::durer()?;
@@ -71,7 +71,8 @@ fn install(web: &Path) -> Result<()> {
     if web.join("node_modules/vite").exists() {
         return Ok(());
     }
-    // Not `npm ci`: the lock file names an optional package for Windows that not every registry has.
+    // Not `npm ci`: the lock file names an optional package for Windows that not every registry
+    // has.
     call(Command::new("npm").args(["install", "--no-audit", "--no-fund"]).current_dir(web))
 }
 
@@ -91,8 +92,8 @@ fn files(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
     Ok(all)
 }
 
-/// SIMD levels of the library as WebAssembly, with their target features. The worker takes the first
-/// that the browser knows.
+/// SIMD levels of the library as WebAssembly, with their target features. The worker takes the
+/// first that the browser knows.
 const LEVELS: [(&str, &str); 2] = [("simd128", "+simd128"), ("scalar", "-simd128")];
 
 /// Builds the library as WebAssembly at a level.

@@ -22,7 +22,7 @@ const COMMANDS: u64 = 25;
 const MAX_BYTES: u64 = 256 << 10;
 const MEMORY: u64 = 1 << 30;
 
-/// What is rendered: a random scene, or a file.
+/// Scene to render: a random one, or a file.
 enum Scene {
     Random(u64),
     File(PathBuf),
@@ -172,7 +172,7 @@ fn command(durer: &Path, path: &Path, options: &[(&str, &str)], folder: &Path) -
     hash.with_context(|| format!("{}: {}", path.display(), String::from_utf8_lossy(&output.stderr)))
 }
 
-/// What the process uses; zeros except on Linux.
+/// Resource usage of the process; zeros except on Linux.
 #[derive(Clone, Copy, Default)]
 struct Usage {
     bytes: u64,

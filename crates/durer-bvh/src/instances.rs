@@ -453,8 +453,8 @@ mod tests {
             if round % 50 == 25 {
                 let moved = map(&mut random);
                 scene.update([(round / 50, moved)]);
-                let anew = InstanceBvh::new(scene.instances().to_vec());
-                assert_eq!(format!("{:?}", scene.bvh), format!("{:?}", anew.bvh));
+                let rebuilt = InstanceBvh::new(scene.instances().to_vec());
+                assert_eq!(format!("{:?}", scene.bvh), format!("{:?}", rebuilt.bvh));
             }
             let ray = ray(&meshes[0], &mut random, 1.0, Vec3::ZERO);
             let all = scene.all_hits(&ray);

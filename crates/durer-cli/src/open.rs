@@ -41,7 +41,7 @@ pub fn read(path: &Path, options: &LoadOptions, quiet: bool, guard: &mut Guard) 
 }
 
 impl ParsedInput {
-    /// The same scene, whose warnings are not printed when it is compiled.
+    /// Returns the scene with its compile warnings suppressed.
     pub fn quiet(self) -> Self {
         ParsedInput { quiet: true, ..self }
     }

@@ -5,8 +5,8 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, Error};
 use std::ffi::OsString;
 
-/// What an option of another program is called here: its names, the option that a command must have
-/// for it to be offered, and the words.
+/// Counterpart of an option of another program: its names, the option that a command must have for
+/// the hint to be offered, and the hint.
 const POINTERS: &[(&[&str], &str, &str)] = &[
     (&["--width", "--height", "--resolution", "--res", "-size"], "size", "`--size 640x480` has both, the width first"),
     (&["--spp", "--aa", "--antialias", "--samples-per-pixel"], "samples", "samples a pixel are `--samples 64`"),

@@ -390,7 +390,7 @@ fn pictures_of_paths_are_judged_against_their_noise() {
         let text = text(name);
         assert_eq!(text["named"][0]["mistakes"][0]["name"], "path-depth", "{text:#}");
     }
-    // Another scene's reference is told as such, with a share that is measured against noise.
+    // A reference of another scene is reported as such, with a share that is judged against noise.
     place.put(
         "other.txt",
         ROOM.replace("baseColor 0.7 0.2 0.1", "baseColor 0.1 0.7 0.2").replace("0.6 2 radius", "1.6 2 radius"),

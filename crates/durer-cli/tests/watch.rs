@@ -1,4 +1,5 @@
-//! `--watch` while its files are replaced, removed, half written, and saved a thousand times a second.
+//! `--watch` while its files are replaced, removed, half written, and saved a thousand times a
+//! second.
 #![cfg(unix)]
 
 mod common;

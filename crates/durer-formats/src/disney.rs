@@ -78,8 +78,9 @@ pub(super) fn passing([reflected, all]: [f32; 2]) -> f32 {
     (1.0 - kept([reflected, all])).max(1e-3)
 }
 
-/// Reflectance of Dürer's boundary from [`single_means`]: the single-scattering reflectance, divided
-/// by the sum of single-scattering reflection and refraction, which is below 1 for rough boundaries.
+/// Reflectance of Dürer's boundary from [`single_means`]: the single-scattering reflectance,
+/// divided by the sum of single-scattering reflection and refraction, which is below 1 for rough
+/// boundaries.
 pub(super) fn kept([reflected, all]: [f32; 2]) -> f32 {
     // Unphysical indices of refraction can make `all` 0.
     reflected / all.max(1e-6)

@@ -1,5 +1,5 @@
-//! Growth of a file: what a reader makes of it that may be far larger than it. Readers count objects
-//! and bytes here before they make them.
+//! Growth of a file: what a reader makes of it that may be far larger than it. Readers count
+//! objects and bytes here before they make them.
 
 use crate::shared_report::SharedReport;
 use durer_diag::{Span, at_most};

@@ -4,11 +4,13 @@ use durer_scene::source::{AssetSource, SourceError};
 use std::io::Read as _;
 use std::sync::Arc;
 
-/// Reads a file by its name in the scene, and unpacks it within the source's budget if it is packed.
+/// Reads a file by its name in the scene, and unpacks it within the source's budget if it is
+/// packed.
 ///
 /// # Errors
 ///
-/// Those of [`AssetSource::read`]; [`SourceError::Io`] for packed bytes that are damaged or would become too large.
+/// Those of [`AssetSource::read`]; [`SourceError::Io`] for packed bytes that are damaged or would
+/// become too large.
 pub fn read_unpacked(source: &dyn AssetSource, name: &str) -> Result<Arc<[u8]>, SourceError> {
     let bytes = source.read(name)?;
     if !is_packed(&bytes) {

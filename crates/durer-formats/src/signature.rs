@@ -21,7 +21,7 @@ const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
     (b"COFF", "OFF", None),
     (b"NOFF", "OFF", None),
     (b"STOFF", "OFF", None),
-    (b"IESNA", LAMP, None),
+    (b"IESNA", LUMINAIRE, None),
     (b"P3\n", "a picture (PPM)", None),
     (b"P6\n", "a picture (PPM)", None),
     (b"#?RADIANCE", "a picture (Radiance's)", None),
@@ -40,8 +40,8 @@ const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
     (b"#usda", "USD", None),
 ];
 
-/// A measured lamp: light for a scene, and no scene itself.
-const LAMP: &str = "a measured lamp (IES)";
+/// Photometric file: a light of a scene, not a scene.
+const LUMINAIRE: &str = "a measured luminaire (IES)";
 
 /// Returns an error if the signature of a file contradicts its format, whose extensions are
 /// `extensions`.

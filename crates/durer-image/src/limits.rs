@@ -35,8 +35,8 @@ pub(super) fn room_for<T: Clone>(count: usize, item: T) -> Result<Vec<T>, ImageE
     Ok(all)
 }
 
-/// Returns true if so many bytes can be allocated now. Where a limit of the system forbids it, large
-/// work is refused by an error before it begins.
+/// Returns true if this many bytes can be allocated now. If a system limit forbids it, large work
+/// is refused with an error before it starts.
 pub fn can_allocate(bytes: u64) -> bool {
     let length = usize::try_from(bytes).unwrap_or(usize::MAX);
     // The system gives no pages before something is written to them.

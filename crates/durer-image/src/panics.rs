@@ -33,7 +33,7 @@ mod tests {
     fn panics_are_expected_only_where_they_are_caught() {
         assert_eq!(caught(|| 1), Some(1));
         let inner = caught(|| {
-            assert_eq!(caught(|| -> u32 { panic!("not told") }), None);
+            assert_eq!(caught(|| -> u32 { panic!("not reported") }), None);
             assert!(are_expected());
         });
         assert_eq!(inner, Some(()));

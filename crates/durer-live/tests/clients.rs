@@ -185,7 +185,8 @@ fn foreign_origins_and_wrong_tokens_are_refused() {
     assert!(hear(&mut socket, "language")["words"].as_array().unwrap().len() > 30);
 }
 
-/// Opens a small scene and edits it to have another number of balls; returns how many objects it has.
+/// Opens a small scene and edits it to have another number of balls; returns how many objects it
+/// has.
 fn objects(socket: &mut WebSocket<TcpStream>, count: usize) -> Option<u64> {
     let balls: String = (0..count).map(|i| format!("Sphere {{ center {i} 0 0 radius 0.4 }} ")).collect();
     let text =
@@ -301,7 +302,7 @@ fn a_thousand_connections_cost_a_session_nothing() {
     let mut held = Vec::new();
     for i in 0..1000 {
         held.extend(TcpStream::connect(server.host()).ok());
-        // The system lets a process hold so many and no more.
+        // The system limits the number of open connections of a process.
         if held.len() > 200 {
             held.drain(..100);
         }

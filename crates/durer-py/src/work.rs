@@ -53,8 +53,8 @@ pub fn look(watch: Option<&Py<PyAny>>, done: u64, all: u64) -> PyResult<()> {
     })
 }
 
-/// Tells a job whether it goes on. A single item may take milliseconds, so jobs ask for each item or
-/// for few.
+/// Tells a job whether it goes on. A single item may take milliseconds, so jobs ask for each item
+/// or for few.
 pub struct Pace<'a> {
     stop: &'a AtomicBool,
     /// Work of the calling thread looks for signals itself: the time of the last look, and the

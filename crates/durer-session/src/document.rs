@@ -66,7 +66,7 @@ impl Document {
         (true, findings)
     }
 
-    /// True for a file without text of its own: a mesh, glTF, or bytes.
+    /// True for a file without text in the scene language: a mesh, glTF, or bytes.
     pub fn is_model(&self) -> bool {
         let name = self.path.to_string_lossy();
         let is_written = |format: &SceneFormat| format.write.is_some();
@@ -99,8 +99,8 @@ impl Document {
         }
     }
 
-    /// The scene as a text of the language, and the files that the text names. The camera is that of
-    /// the picture.
+    /// The scene as a text of the language, and the files that the text names. The camera is that
+    /// of the picture.
     pub fn as_text(&self) -> Result<(String, Vec<AssetFile>), String> {
         let compiled = self.compiled.as_ref().ok_or("the scene has errors")?;
         let stem = plain(&self.path.file_stem().unwrap_or_default().to_string_lossy());

@@ -1,5 +1,5 @@
-//! What a scene consists of: groups, objects and materials. Models have no text, so their materials
-//! are changed here.
+//! Contents of a scene: groups, objects and materials. Models have no text, so their materials are
+//! edited here.
 
 use crate::document::CompiledDocument;
 use crate::fields::{field_states, set_numbers};

@@ -20,7 +20,7 @@ const BETWEEN: f64 = 160.0;
 const DIVISORS: [u32; 9] = [1, 2, 3, 4, 5, 6, 8, 12, 16];
 /// Maximum width and height of a picture, in pixels.
 const LARGEST: u32 = 8192;
-/// Maximum number of pixels whose numbers are told at once.
+/// Maximum number of pixels whose values are sent at once.
 const MAX_VALUES: u64 = 4096;
 
 /// The picture of a session.
@@ -44,7 +44,7 @@ pub(crate) struct Viewer {
     reported: f64,
     /// Last finished picture, to show it with other display settings or to export it.
     shown: Option<ProgressiveRender>,
-    /// The same picture denoised, once it was wanted.
+    /// Denoised picture, once it was requested.
     clean: Option<Layer>,
     rays: u64,
     /// When the fine picture was begun.
@@ -285,7 +285,7 @@ impl Viewer {
         let window = render.part().job().window();
         let rect = Crop { left, top, width, height };
         if rect.pixels() > MAX_VALUES || rect != within(rect, window) {
-            return Err(format!("numbers are told of at most {MAX_VALUES} pixels of the picture"));
+            return Err(format!("values can be requested for at most {MAX_VALUES} pixels of the picture"));
         }
         let rendered = render.part().pictures().map_err(wrong)?;
         let layer = rendered.layers.first().ok_or("the job has no picture")?;

@@ -1,5 +1,5 @@
-//! Memory of a session that is edited for long. A process of its own, since other tests would be
-//! counted.
+//! Memory of a session over many edits. It is a separate process, because the allocations of other
+//! tests would be counted.
 
 mod page;
 

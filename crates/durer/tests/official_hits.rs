@@ -303,7 +303,8 @@ fn mirrors_of_2012_and_2016_keep_the_length_that_the_normal_of_a_plane_gives_a_r
                MaterialIndex 1 Sphere {{ center {center} radius 0.3 }} }}"
         )
     };
-    // d - 2 (d·N) N: from (1, -1, 0) it is (1, 7, 0) with this normal, and (1, 1, 0) with a unit one.
+    // d - 2 (d·N) N: from (1, -1, 0) it is (1, 7, 0) with this normal, and (1, 1, 0) with a unit
+    // one.
     for dialect in [Dialect::F12a5, Dialect::F16] {
         let share = |center: &str| seen(&world(&scene(center), dialect), [-5.0, 5.0, 0.0], [1.0, -1.0, 0.0]).x;
         assert_eq!((share("1 7 0"), share("5 5 0")), (1.0, 0.0), "{dialect:?}");

@@ -13,7 +13,8 @@ const OUT: [&str; 9] =
 /// Devices and pipes.
 const ENDLESS: [&str; 5] = ["/dev/zero", "/dev/stdin", "pipe", "zero", "/proc/self/fd/0"];
 
-/// Input files that name a file: their path, text with `NAME`, the secret's name, and the arguments.
+/// Input files that name a file: their path, text with `NAME`, the secret's name, and the
+/// arguments.
 const INPUTS: [(&str, &str, &str, &str); 12] = [
     (
         "a.txt",

@@ -51,7 +51,8 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
         let took = ended.map_or(Duration::from_secs(20), |_| start.elapsed());
         worst = worst.max((took, line));
         let code = child.wait().context("it ran")?.code();
-        // 0: it ended by itself before. A signal before the handler ends the program without a code.
+        // 0: it ended by itself before. A signal before the handler ends the program without a
+        // code.
         if took > MOST || !matches!(code, None | Some(0 | 129 | 130 | 143)) {
             fallen.push(format!("{line}: {:.2} s after {signal}, exit code {code:?}", took.as_secs_f64()));
         }

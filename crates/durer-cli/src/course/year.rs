@@ -24,7 +24,7 @@ const SIDE: u32 = 64;
 /// Pixels that look alike differ by at most this much in a channel.
 const ALIKE: f32 = 2.0 / 255.0;
 
-/// At most one of so many pixels may look different in pictures that are the same.
+/// Two pictures count as equal if at most one in this many pixels looks different.
 const ONE_OF: usize = 1000;
 
 /// Opens a scene under the year that fits best. Prints its warnings, and a note where hints

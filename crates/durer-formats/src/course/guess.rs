@@ -25,9 +25,9 @@ pub struct Guess {
     pub reasons: Vec<(String, Option<Span>)>,
     /// Other dialects that fit as well.
     pub others: Vec<Dialect>,
-    /// All dialects that the words and the hints that are not weak leave, the likeliest first.
+    /// Dialects that fit the words and the strong hints, the likeliest first.
     pub fitting: Vec<Dialect>,
-    /// What the words alone tell.
+    /// Dialect suggested by the words alone.
     pub by_words: Dialect,
 }
 

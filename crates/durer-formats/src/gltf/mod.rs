@@ -98,7 +98,8 @@ struct Model<'a> {
     skins: Vec<Option<Skin>>,
     cameras: Vec<Option<CameraData>>,
     lights: Vec<Option<LightData>>,
-    /// What is decoded, each time that it is: time and memory stay in proportion to the file.
+    /// Amount of decoded data, counted at each use, so that time and memory stay proportional to
+    /// the file.
     work: Growth,
     /// Objects, and bytes that are kept.
     kept: Growth,

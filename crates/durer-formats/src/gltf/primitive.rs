@@ -127,7 +127,8 @@ impl Model<'_> {
         }
         let mut pose = self.pose(at, &attributes, count);
         let order = self.order(at, count)?;
-        // Corners, with their normals and coordinates; a strip has a triangle for nearly each number.
+        // Corners, with their normals and coordinates; a strip has a triangle for nearly each
+        // number.
         let triangles = if mode == TRIANGLES { order.len() / 3 } else { order.len() };
         let lists = 1 + usize::from(has_normals) + usize::from(!data.uvs.is_empty());
         self.keep(triangles, 12 * lists, at)?;

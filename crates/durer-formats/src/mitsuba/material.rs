@@ -70,7 +70,7 @@ impl Reader<'_> {
         made
     }
 
-    /// Whether a material is of so few others that it may be copied.
+    /// Returns true if a material consists of few enough others to be copied.
     fn has_room_for(&self, made: &MaterialDef, at: Span) -> bool {
         let count = made.count(MAX_PARTS);
         if count > MAX_PARTS {

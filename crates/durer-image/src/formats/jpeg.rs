@@ -14,7 +14,8 @@ struct Frame {
 
 /// Finds the header of the frame.
 ///
-/// Source: ITU-T T.81, *Digital Compression and Coding of Continuous-Tone Still Images*, annex B.2.2.
+/// Source: ITU-T T.81, *Digital Compression and Coding of Continuous-Tone Still Images*, annex
+/// B.2.2.
 fn frame(bytes: &[u8]) -> Option<Frame> {
     let mut rest = bytes.get(2..)?;
     loop {
@@ -38,8 +39,8 @@ fn frame(bytes: &[u8]) -> Option<Frame> {
     }
 }
 
-/// Memory in bytes of the decoder beside the pixels: 16-bit coefficients of all components until the
-/// last scan, and rows of blocks while components are brought to the picture's size. Components
+/// Memory in bytes of the decoder beside the pixels: 16-bit coefficients of all components until
+/// the last scan, and rows of blocks while components are brought to the picture's size. Components
 /// fill whole blocks of the largest sampling factors.
 fn decoding_bytes(Frame { size, factors }: Frame) -> u64 {
     let [across, down] = [0, 1].map(|axis| factors.iter().map(|factors| factors[axis]).max().unwrap_or(1));

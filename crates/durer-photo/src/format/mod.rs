@@ -164,7 +164,8 @@ pub fn read(path: &Path) -> Result<Reconstruction, Error> {
     })
 }
 
-/// Reads cameras and points as [`read`] does. `open` reads the files, which are those of [`inputs`].
+/// Reads cameras and points as [`read`] does. `open` reads the files, which are those of
+/// [`inputs`].
 pub fn read_by(path: &Path, open: &mut Open) -> Result<Reconstruction, Error> {
     let file = path.to_string_lossy();
     if path.is_dir() {

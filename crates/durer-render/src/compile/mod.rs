@@ -293,8 +293,8 @@ fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Res
     Ok(Accel::Grid { grid, parts, wide })
 }
 
-/// Returns the few boxes that reach so far beyond the others that a grid around them has all others in
-/// one cell, by ascending index.
+/// Returns the few boxes that reach so far beyond the others that a grid around them has all others
+/// in one cell, by ascending index.
 fn outliers(boxes: &[Aabb]) -> Vec<usize> {
     /// More are not tested for every ray.
     const MOST: usize = 64;

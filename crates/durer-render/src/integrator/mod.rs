@@ -1,4 +1,5 @@
-//! Integrators: estimators of the radiance along a ray. One file each; the list is [`IntegratorKind`].
+//! Integrators: estimators of the radiance along a ray. One file each; the list is
+//! [`IntegratorKind`].
 
 pub mod ao;
 pub mod media;

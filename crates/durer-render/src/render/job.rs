@@ -159,8 +159,8 @@ impl Job {
 
     /// Checks all values: size at least 1 x 1, samples from 1 to [`Job::MAX_SAMPLES`], the filter's
     /// radius more than 0 and at most [`Job::MAX_FILTER_RADIUS`], depth of recursion at most
-    /// [`WhittedOptions::MAX_BOUNCES`], thresholds and scales, and the integrator's options by their
-    /// rules. [`PartialRender::new`](super::PartialRender::new) calls this first.
+    /// [`WhittedOptions::MAX_BOUNCES`], thresholds and scales, and the integrator's options by
+    /// their rules. [`PartialRender::new`](super::PartialRender::new) calls this first.
     ///
     /// # Errors
     ///

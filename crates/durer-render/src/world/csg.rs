@@ -9,9 +9,10 @@
 //! Coincident faces: crossings of different parts count as one if the faces are nearly parallel and
 //! their distance across the surfaces is at most what the rounding of the scene's coordinates can
 //! cause: for boxes, one or two steps of single precision at each. Crossings are computed in the
-//! parts' own frames and in double precision, so a wall of four such steps stands. All their bits toggle together, so no thin skin is left, or appears,
-//! where two faces share a plane. If the bit of the whole changes, the surface belongs to the first
-//! part in the file that could have made the change: alone, or as the last.
+//! parts' own frames and in double precision, so a wall of four such steps stands. All their bits
+//! toggle together, so no thin skin is left, or appears, where two faces share a plane. If the bit
+//! of the whole changes, the surface belongs to the first part in the file that could have made the
+//! change: alone, or as the last.
 //!
 //! Faces that meet at an angle, as at an edge, count as one only within the rounding of the
 //! crossings, which is proportional to the parts' own size however far away they are. A larger

@@ -138,7 +138,8 @@ pub trait Illuminate {
     /// `None` for a light that is equally strong in all directions.
     fn direction(&self) -> Option<Vec3>;
 
-    /// Angle in degrees from [`Illuminate::direction`] to the edge of the beam; `None` without a beam.
+    /// Angle in degrees from [`Illuminate::direction`] to the edge of the beam; `None` without a
+    /// beam.
     fn cone(&self) -> Option<f32>;
 
     /// Position, and the light that arrives at distance 1 in the strongest direction; `None` for a

@@ -1,4 +1,4 @@
-//! What a page does with its sessions.
+//! Page side of the protocol, for tests.
 
 #![allow(dead_code, reason = "each test uses a part")]
 

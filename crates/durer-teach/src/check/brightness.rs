@@ -10,8 +10,8 @@ use rayon::prelude::*;
 const MAX_PIXELS: usize = 300;
 const SAMPLES: u32 = 16;
 
-/// Returns the exposed colours of the picture, each with the index of its probe: one for each probe,
-/// or with a path tracer the mean of `SAMPLES` samples for at most `MAX_PIXELS` of them.
+/// Returns the exposed colours of the picture, each with the index of its probe: one for each
+/// probe, or with a path tracer the mean of `SAMPLES` samples for at most `MAX_PIXELS` of them.
 pub(super) fn light(grid: &ProbeGrid) -> (Vec<usize>, Vec<Color>) {
     let exposure = grid.subject.exposure;
     let Some(transport) = grid.subject.job.method.transport() else {

@@ -33,7 +33,7 @@ fn stops_of(factor: f32) -> f32 {
 /// Reports a picture in physical units (path tracing, or a sky in cd/m^2) that eight bits show as
 /// white.
 fn white(scout: &SceneProbe) -> Vec<Finding> {
-    // What shines itself may be white, and a background that is not seen to be lit says nothing.
+    // Emitters may be white, and an unlit background says nothing.
     let lit = |probe: &Probe| probe.seen.as_ref().is_some_and(|seen| !scout.world().may_emit(seen.material));
     let all = scout.light();
     let objects: Vec<Color> = (scout.lit_probes().filter(|(probe, color)| lit(probe) && color.max_element() > VISIBLE))

@@ -177,8 +177,8 @@ fn swallows(scout: &SceneProbe, object: u32) -> bool {
     harms && super::within::around(scout.world(), eye).contains(&object)
 }
 
-/// Returns true if the camera is inside an object that can be neither a sky nor a room: a ground ball
-/// that reaches too high, or a dark shell.
+/// Returns true if the camera is inside an object that can be neither a sky nor a room: a ground
+/// ball that reaches too high, or a dark shell.
 pub(super) fn swallows_wrongly(scout: &SceneProbe, object: u32) -> bool {
     is_ground(scout, object) || is_dark_shell(scout, object)
 }
@@ -212,8 +212,8 @@ fn is_dark_shell(scout: &SceneProbe, object: u32) -> bool {
     dark * 10 >= all * 9
 }
 
-/// Returns true if an object is a sky: a ball far around the camera, and lights outside of it are the
-/// ones that it blocks.
+/// Returns true if an object is a sky: a ball far around the camera, and lights outside of it are
+/// the ones that it blocks.
 fn is_sky_before_lights(scout: &SceneProbe, object: u32) -> bool {
     let own = &scout.world().objects()[object as usize];
     let Some(bounds) = own.bounds().filter(|_| is_ball(own)) else { return false };

@@ -243,7 +243,7 @@ fn grazing(scout: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
             } else {
                 bounds.size().length() + (eye - bounds.center()).length()
             };
-            // A lamp out of all proportion is a mistake of its own.
+            // A light far outside the scene is a separate mistake.
             if (place - eye).length() > FARTHEST * wide {
                 let help = "the light lies in the plane of that surface, and far from everything: move it nearer";
                 return Some(scout.at_value(diagnostic, span, &["position"]).help(help));

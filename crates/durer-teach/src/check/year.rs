@@ -135,8 +135,8 @@ pub(super) fn no_exponent(scout: &SceneProbe) -> Vec<Finding> {
     seen(scout).filter(|(.., phong)| bare(phong)).map(say).take(MAX_SOUGHT).collect()
 }
 
-/// Notes a highlight's colour without an exponent in a dialect without highlights, which takes it for
-/// the colour of a mirror.
+/// Notes a highlight's colour without an exponent in a dialect without highlights, which takes it
+/// for the colour of a mirror.
 fn no_highlight(scout: &SceneProbe) -> Option<Finding> {
     let bare = |phong: &PhongMaterial| {
         phong.specular_color.max_element() > 0.02

@@ -203,8 +203,8 @@ impl Stage {
         self.has_paths() && self.lights.is_empty()
     }
 
-    /// Returns a look with paths in place of Whitted's method where that shows no light: direct light
-    /// is the same step with either.
+    /// Returns a look with paths in place of Whitted's method where that shows no light: direct
+    /// light is the same step with either.
     fn carried(&self, look: ShotOptions) -> ShotOptions {
         match self.needs_paths() && look.lights && look.paths.is_none() && look.bounces == 0 {
             true => ShotOptions { paths: Some(PathSettings::PLAIN), sampled: true, ..look },

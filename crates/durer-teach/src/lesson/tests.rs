@@ -163,8 +163,8 @@ fn distances_are_those_of_the_rays_that_hit() {
     assert!(words.starts_with("24.") && words.contains("from 4.00 to 4.8"), "{words}");
 }
 
-/// What shines in the Cornell box is a surface: its direct light is shown by paths, and mirrors in
-/// our own scene.
+/// The light of the Cornell box is a surface: its direct light is path traced, and mirrors are
+/// shown in the built-in scene.
 #[test]
 fn a_scene_without_lights_of_whitteds_method_is_shown_by_paths() {
     let mut stage = stage("cornell-box.txt", 32);

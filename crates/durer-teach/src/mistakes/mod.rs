@@ -1,9 +1,9 @@
 //! Common mistakes as one table, and their pictures of a scene.
 //!
 //! A row of [`MISTAKES`] states an error of a student's program in words and in both forms of the
-//! code, and changes a [`SceneVariant`] so that a [`BuggyTracer`]'s picture shows it. [`diagnose()`] renders
-//! the rows, alone and in pairs, and names the one that explains a given picture; the lesson shows
-//! some of them. A new mistake is a new row.
+//! code, and changes a [`SceneVariant`] so that a [`BuggyTracer`]'s picture shows it.
+//! [`diagnose()`] renders the rows, alone and in pairs, and names the one that explains a given
+//! picture; the lesson shows some of them. A new mistake is a new row.
 
 mod buggy_tracer;
 pub mod bugs;
@@ -34,8 +34,8 @@ pub fn diagnose(question: &DiagnosisInput, reported: &(dyn Fn(f64) + Sync)) -> D
     }
 }
 
-/// Returns the share of the reference in which the scene's own picture differs from it: of a sample of
-/// its pixels, or for paths of the blocks that differ by more than noise.
+/// Returns the share of the reference in which the scene's own picture differs from it: of a sample
+/// of its pixels, or for paths of the blocks that differ by more than noise.
 pub fn off(question: &DiagnosisInput) -> f64 {
     match question.job.method.transport() {
         Some(_) => paths::off(question),

@@ -83,7 +83,7 @@ pub struct Paths {
     pub lacks: Lacks,
     /// Both strategies count in full.
     pub unweighted: bool,
-    /// What survives roulette is not divided by the probability.
+    /// Paths that survive Russian roulette are not divided by the probability.
     pub roulette: bool,
     /// Emitters shine to both sides.
     pub two_sided: bool,

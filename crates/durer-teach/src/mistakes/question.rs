@@ -1,4 +1,4 @@
-//! What is asked of two pictures, and the answer.
+//! Input and result of a diagnosis.
 
 use super::pictures::View;
 use super::table::{Formulas, Mistake};
@@ -53,7 +53,7 @@ pub struct Diagnosis {
     /// A mistake that reproduces nearly all of the difference, while something more is different.
     /// Only if nothing is named.
     pub nearly: Option<Explanation>,
-    /// What else can be said, if nothing is named.
+    /// Remark if no mistake is named.
     pub remark: Option<String>,
     /// The closest trials, including those that do not explain the picture.
     pub tried: Vec<Explanation>,

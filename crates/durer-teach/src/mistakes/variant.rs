@@ -48,7 +48,7 @@ pub fn three_factors(scene: &Scene) -> bool {
     scene.lights.iter().flatten().any(|light| factors(&light.value))
 }
 
-/// How many times larger a triangle without one of its sides is taken to be.
+/// Scale of a triangle that lacks the test of one side.
 const WIDE: f32 = 100.0;
 
 /// Kinds of geometry that the course's programs implement, and can therefore get wrong.
@@ -240,7 +240,8 @@ impl<'s> SceneVariant<'s> {
         self.rebuild();
     }
 
-    /// Lets every triangle go on beyond the side opposite a corner, as if that side were not tested.
+    /// Lets every triangle go on beyond the side opposite a corner, as if that side were not
+    /// tested.
     pub fn wedges(&mut self, corner: usize) {
         for object in &mut self.world.edit().objects {
             match &mut object.geometry {

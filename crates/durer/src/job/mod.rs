@@ -45,7 +45,8 @@ macro_rules! options {
         }
 
         impl $name {
-            /// Every option except those of integrators, which state their own: see [`IntegratorKind`].
+            /// Every option except those of integrators, which state their own: see
+            /// [`IntegratorKind`].
             pub const OPTIONS: &'static [JobOption] =
                 &[$(JobOption { name: $word, doc: concat!($($fdoc, "\n"),+), form: $form },)*];
 

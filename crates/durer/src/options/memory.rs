@@ -59,17 +59,17 @@ impl Memory {
     }
 }
 
-/// Returns the least memory limit of the control groups that contain this process, as containers and
-/// Slurm set them.
+/// Returns the least memory limit of the control groups that contain this process, as containers
+/// and Slurm set them.
 fn of_groups() -> Option<u64> {
     let groups = std::fs::read_to_string("/proc/self/cgroup").ok()?;
     let limit = |file: &PathBuf| std::fs::read_to_string(file).ok()?.trim().parse().ok();
     limit_files(&groups, Path::new("/sys/fs/cgroup")).iter().filter_map(limit).filter(|&bytes| bytes > 0).min()
 }
 
-/// Returns the files that may limit memory, for the text of `/proc/self/cgroup`: those of each group
-/// and of the groups around it. In a container the path may be that of the host, and then only the
-/// root exists.
+/// Returns the files that may limit memory, for the text of `/proc/self/cgroup`: those of each
+/// group and of the groups around it. In a container the path may be that of the host, and then
+/// only the root exists.
 ///
 /// Source: *Control Group v2* and *Memory Resource Controller*, Linux kernel documentation.
 fn limit_files(groups: &str, root: &Path) -> Vec<PathBuf> {

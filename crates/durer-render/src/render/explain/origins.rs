@@ -1,5 +1,5 @@
-//! Where the numbers of a term come from: the equation of a hit, the matrix of a moved object, the
-//! texels and cells of a colour, and Snell's and Fresnel's laws.
+//! Derivations of the numbers of a term: the equation of a hit, the matrix of a transformed object,
+//! the texels and cells of a colour, and Snell's and Fresnel's laws.
 
 use super::numbers::{number, rgb, vector};
 use crate::integrator::TraceNode;
@@ -14,8 +14,8 @@ use durer_scene::shape::Primitive;
 use durer_scene::texture::Texture;
 use glam::DVec3;
 
-/// Returns lines that derive the numbers of a term of a scene and its world. `dir` and `n`: direction and normal of the ray
-/// that the term belongs to.
+/// Returns lines that derive the numbers of a term of a scene and its world. `dir` and `n`:
+/// direction and normal of the ray that the term belongs to.
 pub fn origins(node: &TraceNode, (scene, world): (&Scene, &World), dir: Vec3, n: Vec3) -> Vec<String> {
     match &node.what {
         TermKind::Ray { ray, hit: Some(hit), .. } => of_hit(ray, hit, scene, world),

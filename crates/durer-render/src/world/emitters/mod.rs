@@ -366,9 +366,9 @@ impl LightSampler {
         }
     }
 
-    /// Returns the random numbers with which [`LightSampler::sample`] samples the centre of a surface
-    /// as seen from the point; for a triangle or cylinder, some fixed point. `None` if the emitter
-    /// is not a surface.
+    /// Returns the random numbers with which [`LightSampler::sample`] samples the centre of a
+    /// surface as seen from the point; for a triangle or cylinder, some fixed point. `None` if the
+    /// emitter is not a surface.
     pub fn middle(&self, light: LightId) -> Option<Vec2> {
         let source = *self.parts.get(self.first[light.object()? as usize] as usize)? as usize;
         match self.sources.get(source)? {
@@ -391,8 +391,8 @@ impl LightSampler {
         self.chosen(hit, dir).is_some()
     }
 
-    /// Returns the density per solid angle with which [`LightSampler::sample`] samples an emissive hit;
-    /// 0 if it never does.
+    /// Returns the density per solid angle with which [`LightSampler::sample`] samples an emissive
+    /// hit; 0 if it never does.
     pub fn pdf_of_hit(&self, world: &World, hit: &Hit, to: &Receiver, wi: Vec3, distance: f32) -> f32 {
         let Some((source, area)) = self.chosen(hit, wi) else { return 0.0 };
         let Some(chances) = self.chances(world, to) else { return 0.0 };
