@@ -60,7 +60,7 @@ pub(super) fn mistaken(bytes: &[u8], file: u32, name: &str, extensions: &[&str])
     });
     Some(error.help(match (own, what.starts_with("a picture")) {
         (Some(own), _) => format!("rename it to `{stem}.{own}`"),
-        (None, _) if *what == LAMP => {
+        (None, _) if *what == LUMINAIRE => {
             format!("it is used in a scene: `PhotometricLight {{ position 0 3 0 file {last} }}`")
         }
         (None, _) if what.contains("archive") => "unpack it: the scene may be inside".into(),
