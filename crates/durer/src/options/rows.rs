@@ -67,8 +67,8 @@ pub(super) const READING: &[Row] = &[
         "memory",
         OptionForm::Value("SIZE"),
         |to, text| Ok(to.memory = Memory::parse(text)?),
-        "Memory limit for the scene and the picture: a size such as 512M or 8G, or a percentage of the memory of \
-         the machine or control group [default: 80%]",
+        "Memory limit for the scene and the picture: a size such as 512M or 8G, or a percentage of the least of \
+         the machine's memory, the limits of the control groups, and `ulimit -v` [default: 80%]",
     ),
     row(
         "accel",
