@@ -9,47 +9,47 @@ import numpy.typing as npt
 
 from .things import Camera, Light, Material, Shape, Thing
 
-__all__ = ["Background", "Box", "CaveCamera", "Checkerboard", "Cone", "CubeMapCamera", "Cylinder", "CylindricalCamera", "DirectionalLight", "Disc", "Ellipsoid", "EquirectangularCamera", "FisheyeCamera", "Fog", "HairMaterial", "HeightField", "Marble", "Mix", "MultipleCenterCamera", "Noise", "OmnimaxCamera", "OrthographicCamera", "ParabolicCamera", "PerspectiveCamera", "PhongMaterial", "PhotometricLight", "PinholeCamera", "Plane", "PointLight", "PrincipledMaterial", "ProjectiveCamera", "PushBroomCamera", "Quadric", "Rectangle", "Sphere", "SpotLight", "StereoCamera", "Texture", "ThinLensCamera", "Torus", "Triangle", "TriangleMesh", "TwoSided", "Wood"]
+__all__ = ["Background", "Box", "CaveCamera", "Checkerboard", "Cone", "CubeMapCamera", "Cylinder", "CylindricalCamera", "DirectionalLight", "Disc", "Ellipsoid", "EquirectangularCamera", "FisheyeCamera", "Fog", "HairMaterial", "HeightField", "Marble", "Mix", "MultipleCenterCamera", "Noise", "Noise", "OmnimaxCamera", "OrthographicCamera", "ParabolicCamera", "PerspectiveCamera", "PhongMaterial", "PhotometricLight", "PinholeCamera", "Plane", "PointLight", "PrincipledMaterial", "ProjectiveCamera", "PushBroomCamera", "Quadric", "Rectangle", "Sphere", "SpotLight", "StereoCamera", "Texture", "ThinLensCamera", "Torus", "Triangle", "TriangleMesh", "TwoSided", "Wood"]
 
 
 class Background(Thing):
-    """What a ray sees that hits nothing, and the light that is everywhere.
+    """Background seen by rays that hit nothing, and ambient light.
 
-    color: three numbers; 0.5 0.5 0.5 where it is not given. Colour of rays that hit nothing. A scene of ours without a `Background` is black around under `path`, where light is only what a scene says.
+    color: three numbers; 0.5 0.5 0.5 where it is not given. Colour of rays that hit nothing; 0.5 by default, or black with `path` in a scene of Dürer's own dialect without a `Background`.
 
-    ambient_light: three numbers; 0 0 0 where it is not given. Light that reaches every surface.
+    ambient_light: three numbers; 0 0 0 where it is not given. Ambient light on every surface.
 
-    cube_map: path. Folder with six pictures (left, right, up, down, front, back) that replace the colour.
+    cube_map: path. Folder with six images (left, right, up, down, front, back) that replace the colour.
 
-    environment: path. A picture of all directions that replaces the colour and lights the scene, best of high dynamic range (`.exr`, `.hdr`); its middle is seen towards -z. Whitted's light does not come from it.
+    environment: path. Environment map that replaces the colour and lights the scene, preferably with high dynamic range (`.exr`, `.hdr`); its centre is at -z. Whitted ray tracing ignores its light.
 
-    sun: three numbers, not 0 0 0. The way to the sun, of any length, with y upwards: a clear sky and the sun light the scene, in cd/m^2. Such pictures need `--exposure`, -13 say.
+    sun: three numbers, not 0 0 0. Direction to the sun, of any length, with y up. The sun and a clear sky light the scene, in cd/m^2; set `--exposure`, for example to -13.
 
-    sun_altitude: number, from -90 to 90. The same by angles: how high the sun stands, in degrees above the horizon.
+    sun_altitude: number, from -90 to 90. Altitude of the sun, in degrees above the horizon; an alternative to `sun`.
 
-    sun_azimuth: number. And where, in degrees from north (-z) over east (x): 180 is south.
+    sun_azimuth: number. Azimuth of the sun, in degrees from north (-z) towards east (x): 180 is south.
 
-    latitude: number, from -90 to 90. The same by place, date and time: degrees north of the equator.
+    latitude: number, from -90 to 90. Latitude, in degrees north of the equator; together with date and time, an alternative to `sun`.
 
-    longitude: number, from -360 to 360. Degrees east of Greenwich.
+    longitude: number, from -360 to 360. Longitude, in degrees east of Greenwich.
 
     date: three numbers, whole, 1 to 9999. Year, month and day.
 
-    time: three numbers. Hours, minutes and seconds of a clock there.
+    time: three numbers. Hours, minutes and seconds of the local clock.
 
-    time_zone: number, from -14 to 14. Hours that this clock is before that of Greenwich, summer time included; 0 where nothing is written.
+    time_zone: number, from -14 to 14. Offset of the local clock from UTC in hours, including daylight saving time; default 0.
 
-    turbidity: number, more than 0. How hazy the air is: from 2 (clear) over 3 (a usual day, where nothing is written) to 10.
+    turbidity: number, more than 0. Turbidity of the air: 2 is clear, 3 average, 10 hazy; default 3.
 
-    cie_sky: whole number, from 1 to 16. Number of a standard sky of the CIE, 1 to 16 (1 overcast, 5 even, 12 clear, 16 the traditional overcast sky): it lights the scene, in cd/m^2, without the sun itself, whose place `sun` says for all but 1, 3, 5 and 16.
+    cie_sky: whole number, from 1 to 16. Number of a CIE standard sky, from 1 to 16 (1 overcast, 5 uniform, 12 clear, 16 traditional overcast), which lights the scene in cd/m^2, without direct sunlight. All except 1, 3, 5 and 16 need the position of the sun, set by `sun`.
 
-    zenith_luminance: number, more than 0. How bright that sky is at the zenith, in cd/m^2; 10000 where nothing is written.
+    zenith_luminance: number, more than 0. Luminance of the CIE sky at the zenith, in cd/m^2; default 10000.
 
-    ground_reflectance: number, from 0 to 1. What share of the light of sun and sky the ground below the horizon gives back. Where nothing is written it is 0.2 below a standard sky, and below a clear one with `sun` a fifth of the zenith's light.
+    ground_reflectance: number, from 0 to 1. Fraction of the light from sun and sky that the ground below the horizon reflects. The default is 0.2 with a CIE sky; with a clear sky, the ground has a fifth of the zenith's light by default.
 
-    environment_rotation: number. How far the environment is turned about y, in degrees.
+    environment_rotation: number. Rotation of the environment about y, in degrees.
 
-    environment_scale: three numbers. What multiplies the environment.
+    environment_scale: three numbers. Factor on the environment.
     """
 
     def __init__(
@@ -97,19 +97,19 @@ class Background(Thing):
 
 
 class Fog(Thing):
-    """What is in the air: fog, smoke, dust. Light of lamps and of the sky is scattered and absorbed in it. It is not in bodies of glass, and Whitted's light does not see it.
+    """Fog, smoke or dust in the air, which scatters and absorbs light. It does not fill glass objects, and Whitted ray tracing ignores it.
 
-    extinction: number, more than 0; 0.1 where it is not given. How dense it is: of light that goes straight on, a share of e^(-extinction · distance) is left.
+    extinction: number, more than 0; 0.1 where it is not given. Extinction coefficient per world unit: the transmittance over a distance is e^(-extinction · distance).
 
-    color: three numbers; 1 1 1 where it is not given. The share of light that is scattered, and not absorbed, where it meets the fog; from 0 to 1.
+    color: three numbers; 1 1 1 where it is not given. Scattering albedo: the fraction of light that is scattered instead of absorbed, from 0 to 1.
 
-    anisotropy: number, more than -1, less than 1; 0 where it is not given. Where light goes that is scattered: from -1 (back) over 0 (evenly) to 1 (onwards).
+    anisotropy: number, more than -1, less than 1; 0 where it is not given. Mean cosine of the scattering angle: -1 is backward, 0 isotropic, 1 forward.
 
-    min: three numbers. A corner of the box that the fog is in; without, it is everywhere.
+    min: three numbers. Corner of the box that the fog fills; without it, the fog is everywhere.
 
-    max: three numbers. The corner across.
+    max: three numbers. Opposite corner of the box.
 
-    density: path. A file of densities (Mitsuba's `.vol`) that fill the box and multiply `extinction`; without a box, that of the file.
+    density: path. Density file (Mitsuba's `.vol`) that is fitted to the box and multiplies `extinction`; without `min` and `max`, the box in the file is used.
     """
 
     def __init__(
@@ -133,31 +133,31 @@ class Fog(Thing):
 
 
 class Texture(Thing):
-    """A picture with a name, and how it lies on surfaces. What takes a picture in a `PrincipledMaterial` takes that name.
+    """A named texture: an image and its mapping onto surfaces. The texture fields of a `PrincipledMaterial` refer to it by name.
 
-    name: path; must be given. Its name.
+    name: path; must be given. Name of the texture.
 
-    picture: path; must be given. The picture's file.
+    picture: path; must be given. Image file.
 
-    wrap_u: `repeat`, `mirror`, `clamp`; repeat where it is not given. What is beyond its left and right border: `repeat`, `mirror` or `clamp`.
+    wrap_u: `repeat`, `mirror`, `clamp`; repeat where it is not given. Wrap mode beyond the left and right borders: `repeat`, `mirror` or `clamp`.
 
-    wrap_v: `repeat`, `mirror`, `clamp`; repeat where it is not given. What is beyond its upper and lower border.
+    wrap_v: `repeat`, `mirror`, `clamp`; repeat where it is not given. Wrap mode beyond the upper and lower borders: `repeat`, `mirror` or `clamp`.
 
-    texels: `linear`, `nearest`; linear where it is not given. Whether the four texels around a point are mixed (`linear`), or the `nearest` counts alone.
+    texels: `linear`, `nearest`; linear where it is not given. Magnification filter: `linear` interpolates the four nearest texels, `nearest` uses one.
 
-    minified: `texels`, `mipmaps`; texels where it is not given. What is shown where a sample sees many texels at once, under paths: some of them (`texels`), or a smaller version of the picture (`mipmaps`).
+    minified: `texels`, `mipmaps`; texels where it is not given. Minification filter of the path tracer: `texels` samples the full-size image, `mipmaps` a smaller version of it.
 
-    uv_set: whole number, at most 1; 0 where it is not given. The set of a mesh's texture coordinates: 0, or 1 for the second.
+    uv_set: whole number, at most 1; 0 where it is not given. Texture coordinate set of the mesh: 0 for the first, 1 for the second.
 
-    uv_transform: `{ }` of rows of 3 numbers, 2 of them. From the surface's coordinates to the picture's, both with v downwards from the upper border: two rows of a matrix.
+    uv_transform: `{ }` with rows of 3 numbers, 2 of them. Transform from surface to image coordinates, both with v downwards from the upper border, as two rows of a matrix.
 
-    alpha_cutoff: number. Opacity is 1 where the picture's alpha is at least this, and else 0; where nothing is written, as the alpha says.
+    alpha_cutoff: number. Alpha threshold: opacity is 1 at or above it and 0 below. Without it, opacity equals alpha.
 
-    normal_scale: number; 1 where it is not given. How far the normals of a normal map lean, times.
+    normal_scale: number; 1 where it is not given. Factor on the slope of the normals in a normal map.
 
-    channel: `r`, `g`, `b`, `a`, `angle`. What counts where a number is wanted: `r`, `g`, `b`, `a`, or the `angle` of the direction in red and green; where nothing is written, red, or of opacity what there is.
+    channel: `r`, `g`, `b`, `a`, `angle`. Channel used for a scalar field: `r`, `g`, `b`, `a`, or the `angle` of the direction in red and green. The default is red, or for opacity the alpha channel if there is one.
 
-    texel_range: `{ }` of rows of 2 numbers, 1 of them. What a texel's 0 and 1 stand for, where the picture changes a number.
+    texel_range: `{ }` with rows of 2 numbers, 1 of them. Values that texels of 0 and 1 are mapped to in a scalar field.
     """
 
     def __init__(
@@ -193,13 +193,13 @@ class Texture(Thing):
 
 
 class PerspectiveCamera(Camera):
-    """A camera that sees in perspective.
+    """A perspective camera.
 
-    center: three numbers; must be given. The eye.
+    center: three numbers; must be given. Position of the eye.
 
-    direction: three numbers, not 0 0 0; must be given. Where it looks; of any length.
+    direction: three numbers, not 0 0 0; must be given. View direction, of any length.
 
-    up: three numbers, not 0 0 0; must be given. What is up in the picture; need not be perpendicular.
+    up: three numbers, not 0 0 0; must be given. Up direction of the picture; need not be perpendicular to the view direction.
 
     angle: number, more than 0, less than 180; must be given. Field of view across the picture's larger side, in degrees.
     """
@@ -221,19 +221,19 @@ class PerspectiveCamera(Camera):
 
 
 class OrthographicCamera(Camera):
-    """A camera that sees without perspective.
+    """An orthographic camera.
 
-    center: three numbers; must be given. The middle of the picture.
+    center: three numbers; must be given. Centre of the picture.
 
-    direction: three numbers, not 0 0 0; must be given. Where it looks; of any length.
+    direction: three numbers, not 0 0 0; must be given. View direction, of any length.
 
-    up: three numbers, not 0 0 0; must be given. What is up in the picture; need not be perpendicular.
+    up: three numbers, not 0 0 0; must be given. Up direction of the picture; need not be perpendicular to `direction`.
 
-    size: number, more than 0; must be given. Length of the picture's larger side.
+    size: number, more than 0; must be given. Length of the picture's larger side, in world units.
 
-    near: number. How far before `center` sight begins, for plans and sections; where nothing is written all is seen, also what is behind.
+    near: number. Distance from `center` to the near plane, for plans and sections. Without it, objects behind `center` are visible.
 
-    handedness: `right`, `left`; right where it is not given. Which side of the picture is right: `left` makes a mirror image, as in coordinates of the left hand.
+    handedness: `right`, `left`; right where it is not given. Handedness of the coordinate system; `left` mirrors the picture horizontally.
     """
 
     def __init__(
@@ -257,19 +257,19 @@ class OrthographicCamera(Camera):
 
 
 class PinholeCamera(Camera):
-    """A camera without a lens, whose hole has a size.
+    """A pinhole camera with a hole of finite size instead of a lens.
 
-    center: three numbers; must be given. The middle of the hole.
+    center: three numbers; must be given. Centre of the hole.
 
-    direction: three numbers, not 0 0 0; must be given. Where it looks; of any length.
+    direction: three numbers, not 0 0 0; must be given. View direction, of any length.
 
-    up: three numbers, not 0 0 0; must be given. What is up in the picture; need not be perpendicular.
+    up: three numbers, not 0 0 0; must be given. Up direction of the picture; need not be perpendicular to `direction`.
 
     angle: number, more than 0, less than 180; must be given. Field of view across the picture's larger side, in degrees.
 
-    hole: number, 0 or more; must be given. Diameter of the hole.
+    hole: number, 0 or more; must be given. Diameter of the hole, in world units.
 
-    film_distance: number, more than 0; 1 where it is not given. Distance from the hole to the film.
+    film_distance: number, more than 0; 1 where it is not given. Distance from the hole to the film, in world units.
     """
 
     def __init__(
@@ -293,33 +293,33 @@ class PinholeCamera(Camera):
 
 
 class ThinLensCamera(Camera):
-    """A camera with a lens: depth of field, and a film that can be shifted.
+    """A camera with a lens, which has depth of field and a film that can be shifted.
 
-    center: three numbers; must be given. The middle of the lens.
+    center: three numbers; must be given. Centre of the lens.
 
-    direction: three numbers, not 0 0 0; must be given. Where it looks: along the lens's axis; of any length.
+    direction: three numbers, not 0 0 0; must be given. View direction along the lens axis; of any length.
 
-    up: three numbers, not 0 0 0; must be given. What is up in the picture; need not be perpendicular.
+    up: three numbers, not 0 0 0; must be given. Up direction of the picture; need not be perpendicular to `direction`.
 
-    angle: number, more than 0, less than 180; must be given. Field of view across the picture's larger side, in degrees, where nothing is shifted.
+    angle: number, more than 0, less than 180; must be given. Field of view across the picture's larger side, in degrees, for an unshifted film.
 
-    aperture: number, 0 or more; 0 where it is not given. Diameter of the opening: focal length over f-number. 0 makes everything sharp.
+    aperture: number, 0 or more; 0 where it is not given. Diameter of the aperture: the focal length divided by the f-number. 0 makes everything sharp.
 
-    focus_distance: number, more than 0; 1 where it is not given. Distance of the plane that is sharp, along the axis.
+    focus_distance: number, more than 0; 1 where it is not given. Distance of the focus plane along the axis, in world units.
 
-    blades: whole number, at most 64; 0 where it is not given. Straight blades around the opening; 0 makes it round.
+    blades: whole number, at most 64; 0 where it is not given. Number of straight blades of the aperture; 0 makes it round.
 
-    blade_angle: number; 0 where it is not given. Turn of the opening about the axis, in degrees.
+    blade_angle: number; 0 where it is not given. Rotation of the aperture about the axis, in degrees.
 
-    shift_right: number; 0 where it is not given. What is seen moves to the right by this part of half the larger side.
+    shift_right: number; 0 where it is not given. Shift of the view to the right, relative to half the larger side.
 
-    shift_up: number; 0 where it is not given. What is seen moves upwards by this part of half the larger side.
+    shift_up: number; 0 where it is not given. Shift of the view upwards, relative to half the larger side.
 
-    near: number, 0 or more; 0 where it is not given. Distance along the axis before which nothing is seen.
+    near: number, 0 or more; 0 where it is not given. Distance to the near clipping plane along the axis.
 
-    far: number, more than 0. Distance along the axis beyond which nothing is seen.
+    far: number, more than 0. Distance to the far clipping plane along the axis; unlimited by default.
 
-    handedness: `right`, `left`; right where it is not given. Which side of the picture is right: `left` makes a mirror image, as in coordinates of the left hand.
+    handedness: `right`, `left`; right where it is not given. Handedness of the coordinate system; `left` mirrors the picture horizontally.
     """
 
     def __init__(
@@ -357,25 +357,25 @@ class ThinLensCamera(Camera):
 
 
 class StereoCamera(Camera):
-    """Two perspective views for two eyes, or one of them.
+    """A stereo camera: perspective views for both eyes, or for one of them.
 
-    center: three numbers; must be given. The middle between the eyes.
+    center: three numbers; must be given. Midpoint between the eyes.
 
-    direction: three numbers, not 0 0 0; must be given. Where the viewer looks; of any length.
+    direction: three numbers, not 0 0 0; must be given. View direction, of any length.
 
-    up: three numbers, not 0 0 0; must be given. What is up in the picture; need not be perpendicular.
+    up: three numbers, not 0 0 0; must be given. Up direction of the picture; need not be perpendicular to `direction`.
 
     angle: number, more than 0, less than 180; must be given. Field of view across the larger side of one eye's picture, in degrees.
 
-    separation: number, 0 or more; must be given. Distance between the eyes.
+    separation: number, 0 or more; must be given. Distance between the eyes, in world units.
 
-    convergence: number, more than 0; 1 where it is not given. Distance at which both eyes see a thing at the same place of the picture; without meaning for `parallel`.
+    convergence: number, more than 0; 1 where it is not given. Distance at which an object appears at the same position for both eyes; ignored by the method `parallel`.
 
-    method: `offAxis`, `toeIn`, `parallel`; offAxis where it is not given. How the views converge.
+    method: `offAxis`, `toeIn`, `parallel`; offAxis where it is not given. Method by which the two views converge.
 
-    eyes: `middle`, `left`, `right`, `sideBySide`, `topBottom`; sideBySide where it is not given. Which eye's picture, or how both are laid out.
+    eyes: `middle`, `left`, `right`, `sideBySide`, `topBottom`; sideBySide where it is not given. Eye to render, or layout of both eyes.
 
-    aspect: number, more than 0; 1 where it is not given. Width of one eye's picture over its height.
+    aspect: number, more than 0; 1 where it is not given. Ratio of the width to the height of one eye's picture.
     """
 
     def __init__(
@@ -405,17 +405,17 @@ class StereoCamera(Camera):
 
 
 class FisheyeCamera(Camera):
-    """A camera that sees a cone of directions as a disc; the corners see nothing.
+    """A camera that maps a cone of directions to a disc; the corners of the picture are empty.
 
-    center: three numbers; must be given. The eye.
+    center: three numbers; must be given. Position of the eye.
 
-    direction: three numbers, not 0 0 0; must be given. Where it looks; of any length.
+    direction: three numbers, not 0 0 0; must be given. View direction, of any length.
 
-    up: three numbers, not 0 0 0; must be given. What is up in the picture; need not be perpendicular.
+    up: three numbers, not 0 0 0; must be given. Up direction of the picture; need not be perpendicular to `direction`.
 
     angle: number, more than 0, at most 360; 180 where it is not given. Field of view across the disc, in degrees: at most 180 for `orthographic`, less than 360 for `stereographic`.
 
-    projection: `equidistant`, `equisolid`, `stereographic`, `orthographic`; equidistant where it is not given. How the angle from the axis becomes a radius.
+    projection: `equidistant`, `equisolid`, `stereographic`, `orthographic`; equidistant where it is not given. Mapping from the angle off the axis to the radius in the picture.
     """
 
     def __init__(
@@ -437,23 +437,23 @@ class FisheyeCamera(Camera):
 
 
 class OmnimaxCamera(Camera):
-    """A picture for a tilted dome, with projector and viewer where they are; the corners see nothing.
+    """A camera for pictures projected onto a tilted dome, with an off-centre projector and viewer; the corners are black.
 
-    center: three numbers; must be given. Where the viewer is in the scene.
+    center: three numbers; must be given. Position of the viewer in the scene.
 
-    direction: three numbers, not 0 0 0; must be given. Where the audience looks: level to the front; of any length.
+    direction: three numbers, not 0 0 0; must be given. Horizontal direction that the audience faces; of any length.
 
-    up: three numbers, not 0 0 0; must be given. What is up for the audience; need not be perpendicular.
+    up: three numbers, not 0 0 0; must be given. Up direction of the audience; need not be perpendicular to `direction`.
 
-    tilt: number; 30 where it is not given. Tilt of the dome to the front, in degrees: 0 has its pole overhead, 90 straight ahead.
+    tilt: number; 30 where it is not given. Forward tilt of the dome, in degrees: 0 puts its pole overhead, 90 puts it straight ahead.
 
-    dome: number, more than 0, at most 360; 180 where it is not given. How much of a sphere the dome is, in degrees across: 180 is a hemisphere.
+    dome: number, more than 0, at most 360; 180 where it is not given. Angle of the sphere that the dome covers, in degrees: 180 is a hemisphere.
 
     angle: number, more than 0, at most 360; 180 where it is not given. Field of view of the projector, in degrees.
 
-    projector: three numbers; 0 0 0 where it is not given. The projector: to the right of the dome's middle, above and before it, in parts of its radius.
+    projector: three numbers; 0 0 0 where it is not given. Offset of the projector from the dome's centre: right, up and forwards, in dome radii.
 
-    viewer: three numbers; 0 0 0 where it is not given. The viewer, likewise.
+    viewer: three numbers; 0 0 0 where it is not given. Offset of the viewer from the dome's centre: right, up and forwards, in dome radii.
     """
 
     def __init__(
@@ -481,15 +481,15 @@ class OmnimaxCamera(Camera):
 
 
 class ParabolicCamera(Camera):
-    """A lens above a parabolic mirror; the corners see nothing.
+    """A camera that looks into a parabolic mirror and sees all around; the corners of the picture are black.
 
-    center: three numbers; must be given. The mirror's focus: the single viewpoint.
+    center: three numbers; must be given. Focus of the mirror: the single viewpoint.
 
-    direction: three numbers, not 0 0 0; must be given. The mirror's axis, from its focus to the lens: usually upwards; of any length.
+    direction: three numbers, not 0 0 0; must be given. Axis of the mirror, from its focus to the lens, usually upwards; of any length.
 
-    up: three numbers, not 0 0 0; must be given. What is up in the picture; need not be perpendicular.
+    up: three numbers, not 0 0 0; must be given. Up direction of the picture; need not be perpendicular to `direction`.
 
-    angle: number, more than 0, less than 360; 210 where it is not given. Field of view around the axis, in degrees: 180 to the horizon, more below it.
+    angle: number, more than 0, less than 360; 210 where it is not given. Field of view around the axis, in degrees: 180 reaches the horizon, and larger values reach below it.
     """
 
     def __init__(
@@ -509,23 +509,23 @@ class ParabolicCamera(Camera):
 
 
 class EquirectangularCamera(Camera):
-    """A camera that sees all around: longitude and latitude as a rectangle, for one eye or a pair.
+    """A camera that sees all directions and maps longitude and latitude to a rectangle, for one eye or a pair.
 
-    center: three numbers; must be given. The eye, or the middle of the circle on which both turn.
+    center: three numbers; must be given. Position of the eye, or centre of the circle around which both eyes rotate.
 
-    direction: three numbers, not 0 0 0; must be given. What is in the middle of the picture; of any length.
+    direction: three numbers, not 0 0 0; must be given. Direction to the centre of the picture; of any length.
 
-    up: three numbers, not 0 0 0; must be given. The north pole; need not be perpendicular.
+    up: three numbers, not 0 0 0; must be given. Direction to the north pole; need not be perpendicular to `direction`.
 
     angle: number, more than 0, at most 360; 360 where it is not given. Field of view from left to right, in degrees.
 
     vertical_angle: number, more than 0, at most 180; 180 where it is not given. Field of view from bottom to top, in degrees.
 
-    eyes: `middle`, `left`, `right`, `sideBySide`, `topBottom`; middle where it is not given. Which eye's picture, or how both are laid out.
+    eyes: `middle`, `left`, `right`, `sideBySide`, `topBottom`; middle where it is not given. Eye to render, or layout of both eyes.
 
-    separation: number, 0 or more; 0.065 where it is not given. Distance between the eyes.
+    separation: number, 0 or more; 0.065 where it is not given. Distance between the eyes, in world units.
 
-    handedness: `right`, `left`; right where it is not given. Which side of the picture is right: `left` makes a mirror image, as in coordinates of the left hand.
+    handedness: `right`, `left`; right where it is not given. Handedness of the coordinate system; `left` mirrors the picture horizontally.
     """
 
     def __init__(
@@ -553,21 +553,21 @@ class EquirectangularCamera(Camera):
 
 
 class CylindricalCamera(Camera):
-    """A camera that sees a panorama on a cylinder, for one eye or a pair.
+    """A camera that renders a cylindrical panorama, for one eye or a pair.
 
-    center: three numbers; must be given. The eye, or the middle of the circle on which both turn.
+    center: three numbers; must be given. Position of the eye, or centre of the circle around which both eyes rotate.
 
-    direction: three numbers, not 0 0 0; must be given. What is in the middle of the picture; of any length.
+    direction: three numbers, not 0 0 0; must be given. Direction to the centre of the picture; of any length.
 
-    up: three numbers, not 0 0 0; must be given. The cylinder's axis; need not be perpendicular.
+    up: three numbers, not 0 0 0; must be given. Axis of the cylinder; need not be perpendicular to `direction`.
 
     angle: number, more than 0, at most 360; 360 where it is not given. Field of view from left to right, in degrees.
 
     vertical_angle: number, more than 0, less than 180; 90 where it is not given. Field of view from bottom to top, in degrees.
 
-    eyes: `middle`, `left`, `right`, `sideBySide`, `topBottom`; middle where it is not given. Which eye's picture, or how both are laid out.
+    eyes: `middle`, `left`, `right`, `sideBySide`, `topBottom`; middle where it is not given. Eye to render, or layout of both eyes.
 
-    separation: number, 0 or more; 0.065 where it is not given. Distance between the eyes.
+    separation: number, 0 or more; 0.065 where it is not given. Distance between the eyes, in world units.
     """
 
     def __init__(
@@ -593,15 +593,15 @@ class CylindricalCamera(Camera):
 
 
 class CubeMapCamera(Camera):
-    """A camera that sees all around, on the six faces of a cube.
+    """A camera that sees all directions, on the six faces of a cube.
 
-    center: three numbers; must be given. The eye.
+    center: three numbers; must be given. Position of the eye.
 
-    direction: three numbers, not 0 0 0; must be given. The middle of the front face; of any length.
+    direction: three numbers, not 0 0 0; must be given. Direction to the centre of the front face; of any length.
 
-    up: three numbers, not 0 0 0; must be given. What is up in the front face; need not be perpendicular.
+    up: three numbers, not 0 0 0; must be given. Up direction of the front face; need not be perpendicular to `direction`.
 
-    layout: `cross`, `strip`; cross where it is not given. How the faces lie in the picture.
+    layout: `cross`, `strip`; cross where it is not given. Layout of the faces in the picture.
     """
 
     def __init__(
@@ -621,19 +621,19 @@ class CubeMapCamera(Camera):
 
 
 class CaveCamera(Camera):
-    """Several walls around a viewer, as one picture; for one eye or a pair.
+    """A camera that renders several walls around a viewer into one picture, for one eye or a pair.
 
-    center: three numbers; must be given. The viewer's eye, or the middle between both: anywhere in the room.
+    center: three numbers; must be given. Position of the viewer's eye, or the midpoint of both eyes.
 
-    direction: three numbers, not 0 0 0; 0 0 -1 where it is not given. Where the viewer's head is turned, which tells his right from his left; of any length.
+    direction: three numbers, not 0 0 0; 0 0 -1 where it is not given. Direction that the viewer faces, which determines left and right; of any length.
 
-    up: three numbers, not 0 0 0; 0 1 0 where it is not given. What is up for the viewer's head; need not be perpendicular.
+    up: three numbers, not 0 0 0; 0 1 0 where it is not given. Up direction of the viewer's head; need not be perpendicular to `direction`.
 
-    walls: `{ }` of rows of 9 numbers, 1 to 64 of them; must be given. Three corners for each wall, as seen from inside: lower left, lower right, upper left. From left to right.
+    walls: `{ }` with rows of 9 numbers, 1 to 64 of them; must be given. Three corners per wall, as seen from inside: lower left, lower right, upper left. Walls are ordered from left to right.
 
-    eyes: `middle`, `left`, `right`, `sideBySide`, `topBottom`; middle where it is not given. Which eye's picture, or how both are laid out.
+    eyes: `middle`, `left`, `right`, `sideBySide`, `topBottom`; middle where it is not given. Eye to render, or layout of both eyes.
 
-    separation: number, 0 or more; 0.065 where it is not given. Distance between the eyes.
+    separation: number, 0 or more; 0.065 where it is not given. Distance between the eyes, in world units.
     """
 
     def __init__(
@@ -657,19 +657,19 @@ class CaveCamera(Camera):
 
 
 class PushBroomCamera(Camera):
-    """A camera whose columns are seen one after the other from a straight way.
+    """A camera that moves along a line and renders each column of the picture from the next point.
 
-    start: three numbers; must be given. Where the first column is seen from, at the picture's left.
+    start: three numbers; must be given. Eye position for the first column, at the left of the picture.
 
-    end: three numbers; must be given. Where the last column is seen from, at the picture's right.
+    end: three numbers; must be given. Eye position for the last column, at the right of the picture.
 
-    direction: three numbers, not 0 0 0; must be given. Where all columns look; of any length.
+    direction: three numbers, not 0 0 0; must be given. View direction of all columns; of any length.
 
-    up: three numbers, not 0 0 0; must be given. What is up in the picture; need not be perpendicular.
+    up: three numbers, not 0 0 0; must be given. Up direction of the picture; need not be perpendicular to `direction`.
 
     angle: number, more than 0, less than 180; must be given. Field of view from bottom to top, in degrees.
 
-    aspect: number, more than 0; 2 where it is not given. Width of the picture over its height.
+    aspect: number, more than 0; 2 where it is not given. Ratio of the picture's width to its height.
     """
 
     def __init__(
@@ -693,15 +693,15 @@ class PushBroomCamera(Camera):
 
 
 class MultipleCenterCamera(Camera):
-    """A camera whose columns are seen one after the other from a path.
+    """A camera that moves along a path and renders each column of the picture from the next point.
 
-    path: `{ }` of rows of 6 numbers, 2 to 1024 of them; must be given. Places along the path, from the picture's left to its right: the eye, and the point that it looks at. Where the last is the first, the path is a smooth loop.
+    path: `{ }` with rows of 6 numbers, 2 to 1024 of them; must be given. One row per point of the path, from the left of the picture to the right: the eye and its target. If the last row equals the first, the path is a smooth loop.
 
-    up: three numbers, not 0 0 0; must be given. What is up in every column; need not be perpendicular.
+    up: three numbers, not 0 0 0; must be given. Up direction of every column; need not be perpendicular to the view direction.
 
     angle: number, more than 0, less than 180; must be given. Field of view from bottom to top, in degrees.
 
-    aspect: number, more than 0; 2 where it is not given. Width of the picture over its height.
+    aspect: number, more than 0; 2 where it is not given. Ratio of the picture's width to its height.
     """
 
     def __init__(
@@ -721,23 +721,23 @@ class MultipleCenterCamera(Camera):
 
 
 class ProjectiveCamera(Camera):
-    """A camera recovered from a photograph: a projective matrix and the lens's distortion.
+    """A camera recovered from a photograph: a projection matrix and lens distortion.
 
-    matrix: `{ }` of rows of 4 numbers, 3 of them; must be given. The 3x4 matrix, row by row: from homogeneous points of the world to pixels, y downwards; at any scale.
+    matrix: `{ }` with rows of 4 numbers, 3 of them; must be given. 3x4 projection matrix, row by row, from homogeneous world-space points to pixels, with y downwards; its scale is arbitrary.
 
     width: number, more than 0; must be given. Width of the photograph in pixels.
 
     height: number, more than 0; must be given. Height of the photograph in pixels.
 
-    k1: number; 0 where it is not given. Radial distortion by the square of the radius.
+    k1: number; 0 where it is not given. Radial distortion coefficient of r².
 
-    k2: number; 0 where it is not given. Radial distortion by its fourth power.
+    k2: number; 0 where it is not given. Radial distortion coefficient of r⁴.
 
-    p1: number; 0 where it is not given. Tangential distortion, upwards.
+    p1: number; 0 where it is not given. Tangential distortion, vertical.
 
-    p2: number; 0 where it is not given. Tangential distortion, sideways.
+    p2: number; 0 where it is not given. Tangential distortion, horizontal.
 
-    k3: number; 0 where it is not given. Radial distortion by the sixth power.
+    k3: number; 0 where it is not given. Radial distortion coefficient of r⁶.
     """
 
     def __init__(
@@ -765,17 +765,17 @@ class ProjectiveCamera(Camera):
 
 
 class DirectionalLight(Light):
-    """Light that comes from one direction everywhere.
+    """Light that arrives from the same direction everywhere, like sunlight.
 
-    direction: three numbers, not 0 0 0; must be given. Where the light goes; of any length.
+    direction: three numbers, not 0 0 0; must be given. Direction in which the light travels, of any length.
 
-    color: three numbers; must be given. Its colour and strength.
+    color: three numbers; must be given. Colour and strength.
 
-    spread: number, 0 or more. Half the angle in which it is seen, in degrees, for soft shadows under a path tracer, which sees its disc: 0.27 for the sun.
+    spread: number, 0 or more. Angular radius in degrees, for soft shadows and a visible disc in path tracing; 0.27 for the sun.
 
-    lux: number, 0 or more. Illuminance in lux of what faces it: how strong it is, of which `color` is the hue.
+    lux: number, 0 or more. Illuminance in lux on a surface that faces the light; `color` then sets only the hue.
 
-    spectrum: path. Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`) or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried as such, else as its colour.
+    spectrum: path. Measured spectrum, multiplied by `color`: a file (`lamp.csv`, `lamps.csv:column`) or an illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum; otherwise its RGB colour is used.
     """
 
     def __init__(
@@ -797,21 +797,21 @@ class DirectionalLight(Light):
 
 
 class PointLight(Light):
-    """Light that comes from one point.
+    """Light that is emitted from one point in all directions.
 
-    position: three numbers; must be given. Where it is.
+    position: three numbers; must be given. Position.
 
-    color: three numbers; must be given. Its colour and strength.
+    color: three numbers; must be given. Colour and strength.
 
-    attenuation: three numbers. How it fades: the divisor's constant, its factor of distance and its factor of distance squared.
+    attenuation: three numbers. Coefficients of the distance polynomial that the light is divided by: constant, linear and quadratic.
 
-    falloff: number, 0 or more. How it fades: the divisor's factor of distance squared; what is added to it depends on the dialect.
+    falloff: number, 0 or more. Quadratic coefficient of the distance polynomial; the other coefficients depend on the dialect.
 
-    candela: number, 0 or more. Luminous intensity in candela: how strong it is, of which `color` is the hue; it fades with the square of the distance.
+    candela: number, 0 or more. Luminous intensity in candela, with falloff by the squared distance; `color` then sets only the hue.
 
-    lumens: number, 0 or more. The same by its luminous flux in lumen.
+    lumens: number, 0 or more. Luminous flux in lumens, with falloff by the squared distance; `color` then sets only the hue.
 
-    spectrum: path. Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`) or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried as such, else as its colour.
+    spectrum: path. Measured spectrum, multiplied by `color`: a file (`lamp.csv`, `lamps.csv:column`) or an illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum; otherwise its RGB colour is used.
     """
 
     def __init__(
@@ -837,25 +837,25 @@ class PointLight(Light):
 
 
 class SpotLight(Light):
-    """Light that comes from one point into a cone, and fades with the square of the distance.
+    """Light emitted from one point into a cone, with falloff by the squared distance.
 
-    position: three numbers; must be given. Where it is.
+    position: three numbers; must be given. Position.
 
-    direction: three numbers, not 0 0 0; must be given. Where the middle of the cone points; of any length.
+    direction: three numbers, not 0 0 0; must be given. Direction of the cone's axis, of any length.
 
-    color: three numbers; must be given. What arrives in the middle at distance 1.
+    color: three numbers; must be given. Colour and strength, as received on the axis at distance 1.
 
-    angle: number, more than 0, at most 180; 45 where it is not given. Degrees from the middle to where the cone ends.
+    angle: number, more than 0, at most 180; 45 where it is not given. Angle in degrees from the axis to the edge of the cone.
 
-    inner_angle: number, 0 or more; 0 where it is not given. Degrees from the middle to where it begins to fade; not more than `angle`.
+    inner_angle: number, 0 or more; 0 where it is not given. Angle in degrees from the axis at which the fade begins; at most `angle`.
 
-    fade: `squared`, `smooth`, `fourth`; squared where it is not given. How it fades between the two, by the share s of the cosine's way: `squared` is s^2, `smooth` s^2 (3 - 2 s), `fourth` s^4.
+    fade: `squared`, `smooth`, `fourth`; squared where it is not given. Fade between the two angles, as a function of the fraction s between their cosines: `squared` is s^2, `smooth` is s^2 (3 - 2 s), `fourth` is s^4.
 
-    candela: number, 0 or more. Luminous intensity in candela in its middle: how strong it is, of which `color` is the hue.
+    candela: number, 0 or more. Luminous intensity in candela on the axis; `color` then sets only the hue.
 
-    lumens: number, 0 or more. The same by its luminous flux in lumen.
+    lumens: number, 0 or more. Luminous flux in lumens; `color` then sets only the hue.
 
-    spectrum: path. Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`) or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried as such, else as its colour.
+    spectrum: path. Measured spectrum, multiplied by `color`: a file (`lamp.csv`, `lamps.csv:column`) or an illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum; otherwise its RGB colour is used.
     """
 
     def __init__(
@@ -885,23 +885,23 @@ class SpotLight(Light):
 
 
 class PhotometricLight(Light):
-    """A lamp whose light was measured: a point that shines as an IES or EULUMDAT file says, in candela.
+    """Point light with a measured intensity distribution in candela, from an IES or EULUMDAT file.
 
-    position: three numbers; must be given. Where it is.
+    position: three numbers; must be given. Position.
 
-    file: path; must be given. The measurement: an IES file (LM-63-1986 to 2019), or EULUMDAT (`.ldt`).
+    file: path; must be given. Measurement: an IES file (LM-63-1986 to 2019) or an EULUMDAT file (`.ldt`).
 
-    direction: three numbers, not 0 0 0; 0 -1 0 where it is not given. Where its lower side points.
+    direction: three numbers, not 0 0 0; 0 -1 0 where it is not given. Direction that the lower side of the light faces, of any length.
 
-    front: three numbers, not 0 0 0; 1 0 0 where it is not given. Where its horizontal angle 0 points; made perpendicular to `direction`.
+    front: three numbers, not 0 0 0; 1 0 0 where it is not given. Direction of horizontal angle 0; made perpendicular to `direction`.
 
-    focal_length: number, 0 or more; 0 where it is not given. How far behind it its light seems to come from, as that of a lamp with a reflector: at a distance d it has faded as at d and this together.
+    focal_length: number, 0 or more; 0 where it is not given. Distance behind the position at which the light appears to originate, for example with a reflector: light at distance d fades as if at d + `focalLength`.
 
-    color: three numbers; 1 1 1 where it is not given. What multiplies what was measured, by colour.
+    color: three numbers; 1 1 1 where it is not given. Factor on the measured light, per colour channel.
 
-    lumens: number, 0 or more. Its luminous flux in lumen, in the place of that of the file; `color` is its hue then.
+    lumens: number, 0 or more. Luminous flux in lumens, instead of the value in the file; `color` then sets only the hue.
 
-    spectrum: path. Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`) or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried as such, else as its colour.
+    spectrum: path. Measured spectrum, multiplied by `color`: a file (`lamp.csv`, `lamps.csv:column`) or an illuminant (A, D65, F2, 2700K). `--color spectral` uses the spectrum; otherwise its RGB colour is used.
     """
 
     def __init__(
@@ -929,27 +929,27 @@ class PhotometricLight(Light):
 
 
 class PhongMaterial(Material):
-    """A material with diffuse colour and highlight, which may reflect and let through light.
+    """Material with a diffuse colour and a highlight, which can also reflect and transmit light.
 
-    diffuse_color: three numbers. Share of light scattered evenly; 1 1 1 where nothing is written.
+    diffuse_color: three numbers. Diffuse albedo; 1 1 1 by default.
 
-    specular_color: three numbers; 0 0 0 where it is not given. Strength of the highlight; in some dialects also of the mirror.
+    specular_color: three numbers; 0 0 0 where it is not given. Strength of the highlight, and in some dialects also of the reflection.
 
-    exponent: number, 0 or more. Sharpness of Blinn's highlight.
+    exponent: number, 0 or more. Exponent of the Blinn highlight.
 
-    shininess: number, 0 or more. Sharpness of Phong's highlight.
+    shininess: number, 0 or more. Exponent of the Phong highlight.
 
-    reflective_color: three numbers; 0 0 0 where it is not given. Weight of the mirrored ray.
+    reflective_color: three numbers; 0 0 0 where it is not given. Weight of the reflected ray.
 
     transparent_color: three numbers; 0 0 0 where it is not given. Weight of the transmitted ray.
 
-    index_of_refraction: number, more than 0. Index of refraction of transmitted rays that are weighed by `transparentColor` alone.
+    index_of_refraction: number, more than 0. Index of refraction of transmitted rays weighted by `transparentColor` alone.
 
-    refraction_index: number, 0 or more. Index of refraction of glass that divides light by Fresnel; 0 means none.
+    refraction_index: number, 0 or more. Index of refraction of glass that reflects and transmits light by the Fresnel equations; 0 for no glass.
 
-    texture: path. A picture that replaces the diffuse colour on meshes with texture coordinates.
+    texture: path. Texture that replaces the diffuse colour on meshes with texture coordinates.
 
-    bump: path. A bump map: read over, as in every year.
+    bump: path. Bump map; ignored, as it is by the official programs of every year.
     """
 
     def __init__(
@@ -981,157 +981,157 @@ class PhongMaterial(Material):
 
 
 class PrincipledMaterial(Material):
-    """A material of layers: fuzz on a coat on metal, glass or matte. Names and meanings are those of OpenPBR Surface.
+    """Layered material with the parameters of OpenPBR Surface: fuzz over a coat over metal, glass or a diffuse base.
 
-    base_weight: number, from 0 to 1; 1 where it is not given. Strength of the base, from 0 to 1: of the matte colour and of the metal's.
+    base_weight: number, from 0 to 1; 1 where it is not given. Strength of the base, from 0 to 1; scales the colours of the diffuse base and the metal.
 
-    base_weight_texture: path. A picture that multiplies `baseWeight`. Of a picture that multiplies a number, red counts, or the channel after a colon: `file.png:g`.
+    base_weight_texture: path. Texture that multiplies `baseWeight`. Textures of scalars use the red channel, or the channel after a colon, for example `file.png:g`.
 
-    base_color: three numbers; 0.8 0.8 0.8 where it is not given. Share of light that the matte base scatters, and what a metal reflects at right angles; from 0 to 1.
+    base_color: three numbers; 0.8 0.8 0.8 where it is not given. Albedo of the diffuse base, or reflectance of the metal at normal incidence, from 0 to 1.
 
-    base_spectrum: path. A file with a measured reflectance, which stands in place of `baseColor`: rows of nanometres and shares from 0 to 1; with several columns `file.csv:name` is one of them. `--color spectral` has it by wavelength, else its colour in daylight counts.
+    base_spectrum: path. File with a measured reflectance that replaces `baseColor`: rows of a wavelength in nanometres and a reflectance from 0 to 1. `file.csv:name` selects one of several columns. `--color spectral` uses the spectrum; otherwise its RGB colour in daylight is used.
 
-    base_color_texture: path. A picture that multiplies `baseColor`; its values are read as sRGB, and its alpha multiplies `opacity`.
+    base_color_texture: path. Texture that multiplies `baseColor`, read as sRGB; its alpha multiplies `opacity`.
 
-    base_diffuse_roughness: number, from 0 to 1; 0 where it is not given. How rough the matte base is, from 0 (Lambert) to 1.
+    base_diffuse_roughness: number, from 0 to 1; 0 where it is not given. Roughness of the diffuse base, from 0 (Lambert) to 1.
 
-    base_diffuse_roughness_texture: path. A picture that multiplies `baseDiffuseRoughness`.
+    base_diffuse_roughness_texture: path. Texture that multiplies `baseDiffuseRoughness`.
 
-    base_metalness: number, from 0 to 1; 0 where it is not given. From 0 (glass or matte) to 1 (metal).
+    base_metalness: number, from 0 to 1; 0 where it is not given. Metalness, from 0 (glass or diffuse) to 1 (metal).
 
-    base_metalness_texture: path. A picture that multiplies `baseMetalness`.
+    base_metalness_texture: path. Texture that multiplies `baseMetalness`.
 
-    specular_weight: number, 0 or more; 1 where it is not given. Strength of the reflection, from 0 to 1 or more: it scales what reflects at right angles.
+    specular_weight: number, 0 or more; 1 where it is not given. Factor on the reflectance at normal incidence, usually from 0 to 1.
 
-    specular_weight_texture: path. A picture that multiplies the whole reflection, at all angles alike.
+    specular_weight_texture: path. Texture that multiplies the reflection equally at all angles.
 
-    specular_color: three numbers; 1 1 1 where it is not given. Tint of the reflection; on metal the colour near grazing angles.
+    specular_color: three numbers; 1 1 1 where it is not given. Tint of the reflection, or for metal the colour near grazing angles.
 
-    specular_color_texture: path. A picture that multiplies `specularColor`; its values are read as sRGB.
+    specular_color_texture: path. Texture that multiplies `specularColor`, read as sRGB.
 
-    specular_roughness: number, from 0 to 1; 0.3 where it is not given. How rough the surface is, from 0 (a mirror) to 1; its square is GGX's alpha.
+    specular_roughness: number, from 0 to 1; 0.3 where it is not given. Roughness of the surface, from 0 (a mirror) to 1; its square is GGX's alpha.
 
-    specular_roughness_texture: path. A picture that multiplies `specularRoughness`.
+    specular_roughness_texture: path. Texture that multiplies `specularRoughness`.
 
-    metallic_roughness_texture: path. A picture whose green multiplies `specularRoughness` and whose blue multiplies `baseMetalness`.
+    metallic_roughness_texture: path. Texture whose green channel multiplies `specularRoughness` and whose blue channel multiplies `baseMetalness`.
 
-    specular_anisotropy: number, from 0 to 1; 0 where it is not given. How much longer than wide the highlight is, from 0 (round) to 1.
+    specular_anisotropy: number, from 0 to 1; 0 where it is not given. Elongation of the highlight, from 0 (round) to 1.
 
-    specular_anisotropy_texture: path. A picture that multiplies `specularAnisotropy`.
+    specular_anisotropy_texture: path. Texture that multiplies `specularAnisotropy`.
 
-    specular_rotation: number; 0 where it is not given. Turns the highlight about the normal, in whole turns, from the direction in which u grows.
+    specular_rotation: number; 0 where it is not given. Rotation of the highlight about the normal, from the direction of increasing u; 1 is a full turn.
 
-    specular_rotation_texture: path. A picture that is added to `specularRotation`, in whole turns; `file.png:angle` has it as a direction in red and green.
+    specular_rotation_texture: path. Texture added to `specularRotation`; 1 is a full turn. `file.png:angle` reads a direction from the red and green channels.
 
-    specular_ior: number, more than 0; 1.5 where it is not given. Index of refraction inside.
+    specular_ior: number, more than 0; 1.5 where it is not given. Index of refraction of the inside of the object.
 
-    surroundings: `nested`, `ignored`; nested where it is not given. `nested`: glass in other glass or in water refracts by the indices of both; `ignored`: `specularIor` is the index inside over the index outside, whatever the surface lies in, as pbrt and Mitsuba have it.
+    surroundings: `nested`, `ignored`; nested where it is not given. `nested`: refraction at glass inside other glass or water uses both indices. `ignored`: `specularIor` is the ratio of the index inside to the index outside, regardless of the surrounding medium, as in pbrt and Mitsuba.
 
-    energy_compensation: `on`, `off`; on where it is not given. `on`: light that a rough metal, glass or coat reflects between its facets is given back, so that none is lost; `off`: a ray is reflected or refracted once, as pbrt and Mitsuba have it, and the rougher the surface, the darker it is.
+    energy_compensation: `on`, `off`; on where it is not given. `on`: adds the light that is scattered several times between the facets of rough metal, glass or coats, so that no energy is lost. `off`: single scattering only, as in pbrt and Mitsuba, which makes rough surfaces darker.
 
-    transmission_weight: number, from 0 to 1; 0 where it is not given. From 0 (matte) to 1 (glass).
+    transmission_weight: number, from 0 to 1; 0 where it is not given. Blend between a diffuse base at 0 and glass at 1.
 
-    transmission_weight_texture: path. A picture that multiplies `transmissionWeight`.
+    transmission_weight_texture: path. Texture that multiplies `transmissionWeight`.
 
-    transmission_color: three numbers; 1 1 1 where it is not given. Colour of light that went `transmissionDepth` deep; where that is 0, of all that passes the surface. Thin walls are that deep: at an angle more is lost.
+    transmission_color: three numbers; 1 1 1 where it is not given. Colour of white light after travelling `transmissionDepth` through the material, or after passing the surface if that is 0. Thin walls are treated as `transmissionDepth` thick, so they absorb more at grazing angles.
 
-    transmission_color_texture: path. A picture that multiplies `transmissionColor` where `transmissionDepth` is 0; its values are read as sRGB.
+    transmission_color_texture: path. Texture that multiplies `transmissionColor` if `transmissionDepth` is 0, read as sRGB.
 
-    transmission_depth: number, 0 or more; 0 where it is not given. How deep light goes until it has `transmissionColor`, in units of the world; 0: the surface tints it. Of thin walls any depth makes the inside absorb, what is reflected there too.
+    transmission_depth: number, 0 or more; 0 where it is not given. Distance in world units after which white light has `transmissionColor`. At 0, the surface tints the light instead; with thin walls, any other value makes the wall absorb light, including internal reflections.
 
-    transmission_scatter: three numbers; 0 0 0 where it is not given. Colour of the light that a body scatters inside, per `transmissionDepth`; 0 0 0: it is clear.
+    transmission_scatter: three numbers; 0 0 0 where it is not given. Colour of the light scattered inside the material over the distance `transmissionDepth`; 0 0 0 for a clear material.
 
-    transmission_scatter_anisotropy: number, more than -1, less than 1; 0 where it is not given. Where that light goes: from -1 (back) over 0 (evenly) to 1 (onwards).
+    transmission_scatter_anisotropy: number, more than -1, less than 1; 0 where it is not given. Mean cosine of the scattering angle inside the material: -1 is backward, 0 isotropic, 1 forward.
 
-    transmission_density: path. A file of densities (Mitsuba's `.vol`) that multiply what light loses in the body; its box lies in the world.
+    transmission_density: path. Density file (Mitsuba's `.vol`) that multiplies the extinction inside the material; its box is in world space.
 
-    transmission_density_box: `{ }` of rows of 3 numbers, 0 to 4 of them. The box that `transmissionDensity` fills in place of the file's, in the world: a corner and the edges from there along the grid's x, y and z.
+    transmission_density_box: `{ }` with rows of 3 numbers, 0 to 4 of them. Box in world space for `transmissionDensity` that replaces the box in the file: a corner, and the edges from it along the grid's x, y and z axes.
 
-    transmission_dispersion_scale: number, from 0 to 1; 0 where it is not given. How much glass spreads colours, over what `transmissionDispersionAbbeNumber` says; 0: not at all. Only `--color spectral` shows it.
+    transmission_dispersion_scale: number, from 0 to 1; 0 where it is not given. Strength of the dispersion set by `transmissionDispersionAbbeNumber`, from 0 (none) to 1; only visible with `--color spectral`.
 
-    transmission_dispersion_abbe_number: number, more than 0; 20 where it is not given. Abbe number of the glass: the lower, the more it spreads colours; 64 is crown glass, 30 flint.
+    transmission_dispersion_abbe_number: number, more than 0; 20 where it is not given. Abbe number of the glass, lower for stronger dispersion: 64 for crown glass, 30 for flint.
 
-    subsurface_weight: number, from 0 to 1; 0 where it is not given. From 0 (matte) to 1 (light goes into the body, is scattered there and comes out elsewhere: marble, milk, skin).
+    subsurface_weight: number, from 0 to 1; 0 where it is not given. Blend between a diffuse base at 0 and subsurface scattering at 1, where light enters the object, scatters and leaves elsewhere, as in marble, milk and skin.
 
-    subsurface_weight_texture: path. A picture that multiplies `subsurfaceWeight`.
+    subsurface_weight_texture: path. Texture that multiplies `subsurfaceWeight`.
 
-    subsurface_color: three numbers; 0.8 0.8 0.8 where it is not given. The colour that such a body shows.
+    subsurface_color: three numbers; 0.8 0.8 0.8 where it is not given. Perceived colour of an object with subsurface scattering.
 
-    subsurface_color_texture: path. A picture that multiplies `subsurfaceColor` where light enters; its values are read as sRGB.
+    subsurface_color_texture: path. Texture that multiplies `subsurfaceColor` where light enters, read as sRGB.
 
-    subsurface_radius: number, more than 0; 1 where it is not given. How far light goes in it until it is scattered, on the mean, in units of the world.
+    subsurface_radius: number, more than 0; 1 where it is not given. Mean free path inside the object, in world units.
 
-    subsurface_radius_scale: three numbers; 1 0.5 0.25 where it is not given. What multiplies `subsurfaceRadius` for red, green and blue.
+    subsurface_radius_scale: three numbers; 1 0.5 0.25 where it is not given. Factors on `subsurfaceRadius` for red, green and blue.
 
-    subsurface_scatter_anisotropy: number, more than -1, less than 1; 0 where it is not given. Where light goes that is scattered in it: from -1 (back) over 0 (evenly) to 1 (onwards).
+    subsurface_scatter_anisotropy: number, more than -1, less than 1; 0 where it is not given. Mean cosine of the subsurface scattering angle: -1 is backward, 0 isotropic, 1 forward.
 
     coat_weight: number, from 0 to 1; 0 where it is not given. Strength of the clear coat, from 0 to 1.
 
-    coat_weight_texture: path. A picture that multiplies `coatWeight`.
+    coat_weight_texture: path. Texture that multiplies `coatWeight`.
 
-    coat_color: three numbers; 1 1 1 where it is not given. Colour of what passes the coat down and up again at right angles.
+    coat_color: three numbers; 1 1 1 where it is not given. Transmittance of the coat for light that passes down and up again at normal incidence.
 
-    coat_color_texture: path. A picture that multiplies `coatColor`; its values are read as sRGB.
+    coat_color_texture: path. Texture that multiplies `coatColor`, read as sRGB.
 
-    coat_roughness: number, from 0 to 1; 0 where it is not given. How rough the coat is, from 0 to 1.
+    coat_roughness: number, from 0 to 1; 0 where it is not given. Roughness of the coat, from 0 to 1.
 
-    coat_roughness_texture: path. A picture that multiplies `coatRoughness`.
+    coat_roughness_texture: path. Texture that multiplies `coatRoughness`.
 
     coat_ior: number, more than 0; 1.6 where it is not given. Index of refraction of the coat.
 
-    coat_darkening: number, from 0 to 1; 1 where it is not given. How much a coat darkens what it covers by reflecting light back down, from 0 to 1 (as physics has it).
+    coat_darkening: number, from 0 to 1; 1 where it is not given. Darkening of the base by internal reflection in the coat, from 0 (none) to 1 (physically correct).
 
-    coat_darkening_texture: path. A picture that multiplies `coatDarkening`.
+    coat_darkening_texture: path. Texture that multiplies `coatDarkening`.
 
-    fuzz_weight: number, from 0 to 1; 0 where it is not given. Strength of the fuzz on top, as of velvet or dust, from 0 to 1.
+    fuzz_weight: number, from 0 to 1; 0 where it is not given. Strength of the fuzz layer on top, for example velvet or dust, from 0 to 1.
 
-    fuzz_weight_texture: path. A picture that multiplies `fuzzWeight`.
+    fuzz_weight_texture: path. Texture that multiplies `fuzzWeight`.
 
     fuzz_color: three numbers; 1 1 1 where it is not given. Colour of the fuzz.
 
-    fuzz_color_texture: path. A picture that multiplies `fuzzColor`; its values are read as sRGB.
+    fuzz_color_texture: path. Texture that multiplies `fuzzColor`, read as sRGB.
 
-    fuzz_roughness: number, from 0 to 1; 0.5 where it is not given. How rough the fuzz is, from 0 to 1.
+    fuzz_roughness: number, from 0 to 1; 0.5 where it is not given. Roughness of the fuzz, from 0 to 1.
 
-    fuzz_roughness_texture: path. A picture that multiplies `fuzzRoughness`.
+    fuzz_roughness_texture: path. Texture that multiplies `fuzzRoughness`.
 
-    thin_film_weight: number, from 0 to 1; 0 where it is not given. How much of the surface below the coat has a thin film on it, from 0 to 1: soap, oil, tempered steel, the layers of a pearl.
+    thin_film_weight: number, from 0 to 1; 0 where it is not given. Fraction of the surface below the coat that is covered by a thin film, from 0 to 1, for example soap, oil, tempered steel or mother-of-pearl.
 
-    thin_film_weight_texture: path. A picture that multiplies `thinFilmWeight`.
+    thin_film_weight_texture: path. Texture that multiplies `thinFilmWeight`.
 
-    thin_film_thickness: number, 0 or more; 0.5 where it is not given. How thick the film is, in micrometres.
+    thin_film_thickness: number, 0 or more; 0.5 where it is not given. Thickness of the film in micrometres.
 
-    thin_film_thickness_texture: path. A picture that multiplies `thinFilmThickness`.
+    thin_film_thickness_texture: path. Texture that multiplies `thinFilmThickness`.
 
     thin_film_ior: number, more than 0; 1.4 where it is not given. Index of refraction of the film.
 
-    emission_luminance: number, 0 or more; 0 where it is not given. How bright the surface shines, in cd/m^2; a pixel of value 1 shows 1 cd/m^2.
+    emission_luminance: number, 0 or more; 0 where it is not given. Luminance of the emission in cd/m^2; a pixel value of 1 stands for 1 cd/m^2.
 
-    emission_color: three numbers; 1 1 1 where it is not given. Colour of its own light, which multiplies `emissionLuminance`.
+    emission_color: three numbers; 1 1 1 where it is not given. Colour of the emission, which multiplies `emissionLuminance`.
 
-    emission_spectrum: path. The spectrum of its own light, which `emissionColor` multiplies: an illuminant (A, D50, D55, D65, D75, E, F2, F7, F11), a black body (`2700K`), or a file as for `baseSpectrum`, in any unit. `emissionLuminance` still says how bright it is.
+    emission_spectrum: path. Spectrum of the emission, multiplied by `emissionColor`: an illuminant (A, D50, D55, D65, D75, E, F2, F7, F11), a black body (`2700K`), or a file as for `baseSpectrum`, in any unit. `emissionLuminance` still sets the brightness.
 
-    emission_texture: path. A picture that multiplies `emissionColor`; its values are read as sRGB.
+    emission_texture: path. Texture that multiplies `emissionColor`, read as sRGB.
 
-    emission_vertex_colors: `on`, `off`; off where it is not given. `on`: the colours of a mesh's vertices multiply `emissionColor`.
+    emission_vertex_colors: `on`, `off`; off where it is not given. `on`: the vertex colours of a mesh multiply `emissionColor`.
 
-    normal_texture: path. A picture of normals in tangent space, as glTF has it: red and green point along u and v, blue outwards.
+    normal_texture: path. Tangent-space normal map, as in glTF: red and green point along u and v, and blue points outwards.
 
-    bump_texture: path. A picture of heights, which bends the normals as if the surface rose where it is bright: a bump map.
+    bump_texture: path. Bump map: a height texture that tilts the normals as if bright areas were raised.
 
-    bump_height: number; 0.01 where it is not given. How far its white lies above its black, in units of the world; negative where white lies deep.
+    bump_height: number; 0.01 where it is not given. Height difference between white and black in the bump map, in world units; negative if white is deeper.
 
-    normal_bending: `on`, `off`; on where it is not given. `on`: normals of pictures that are turned away from who looks are bent until mirrors show what is outside; `off`: such places are black, as in Mitsuba.
+    normal_bending: `on`, `off`; on where it is not given. `on`: bends mapped normals that face away from the viewer, so that mirrored rays leave the surface. `off`: leaves such points black, as in Mitsuba.
 
-    opacity: number, from 0 to 1; 1 where it is not given. Share of the surface that is there, from 0 to 1: the rest lets light through as if nothing were there.
+    opacity: number, from 0 to 1; 1 where it is not given. Fraction of the surface that is present, from 0 to 1; the remaining light passes through unchanged.
 
-    opacity_texture: path. A picture that multiplies `opacity`: its alpha where it has one, else red.
+    opacity_texture: path. Texture that multiplies `opacity` by its alpha channel if there is one, otherwise by its red channel.
 
-    opacity_cutoff: number, 0 or more. All is there whose opacity, by `opacity`, pictures and the alpha of vertices together, is at least this, and nothing of the rest; where it is not given, all is there in part.
+    opacity_cutoff: number, 0 or more. Threshold for the combined opacity (`opacity`, textures and vertex alpha): the surface is fully present at or above it and absent below. Without it, partial opacity is kept.
 
-    walls: `solid`, `thin`; solid where it is not given. `thin`: a sheet without inside, through which light goes straight; `solid`: the skin of a body.
+    walls: `solid`, `thin`; solid where it is not given. `thin`: a sheet without an inside, which light crosses in a straight line. `solid`: the surface of a solid object.
 
-    backs: `shown`, `hidden`, `black`; shown where it is not given. `shown`: both sides are seen; `hidden`: cameras and lights without extent look through faces that are turned away from them; `black`: such faces scatter no light.
+    backs: `shown`, `hidden`, `black`; shown where it is not given. `shown`: both sides are visible. `hidden`: faces that are turned away from the camera, or from a light without extent, are transparent to it. `black`: faces turned away scatter no light.
     """
 
     def __init__(
@@ -1293,21 +1293,21 @@ class PrincipledMaterial(Material):
 
 
 class HairMaterial(Material):
-    """Hair or fur, for paths: what mirrors light, lets it through and colours it on the way. It is meant for thin tubes, along which the texture coordinate u grows, as curves of other programs become them; from inside they are not seen. `absorption` counts, else `color`, else the melanins.
+    """Hair or fur for path tracing, on thin tubes along which the texture coordinate u increases, such as converted curves; their inside is not visible. `absorption` takes precedence over `color`, and `color` over the melanins.
 
-    eumelanin: number, 0 or more; 1.3 where it is not given. How much of brown and black pigment there is: 0.3 in blond hair, 1.3 in brown, 8 in black.
+    eumelanin: number, 0 or more; 1.3 where it is not given. Amount of brown and black pigment: 0.3 in blond hair, 1.3 in brown, 8 in black.
 
-    pheomelanin: number, 0 or more; 0 where it is not given. How much of yellow and red pigment there is: 1.2 or more in red hair.
+    pheomelanin: number, 0 or more; 0 where it is not given. Amount of yellow and red pigment: 1.2 or more in red hair.
 
-    color: three numbers. The colour that many fibres show together, from 0 to 1.
+    color: three numbers. Colour of a bundle of many fibres, from 0 to 1.
 
-    absorption: three numbers. How much light loses inside for each radius of a fibre, for red, green and blue.
+    absorption: three numbers. Absorption coefficient inside a fibre, per fibre radius, for red, green and blue.
 
-    longitudinal_roughness: number, from 0 to 1; 0.3 where it is not given. How much light spreads along a fibre.
+    longitudinal_roughness: number, from 0 to 1; 0.3 where it is not given. Roughness along a fibre, from 0 to 1.
 
-    azimuthal_roughness: number, from 0 to 1; 0.3 where it is not given. How much light spreads around a fibre.
+    azimuthal_roughness: number, from 0 to 1; 0.3 where it is not given. Roughness around a fibre, from 0 to 1.
 
-    scale_tilt: number, from -45 to 45; 2 where it is not given. By how many degrees the scales of a fibre rise towards its end.
+    scale_tilt: number, from -45 to 45; 2 where it is not given. Tilt in degrees of the cuticle scales of a fibre towards its tip.
 
     ior: number, from 1 to 4; 1.55 where it is not given. Index of refraction.
     """
@@ -1336,12 +1336,44 @@ class HairMaterial(Material):
         ])
 
 
+class Noise(Material):
+    """Two colours in veins distorted by noise, which replace the diffuse colour.
+
+    color1: three numbers; must be given. Colour where the sine is 1.
+
+    color2: three numbers; must be given. Colour where the sine is -1.
+
+    octaves: whole number, at most 32; 0 where it is not given. Number of noise octaves, each with twice the frequency of the previous one.
+
+    frequency: number; 1 where it is not given. Number of veins per 2 pi along x.
+
+    amplitude: number; 1 where it is not given. Strength of the noise that distorts the veins.
+    """
+
+    def __init__(
+        self,
+        *,
+        color1: npt.ArrayLike,
+        color2: npt.ArrayLike,
+        octaves: Optional[Union[int, Material]] = None,
+        frequency: Optional[float] = None,
+        amplitude: Optional[float] = None,
+    ) -> None:
+        super().__init__("Noise", [
+            ("color", color1),
+            ("color", color2),
+            ("octaves", octaves),
+            ("frequency", frequency),
+            ("amplitude", amplitude),
+        ])
+
+
 class Checkerboard(Material):
-    """Unit cubes of two materials in turn.
+    """A 3D checkerboard: unit cubes that alternate between two materials.
 
-    material1: whole number; must be given. The material where the sum of the rounded-down coordinates is even.
+    material1: whole number; must be given. Material of the cubes whose integer coordinates have an even sum.
 
-    material2: whole number; must be given. The other.
+    material2: whole number; must be given. Material of the other cubes.
     """
 
     def __init__(
@@ -1357,13 +1389,13 @@ class Checkerboard(Material):
 
 
 class Noise(Material):
-    """Two materials mixed by noise.
+    """A mix of two materials by a noise function.
 
-    material1: whole number; must be given. The material where noise is high.
+    material1: whole number; must be given. Material where the noise is high.
 
-    material2: whole number; must be given. The material where noise is low.
+    material2: whole number; must be given. Material where the noise is low.
 
-    octaves: whole number, at most 32; must be given. How many frequencies are summed, each twice the one before.
+    octaves: whole number, at most 32; must be given. Number of noise octaves, each with twice the frequency of the previous one.
     """
 
     def __init__(
@@ -1381,17 +1413,17 @@ class Noise(Material):
 
 
 class Marble(Material):
-    """Two materials in veins across the x axis.
+    """A marble pattern: two materials in veins across the x axis.
 
-    material1: whole number; must be given. The material where the sine is 1.
+    material1: whole number; must be given. Material where the sine is 1.
 
-    material2: whole number; must be given. The material where the sine is -1.
+    material2: whole number; must be given. Material where the sine is -1.
 
-    octaves: whole number, at most 32; must be given. How many frequencies of noise are summed, each twice the one before.
+    octaves: whole number, at most 32; must be given. Number of noise octaves, each with twice the frequency of the previous one.
 
-    frequency: number; must be given. Veins per 2 pi along x.
+    frequency: number; must be given. Number of veins per 2 pi along x.
 
-    amplitude: number; must be given. How much noise bends the veins.
+    amplitude: number; must be given. Strength of the noise that distorts the veins.
     """
 
     def __init__(
@@ -1413,17 +1445,17 @@ class Marble(Material):
 
 
 class Wood(Material):
-    """Two materials in rings around the y axis.
+    """A wood pattern: two materials in rings around the y axis.
 
-    material1: whole number; must be given. The material where the sine is 1.
+    material1: whole number; must be given. Material where the sine is 1.
 
-    material2: whole number; must be given. The material where the sine is -1.
+    material2: whole number; must be given. Material where the sine is -1.
 
-    octaves: whole number, at most 32; must be given. How many frequencies of noise are summed, each twice the one before.
+    octaves: whole number, at most 32; must be given. Number of noise octaves, each with twice the frequency of the previous one.
 
-    frequency: number; must be given. Rings per 2 pi along the radius.
+    frequency: number; must be given. Number of rings per 2 pi along the radius.
 
-    amplitude: number; must be given. How much noise bends the rings.
+    amplitude: number; must be given. Strength of the noise that distorts the rings.
     """
 
     def __init__(
@@ -1445,15 +1477,15 @@ class Wood(Material):
 
 
 class Mix(Material):
-    """Two materials in the same proportion everywhere, or as a picture says: each scatters its share of the light.
+    """Mix of two materials in a proportion that is constant or set by a texture.
 
-    material1: whole number; must be given. The first material.
+    material1: whole number; must be given. First material.
 
-    material2: whole number; must be given. The other.
+    material2: whole number; must be given. Second material.
 
-    share: number, from 0 to 1; 0.5 where it is not given. The share of the first, from 0 to 1.
+    share: number, from 0 to 1; 0.5 where it is not given. Share of the first material, from 0 to 1.
 
-    share_texture: path. A picture that multiplies `share`.
+    share_texture: path. Texture that multiplies `share`.
     """
 
     def __init__(
@@ -1473,11 +1505,11 @@ class Mix(Material):
 
 
 class TwoSided(Material):
-    """A surface whose front has one material and whose back, the side that its normal does not point to, another.
+    """Surface with one material on its front, where the normal points, and another on its back.
 
-    material1: whole number; must be given. The material of the front.
+    material1: whole number; must be given. Material of the front.
 
-    material2: whole number; must be given. That of the back.
+    material2: whole number; must be given. Material of the back.
     """
 
     def __init__(
@@ -1493,11 +1525,11 @@ class TwoSided(Material):
 
 
 class Sphere(Shape):
-    """A ball.
+    """A sphere.
 
-    center: three numbers; must be given. Its middle.
+    center: three numbers; must be given. Centre of the sphere.
 
-    radius: number, more than 0; must be given. Its radius.
+    radius: number, more than 0; must be given. Radius, in world units.
     """
 
     def __init__(
@@ -1513,11 +1545,11 @@ class Sphere(Shape):
 
 
 class Plane(Shape):
-    """A plane without end: all points p with normal · p = offset. As a part of a solid, all that is behind it.
+    """An infinite plane: all points p with normal · p = offset. As part of a solid, it is the half space behind the plane.
 
-    normal: three numbers, not 0 0 0; must be given. Points to its front; of any length.
+    normal: three numbers, not 0 0 0; must be given. Normal on the front side; of any length.
 
-    offset: number; must be given. Distance from the origin along the normal, where that has length 1.
+    offset: number; must be given. Distance from the origin along the normal, for a unit normal.
     """
 
     def __init__(
@@ -1533,13 +1565,13 @@ class Plane(Shape):
 
 
 class Triangle(Shape):
-    """A triangle; its front is where its corners go round counter-clockwise.
+    """A triangle; its corners are counter-clockwise when seen from the front.
 
-    vertex0: three numbers; must be given. First corner.
+    vertex0: three numbers; must be given. Position of the first corner.
 
-    vertex1: three numbers; must be given. Second corner.
+    vertex1: three numbers; must be given. Position of the second corner.
 
-    vertex2: three numbers; must be given. Third corner.
+    vertex2: three numbers; must be given. Position of the third corner.
     """
 
     def __init__(
@@ -1559,9 +1591,9 @@ class Triangle(Shape):
 class Box(Shape):
     """A box whose faces are parallel to the coordinate planes.
 
-    min: three numbers; must be given. Corner of least coordinates.
+    min: three numbers; must be given. Corner with the smallest coordinates.
 
-    max: three numbers; must be given. Corner of greatest coordinates.
+    max: three numbers; must be given. Corner with the largest coordinates.
     """
 
     def __init__(
@@ -1577,13 +1609,13 @@ class Box(Shape):
 
 
 class Cylinder(Shape):
-    """A cylinder with caps, round about the line between two points.
+    """A cylinder with caps, around the line between two points.
 
-    base: three numbers; must be given. Middle of the cap at one end.
+    base: three numbers; must be given. Centre of the cap at one end.
 
-    top: three numbers; must be given. Middle of the cap at the other end.
+    top: three numbers; must be given. Centre of the cap at the other end.
 
-    radius: number, more than 0; must be given. Its radius.
+    radius: number, more than 0; must be given. Radius, in world units.
     """
 
     def __init__(
@@ -1601,15 +1633,15 @@ class Cylinder(Shape):
 
 
 class Cone(Shape):
-    """A cone with its cap; or, with a radius at its top too, a frustum with both.
+    """A cone with a cap, or a frustum with both caps if the top has a radius too.
 
-    base: three numbers; must be given. Middle of the cap at the base.
+    base: three numbers; must be given. Centre of the cap at the base.
 
-    top: three numbers; must be given. The tip, or the middle of the cap there.
+    top: three numbers; must be given. The tip, or the centre of the cap at the top.
 
-    base_radius: number, 0 or more; must be given. Radius at the base; it may be 0 where that at the top is not.
+    base_radius: number, 0 or more; must be given. Radius at the base; can be 0 if the radius at the top is not.
 
-    top_radius: number, 0 or more; 0 where it is not given. Radius at the top; 0, a tip, where none is given.
+    top_radius: number, 0 or more; 0 where it is not given. Radius at the top; default 0 for a tip.
     """
 
     def __init__(
@@ -1629,13 +1661,13 @@ class Cone(Shape):
 
 
 class Torus(Shape):
-    """A ring: all points within one distance from a circle.
+    """A torus: all points within `minorRadius` of a circle.
 
-    center: three numbers; must be given. Middle of the circle.
+    center: three numbers; must be given. Centre of the circle.
 
-    axis: three numbers, not 0 0 0; 0 1 0 where it is not given. Direction across the circle's plane, of any length.
+    axis: three numbers, not 0 0 0; 0 1 0 where it is not given. Normal of the circle's plane; of any length.
 
-    major_radius: number, more than 0; must be given. Radius of the circle.
+    major_radius: number, more than 0; must be given. Radius of the circle, in world units.
 
     minor_radius: number, more than 0; must be given. Distance from the circle: half the ring's thickness.
     """
@@ -1657,11 +1689,11 @@ class Torus(Shape):
 
 
 class Ellipsoid(Shape):
-    """A ball stretched along the coordinate axes.
+    """A sphere stretched along the coordinate axes.
 
-    center: three numbers; must be given. Its middle.
+    center: three numbers; must be given. Centre of the ellipsoid.
 
-    radii: three numbers; must be given. Half its extent along x, y and z.
+    radii: three numbers; must be given. Semi-axes along x, y and z.
     """
 
     def __init__(
@@ -1677,15 +1709,15 @@ class Ellipsoid(Shape):
 
 
 class Quadric(Shape):
-    """Where A x² + B y² + C z² + D xy + E xz + F yz + G x + H y + I z + J is zero; inside, it is less.
+    """A quadric surface: the zeros of A x² + B y² + C z² + D xy + E xz + F yz + G x + H y + I z + J. The polynomial is negative inside.
 
-    squares: three numbers; must be given. A, B and C.
+    squares: three numbers; must be given. Coefficients A, B and C.
 
-    products: three numbers; 0 0 0 where it is not given. D, E and F.
+    products: three numbers; 0 0 0 where it is not given. Coefficients D, E and F.
 
-    linear: three numbers; 0 0 0 where it is not given. G, H and I.
+    linear: three numbers; 0 0 0 where it is not given. Coefficients G, H and I.
 
-    constant: number; must be given. J.
+    constant: number; must be given. Coefficient J.
     """
 
     def __init__(
@@ -1705,15 +1737,15 @@ class Quadric(Shape):
 
 
 class Disc(Shape):
-    """A flat disc.
+    """A flat disc, optionally with a hole.
 
-    center: three numbers; must be given. Its middle.
+    center: three numbers; must be given. Centre of the disc.
 
-    normal: three numbers, not 0 0 0; must be given. Points to its front; of any length.
+    normal: three numbers, not 0 0 0; must be given. Normal on the front side; of any length.
 
-    radius: number, more than 0; must be given. Its radius.
+    radius: number, more than 0; must be given. Radius, in world units.
 
-    inner_radius: number, 0 or more; 0 where it is not given. Radius of the hole in its middle.
+    inner_radius: number, 0 or more; 0 where it is not given. Radius of the hole at the centre.
     """
 
     def __init__(
@@ -1733,13 +1765,13 @@ class Disc(Shape):
 
 
 class Rectangle(Shape):
-    """A rectangle; with edges that are not at right angles, a parallelogram. Its front is where `edge0` turns counter-clockwise to `edge1`.
+    """A rectangle, or a parallelogram if its edges are not perpendicular. Seen from the front, `edge1` is counter-clockwise from `edge0`.
 
-    corner: three numbers; must be given. A corner.
+    corner: three numbers; must be given. Position of a corner.
 
-    edge0: three numbers, not 0 0 0; must be given. From there to the next corner.
+    edge0: three numbers, not 0 0 0; must be given. Edge from the corner to the next one.
 
-    edge1: three numbers, not 0 0 0; must be given. From there to the corner before.
+    edge1: three numbers, not 0 0 0; must be given. Edge from the corner to the previous one.
     """
 
     def __init__(
@@ -1757,7 +1789,7 @@ class Rectangle(Shape):
 
 
 class TriangleMesh(Shape):
-    """A triangle mesh in a file of its own.
+    """A triangle mesh in a separate file.
 
     obj_file: path; must be given. Path of the mesh file: `.obj`, `.ply` or `.stl`.
     """
@@ -1773,15 +1805,15 @@ class TriangleMesh(Shape):
 
 
 class HeightField(Shape):
-    """A block whose top is a landscape: a picture's greys are heights, its lower edge is towards z.
+    """A block whose top is a terrain. The grey values of an image are the heights, and its lower edge is towards +z.
 
-    picture: path; must be given. Path of the picture. Black is lowest, and white, or 1 in pictures of floating point, is highest.
+    picture: path; must be given. Path of the height image. Black is lowest; white, or 1 in floating-point images, is highest.
 
-    min: three numbers; must be given. Corner of the landscape's box of least coordinates: where heights are 0.
+    min: three numbers; must be given. Corner of the terrain's box with the smallest coordinates; heights there are 0.
 
-    max: three numbers; must be given. Corner of the landscape's box of greatest coordinates: where heights are 1.
+    max: three numbers; must be given. Corner of the terrain's box with the largest coordinates; heights there are 1.
 
-    depth: number, more than 0; 1 where it is not given. How far the block goes on below `min`.
+    depth: number, more than 0; 1 where it is not given. Depth of the block below `min`.
     """
 
     def __init__(
