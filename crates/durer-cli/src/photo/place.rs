@@ -29,7 +29,7 @@ use std::sync::Arc;
 const ACROSS: u32 = 4;
 /// Rows of pixels traced at once.
 const BAND: u32 = 64;
-/// Radius in pixels of the neighbourhood that gives a partly covered pixel its shadow.
+/// Radius in pixels of the neighbourhood whose shadow a partly covered pixel takes.
 const NEAR: usize = 2;
 
 pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
@@ -116,7 +116,7 @@ fn has(object: &Object, stand_in: &[bool], wanted: bool) -> bool {
     }
 }
 
-/// Keeps the stand-ins. A solid is one unit: it stays if any part is a stand-in.
+/// Keeps the stand-ins. A solid stays if any part is a stand-in.
 fn kept(objects: Vec<Object>, stand_in: &[bool]) -> Vec<Object> {
     let one = |mut object: Object| {
         if !has(&object, stand_in, true) {
