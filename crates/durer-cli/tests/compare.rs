@@ -242,7 +242,7 @@ fn mistakes_in_real_pictures_are_named() {
     }
 }
 
-/// Rays through the corners of pixels instead of their centres: the most common mistake.
+/// Students often trace rays through pixel corners instead of centres.
 #[test]
 fn border_pixels_and_missing_shadows_are_recognised() {
     let place = TestFolder::new();
@@ -317,7 +317,7 @@ done();
 #[test]
 fn page_works_in_a_browser_without_network() {
     let (place, a) = rendered();
-    // A name that would end the script if it were not escaped.
+    // Names that would end the script if they were not escaped.
     for (name, left) in
         [("ref/one.ppm", 99), ("ref/</script><b>.ppm", 99), ("mine/one.ppm", 99), ("mine/</script><b>.ppm", 30)]
     {

@@ -290,7 +290,7 @@ Group {
 }
 ";
 
-/// The equation of a hit, a matrix, a cell, texels and Snell's law stand under their terms.
+/// Terms show their origin: the equation of a hit, a matrix, a cell, texels, Snell's law.
 #[test]
 fn numbers_say_where_they_come_from() {
     let place = TestFolder::new();
