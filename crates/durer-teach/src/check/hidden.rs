@@ -34,7 +34,7 @@ pub(super) fn hidden(scout: &SceneProbe) -> Vec<Finding> {
     }
     let covered = scout.seen().count();
     let is_plane = scout.world().objects()[front as usize].bounds().is_none();
-    // An object may stand behind another on purpose; behind an infinite plane nothing is ever
+    // An object can be behind another on purpose, but nothing behind an infinite plane is ever
     // visible.
     let few = !is_plane && covered * 2 < scout.probes.len();
     if hidden == 0 || others > 0 || few || scout.is_glass(front) {

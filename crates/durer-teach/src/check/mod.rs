@@ -1,9 +1,9 @@
 //! Diagnosis of scenes whose picture is black, white, empty or odd, with fixes.
 //!
-//! A [`SceneProbe`] traces a coarse grid of camera rays through the world and keeps what each
-//! found. The checks of the table [`CHECKS`] examine these probes, the meshes and the description.
-//! Every finding has a stable code, a place, an effect on the picture, a proposed change and, if
-//! that is mechanical, the edit of the scene's text.
+//! A [`SceneProbe`] traces a coarse grid of camera rays through the world and records their hits.
+//! The checks of the table [`CHECKS`] examine these probes, the meshes and the description. Every
+//! finding has a stable code, a place, an effect on the picture, a suggested change and, if it is
+//! mechanical, an edit of the scene's text.
 
 mod aim;
 mod air;

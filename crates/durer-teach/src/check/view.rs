@@ -80,8 +80,8 @@ pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Returns true if an object around the camera is the only thing that ends, is seen from behind
-/// alone, and fills much of the picture.
+/// Returns true if an object around the camera is the only bounded one, is seen only from behind,
+/// and fills much of the picture.
 fn is_alone(scout: &SceneProbe, object: u32) -> bool {
     let world = scout.world();
     let ended = world.objects().iter().filter(|object| object.bounds().is_some()).count();
@@ -171,7 +171,7 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     }
     let to = center - pose.center;
     let angle = degrees(pose.direction, to);
-    // With a degenerate `up` the picture may be rotated; only far off-axis does that not matter.
+    // A degenerate `up` can rotate the picture. Report the direction only if it is far off.
     let turned = pose.up.normalize_or_zero().cross(pose.direction.normalize_or_zero()).length() < 1e-3;
     if turned && angle < 60.0 {
         return Vec::new();
