@@ -1,5 +1,5 @@
 //! `cargo xtask manual`: writes the language reference with pictures, and a grammar for editors,
-//! from the statements in the code.
+//! from the descriptions in the code.
 
 mod python;
 
@@ -24,7 +24,7 @@ pub fn run() -> Result<ExitCode> {
     std::fs::create_dir_all(pictures())?;
     for entry in entries() {
         let Some(scene) = entry.scene() else { continue };
-        // Examples refer to files of the repository's scenes.
+        // Examples can refer to files in the `scenes` folder.
         let file = tempfile::Builder::new().suffix(".txt").tempfile_in(docs().join("../scenes"))?;
         std::fs::write(file.path(), scene)?;
         let picture = pictures().join(picture_name(&entry));
