@@ -69,7 +69,7 @@ const MESHES: &str = "--assets course/scenes/f04 --assets course/scenes/f16";
 /// Separator between the name of a case and the name of one of its pictures.
 const PICTURE: &str = ": ";
 
-/// Lines by kind and path: the hash, or the text of an error.
+/// Value of each line by kind and path: the hash, or the text of an error.
 type Lines = BTreeMap<(String, String), String>;
 
 /// One run of the program.
@@ -305,7 +305,7 @@ impl Case {
         };
         let (out, errors) = (plain(&ended.out), plain(&ended.errors));
         if let Kind::Info | Kind::Check = self.kind {
-            // Memory sizes depend on internal structures, which may change.
+            // Memory sizes depend on internal structures, which can change.
             let lines = out.lines().filter(|line| !line.starts_with("memory "));
             let messages = format!("{code}\n{}\n{errors}", lines.collect::<Vec<_>>().join("\n"));
             return Ok(vec![line(kind, Digest::of(messages.as_bytes()).to_string())]);

@@ -49,7 +49,7 @@ fn pictures() -> PathBuf {
 
 fn picture_name(entry: &Entry) -> String {
     let chapter = entry.chapter.title().to_lowercase();
-    // Two keywords may differ only in their context: `Noise`.
+    // Two keywords can differ only in their context, for example `Noise`.
     let kind = if entry.doc.contains("instead of the diffuse") { "-color" } else { "" };
     format!("{chapter}-{}{kind}.png", entry.name().to_lowercase())
 }

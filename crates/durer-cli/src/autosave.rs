@@ -74,7 +74,7 @@ impl Autosave {
         let growing = args.watch && !output.starts_with("/dev") && args.view.show == ["color"];
         let growing = growing.then(|| Ok::<_, Failure>((Destination::new(output)?, format(output)?))).transpose()?;
         let preview = work.preview.as_ref().map(|path| {
-            // Check the format first: the name may be invalid.
+            // Check the format first, because the name can be invalid.
             let format = format(path)?;
             Ok::<_, Failure>((guard.writes("--preview", path)?, format))
         });
@@ -114,7 +114,7 @@ impl Autosave {
             let before = Instant::now();
             match save_part(place, part) {
                 Ok(()) => self.is_ours.set(true),
-                // Do not abort: the picture may still be saved elsewhere.
+                // Do not abort: the picture can still be saved elsewhere.
                 Err(error) => self.complain(&error),
             }
             self.saving.set(Some(before.elapsed()));
@@ -144,7 +144,7 @@ impl Autosave {
         }
     }
 
-    /// Saves a part that the user asked for.
+    /// Saves a part file that the user asked for.
     pub fn save(&self, part: &PartialRender) -> Result<(), Failure> {
         let Some(place) = &self.place else { return Ok(()) };
         progress::saving();
@@ -226,7 +226,8 @@ fn percent(part: &PartialRender) -> u64 {
     100 * done / all.max(1)
 }
 
-/// Checks that a part may replace a file: it does not exist, is empty, or is a part.
+/// Checks that a part file can be written here: the file does not exist, is empty, or is a part
+/// file.
 fn check_is_part(path: &Path) -> Result<(), String> {
     let start = match start_of(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),

@@ -119,7 +119,7 @@ fn is_only_read(name: &str) -> bool {
     mesh_format_for(name).is_none() && scene_format_for(name).is_some_and(|format| format.write.is_none())
 }
 
-/// Returns the render options that a file asks for, if any.
+/// Returns the render options that a file requests, if any.
 fn requested_picture(render_defaults: &RenderDefaults) -> Option<String> {
     let size = render_defaults.size.map(|(width, height)| format!("--size {width}x{height}"));
     let crop = render_defaults.crop.map(|(left, top, width, height)| format!("--crop {left},{top},{width}x{height}"));

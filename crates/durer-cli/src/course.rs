@@ -177,7 +177,7 @@ fn course_format(name: &str, requested: Option<Dialect>) -> Result<&'static Form
 fn job(arguments: &Arguments, compiled: &CompiledInput) -> Result<Job, Failure> {
     let rules = &compiled.loaded.rules;
     let size = arguments.numbers::<u32>("-size", 2)?;
-    // A camera with a fixed aspect ratio determines the size; the old programs have no such camera.
+    // A camera with a fixed aspect ratio determines the size. The old programs have no such camera.
     let natural = || Raster::natural_size(compiled.world.camera().proportions(), rules.size);
     let (width, height) = size.map_or_else(natural, |size| (size[0], size[1]));
     if width == 0 || height == 0 {

@@ -132,8 +132,8 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
     }
 }
 
-/// Removes the lines of the other kind of job: lines that begin with `@frames` belong to
-/// animations, lines that begin with `@still` to single pictures.
+/// Removes the lines for the other kind of job. Lines that begin with `@frames` are for animations,
+/// lines that begin with `@still` for single pictures.
 fn chosen(template: &str, frames: bool) -> String {
     let (here, there) = if frames { ("@frames", "@still") } else { ("@still", "@frames") };
     let lines = template.lines().filter(|line| !line.starts_with(there));

@@ -76,7 +76,7 @@ pub enum MotionSource {
 }
 
 impl FramesArgs {
-    /// Returns true if the user asks for an animation.
+    /// Returns true if an animation is requested.
     pub fn is_requested(&self) -> bool {
         self.frames.is_some() || self.turntable.is_some()
     }

@@ -9,7 +9,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
-/// State in which a signal that ends the program may arrive.
+/// Reaction to a signal that ends the program.
 enum Phase {
     /// Before anything is written: the signal ends the program.
     Harmless,
@@ -145,7 +145,7 @@ pub fn run_child(command: &mut Command) -> std::io::Result<Output> {
 /// Ends the program and its child process.
 fn end(code: u8) {
     if let Some(child) = locked(&CHILD).as_mut() {
-        // It may have ended already.
+        // The child may have ended already.
         let _ = child.kill();
     }
     crate::terminal::end(code)

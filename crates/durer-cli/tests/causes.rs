@@ -18,7 +18,7 @@ enum Kind {
     Broken,
 }
 
-/// A scene, with the options of its line.
+/// A scene and its options.
 struct Case {
     line: String,
     kind: Kind,

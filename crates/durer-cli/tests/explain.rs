@@ -170,7 +170,7 @@ fn page_is_self_contained() {
     assert!(!page.contains("http:") && !page.contains("https:"), "nothing is fetched");
 }
 
-/// Collects the names of fields and kinds in a JSON value.
+/// Collects the names of fields and node kinds in a JSON value.
 fn words(json: &Value, found: &mut std::collections::BTreeSet<String>) {
     match json {
         Value::Array(values) => values.iter().for_each(|value| words(value, found)),

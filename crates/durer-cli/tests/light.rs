@@ -358,7 +358,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         row.split(',').nth(6).unwrap().parse().unwrap()
     };
     for (light, expected) in [
-        // E = I / d²; for a flux, I = flux / 4 pi, whatever the hue.
+        // E = I / d². For a flux, I = flux / 4 pi, regardless of the hue.
         ("PointLight { position 0 2 0 color 1 1 1 candela 800 }", 200.0),
         ("PointLight { position 0 2 0 color 0.9 0.5 0.1 lumens 800 }", 800.0 / (4.0 * pi) / 4.0),
         ("SpotLight { position 0 2 0 direction 0 -1 0 color 2 2 2 angle 40 candela 800 }", 200.0),

@@ -158,9 +158,9 @@ fn a_lesson_waits_for_no_pipe_and_reads_no_device() {
 #[test]
 fn pipes_with_names_of_temporary_files_delay_no_save() {
     let place = TestFolder::new();
-    // A render that is killed while saving leaves a temporary file; pipes here have such names.
     let output = place.shell("$DURER render scene.txt --size 8x8 --samples 1 -q -o o.png; ls -a");
     assert_eq!(output.code, Some(0), "{}", output.err);
+    // Killed renders leave temporary files with such names.
     for name in [".durer-ready-1.tmp", ".durer-1.tmp", ".durer-x.tmp"] {
         fifo(&place, name);
     }

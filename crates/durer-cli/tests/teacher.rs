@@ -211,7 +211,7 @@ Scene { Node { Component<Object> { type sphere radius 1 } }
     place.put("nodes.txt", nodes);
     let output = place.run("check nodes.txt --dialect f23").out;
     assert!(output.contains("`Component<Material> { index 0 }`") && !output.contains("MaterialIndex"), "{output}");
-    // Each mention of `--fix` says what it changes.
+    // Each message that mentions `--fix` says what it changes.
     place.put("bytes.txt", scene("f04", &[("diffuseColor 0.7 0.3 0.2", "diffuseColor 204 51 51")]));
     let output = place.run("check bytes.txt --dialect f04 --bounces 3").out;
     assert!(output.contains("(`--fix` writes `0.8 0.2 0.2`)"), "{output}");

@@ -79,7 +79,7 @@ pub fn name(pair: &Pair) -> String {
     pair.who.as_ref().map_or_else(|| pair.name.clone(), |who| format!("{who}/{}", pair.name))
 }
 
-/// Explains the difference from the pictures alone, one line for each mistake.
+/// Explains the difference from the pictures alone, with one line per cause.
 fn explained(found: &Comparison) -> Vec<String> {
     if found.verdict != Verdict::Different {
         return Vec::new();

@@ -15,7 +15,7 @@ const BLACK: f32 = 0.01;
 /// Colours that differ by less than this look the same.
 const ALIKE: f32 = 2.0 / 255.0;
 
-/// Minimum number of rays that hit an object before it counts as lost in the background.
+/// Minimum number of rays that must hit an object for it to count as lost in the background.
 const FEWEST_LOST: usize = 6;
 
 /// Iterates over the Phong materials: index, description and compiled material.

@@ -13,7 +13,8 @@ use durer_scene::scene::{MatrixOp, Node, Object};
 
 /// Minimum size in pixels of a recognisable object.
 const FEWEST_PIXELS: f32 = 6.0;
-/// Ratios of sizes above which an object is out of scale: harmless, and spoiling the picture.
+/// Size ratios above which an object is out of scale, for harmless objects and for objects that
+/// spoil the picture.
 const OUT_OF_SCALE: f32 = 3e3;
 const HARMFUL: f32 = 100.0;
 /// Ratio of sizes above which an object that contains the camera is out of scale.

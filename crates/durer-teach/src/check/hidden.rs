@@ -118,8 +118,8 @@ fn in_the_way(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// Reports a plane between the camera and all bounded objects, even if something else, such as the
-/// sky, is visible beside it.
+/// Reports a plane between the camera and all bounded objects, even if other objects, such as the
+/// sky, are visible beside it.
 pub(super) fn below_plane(scout: &SceneProbe) -> Vec<Finding> {
     let objects = scout.world().objects();
     let mut front = None;
@@ -182,7 +182,7 @@ pub(super) fn plane_before(scout: &SceneProbe, object: &Object) -> Option<u32> {
     world.hits_of_each(&way).map(|hit| hit.object).find(|&other| world.objects()[other as usize].bounds().is_none())
 }
 
-/// Mirrors the camera's height at a plane, if all objects stand on that plane.
+/// Reflects the camera position through a plane, if all objects stand on that plane.
 fn raised(scout: &SceneProbe, object: u32) -> Option<Vec3> {
     let (n, d) = ground(scout, object)?;
     let eye = scout.world().camera().pose().center;

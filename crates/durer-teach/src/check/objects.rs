@@ -190,7 +190,7 @@ pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Reports flat objects that lie in a plane, where depth cannot tell the two apart.
+/// Reports flat objects that lie in a plane, where depth cannot separate the two.
 fn in_plane(scout: &SceneProbe) -> Vec<Finding> {
     let objects = scout.world().objects();
     let planes: Vec<(usize, &Plane)> = objects

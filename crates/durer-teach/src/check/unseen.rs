@@ -80,7 +80,7 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
             (false, true) => "move it outside, or move or shrink the other object",
             (false, false) => "is it on the wrong side of the other object, or is that object in the way?",
         };
-        // An object may stand behind another on purpose.
+        // An object can be behind another on purpose.
         let one = hidden.iter().all(|(_, other)| *other == by);
         let severity = match below(scout, by, first) {
             // An object behind an infinite plane is never visible.

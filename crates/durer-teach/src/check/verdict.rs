@@ -137,7 +137,7 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
     let blocked: Vec<u32> = facing.iter().filter_map(|lit| lit.blocker).collect();
     if facing.len() - blocked.len() > all.len() / 50 && !is_blocked {
         let most = facing.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
-        // At a grazing angle a surface is dark whatever its colour.
+        // At a grazing angle, a surface is dark regardless of its colour.
         let colored = |seen: &ProbeHit| match &grid.world().materials()[seen.material as usize] {
             // Mirrors and other surfaces without diffuse reflection cannot cancel a light's colour.
             Material::Phong(phong) => phong.diffuse.max_element() >= 0.05,

@@ -10,7 +10,7 @@ use durer_scene::dialect::Dialect;
 use durer_scene::math::Vec3;
 use durer_scene::scene::Material;
 
-/// Adds to a finding what only the compiled scene shows.
+/// Adds facts from the compiled scene to a finding.
 pub(super) fn complete(scout: &SceneProbe, finding: &mut Finding) {
     match finding.diagnostic.code {
         "no-light" => no_light(scout, finding),

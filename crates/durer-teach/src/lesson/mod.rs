@@ -45,7 +45,7 @@ pub struct Step {
     pub before: Option<Picture>,
     /// The picture after the step.
     pub after: Picture,
-    /// An SVG drawing beside the picture.
+    /// SVG drawing to show with the picture.
     pub plan: Option<String>,
     /// The difference of the two pictures.
     pub change: Option<Change>,

@@ -316,7 +316,7 @@ pub enum Reach {
     Right,
     /// 1.
     One,
-    /// d²: t goes to d, and the ray's direction has the length d.
+    /// d²: t ends at d, for a ray direction of length d.
     Squared,
 }
 
@@ -375,7 +375,7 @@ pub struct SecondaryBugs {
     pub glass: Glass,
     /// Fresnel term of glass.
     pub fresnel: Fresnel,
-    /// Local light is scaled by what the mirror's colour leaves.
+    /// Local light is scaled by 1 minus the mirror's colour.
     pub mixed: bool,
     /// Reflected light is multiplied by the diffuse colour.
     pub times_diffuse: bool,

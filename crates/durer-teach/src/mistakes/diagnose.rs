@@ -1,4 +1,4 @@
-//! Finds the mistake that made a picture by rendering the table's rows, alone and in pairs.
+//! Finds the mistakes that explain a picture by rendering the table's rows, alone and in pairs.
 
 use super::bugs::PictureTurn;
 use super::pictures::View;

@@ -1,5 +1,5 @@
-//! Mistakes of path tracers: a plain tracer that makes them, and the search for the one that made a
-//! picture.
+//! Mistakes of path tracers: a plain tracer that makes them, and a search for the mistake that
+//! explains a picture.
 //!
 //! Path-traced pictures have noise, so pixels are not compared: means over blocks are compared with
 //! their own variance.

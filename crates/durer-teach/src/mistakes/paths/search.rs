@@ -1,4 +1,4 @@
-//! Finds the mistake of a path tracer that made a picture.
+//! Finds the path tracer mistake that explains a picture.
 
 use super::blocks::{Blocks, Means};
 use super::table::MISTAKES;

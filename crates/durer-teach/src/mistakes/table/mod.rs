@@ -39,7 +39,7 @@ pub struct Mistake {
 pub enum Values {
     /// No value.
     One,
-    /// These values; the true one may lie between them.
+    /// These values; the true value can be between them.
     Numbers(&'static [f32]),
     /// Exactly these values.
     Only(&'static [f32]),
