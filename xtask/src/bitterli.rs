@@ -22,8 +22,8 @@ const STEP: u32 = 4;
 const MAX_OFF: f64 = 0.02;
 const MAX_FLIP: f64 = 0.08;
 
-/// Scenes whose file has another depth than Tungsten used: the number of scattering events after
-/// the first hit. With 0, the walls and floor of veach-mis agree to a thousandth.
+/// Scenes whose file specifies a different depth than Tungsten used: the number of scattering
+/// events after the first hit. With 0, the walls and floor of veach-mis agree to a thousandth.
 const BOUNCES: [(&str, u32); 2] = [("cornell-box", 62), ("veach-mis", 0)];
 
 /// Scenes whose pbrt file requests photons: photons per sample, and the radius in the file.

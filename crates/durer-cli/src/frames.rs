@@ -115,7 +115,7 @@ pub fn place(name: &str) -> Option<(usize, usize, usize)> {
     })
 }
 
-/// Replaces each placeholder of a name by the frame's number.
+/// Replaces each placeholder in a name with the frame number.
 pub fn numbered(name: &str, frame: u32) -> String {
     match place(name) {
         Some((from, to, digits)) => format!("{}{frame:0digits$}{}", &name[..from], numbered(&name[to..], frame)),

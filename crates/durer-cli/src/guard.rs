@@ -23,7 +23,7 @@ struct NamedFile {
     identity: Identity,
 }
 
-/// Identity of a file, equal for all names of it.
+/// Identity of a file, which all its names share.
 #[derive(PartialEq)]
 struct Identity {
     /// Canonical path; for a file that does not exist yet, within its canonical folder.

@@ -23,7 +23,7 @@ use std::sync::{Arc, Mutex};
 /// State shared between a render and `--watch`.
 #[derive(Default)]
 pub struct WatchState {
-    /// Files that the scene uses, besides its own.
+    /// Files that the scene refers to, without the scene file itself.
     pub files: Mutex<Vec<PathBuf>>,
     /// True if a file has been saved since the render began.
     pub stale: AtomicBool,

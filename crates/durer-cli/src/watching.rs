@@ -89,7 +89,7 @@ fn settle(files: &[PathBuf]) {
     }
 }
 
-/// Runs some work and cancels it when a file is saved.
+/// Runs `work` and cancels it when a file is saved.
 fn while_watching<R>(files: &[PathBuf], before: &[Option<Stamp>], watched: &WatchState, work: impl FnOnce() -> R) -> R {
     let (finished, wait) = mpsc::channel::<()>();
     std::thread::scope(|scope| {

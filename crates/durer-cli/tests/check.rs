@@ -7,7 +7,8 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Broken scenes, named by the code of their finding: `camera-away.backwards.txt`.
+/// Returns the folder and names of the broken scenes. A name begins with the code of the finding:
+/// `camera-away.backwards.txt`.
 fn broken() -> (PathBuf, Vec<String>) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/broken");
     let entries = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());

@@ -1,5 +1,5 @@
 //! Small files and options that describe huge data. The size is computed before memory is
-//! allocated, and too large inputs are rejected with an error instead of an abort.
+//! allocated, and oversized input is rejected with an error instead of an abort.
 #![cfg(target_os = "linux")]
 
 mod common;

@@ -160,7 +160,7 @@ fn frames_are_times_cameras_and_files() {
     let place = TestFolder::new();
     place.put("a.stl", STL);
     let hash = |words: &str| place.expect_exit(0, &format!("render {words} {SMALL} --hash -q")).out;
-    // A turntable's frame equals the same frame alone, and the view of `--turned`.
+    // A turntable frame equals the same frame rendered alone, and the view with `--turned`.
     let all = hash("a.stl -o a.png --turntable 3");
     let alone: String = (0..3).map(|i| hash(&format!("a.stl -o a.png --turntable 3 --frames {i}"))).collect();
     let turned: String = [0, 120, 240].map(|angle| hash(&format!("a.stl -o a.png --turned {angle}"))).concat();

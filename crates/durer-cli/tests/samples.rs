@@ -1,5 +1,5 @@
-//! Conversion between formats keeps the picture, and the Khronos sample models show what their
-//! cards specify.
+//! Converted scenes give the same picture, and the Khronos sample models show what their cards
+//! specify.
 
 mod common;
 

@@ -86,7 +86,7 @@ fn large_pictures_are_refused_by_their_headers() {
         assert_eq!(output.code, Some(2), "{line}: {}", output.err);
         assert!(output.err.contains(words), "{}", output.err);
     }
-    // Readers of other formats decode pictures themselves, within the same memory.
+    // Readers of other formats decode images themselves, within the same memory limit.
     let pbrt = "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n";
     let lit = r#"LightSource "infinite" "string filename" "large.png" Shape "sphere""#;
     let rough = r#"Texture "t" "float" "imagemap" "string filename" "large.png"

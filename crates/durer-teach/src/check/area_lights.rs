@@ -16,7 +16,7 @@ use durer_scene::shape::{Flip, Shape};
 const MAX_PLACES: usize = 200;
 /// Sample points on an area light.
 const ON_LIGHT: [Vec2; 4] = [Vec2::new(0.3, 0.2), Vec2::new(0.7, 0.3), Vec2::new(0.2, 0.7), Vec2::new(0.8, 0.8)];
-/// An area light whose share of its possible light is below this contributes nothing.
+/// Fraction of its possible light below which an area light counts as contributing nothing.
 const NOTHING: f32 = 0.1;
 const HARDLY: f32 = 0.03;
 

@@ -178,7 +178,7 @@ pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
             [x, y, z, u, v, w]
         });
         let there = places.entry(key).or_default();
-        // Compare with the first 16 only, so that many at one place stay cheap.
+        // Compare with the first 16 only, so that many objects at one place stay cheap.
         if found.len() >= MAX_SOUGHT {
             break;
         }

@@ -260,7 +260,8 @@ impl<'a> Search<'a> {
         vec![(mistake, if round > 0.0 && fits(round) { round } else { at })]
     }
 
-    /// Tries pairs of the best mistakes with all others, the best of them at ever more pixels.
+    /// Tries pairs of the best mistakes with all others, and the best pairs at more and more
+    /// pixels.
     fn pairs(
         &self,
         best_of: &[Trial],

@@ -1,9 +1,9 @@
 //! Common mistakes as one table, and their pictures of a scene.
 //!
-//! A row of [`MISTAKES`] states an error of a student's program in words and in both forms of the
-//! code, and changes a [`SceneVariant`] so that a [`BuggyTracer`]'s picture shows it.
+//! A row of [`MISTAKES`] describes an error of a student's program in words and as correct and
+//! wrong code, and changes a [`SceneVariant`] so that a [`BuggyTracer`]'s picture shows it.
 //! [`diagnose()`] renders the rows, alone and in pairs, and names the one that explains a given
-//! picture; the lesson shows some of them. A new mistake is a new row.
+//! picture. The lesson shows some of them. A new mistake is a new row.
 
 mod buggy_tracer;
 pub mod bugs;
