@@ -10,7 +10,7 @@ use std::process::ExitCode;
 
 /// Maximum number of columns of a comment.
 const MAX_COLUMNS: usize = 100;
-/// Marks a line of code that must keep a listed word.
+/// Marks a line of code that keeps a listed word.
 const KEEP: &str = "// prose: keep";
 
 /// A word or phrase to avoid.
@@ -228,7 +228,7 @@ fn literals(line: &str) -> Vec<String> {
         }
         escaped = c == '\\' && !escaped;
     }
-    // Of a literal that continues below, use the first line.
+    // If a literal continues on the next line, use its first line.
     all.extend(current);
     all
 }

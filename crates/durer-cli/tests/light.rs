@@ -58,8 +58,8 @@ Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Box { mi
         let row: Vec<f64> = output.out.lines().nth(1).unwrap().split(',').map(|word| word.parse().unwrap()).collect();
         (row[6], row[7])
     };
-    // 100 cd from 2 m: 25 lux without the pane. Each of its faces reflects 0.04: T = (1 - F) / (1 +
-    // F).
+    // 100 cd at 2 m give 25 lux without the pane. Each face of the pane reflects 0.04: T = (1 - F)
+    // / (1 + F).
     let (mean, error) = lux("--integrator photons --samples 32 --photons 20000 --photon-radius 0.2");
     let expected = 25.0 * 0.96 / 1.04;
     assert!((mean - expected).abs() < 3.0 * error + 0.02 * expected, "{mean} ± {error}, not {expected}");
@@ -358,7 +358,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         row.split(',').nth(6).unwrap().parse().unwrap()
     };
     for (light, expected) in [
-        // E = I / d²; for a flux, I = flux / 4 pi, whatever the hue.
+        // E = I / d². For a flux, I = flux / 4 pi, regardless of the hue.
         ("PointLight { position 0 2 0 color 1 1 1 candela 800 }", 200.0),
         ("PointLight { position 0 2 0 color 0.9 0.5 0.1 lumens 800 }", 800.0 / (4.0 * pi) / 4.0),
         ("SpotLight { position 0 2 0 direction 0 -1 0 color 2 2 2 angle 40 candela 800 }", 200.0),
@@ -494,6 +494,6 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         let text = output(&format!("Background {{ {sky} }}"));
         assert!(!text.contains("no effect") && !text.contains("grey"), "{sky}: {text}");
     }
-    // Without a background, the message does not suggest to turn it off.
+    // Without a background, the message must not suggest turning it off.
     assert!(!output("").contains("`Background { color 0 0 0 }`"), "{}", output(""));
 }

@@ -160,7 +160,7 @@ fn frames_are_times_cameras_and_files() {
     let place = TestFolder::new();
     place.put("a.stl", STL);
     let hash = |words: &str| place.expect_exit(0, &format!("render {words} {SMALL} --hash -q")).out;
-    // A turntable's frame equals the same frame alone, and the view of `--turned`.
+    // A turntable frame equals the same frame rendered alone, and the view with `--turned`.
     let all = hash("a.stl -o a.png --turntable 3");
     let alone: String = (0..3).map(|i| hash(&format!("a.stl -o a.png --turntable 3 --frames {i}"))).collect();
     let turned: String = [0, 120, 240].map(|angle| hash(&format!("a.stl -o a.png --turned {angle}"))).concat();
@@ -204,7 +204,7 @@ fn turntable_rotates_and_fit_moves_the_camera() {
     assert!(!place.path("a.0004.png").exists() && !place.path("a.png").exists());
     place.refused(2, "render a.stl -o a.png --turntable 0", &["--turntable"]);
     place.refused(2, "render a.stl -o a.png --turntable 4 --preview b.png", &["apply to one picture"]);
-    // With --fit, a camera that looked past the model sees it.
+    // With --fit, a camera that looked past the model shows it.
     place.put("a.rad", RAD);
     place.put("a.vf", "VIEW= -vp 0 -900 900 -vd 0 -1 -.1 -vh 40 -vv 30\n");
     let hash = |more: &str| {
@@ -224,7 +224,7 @@ fn environment_lights_a_model() {
     assert_ne!(hash("--environment sky.hdr"), hash(""));
     // The environment's orientation matters.
     assert_ne!(hash("--environment sky.hdr --up y"), hash("--environment sky.hdr --up z"));
-    // A black environment is legal, but reported.
+    // A black environment is valid, but reported.
     place.put("black.pfm", b"PF\n1 1\n-1\n\0\0\0\0\0\0\0\0\0\0\0\0".as_slice());
     let dark =
         place.expect_exit(0, &format!("render a.stl -o dark.pfm {SMALL} --environment black.pfm --integrator path"));

@@ -68,7 +68,7 @@ fn stopped_work_is_resumed() {
     let output = place.expect_exit(0, &format!("{work} --resume --checkpoint c.part -o p.png --threads 3 --tile 40"));
     assert_eq!(last_line(&output.out), hash);
     assert!(place.bytes("p.png") == place.bytes("calm.png") && !place.path("c.part").exists());
-    // Without saved work, --resume starts from the beginning.
+    // Without saved work, --resume starts a new render.
     let output = place.expect_exit(0, &format!("{work} --resume --checkpoint c.part -o p.png"));
     assert_eq!(last_line(&output.out), hash);
 }

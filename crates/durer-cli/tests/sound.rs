@@ -1,5 +1,5 @@
-//! `durer check` reports nothing for valid scenes: those of the repository, and those of the course
-//! except the truly wrong ones.
+//! `durer check` reports nothing for valid scenes: those of the repository, and all course scenes
+//! except those with real faults.
 
 mod common;
 
@@ -32,7 +32,7 @@ const NOTES: [(&str, usize, &str); 8] = [
 
 fn scenes(folder: &Path) -> Vec<PathBuf> {
     let mut scenes: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    // Splines use another kind of file.
+    // Spline scenes use another file format.
     let spline = |path: &Path| path.file_name().unwrap().to_string_lossy().starts_with("spline");
     scenes.retain(|path| path.extension().is_some_and(|extension| extension == "txt") && !spline(path));
     scenes.sort();
