@@ -35,8 +35,8 @@ impl Grid {
     /// Maximum number of entries in the lists of all cells.
     const MAX_ENTRIES: u64 = 1 << 28;
 
-    /// Numbers of cells along x, y, and z that suit a box with `primitive_count` primitives: about
-    /// two cells per primitive, nearly cubic.
+    /// Suitable numbers of cells along x, y, and z for a box with `primitive_count` primitives:
+    /// about two cells per primitive, nearly cubic.
     pub fn suitable(bounds: Aabb, primitive_count: usize) -> [u32; 3] {
         let size = bounds.size();
         let longest = size.max_element().max(f32::MIN_POSITIVE);

@@ -134,7 +134,7 @@ pub(super) trait Visitor {
 
     fn counter(&mut self) -> &mut Self::TraversalCounter;
 
-    /// Called for each visited node with its offset.
+    /// Called at each visited node, with its offset.
     #[inline(always)]
     fn enter(&mut self, _: usize) {}
 

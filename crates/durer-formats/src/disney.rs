@@ -79,7 +79,7 @@ pub(super) fn passing([reflected, all]: [f32; 2]) -> f32 {
 }
 
 /// Reflectance of Dürer's boundary from [`single_means`]: the single-scattering reflectance,
-/// divided by the sum of single-scattering reflection and refraction, which is below 1 for rough
+/// divided by the total of single-scattering reflection and refraction, which is below 1 for rough
 /// boundaries.
 pub(super) fn kept([reflected, all]: [f32; 2]) -> f32 {
     // Unphysical indices of refraction can make `all` 0.

@@ -163,7 +163,7 @@ impl FolderSource {
         })
     }
 
-    /// Path of an existing file after links are resolved, if it may be read.
+    /// Path of an existing file with links resolved, if it may be read.
     ///
     /// # Errors
     ///

@@ -4,13 +4,13 @@ use durer_scene::source::{AssetSource, SourceError};
 use std::io::Read as _;
 use std::sync::Arc;
 
-/// Reads a file by its name in the scene, and unpacks it within the source's budget if it is
-/// packed.
+/// Reads a file by its name in the scene, and decompresses it if necessary, within the source's
+/// budget.
 ///
 /// # Errors
 ///
-/// Those of [`AssetSource::read`]; [`SourceError::Io`] for packed bytes that are damaged or would
-/// become too large.
+/// Errors of [`AssetSource::read`]; [`SourceError::Io`] if compressed data is damaged or exceeds
+/// the budget.
 pub fn read_unpacked(source: &dyn AssetSource, name: &str) -> Result<Arc<[u8]>, SourceError> {
     let bytes = source.read(name)?;
     if !is_packed(&bytes) {

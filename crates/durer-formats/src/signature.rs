@@ -40,7 +40,7 @@ const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
     (b"#usda", "USD", None),
 ];
 
-/// Photometric file: a light of a scene, not a scene.
+/// Photometric file: it describes a light, not a scene.
 const LUMINAIRE: &str = "a measured luminaire (IES)";
 
 /// Returns an error if the signature of a file contradicts its format, whose extensions are

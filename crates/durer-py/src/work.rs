@@ -53,23 +53,23 @@ pub fn look(watch: Option<&Py<PyAny>>, done: u64, all: u64) -> PyResult<()> {
     })
 }
 
-/// Tells a job whether it goes on. A single item may take milliseconds, so jobs ask for each item
-/// or for few.
+/// Tells a job whether to continue. A single item may take milliseconds, so jobs check for every
+/// item or every few items.
 pub struct Pace<'a> {
     stop: &'a AtomicBool,
-    /// Work of the calling thread looks for signals itself: the time of the last look, and the
-    /// exception.
+    /// For work on the calling thread, which checks signals itself: the time of the last check, and
+    /// its result.
     own: Option<RefCell<(Instant, PyResult<()>)>>,
 }
 
 impl Pace<'_> {
-    /// Returns true if the work goes on.
+    /// Returns true if the work should continue.
     pub fn goes_on(&self) -> bool {
         if let Some(own) = &self.own {
             let mut own = own.borrow_mut();
             if own.0.elapsed() > LOOK && own.1.is_ok() {
                 *own = (Instant::now(), look(None, 0, 0));
-                // The look may take time too.
+                // The check may take time too.
                 own.0 = Instant::now();
                 self.stop.store(own.1.is_err(), Relaxed);
             }
@@ -77,7 +77,7 @@ impl Pace<'_> {
         !self.stop.load(Relaxed)
     }
 
-    /// Divides a number of items into ranges that are small if items take long.
+    /// Divides items into ranges, which are small if items take long.
     pub fn ranges(&self, count: usize, mut work: impl FnMut(Range<usize>)) {
         const MOST: usize = 128;
         let (mut from, mut step) = (0, 8);

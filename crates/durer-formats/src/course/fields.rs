@@ -368,7 +368,7 @@ impl Reader<'_, '_> {
     }
 
     /// Returns an error for a web colour such as `#b38033`, which is a comment in this language, if
-    /// one stands in place of the numbers before `next`.
+    /// one replaces the numbers before `next`.
     fn commented_color(&self, what: &str, after: &str, next: Span) -> Option<Diagnostic> {
         let last = self.last_span();
         let gap = self.text(Span { start: last.end, end: next.start.max(last.end), ..last });

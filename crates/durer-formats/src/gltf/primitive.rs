@@ -127,12 +127,12 @@ impl Model<'_> {
         }
         let mut pose = self.pose(at, &attributes, count);
         let order = self.order(at, count)?;
-        // Corners, with their normals and coordinates; a strip has a triangle for nearly each
-        // number.
+        // Corners with their normals and texture coordinates. A strip has nearly one triangle per
+        // index.
         let triangles = if mode == TRIANGLES { order.len() / 3 } else { order.len() };
         let lists = 1 + usize::from(has_normals) + usize::from(!data.uvs.is_empty());
         self.keep(triangles, 12 * lists, at)?;
-        // Marks of the vertices in use.
+        // Flags for the vertices in use.
         self.keep(count, 5, at)?;
         data.triangles = match mode {
             TRIANGLES => order.as_chunks::<3>().0.par_iter().copied().collect(),

@@ -22,7 +22,7 @@ use std::sync::Arc;
 const DEEPEST: usize = 15;
 const MAX_FILES: usize = 4096;
 const MAX_ELEMENTS: usize = 1 << 22;
-/// Bytes of a value with its variables replaced.
+/// Maximum size in bytes of a value after variable substitution.
 const MAX_VALUE: usize = 1 << 20;
 
 /// Tags of plugins; `camera` is of Mitsuba 0.6.

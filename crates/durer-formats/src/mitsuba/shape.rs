@@ -119,7 +119,7 @@ impl Reader<'_> {
                 made
             }
         };
-        // The instance counts too: what it shows may be empty.
+        // Count the instance itself too: its content may be empty.
         if self.room_for(count + 1, property.at) {
             let inner = Object { node: Node::Group((*group).clone()), material: None, span: plugin.at };
             objects.push(inner.placed(map));

@@ -38,8 +38,8 @@ impl Scale {
         }
     }
 
-    /// Smallest visible difference at a value, for a difference `step` of display values. Light is
-    /// judged relative to its strength.
+    /// Smallest visible difference at a value, for a difference `step` of display values. For
+    /// linear light, it is relative to the value.
     pub(super) fn visible(self, value: Vec3, step: f32) -> f32 {
         match self {
             Scale::Linear => step * value.abs().max_element().max(0.05),

@@ -164,8 +164,8 @@ fn chosen(meta: &MetaData) -> Result<(&Header, [Text; 3]), ImageError> {
     single.ok_or_else(|| ImageError::unsupported(NAME, "it has neither channels R, G and B nor a channel Y"))
 }
 
-/// Returns the size of the display window, and the offset of the stored pixels in it. A crop fills
-/// only a part of the window, and some programs store more than is displayed.
+/// Returns the size of the display window, and the offset of the stored pixels in it. The data may
+/// cover only a part of the window, or extend beyond it.
 fn window(header: &Header) -> (Vec2<usize>, Vec2<i64>) {
     let shown = header.shared_attributes.display_window;
     let from = header.own_attributes.layer_position;

@@ -266,7 +266,7 @@ fn what_reaches_far_beyond_the_others_is_no_part_of_a_grid() {
             assert_eq!(world.occluded(&ray, &mut ()), tree.occluded(&ray, &mut ()), "{ray:?}");
         }
     }
-    // A ground and what stands on it are one grid.
+    // The ground and the objects on it share one grid.
     let text = format!("{CAMERA}Group {{ Sphere {{ center 0 -100 0 radius 99 }} {balls} }}");
     let (world, _) = try_read(&text, Dialect::Durer.rules(), AccelKind::Grid(None), Path::new("."));
     assert!(matches!(world.unwrap().accel(), Accel::Grid { wide, .. } if wide.is_empty()));
