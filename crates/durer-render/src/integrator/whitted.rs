@@ -112,7 +112,7 @@ type Parts<'w> = SmallVec<[ShadedMaterial<'w>; MAX_BATCH]>;
 /// Thread-local buffers, reused for each batch of camera rays.
 struct Scratch {
     queue: Queue,
-    /// Buffer of [`MAX_BATCH`] points.
+    /// Buffer of [`MAX_BATCH`] shading points.
     points: Vec<ShadingPoint>,
     rays: [Ray64; MAX_BATCH],
 }

@@ -103,7 +103,7 @@ pub struct Job {
     /// Other pictures to render.
     #[serde(serialize_with = "aov_names", deserialize_with = "named_aovs")]
     pub aovs: Vec<&'static Aov>,
-    /// Depths shown as black and white; `None`: minimum and maximum of the picture, without the
+    /// Depths shown as black and white; `None`: minimum and maximum of the picture, excluding the
     /// horizon of a plane.
     pub depth_range: Option<(f32, f32)>,
     /// Scale of the false colours of light; `None`: from 0 to a percentile of the picture.

@@ -273,8 +273,8 @@ impl PartialRender {
         statistics
     }
 
-    /// Returns the visible error so far, the quantity that [`Job::noise`] limits: its root mean
-    /// square over the pixels. `None` unless every pixel has two samples.
+    /// Returns the visible error so far, which [`Job::noise`] limits: a root mean square over the
+    /// pixels. `None` unless every pixel has two samples.
     pub fn noise(&self) -> Option<f64> {
         let (gain, state) = (self.gain(), self.state());
         let (mut squares, mut pixels) = (0.0, 0);

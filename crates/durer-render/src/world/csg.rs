@@ -9,10 +9,10 @@
 //! Coincident faces: crossings of different parts count as one if the faces are nearly parallel and
 //! their distance across the surfaces is at most what the rounding of the scene's coordinates can
 //! cause: for boxes, one or two steps of single precision at each. Crossings are computed in the
-//! parts' own frames and in double precision, so a wall of four such steps stands. All their bits
-//! toggle together, so no thin skin is left, or appears, where two faces share a plane. If the bit
-//! of the whole changes, the surface belongs to the first part in the file that could have made the
-//! change: alone, or as the last.
+//! parts' own frames and in double precision, so a wall that is four such steps thick is kept. All
+//! their bits toggle together, so no thin skin remains or appears where two faces share a plane. If
+//! the bit of the solid changes, the surface belongs to the first part in the file that could have
+//! made the change: alone, or as the last.
 //!
 //! Faces that meet at an angle, as at an edge, count as one only within the rounding of the
 //! crossings, which is proportional to the parts' own size however far away they are. A larger
@@ -64,8 +64,8 @@ struct Leaf {
     edge: Edge,
     /// Index of its first triangle.
     first: u32,
-    /// Tolerance for the position of its surface; `None` for an unbounded part, whose tolerance is
-    /// that of the coordinates at the crossing.
+    /// Tolerance for the position of its surface; `None` for an unbounded part, whose tolerance
+    /// follows from the coordinates of the crossing.
     slack: Option<f32>,
     /// Bound of the error of a crossing.
     rounding: f32,
@@ -532,9 +532,9 @@ fn order(a: &Event, b: &Event) -> std::cmp::Ordering {
     a.t.total_cmp(&b.t).then(a.leaf.cmp(&b.leaf)).then(a.part.cmp(&b.part))
 }
 
-/// Returns a bound of the distance between an object's surface as it was meant and as its rounded
-/// coordinates have it: half a rounding of each coordinate of a corner, and the rounding within
-/// its own frame.
+/// Returns a bound on the distance between an object's intended surface and the surface given by
+/// its rounded coordinates: half a rounding step of each coordinate of a corner, and the rounding
+/// in its own frame.
 fn slack_of(object: &Object) -> Option<f32> {
     let reach = |b: Aabb| b.min.abs().max(b.max.abs());
     let (world, local) = (reach(object.bounds()?), reach(object.local_bounds()?));

@@ -75,7 +75,8 @@ pub enum Accel {
         grid: Grid,
         /// Object and part of each element of the grid.
         parts: Vec<(u32, u32)>,
-        /// Object and part of the few that reach far beyond the grid. Every ray tests them.
+        /// Object and part number of the few parts that extend far beyond the grid. Every ray tests
+        /// them.
         wide: Vec<(u32, u32)>,
     },
     /// Brute force.

@@ -151,8 +151,8 @@ impl AffineBody {
         (!hidden && pdf.is_finite() && pdf > 0.0).then_some(EmitterPoint { wi, distance, cosine, pdf })
     }
 
-    /// Pdf per solid angle with which [`AffineBody::sample`] chooses a direction that hits the
-    /// surface at `distance`.
+    /// Pdf per solid angle of [`AffineBody::sample`] for a direction that hits the surface at
+    /// `distance`.
     pub fn pdf(&self, from: DVec3, wi: Vec3, distance: f32) -> f32 {
         let origin = self.origin(from);
         let way = self.inverse(wi);

@@ -57,7 +57,7 @@ pub struct SceneDefaults {
     pub up: Option<Axis>,
     /// View; `None`: the model's own camera, else a three-quarter view.
     pub view: Option<View>,
-    /// Light; `None`: the model's own, else [`DefaultLighting::Soft`].
+    /// Lighting; `None`: the model's own lights, or else [`DefaultLighting::Soft`].
     pub studio: Option<DefaultLighting>,
     /// Name of the camera to use; `None`: the first.
     pub camera: Option<String>,

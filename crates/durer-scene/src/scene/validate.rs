@@ -32,8 +32,8 @@ impl Scene {
         self.validate_as(0)
     }
 
-    /// Checks as [`Scene::validate`], but under [`Quirk::AnyValues`] accepts values that official
-    /// programs draw.
+    /// Checks as [`Scene::validate`], but accepts values that official programs render if
+    /// [`Quirk::AnyValues`] is set.
     pub fn validate_as(&self, compat: QuirkSet) -> Diagnostics {
         let any = compat & Quirk::AnyValues.bit() != 0;
         let mut found = Validator { diagnostics: Diagnostics::default(), materials: self.materials.len(), any };

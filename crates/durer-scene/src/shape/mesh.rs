@@ -130,8 +130,8 @@ impl Mesh {
         Mesh { form: Form::Lists(data.into()), made: None, center: self.center }
     }
 
-    /// Returns the mesh with every triangle grown about one of its corners; the normals are
-    /// extrapolated.
+    /// Returns the mesh with every triangle scaled by `times` about one of its corners; the normals
+    /// are extrapolated.
     pub fn grown(&self, corner: usize, times: f32) -> Mesh {
         let mut data = self.to_data().into_owned();
         let (normals, triangle_normals) = self.normals();

@@ -241,14 +241,14 @@ pub struct PictureHead {
     pub samples: u32,
     /// Samples per pixel of the finished picture.
     pub all_samples: u32,
-    /// The part that follows, in pixels of the whole picture: first column, first row, width and
-    /// height. A coarse one may reach beyond the edge.
+    /// Part of the picture that follows, in pixels of the full picture: first column, first row,
+    /// width and height. A coarse part may extend beyond the edge.
     pub region: [u32; 4],
-    /// Visible error, the quantity that `durer render --noise-threshold` limits, once it is known.
+    /// Visible error, which `durer render --noise-threshold` limits; `None` if not yet known.
     pub noise: Option<f64>,
-    /// Milliseconds until it is finished, once they are known.
+    /// Estimated time until the picture is finished, in milliseconds; `None` if not yet known.
     pub left_ms: Option<f64>,
-    /// True if it is denoised.
+    /// True if the picture is denoised.
     pub denoised: bool,
     /// Number of rays traced.
     pub rays: f64,

@@ -113,7 +113,7 @@ impl Direct {
     #[inline(always)]
     pub(super) fn is_dark(&self, phong: &Phong) -> bool {
         let highlight = |(specular, exponent, _)| {
-            // Exponent 0 gives 1. A base above 1, of a normal that is longer, may give infinity.
+            // Exponent 0 gives 1. A base above 1, from a normal longer than 1, may give infinity.
             let shows = |base: f32| base > if specular == Color::ZERO { 1.0 } else { 0.0 };
             self.base.is_some_and(shows) || specular != Color::ZERO && exponent <= 0.0
         };

@@ -96,8 +96,8 @@ impl Names<'_> {
         }
     }
 
-    /// Returns lines that derive the numbers of a term. `dir` and `n`: direction and normal of the
-    /// ray that the term belongs to.
+    /// Returns lines that derive the numbers in a term. `dir` and `n`: direction of the ray that
+    /// the term belongs to, and normal.
     pub fn origins(&self, node: &TraceNode, dir: Vec3, n: Vec3) -> Vec<String> {
         origins(node, (self.scene, self.world), dir, n)
     }

@@ -531,7 +531,7 @@ fn coincident_parts_take_linear_time() {
     }
 }
 
-/// A room: a box without a smaller one, around a centre.
+/// A hollow box around a centre, with walls of thickness `wall`.
 fn room(center: Vec3, half: f32, wall: f32) -> scene::Object {
     let outer = cuboid((center - half - wall).to_array(), (center + half + wall).to_array());
     join(Operation::Difference, &[&outer, &cuboid((center - half).to_array(), (center + half).to_array())])
@@ -548,11 +548,11 @@ fn walls_of_four_steps_of_single_precision_let_nothing_through() {
             for steps in [4.0, 8.0, 20.0] {
                 let world = world(&room(center, half, steps * step));
                 for _ in 0..300 {
-                    // From inside to outside, exactly.
+                    // From exactly inside to exactly outside.
                     let from = center.as_dvec3() + 0.9 * f64::from(half) * random.point().as_dvec3();
                     let ray = Ray64::new(from, random.direction(), 0.0, f32::INFINITY);
                     let hit = world.intersect(ray, &mut ()).unwrap_or_else(|| panic!("{center} {steps} {ray:?}"));
-                    // Rays that leave the wall inwards stay inside.
+                    // Rays that leave the wall inwards stay in the room.
                     let mut way = random.direction();
                     if way.dot(ray.dir()) * hit.surface.n_geo.dot(ray.dir()).abs() > 0.0 {
                         way = -way;

@@ -366,9 +366,9 @@ impl LightSampler {
         }
     }
 
-    /// Returns the random numbers with which [`LightSampler::sample`] samples the centre of a
-    /// surface as seen from the point; for a triangle or cylinder, some fixed point. `None` if the
-    /// emitter is not a surface.
+    /// Returns the random numbers for which [`LightSampler::sample`] returns the centre of the
+    /// surface as seen from the shading point; for a triangle or cylinder, some fixed point. `None`
+    /// if the emitter is not a surface.
     pub fn middle(&self, light: LightId) -> Option<Vec2> {
         let source = *self.parts.get(self.first[light.object()? as usize] as usize)? as usize;
         match self.sources.get(source)? {
