@@ -114,7 +114,7 @@ pub fn save_all<C: Content>(files: &[(&Destination, C)]) -> Result<(), SaveError
     for (place, content) in files.iter().filter(|file| !file.0.is_stream()) {
         staged.push(stage(place.path(), content)?);
     }
-    // Writes to streams cannot be undone, so they follow when the files are safe on the disk.
+    // Writes to streams cannot be undone, so they come after the files are safely on disk.
     for (place, content) in files {
         if let Some(mut stream) = place.stream.as_ref() {
             content.write_to(&mut stream).map_err(|error| SaveError::Io { path: place.path.clone(), error })?;
@@ -122,8 +122,8 @@ pub fn save_all<C: Content>(files: &[(&Destination, C)]) -> Result<(), SaveError
     }
     for (temporary, target) in staged {
         temporary.persist(&target).map_err(|error| SaveError::Io { path: target.clone(), error })?;
-        // Sync the folder, so that the new name survives a power failure. Where folders cannot be
-        // synced, the system decides.
+        // Sync the folder, so that the new name survives a power failure. If folders cannot be
+        // synced, leave it to the system.
         #[cfg(unix)]
         let _ = File::open(folder_of(&target)).and_then(|folder| folder.sync_all());
     }

@@ -72,7 +72,7 @@ fn adjustment_reaches_the_published_costs() {
         let report = adjust(&mut all, &Options::default());
         assert!(report.converged && all.fit().cost <= before, "{name}");
     }
-    // It has many outliers, which OpenSfM weights less.
+    // It has many outliers, to which OpenSfM gives less weight.
     let mut berlin = read(&folder.join("opensfm-berlin/reconstruction_example.json")).unwrap();
     let before = berlin.fit().cost;
     adjust(&mut berlin, &Options { loss: Loss::Huber(3.0), ..Options::default() });

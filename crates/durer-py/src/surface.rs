@@ -73,9 +73,8 @@ impl Face<'_> {
     ///
     /// The kernel computes the hit distance in double precision, and decides the hit in single
     /// precision. So a ray that starts in front of a triangle's plane, by more than the rounding of
-    /// its origin, does not hit it on the way forwards. `error` bounds the rounding, each part with
-    /// a factor of two to spare:
-    /// as much again to spare:
+    /// its origin, does not hit it on the way forwards. `error` bounds the rounding, with a factor
+    /// of two to spare in each part:
     ///
     /// - the origin, to single precision in object space;
     /// - the transform to world space and back, in double precision: a translation to and from the

@@ -2,7 +2,7 @@
 //! Ctrl-C and reports progress.
 //!
 //! Parallel work runs in a [`pool`] of this process, never in rayon's global pool: after a fork,
-//! that one waits for threads which do not exist.
+//! the global pool waits for threads that no longer exist.
 
 use durer::threads;
 use pyo3::prelude::*;
@@ -15,13 +15,13 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Interval of checking signals and reporting progress.
+/// Interval between checks for signals and progress reports.
 pub const LOOK: Duration = Duration::from_millis(50);
 
 /// A process, its requested number of threads, and the pool.
 type KnownPool = (u32, Option<usize>, Option<Arc<ThreadPool>>);
 
-/// Cached pools. They belong to a process: after a fork the threads are gone.
+/// Cached pools. They belong to one process: after a fork, their threads no longer exist.
 static POOLS: Mutex<Vec<KnownPool>> = Mutex::new(Vec::new());
 
 /// Returns the shared pool of this process with the requested number of threads; `None` if threads
@@ -104,7 +104,7 @@ pub fn each<J: Send>(
         jobs.into_iter().take_while(|_| pace.goes_on()).for_each(|job| work(job, &pace));
         pace.own.map_or(Ok(()), |own| own.into_inner().1)
     };
-    // Too little work for threads.
+    // Too little work for several threads.
     if jobs.len() <= 1 {
         py.detach(|| alone(std::mem::take(&mut jobs)))?;
         return py.check_signals();

@@ -298,7 +298,7 @@ impl Reader<'_, '_> {
         value
     }
 
-    /// True with the quirk `any-values`, which renders senseless values.
+    /// True with the quirk `any-values`, which accepts invalid values.
     pub(super) fn any_values(&self) -> bool {
         self.options.compat & Quirk::AnyValues.bit() != 0
     }

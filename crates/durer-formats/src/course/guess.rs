@@ -115,7 +115,8 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
             (set::DURER, "only the Dürer dialect names materials".into())
         } else if let Some(set) = dialects_of(&word).filter(|set| match *set {
             set::F23 => is_telling(&word),
-            // Require a block for words of the Dürer dialect: `top` or `min` may be a file name.
+            // A word of the Dürer dialect counts only if a block follows: `top` or `min` may be a
+            // file name.
             set::DURER => braced,
             _ => true,
         }) {

@@ -86,11 +86,11 @@ struct Model<'a> {
     material_count: usize,
     /// Index of the selected variant, if the file has variants.
     variant: Option<usize>,
-    /// For each material, true if it is translucent by its alpha.
+    /// For each material, true if its alpha makes it translucent.
     blends: Vec<bool>,
     /// For each material, true if some vertices with it have colours.
     colored: Vec<bool>,
-    /// For each material, true if it needs tangents.
+    /// For each material, true if it requires tangents.
     leans: Vec<bool>,
     meshes: Vec<Primitives>,
     /// Weights of the morph targets of each mesh.

@@ -170,7 +170,7 @@ impl Model<'_> {
         let name = at.name();
         let message = format!("points and lines of mesh{name} have no surface: small balls and thin sticks are shown");
         self.once_at("points-and-lines", &at.pointer(), &message);
-        // Each becomes a dozen vertices.
+        // Each point or line becomes a dozen vertices.
         self.charge(order.len(), 12 * 64, at)?;
         self.keep(order.len(), 12 * 64, at)?;
         let strip = || order.windows(2).map(|pair| [pair[0], pair[1]]);

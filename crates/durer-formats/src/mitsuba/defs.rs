@@ -74,7 +74,7 @@ pub(super) struct AreaEmitter {
     pub key: Key,
 }
 
-/// Infinite light. A scene of Mitsuba has at most one.
+/// Infinite light. A Mitsuba scene has at most one.
 pub(super) enum InfiniteLight {
     Even(Color, Span),
     Picture {

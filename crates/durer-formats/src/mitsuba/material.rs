@@ -336,7 +336,7 @@ impl Reader<'_> {
             let beckmann = plugin.text(self.report, "distribution").is_none_or(|distribution| distribution != "ggx");
             let boundary = Boundary::new(index, m.specular_roughness, beckmann);
             m.base_color = match m.base_color_texture.is_some() {
-                // For a picture, use middle grey.
+                // If the colour is a picture, use middle grey.
                 true => m.base_color * boundary.below(nonlinear.then_some(0.5)),
                 false => m.base_color.map(|color| boundary.base(color, nonlinear)),
             };

@@ -88,7 +88,7 @@ const DEEPEST_FILES: usize = 64;
 const DEEPEST_SCOPES: usize = 1 << 12;
 
 impl Reader<'_> {
-    /// Reads the whole file and returns the scene. Errors are in `said`.
+    /// Reads the whole file and returns the scene. Errors are in the reader's report.
     pub fn read(mut self) -> Scene {
         while !self.report.is_full() {
             let report = self.report;

@@ -90,7 +90,7 @@ impl Picture {
     /// # Errors
     /// Errors of [`Encoded::read`].
     pub fn decode(encoded: &Encoded, memory: u64) -> Result<Picture, ImageError> {
-        // PNG and PPM with 16 bits per channel contain display values, too.
+        // 16-bit PNG and PPM files contain display values, too.
         let scale = if encoded.depth() == Depth::Float { Scale::Linear } else { Scale::Display };
         Ok(Picture { image: encoded.read(memory, decode_linear)?, scale })
     }

@@ -218,7 +218,7 @@ pub enum Output {
     ColmapText,
     /// COLMAP's folder of binary files.
     ColmapBinary,
-    /// OpenSfM's JSON file, with its tracks beside it.
+    /// OpenSfM's JSON file, with its tracks in a separate file next to it.
     OpenSfm,
     /// PLY file of points.
     Ply,

@@ -21,8 +21,8 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 
 /// Scale of the Cauchy loss in standard deviations. It loses a twentieth of the efficiency for
 /// normal errors (Holland, Welsch, *Robust Regression Using Iteratively Reweighted Least-Squares*,
-/// 1977), but gains much for others: half of the coordinates of salient points are off by a tenth
-/// of a pixel or less, and some by two pixels.
+/// 1977), but gains much for other distributions: half of the coordinates of salient points are off
+/// by a tenth of a pixel or less, and some by two pixels.
 const CAUCHY: f64 = 2.385;
 /// Minimum standard deviation of a salient point in pixels.
 const FINEST: f64 = 0.02;

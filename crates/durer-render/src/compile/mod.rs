@@ -428,7 +428,7 @@ struct SceneFlattener<'a, 'r> {
     material_count: u32,
     /// True if some object needs the plain material after the last one.
     plain_needed: bool,
-    /// First object without a material, and their number.
+    /// First object without a material, and the number of such objects.
     bare: Option<(Span, usize)>,
     /// Number of transforms around the current object.
     transforms: u32,

@@ -39,8 +39,8 @@ pub struct WhittedOptions {
     pub reflection: bool,
     /// Traces transmitted rays.
     pub refraction: bool,
-    /// Minimum throughput of a ray. A colour counts by its largest component; for old programs, by
-    /// its length, as in the course.
+    /// Minimum throughput of a ray. A colour's throughput is its largest component; for old
+    /// programs, its length, as in the course.
     pub least_weight: f32,
 }
 
@@ -73,8 +73,8 @@ pub struct Whitted<'w> {
     pub world: &'w World,
     /// Settings.
     pub settings: WhittedOptions,
-    /// Once set, no more rays are traced, and results are meaningless. A single pixel of many
-    /// mirrors may take long.
+    /// Once set, no more rays are traced, and results are meaningless. A single pixel that shows
+    /// many mirrors may take a long time.
     pub cancel: Option<&'w AtomicBool>,
 }
 

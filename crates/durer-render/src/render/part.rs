@@ -26,7 +26,7 @@ pub struct PartialRender {
     pub(super) blocks: Blocks,
     pub(super) ray_blocks: Blocks,
     state: Mutex<State>,
-    /// Number of times it was locked.
+    /// Number of times the state was locked.
     #[cfg(test)]
     pub(super) locked: std::sync::atomic::AtomicU64,
 }

@@ -174,7 +174,7 @@ impl PartialRender {
         let state = self.state();
         let (colors, coverage) = self.colors(&state);
         let variance = self.summed(&state, |sums| Vec3::splat(sums.variance() as f32));
-        // With too few samples, assume the pixel's own brightness as its error.
+        // With too few samples, use the pixel's own brightness as its error.
         let sure = |(value, color): (&(Vec3, PrimaryHit), &Color)| match value.0.x.is_finite() {
             true => value.0.x,
             false => color.max_element() * color.max_element(),

@@ -94,7 +94,7 @@ fn film_does_not_depend_on_how_it_is_rendered() {
     assert_ne!(one_ray(1), one_ray(2));
 }
 
-/// Samples are generated and shaded in batches, but explained and replayed one by one.
+/// Samples are generated and shaded in batches, but explained and replayed one at a time.
 #[test]
 fn film_equals_the_sum_of_single_samples() {
     let folder = tempfile::tempdir().unwrap();
@@ -212,8 +212,8 @@ fn noise_threshold_controls_the_number_of_samples() {
     let counts: Vec<f32> = part.pictures().unwrap().layers[1].image.pixels.iter().map(|p| p.x).collect();
     let (least, most) = counts.iter().fold((f32::MAX, 0.0_f32), |(a, b), &n| (a.min(n), b.max(n)));
     assert!(least == passes::LEAST as f32 && most >= 3.0 * least, "{least} {most}");
-    // The true error is as requested, against a picture with many more samples, pixel by pixel in
-    // sqrt(Y).
+    // The true error matches the threshold, measured against a picture with many more samples,
+    // pixel by pixel in sqrt(Y).
     let truth = all(&world, &Job { sampling: filtered(1024), noise: None, ..job.clone() }).pictures().unwrap();
     let (ours, truth) = (&part.pictures().unwrap().layers[0].image, &truth.layers[0].image);
     let seen = |p: &Vec3| (0.2126 * p.x + 0.7152 * p.y + 0.0722 * p.z).max(1.0 / 256.0).sqrt();

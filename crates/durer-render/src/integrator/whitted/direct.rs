@@ -63,7 +63,7 @@ impl Whitted<'_> {
         // Limits the number of layers.
         for layer in 1.. {
             let Some(hit) = found else { return share };
-            // An opaque material ends the search without a closer look.
+            // An opaque material ends the search early.
             match &self.world.materials()[self.world.material_of(&hit) as usize] {
                 Material::Phong(phong) if phong.transparent == Color::ZERO => break,
                 _ => {}

@@ -1,6 +1,6 @@
 //! Hits as in the course's programs of 2012 to 2023: object by object, in single precision,
-//! operation by operation. Pictures of objects that are distant, seen at a grazing angle or as
-//! large as the ground depend on the last bit.
+//! operation by operation. The last bit matters in pictures of objects that are distant, seen at a
+//! grazing angle or as large as the ground.
 //!
 //! Sources: the starter code of the assignments, whose spheres, groups, cameras and octree the
 //! official programs share; pictures of these programs for the rest.
@@ -66,7 +66,7 @@ pub struct HitRules {
     pub triangle_matrix: bool,
     /// True if a triangle wins over earlier objects that are hit at the same distance.
     pub tied_triangles: bool,
-    /// True if a plane is also hit at the very start of a ray.
+    /// True if a plane is also hit exactly at the start of a ray.
     pub closed_planes: bool,
     /// True if a sphere is also hit exactly at the start of a ray, as in the starter code of 2020.
     /// If false, such a hit is at distance 10000, as in earlier starter code.

@@ -16,7 +16,7 @@ const MOST: usize = 7;
 /// Deepest level whose cells are divided.
 const LAST_LEVEL: u32 = 8;
 /// Division stops if all cells together hold `PLENTY` triangles plus `TIMES` those of the mesh:
-/// large intersecting triangles would fill the memory.
+/// otherwise, large intersecting triangles would exhaust the memory.
 const PLENTY: usize = 1 << 20;
 const TIMES: usize = 64;
 

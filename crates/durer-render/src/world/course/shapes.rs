@@ -1,4 +1,4 @@
-//! Spheres, planes and triangles in the arithmetic of the course.
+//! Spheres, planes and triangles in the course's arithmetic.
 
 use super::HitRules;
 use durer_scene::math::{Ray, Vec2, Vec3};

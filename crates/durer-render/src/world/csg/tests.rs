@@ -265,7 +265,7 @@ fn set_identities_hold_bit_for_bit() {
             &join(Merge, &[&a, &join(Intersection, &[&b, &c])]),
             &join(Intersection, &[&join(Merge, &[&a, &b]), &join(Merge, &[&a, &c])]),
         );
-        // Subtracting one by one, or together.
+        // Subtracting one after another, or together.
         same(&join(Difference, &[&a, &b, &c]), &join(Difference, &[&a, &either]));
         same(&join(Difference, &[&join(Difference, &[&a, &b]), &c]), &join(Difference, &[&a, &either]));
         // Idempotence, and subtraction of itself.
@@ -298,7 +298,7 @@ fn coincident_faces_leave_no_skin() {
         (join(Intersection, &[&long, &start]), start.clone()),
     ];
     for _ in 0..40 {
-        // The whole rotated, stretched and moved away.
+        // The full scene rotated, stretched and moved away.
         let rows = glam::DMat4::from(random.affine(2.0, 3.0)).transpose().to_cols_array().map(|x| x as f32);
         let placed = MatrixOp::Matrix(rows);
         let map: DAffine3 = placed.matrix();
@@ -404,7 +404,7 @@ fn disjoint_parts_become_separate_objects() {
     let list: Vec<&scene::Object> = balls.iter().collect();
     let merged = join(Merge, &list);
     assert_eq!(world(&merged).objects().len(), 1000);
-    // A cut through one sphere affects only that one.
+    // A cut through one sphere affects only that sphere.
     let cut = join(Difference, &[&merged, &ball([3.0, 1.0, 0.0], 0.5)]);
     let compiled = world(&cut);
     assert_eq!(compiled.objects().len(), 1000);
@@ -516,7 +516,8 @@ fn rays_that_leave_a_solid_do_not_hit_it_at_their_start() {
     assert!(count > 10_000, "{count}");
 }
 
-/// Coincident crossings, as many as parts: each is visited a few times, not once for each other.
+/// The number of coincident crossings equals the number of parts: each is visited a few times, not
+/// once for every other one.
 #[test]
 fn coincident_parts_take_linear_time() {
     let count = 30_000;
