@@ -82,8 +82,8 @@ fn reach(bounds: &Aabb) -> f32 {
     0.55 * bounds.size().length().max(1e-3)
 }
 
-/// Rotates a direction by `around` about an axis, then tilts it by `towards` radians towards the
-/// axis.
+/// Rotates a direction about an axis by `around` radians, then tilts it towards the axis by
+/// `towards` radians.
 fn turned(forward: Vec3, axis: Vec3, right: Vec3, around: f32, towards: f32) -> Vec3 {
     let angle = forward.angle_between(axis);
     let limit = std::f32::consts::PI - POLE;

@@ -321,8 +321,8 @@ impl Session {
         self.read(false, send)
     }
 
-    /// Reads and compiles the text. A moved camera keeps its position unless the text changed the
-    /// camera.
+    /// Reads and compiles the text. A camera that was moved keeps its position, unless its
+    /// statement in the text has changed.
     fn read(&mut self, anew: bool, send: &mut dyn FnMut(Event)) -> Result<(), String> {
         let start = (self.clock)();
         let document = self.document.as_mut().ok_or("no scene is open")?;
@@ -479,7 +479,7 @@ impl Session {
         self.viewer.restart(now);
     }
 
-    /// Works for some milliseconds.
+    /// Works for a few milliseconds.
     pub(crate) fn step(&mut self, say: &mut dyn FnMut(Message)) {
         let Some(compiled) = self.document.as_ref().and_then(|document| document.compiled.as_ref()) else {
             self.viewer.rest();

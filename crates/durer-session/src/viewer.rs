@@ -1,4 +1,4 @@
-//! Progressive rendering from coarse to fine, in steps of some milliseconds.
+//! Progressive rendering from coarse to fine, in steps of a few milliseconds.
 
 use crate::display::{display, pixels};
 use crate::document::CompiledDocument;
@@ -107,7 +107,7 @@ impl Viewer {
         (self.stage, self.changed, self.rays) = (Stage::Coarse, now, 0);
     }
 
-    /// Forgets the measured cost and the last picture, when another scene is opened.
+    /// Discards the measured cost and the last picture when another scene is opened.
     pub fn forget(&mut self) {
         (self.cost, self.shown, self.clean, self.crop) = (None, None, None, None);
     }
@@ -193,8 +193,8 @@ impl Viewer {
         while render.next_pass(&compiled.world, &control).map_err(wrong)?.is_some() {}
         let shown = self.picture_of(&render, divisor, 1, None)?;
         let made = (clock() - start) / coarse.window().pixels() as f64;
-        // Average the cost: a first picture with cold caches or a coarse clock soon loses its
-        // influence.
+        // Average the cost, so that the influence of a first picture with cold caches or a coarse
+        // clock soon fades.
         let known = self.cost.map_or(made, |cost| 0.5 * (cost + made));
         self.cost = (made > 0.0).then_some(known).or(self.cost);
         self.tiles = self.cost.map_or(4, |cost| ((STEP / cost / 256.0) as u64).clamp(2, 4096));

@@ -26,7 +26,7 @@ use std::sync::{Arc, OnceLock};
 
 /// Memory limit for pictures, in bytes.
 const MEMORY: u64 = 64 << 20;
-/// Number of pixels up to which a partial render's pictures are made.
+/// Number of pixels up to which the pictures of a partial render are computed.
 const PIXELS: u64 = 1 << 16;
 
 /// Reads a scene file; writing and reading it again gives the same scene.

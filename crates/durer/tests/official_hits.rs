@@ -81,7 +81,8 @@ const SUN: &str = "DirectionalLight { direction 0 -1 0 color 1 1 1 }";
 #[test]
 fn secondary_rays_of_2016_start_farther_along_and_those_of_2012_have_a_minimum_t() {
     // A light 0.005 in front of the right wall illuminates the left wall at a distance of 1.995.
-    // The ray hits the right wall at t = 1.99, because it starts 0.01 along its direction.
+    // The ray hits the right wall at t = 1.99, because its start is moved by 0.01 along its
+    // direction.
     let light = "PointLight { position 0.995 1 0 color 1 1 1 falloff 0.25 }";
     let scene = classic(light, &["Plane { normal 1 0 0 offset -1 }", "Plane { normal -1 0 0 offset -1 }"]);
     let left = |world: &World| seen(world, [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]);
@@ -277,7 +278,7 @@ fn glass_of_2012_uses_plane_normals_as_written() {
                MaterialIndex 1 Sphere {{ center 0 -2 0 radius 1 }} }}"
         )
     };
-    // Seen at normal incidence through the pane, the ball has 1 - R of its light.
+    // Seen at normal incidence through the pane, the ball appears with 1 - R of its light.
     let share = |text: &str, off: &[Quirk]| {
         seen(&world_in(Path::new("."), text, Dialect::F12a5, off).0, [0.0, 5.0, 0.0], [0.0, -1.0, 0.0]).x
     };

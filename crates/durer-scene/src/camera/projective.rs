@@ -13,7 +13,7 @@
 //! ```
 //!
 //! Rays need the inverse, by Newton's method. The camera sees nothing where the distortion folds
-//! back on itself: the model has no meaning there.
+//! back on itself, since the model is meaningless there.
 //!
 //! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 //! sections 6.1, 6.2 and A4.1; Brown, *Decentering Distortion of Lenses*, Photogrammetric

@@ -161,7 +161,7 @@ pub fn triangle_surface(corners: [Vec3; 3], normals: Option<[Vec3; 3]>, uv: Vec2
         let [front, back] = offsets_of_corners(position, corners, normals);
         shadow_offsets = [mixed(front, barycentric), mixed(back, barycentric)];
     }
-    // The stored normals define the outside, whatever the winding of the corners.
+    // The stored normals define the outside, regardless of the winding of the corners.
     let n_geo = if n_geo.dot(n_shade) < 0.0 { -n_geo } else { n_geo };
     Surface {
         position,

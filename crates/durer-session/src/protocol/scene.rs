@@ -56,7 +56,7 @@ pub enum Motion {
     },
     /// Restores the camera of the text.
     Home,
-    /// Moves back along the view direction until the whole scene is visible.
+    /// Moves back along the view direction until the full scene is visible.
     Frame,
 }
 
@@ -107,7 +107,7 @@ pub struct Finding {
     pub code: String,
     /// Message in one sentence.
     pub message: String,
-    /// Help: how to fix it.
+    /// Hint on how to fix the problem.
     pub help: Option<String>,
     /// Effect on the picture.
     pub effect: Option<String>,
@@ -115,7 +115,7 @@ pub struct Finding {
     pub file: Option<String>,
     /// Place in the file.
     pub place: Option<Place>,
-    /// Edits that fix the fault.
+    /// Edits that fix the problem.
     pub fix: Vec<Change>,
 }
 
@@ -201,7 +201,7 @@ pub struct CameraState {
     pub fields: Vec<FieldState>,
     /// Statement of the camera in the scene language.
     pub statement: String,
-    /// True if it differs from the camera of the text.
+    /// True if the camera differs from the one in the text.
     pub moved: bool,
 }
 
@@ -217,9 +217,9 @@ pub struct FieldState {
     pub values: Vec<f32>,
     /// Value, if it is a word or a file name.
     pub text: String,
-    /// Minimum value, if limited.
+    /// Minimum value, if there is one.
     pub least: Option<f32>,
-    /// Maximum value, if limited.
+    /// Maximum value, if there is one.
     pub most: Option<f32>,
 }
 

@@ -81,7 +81,7 @@ fn missing_mesh_is_reported_once_with_a_similar_name() {
         ["scene/scene.txt:5:25 error: the mesh cannot be read: the file `tir.obj` does not exist (did you \
           mean `tri.obj`? Looked for scene/tir.obj)"]
     );
-    // Thousands of them take little time.
+    // Thousands of meshes take little time.
     let many: String = (0..20_000).map(|i| mesh(&format!("{i}.obj"))).collect();
     assert_eq!(findings(&many).len(), 20);
 }

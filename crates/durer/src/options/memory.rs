@@ -52,7 +52,7 @@ impl Memory {
         };
         let mut system = System::new();
         system.refresh_memory();
-        // Without /proc the size is unknown, and asking for control groups would fail.
+        // Without `/proc`, the memory size is unknown, and querying control groups would fail.
         let machine = Some(system.total_memory()).filter(|&bytes| bytes > 0)?;
         let all = [of_groups(), address_space()].into_iter().flatten().fold(machine, u64::min);
         Some((all as f64 * percent / 100.0) as u64)

@@ -18,7 +18,7 @@ pub enum Subject {
     Ray(Box<Tree>),
 }
 
-/// Makes the document of `durer explain --json`: the tree of terms, and the names of the objects,
+/// Creates the document of `durer explain --json`: the tree of terms, and the names of the objects,
 /// materials and lights that it refers to by index.
 pub fn explanation(subject: &Subject, names: &Names) -> Value {
     let (mut objects, mut lights, mut materials) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
