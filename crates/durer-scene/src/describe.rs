@@ -168,7 +168,7 @@ impl Field {
     /// [`Quirk::AnyValues`]. `keyword` is the object's keyword. `None` if the programs render
     /// nothing meaningful with it.
     ///
-    /// [`Quirk::AnyValues`]: crate::dialect::Compat::AnyValues
+    /// [`Quirk::AnyValues`]: crate::dialect::Quirk::AnyValues
     pub fn drawn_anyway(&self, keyword: &str, value: &Value) -> Option<Value> {
         match (keyword, self.name, value) {
             // The program squares the radius; no usable radius is smaller than this.

@@ -1,4 +1,4 @@
-//! Memory of a session over many edits. The test runs in a process of its own, since allocations of
+//! Memory of a session over many edits. The test runs in its own process, since allocations of
 //! other tests would be counted.
 
 mod page;

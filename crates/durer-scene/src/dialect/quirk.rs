@@ -12,7 +12,7 @@ macro_rules! quirks {
         pub enum Quirk { $($(#[doc = $doc])+ $variant,)+ }
 
         impl Quirk {
-            /// All quirks, with their names and meanings.
+            /// Every quirk, with its name and meaning.
             pub const ALL: &'static [(Quirk, &'static str, &'static str)] =
                 &[$((Quirk::$variant, $name, concat!($($doc, "\n"),+)),)+];
         }
