@@ -1,4 +1,4 @@
-//! Signatures of file formats: first bytes that identify a file, whatever its name.
+//! Signatures of file formats: first bytes that identify a file, regardless of its name.
 
 use durer_diag::{Diagnostic, Span};
 

@@ -1,9 +1,9 @@
 //! Atomic file writes.
 //!
-//! Bytes go into a temporary file beside the target and are synced; then the file is renamed to the
-//! target. If anything fails, the old file is intact and no temporary file remains. The new file
-//! has the permissions of the old one, or those of an ordinary new file. Symbolic links are
-//! followed; hard links are not.
+//! Bytes are written to a temporary file in the target's folder and synced; then the file is
+//! renamed to the target. If anything fails, the old file is intact and no temporary file remains.
+//! The new file has the permissions of the old one, or those of an ordinary new file. Symbolic
+//! links are followed; hard links are not.
 
 use super::content::Content;
 use super::temporary::{Temporary, remove_stale};
@@ -104,7 +104,7 @@ pub fn save(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), SaveError> {
     save_all(&[(&Destination::new(path.as_ref())?, bytes)])
 }
 
-/// Saves several files: writes all of them beside their targets before the first rename.
+/// Saves several files: writes all of them to temporary files before the first rename.
 ///
 /// # Errors
 /// [`SaveError`]. All files are then unchanged, unless a rename itself fails because the folders

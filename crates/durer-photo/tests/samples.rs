@@ -185,7 +185,7 @@ fn stored_places_are_off(solved: &Reconstruction, bundler: &Reconstruction) {
     let (ours, theirs) = (median_residual(solved, bundler), median_residual(bundler, bundler));
     println!("median residual of what Bundler saw: {ours} with our cameras, {theirs} with its own");
     assert!(ours < 0.85 * theirs, "{ours} {theirs}");
-    // Its observations, with a single lens, reproduce our cameras.
+    // Bundler's observations, with a single lens, reproduce our cameras.
     let mut one = bundler.clone();
     one.lenses = vec![durer_photo::Lens { radial: [0.0; 2], ..bundler.lenses[0] }];
     one.views.iter_mut().for_each(|view| view.lens = 0);

@@ -85,7 +85,7 @@ impl Face<'_> {
     ///   hit what is behind it.
     ///
     /// The origin is off the plane by twice the bound, projected onto the normal, and off the edges
-    /// by eight times: so it is in front of the neighbours too, down to folds of a few degrees.
+    /// by eight times: so it is also in front of the neighbours, down to folds of a few degrees.
     ///
     /// [`Ray64`]: durer::math::Ray64
     fn leave(&self, uv: [f32; 2], dir: Vec3) -> DVec3 {

@@ -44,8 +44,8 @@ impl Boundary {
     }
 
     /// Mean radiance of a diffuse base through the boundary in Mitsuba, divided by that in Dürer.
-    /// Mitsuba loses light on the way in and on the way out. `left` is the share that stays at each
-    /// bounce if bounces change the colour.
+    /// Mitsuba loses light on the way in and on the way out. `left` is the share that remains after
+    /// each bounce, if bounces change the colour.
     pub fn below(&self, left: Option<f32>) -> f32 {
         let shown = |[through, inside]: [f32; 2]| {
             let through = through / self.index;

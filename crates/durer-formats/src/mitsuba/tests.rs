@@ -27,7 +27,7 @@ fn objects(scene: &Scene) -> Vec<&Object> {
         match &object.node {
             Node::Group(group) => group.objects.iter().for_each(|object| gather(object, all)),
             Node::Transform(_, inner) => gather(inner, all),
-            // Ground of the default studio.
+            // Ground of the default scene setup.
             Node::Primitive(Primitive::Plane(_)) => {}
             _ => all.push(object),
         }

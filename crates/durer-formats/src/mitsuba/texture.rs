@@ -185,7 +185,7 @@ impl Reader<'_> {
             }
         };
         texture.known(&["raw", "accel", "format"]);
-        // A picture's alpha does not cut holes here; `mask` does.
+        // A picture's alpha does not cut holes in Mitsuba; `mask` does.
         mapping.cutoff = Some(0.0);
         let (bytes, scale) = make(&self.loader.path(&name), texture.place("filename"))?;
         Some((Picture { bytes, mapping }, scale))

@@ -301,7 +301,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Skips the value of an `Option`, whose string is its parameter. Options have no effect here.
+    /// Skips the value of an `Option`, whose string is its parameter. Options have no effect in
+    /// Dürer.
     fn skip_value(&mut self) {
         let report = self.report;
         let text = self.text();

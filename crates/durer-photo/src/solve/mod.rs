@@ -86,9 +86,9 @@ pub struct Solution {
 
 /// Reconstructs cameras and points. `progress` receives the number of registered photographs.
 ///
-/// With a wrong focal length, as EXIF contains for photographs that were reduced in size, few
-/// photographs fit, or the focal length moves far. In that case, solves again from the resulting
-/// focal length or from a usual one, and returns the better result.
+/// With a wrong focal length, such as that in the EXIF data of photographs that were reduced in
+/// size, few photographs fit, or the focal length moves far. In that case, solves again from the
+/// resulting focal length or from a typical one, and returns the better result.
 ///
 /// # Errors
 ///
@@ -154,7 +154,7 @@ fn attempt(
         solver.extend();
         let known = solver.registered();
         progress(known);
-        // With many photographs, one more changes little.
+        // With many photographs, one more makes little difference.
         if known > last_adjusted + last_adjusted / 10 {
             solver.adjust(false);
             solver.drop_misfits();

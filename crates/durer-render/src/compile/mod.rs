@@ -70,7 +70,7 @@ impl<'a> Resources<'a> {
 
 /// Compiles a scene into a world. Collects errors and warnings; returns `None` after an error.
 ///
-/// First checks all values with [`Scene::validate`], whatever the source of the scene.
+/// First checks all values with [`Scene::validate`], regardless of the scene's source.
 pub fn compile(
     scene: &Scene,
     rules: &Rules,

@@ -230,7 +230,7 @@ fn tables_of_a_material_are_computed_before_rays_are_traced() {
         ("specularRoughness 0 coatWeight 0.5 coatRoughness 0.2", [true, false, true]),
         ("baseMetalness 1 coatWeight 0.5 coatRoughness 0.2", [false, false, true]),
     ] {
-        // With half its specular weight, an opaque base has another index than glass.
+        // An opaque base with half its specular weight has a different index than glass.
         let text = format!("{CAMERA} Materials {{ PrincipledMaterial {{ specularWeight 0.5 {words} }} }} Group {{ }}");
         let world = super::testing::read(&text);
         let Material::Phong(phong) = &world.materials()[0] else { panic!("{words}") };

@@ -163,7 +163,7 @@ impl Media {
             let others = world.glass_around(start).filter(|&(other, _)| other != object);
             Media::within(world, others.chain([(object, ior)]))
         } else {
-            // With inverted normals it is the wall of a cavity in the surrounding medium.
+            // With inverted normals, it is the wall of a cavity in the surrounding medium.
             let behind = self.object().map_or(Media::default(), |around| self.left(around));
             return Passage {
                 here: if self.is_air() { own.ior } else { self.ior() },

@@ -20,7 +20,7 @@ use serde::Serialize;
 
 /// Receives the terms of an integrator. The closures are called only by listeners that store terms.
 pub trait TraceListener: TraversalCounter {
-    /// True if terms of zero contribution should be reported too.
+    /// True if terms without a contribution should also be reported.
     const LISTENS: bool = false;
 
     /// Sets the meaning of the lanes of all terms; RGB by default.

@@ -308,8 +308,8 @@ impl<'w> Whitted<'w> {
                     *direct = Direct::of(part.phong, *diffuse, point.n, ray.dir(), &seen);
                     dark &= direct.is_dark(part.phong);
                 }
-                // Only listeners need the visibility of a light that adds nothing.
-                // An infinite light times 0 is NaN, as in the official programs.
+                // Only listeners need the visibility of a light that contributes nothing. An
+                // infinite light times 0 is NaN, as in the official programs.
                 let adds_nothing = dark && seen.color.is_finite() || seen.color == Color::ZERO;
                 if adds_nothing && !T::LISTENS {
                     continue;

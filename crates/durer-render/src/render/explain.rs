@@ -53,7 +53,7 @@ pub struct Explanation {
 pub enum Mean {
     /// Weighted mean of the pixel's own samples, by the film's exact sums.
     Own,
-    /// 2004: samples of neighbouring pixels count too; the weighted mean, summed in double
+    /// 2004: samples of neighbouring pixels contribute too; the weighted mean is summed in double
     /// precision.
     Around,
     /// 2012: sub-pixels are blurred along rows, then along columns, then averaged. The weights

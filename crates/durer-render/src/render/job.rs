@@ -47,8 +47,8 @@ pub enum Sampling {
 }
 
 impl Sampling {
-    /// Returns the final number of samples of a pixel. It is one if samples affect other pixels
-    /// too: the finished value.
+    /// Returns the final number of samples of a pixel. If samples affect several pixels, it is 1,
+    /// for the finished value.
     pub fn samples(self) -> u32 {
         match self {
             Sampling::Filtered { samples, .. } => samples.max(1),

@@ -48,8 +48,8 @@ pub(super) struct BlockSamples {
     pub(super) to: u32,
     /// Number of rays traced for them.
     pub(super) rays: u64,
-    /// Their sums, if there are any. Shared, so that a reader holds the lock only to clone the
-    /// pointer.
+    /// Sums of the samples, if there are any. Shared, so that a reader holds the lock only to clone
+    /// the pointer.
     pub(super) film: Option<Arc<PackedFilm>>,
     /// Variances of its pixels' means, once the pilot is complete.
     pub(super) variances: Option<Arc<[f32]>>,

@@ -11,8 +11,8 @@ pub const LEAST: u32 = 16;
 /// Returns the number of samples of every pixel after each pass: 1, 2, 4, 8, 16, 24, 32, 48, 64, 96
 /// and so on, up to `samples`.
 ///
-/// They depend on the number of samples only, so decisions at the ends of passes do not depend on
-/// how the picture is rendered.
+/// The ends only depend on the number of samples, so decisions at the ends of passes do not depend
+/// on how the picture is rendered.
 pub fn ends(samples: u32) -> impl Iterator<Item = u32> {
     let powers = (0..32).flat_map(|k| {
         let power = 1_u32 << k;

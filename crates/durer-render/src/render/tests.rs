@@ -82,7 +82,7 @@ fn film_does_not_depend_on_how_it_is_rendered() {
             let other = way.make(&world, &job, &AtomicBool::new(false)).unwrap();
             let difference = compare(&plain, &other);
             assert!(difference.is_none(), "{:?}, {way}: {difference:?}", job.sampling);
-            // Compare the pictures and attributes too, not only the sums.
+            // Also compare the pictures and attributes, not only the sums.
             let (a, b) = (plain.pictures().unwrap(), other.pictures().unwrap());
             assert_eq!((a.statistics, &a.attributes), (b.statistics, &b.attributes), "{way}");
             let bits = |layers: &[durer_image::Layer]| -> Vec<u32> {
@@ -288,8 +288,8 @@ fn parts_survive_serialization_and_invalid_bytes_are_rejected() {
         assert!(matches!(PartialRender::read(&changed), Err(PartError::Damaged)), "{at}");
     }
     assert!(matches!(PartialRender::read(b"P6 1 1 255 ..."), Err(PartError::NotAPart)));
-    // With a valid checksum the content is arbitrary: reading gives an error, or a canonical part
-    // whose pictures can be made.
+    // With a valid checksum, the content is arbitrary: reading it gives an error, or a canonical
+    // part that can be converted to pictures.
     for at in (8..bytes.len() - 32).filter(|at| *at < 1500 || at % 7 == 0) {
         for new in [0, 0x80, 0xff, bytes[at] ^ 4] {
             let mut changed = bytes[..bytes.len() - 32].to_vec();
@@ -347,7 +347,7 @@ fn panic_is_an_error_with_its_sample_and_other_work_is_kept() {
     };
     assert_eq!(panicked.sample, Some(0), "{panicked}");
     assert!(panicked.message.contains("index out of bounds") && panicked.to_string().contains("pixel "), "{panicked}");
-    // Replaying the sample panics too; distant neighbours do not.
+    // Replaying the sample panics, too; distant neighbours do not panic.
     let alone = |x, y| {
         let one = || replay(&broken, &job, &Control::default(), (x, y), Some(0)).map(|color| color.is_some());
         std::panic::catch_unwind(std::panic::AssertUnwindSafe(one))
@@ -406,7 +406,7 @@ fn memory_is_estimated_before_it_is_allocated() {
     // A shard by tiles only stores the sums of the pixels in its tiles.
     let shard = Shard { index: 1, count: 100, by: ShardBy::Tiles };
     assert!(PartialRender::bytes_needed(&job, shard) < PartialRender::bytes_needed(&job, Shard::WHOLE));
-    // The stored samples of the course count too.
+    // The stored samples of the course count as memory, too.
     let filter = Some(CourseFilter::Gaussian { sigma: 30.0 });
     let course = Sampling::Course2004 { sampler: Sampler::Random, samples: 65536, filter };
     let part = PartialRender::new(&world, &Job { sampling: course, ..small() }, Shard::WHOLE).unwrap();

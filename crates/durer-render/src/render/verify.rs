@@ -77,7 +77,7 @@ impl RenderVariant {
         }
     }
 
-    /// Renders the job's picture in this way.
+    /// Renders the job's picture as this variant specifies.
     ///
     /// # Errors
     /// [`VariantError`].

@@ -45,7 +45,7 @@ pub struct ShadingRules {
     pub long_mirrors: bool,
     /// R0 assumes that the ray's side of glass is air.
     pub exit_r0: bool,
-    /// Only a blocker seen from its front casts a shadow.
+    /// Only a blocker that is seen from its front casts a shadow.
     pub shadow_fronts: bool,
     /// A ray that leaves glass without having entered it is assumed to start in air.
     pub air_at_eye: bool,

@@ -339,7 +339,7 @@ impl<'t> Stack<'_, 't> {
 
     fn glass(&self, bsdf: &mut Bsdf<'t>, roughness: f32, weight: Spectrum) {
         let (m, View { wo, inside, eta, .. }) = (self.here, self.view);
-        // With a depth, the colour belongs to the interior, not to the surface.
+        // With a depth, the colour belongs to the interior, instead of the surface.
         let tint = match m.transmission_depth > 0.0 {
             true => Spectrum::ONE,
             false => self.view.lanes.reflectance(m.transmission_color),

@@ -14,8 +14,8 @@ use crate::shape::Shape;
 use crate::texture::CieSky;
 use durer_diag::{Diagnostic, Diagnostics, Span};
 
-/// Maximum nesting of objects. The scene language allows 200 levels, each of which is at most three
-/// here.
+/// Maximum nesting of objects. The scene language allows 200 levels, each of which becomes at most
+/// three levels in a scene.
 pub const MAX_NESTING: usize = 640;
 
 /// Maximum nesting of materials made of other materials, and maximum number of leaves of one.

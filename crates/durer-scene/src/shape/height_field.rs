@@ -67,8 +67,8 @@ fn share(i: usize, count: usize) -> f32 {
 /// A terrain with walls down from its border and a floor: a closed mesh whose triangles are
 /// computed on demand.
 ///
-/// Its vertices are those of the terrain, one at the floor below each border vertex, and the centre
-/// of the floor. Its triangles are those of the terrain, then two wall triangles per step along the
+/// The vertices are those of the terrain, one on the floor below each border vertex, and the centre
+/// of the floor. The triangles are those of the terrain, then two wall triangles per step along the
 /// border, then one floor triangle per step.
 #[derive(Clone, Debug)]
 pub struct Terrain {

@@ -36,7 +36,7 @@ pub struct MeshData {
     /// Tangents by position index: the direction in which u grows, and the sign of the bitangent
     /// relative to the cross product of normal and tangent; may be empty.
     pub tangents: Vec<[f32; 4]>,
-    /// True if triangles without normals are flat, whatever the rule for missing normals.
+    /// True if triangles without normals are flat, regardless of the rule for missing normals.
     pub flat: bool,
 }
 

@@ -166,7 +166,7 @@ fn digest_covers_everything_that_the_picture_depends_on() {
     fs::write(again.path().join("scene/other.obj"), "v 1 2 3\n").unwrap();
     assert_eq!(digest(&again, &LoadOptions { accel: AccelKind::None, ..options.clone() }), first);
     assert_eq!(digest(&again, &LoadOptions { threads: Some(1), ..options.clone() }), first);
-    // It depends on the rules and every file that is read.
+    // The digest depends on the rules and on every file that is read.
     let requested = LoadOptions { dialect: Some(Dialect::F04), ..options.clone() };
     assert_ne!(digest(&again, &LoadOptions { allow_outside: true, ..requested }), first);
     fs::write(again.path().join("scene/tri.obj"), TRIANGLE.replace("v 1 0 0", "v 1.0001 0 0")).unwrap();

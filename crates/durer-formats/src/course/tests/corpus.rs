@@ -1,4 +1,4 @@
-//! Tests on the course's scenes in the folder `DURER_CORPUS`, if they are there.
+//! Tests on the course's scenes in the folder `DURER_CORPUS`, if it exists.
 
 use super::*;
 use durer_scene::dialect::set;

@@ -342,7 +342,7 @@ fn picture_colours_are_srgb_unless_raw() {
 
 #[test]
 fn nested_glass_has_its_own_index() {
-    // The index is the ratio across the surface, whatever medium surrounds it.
+    // The index is the ratio across the surface, regardless of the surrounding medium.
     let body = |radius: f32, inside: &str, outside: &str| {
         let index = |name: &str, value: &str| match value.parse::<f32>() {
             Ok(value) => format!("<float name='{name}' value='{value}'/>"),

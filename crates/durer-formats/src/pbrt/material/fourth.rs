@@ -187,7 +187,7 @@ impl Reader<'_> {
             }
         }
         m.energy_compensation = Switch::Off;
-        // `eta` is the ratio across the surface, whatever medium surrounds it.
+        // `eta` is the ratio across the surface, regardless of the surrounding medium.
         m.surroundings = Surroundings::Ignored;
         self.surface(&mut m, params, "displacement");
         MaterialDef::Layers(Box::new(m), at)

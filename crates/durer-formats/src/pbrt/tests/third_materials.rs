@@ -97,7 +97,7 @@ fn substrate_mean_albedo_follows_its_formula() {
     let passing = 1.0 - boundary.mean(base.specular_roughness);
     let mean = *share * passing * base.base_color;
     assert!((mean / (Vec3::new(0.2, 0.4, 0.8) * 0.96 * 23.0 / 28.0) - Vec3::ONE).abs().max_element() < 5e-3, "{mean}");
-    // By direction, 1 - (1 - cos / 2)^5.
+    // As a function of direction: 1 - (1 - cos / 2)^5.
     for cosine in [0.1, 0.3, 0.5, 0.7, 1.0] {
         let (half, wanted): (f32, f32) = (1.0 - 0.5 * cosine, 28.0 / 23.0);
         let formula = wanted * (1.0 - half * half * half * half * half);

@@ -167,7 +167,7 @@ impl Path<'_> {
             }
             None => Spectrum::ONE,
         };
-        // A direction can hit both sides of a light, so light samples must reach both sides too.
+        // A direction can hit both sides of a light, so light samples must also reach both sides.
         let hides_backs = self.world.hides_backs() && light.pdf == 0.0;
         if !self.world.has_cutouts() && !self.world.has_interfaces() && !self.world.has_sheets() {
             match self.world.occluded(&ray, tally) {

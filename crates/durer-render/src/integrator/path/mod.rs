@@ -266,7 +266,7 @@ impl<'w> Path<'w> {
         }
         let vertex = self.vertex(kind, state);
         let is_broad = kind.is_broad();
-        // With many lights, the chosen one is rarely in the cache: the direction is sampled while
+        // With many lights, the chosen one is rarely in the cache; the direction is sampled while
         // it is fetched.
         let light = if is_broad { self.choose_light(&vertex) } else { None };
         let sample = if vertex.directions == 1 { vertex.sample_bsdf() } else { None };

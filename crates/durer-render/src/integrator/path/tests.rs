@@ -95,7 +95,7 @@ fn closed_furnace_sums_a_geometric_series() {
     }
 }
 
-/// Distant objects keep their precision, whether only the area light is distant or the floor too.
+/// Distant objects keep their precision, whether only the area light is distant or also the floor.
 #[test]
 fn distant_area_lights_are_as_accurate_as_near_ones() {
     let words = |p: Vec3| format!("{} {} {}", p.x, p.y, p.z);

@@ -165,7 +165,7 @@ fn walls_agree_along_their_common_edge() {
             let (before, after) = (seen(column - 0.5), seen(column + 0.5));
             assert_eq!(before.origin, after.origin);
             close(before.dir, after.dir);
-            // It is also the ray to that edge in world space.
+            // This is also the ray to that edge in world space.
             let x = if column == 200.0 { -1.0 } else { 1.0 };
             let edge = Vec3::new(x, 1.5 * (1.0 - row / 150.0), -1.0);
             close(before.dir, (edge - before.origin).normalize());

@@ -110,7 +110,8 @@ fn equal_vertices_share_a_tangent() {
 
 #[test]
 fn hostile_meshes_do_not_overflow_the_stack() {
-    // Recursive implementations overflow the stack here: all triangles share one vertex.
+    // Recursive implementations overflow the stack in this case, because all triangles share one
+    // vertex.
     const COUNT: u32 = 200_000;
     let mut fan = MeshData::default();
     fan.positions.push(Vec3::ZERO);
