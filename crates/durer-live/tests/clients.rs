@@ -264,7 +264,7 @@ fn requests_of_any_size_and_form_are_answered() {
         let why = hear(&mut page, "refused");
         assert!(why["why"].as_str().is_some_and(|why| why.len() < 1000), "{message:.80}: {why}");
     }
-    // Pictures of any size and crop can be requested.
+    // Any size and crop is answered with a picture, even an invalid one.
     for request in [
         r#"{"kind":"size","width":0,"height":0}"#,
         r#"{"kind":"crop","crop":[4294967295,0,0,4294967295]}"#,
