@@ -8,8 +8,8 @@ use std::time::Duration;
 pub struct Control {
     /// Number of threads; `None`: one per processor.
     pub threads: Option<usize>,
-    /// Side length in pixels of a tile, the unit of work for a thread; rounded up to a multiple of
-    /// 8. `None`: automatic.
+    /// Side length of a tile in pixels, rounded up to a multiple of 8; each thread works on one
+    /// tile at a time. `None`: automatic.
     pub tile: Option<u32>,
     /// Time limit after which no more samples are taken, once every pixel has one.
     pub time: Option<Duration>,
