@@ -17,7 +17,7 @@ pub(super) enum Order {
 }
 
 impl Reader<'_, '_> {
-    /// Reads `{ field value ... }` into `thing`. `extra` handles words that are not fields; it
+    /// Reads `{ field value ... }` into `item`. `extra` handles words that are not fields; it
     /// returns true if it did.
     pub(super) fn fields<T: DescribedList>(
         &mut self,
