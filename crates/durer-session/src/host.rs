@@ -14,7 +14,7 @@ pub struct Host {
     sessions: BTreeMap<u32, Session>,
     /// Session that received the last request; it has priority for coarse pictures.
     latest: u32,
-    /// Session that worked last; the others have their turns before it.
+    /// Session that worked last; the others get their turn before it.
     worked: u32,
 }
 
@@ -56,8 +56,8 @@ impl Host {
         self.sessions.values().any(Session::is_busy)
     }
 
-    /// Works for some milliseconds. Sessions without a picture of their last change come first, and
-    /// among them the one that received the last request; the others take turns.
+    /// Works for a few milliseconds. Sessions whose last change is not visible yet come first,
+    /// starting with the one that received the last request; the others take turns.
     pub fn step(&mut self, send: &mut dyn FnMut(Vec<u8>)) {
         let Some(session) = self.next() else { return };
         self.worked = session;

@@ -184,7 +184,7 @@ fn what_is_no_usual_mistake_is_none() {
     assert!(found.iter().all(|f| f.kind == "noise"), "{found:?}");
 }
 
-/// A nearly black picture can be made from any other by moving and darkening it.
+/// Moving and darkening any picture makes a nearly black one.
 #[test]
 fn a_nearly_uniform_picture_is_not_made_from_the_reference() {
     let dark = |x: usize, y: usize| if x + 2 * y > 240 { Vec3::splat(0.012) } else { Vec3::ZERO };
@@ -195,7 +195,7 @@ fn a_nearly_uniform_picture_is_not_made_from_the_reference() {
     assert!(found.iter().all(|f| f.kind == "black-parts"), "{found:?}");
 }
 
-/// A mistake that leaves a visible part of the picture unexplained is named with that remark.
+/// If a mistake leaves a visible part of the difference unexplained, the message says so.
 #[test]
 fn what_remains_beside_a_mistake_is_stated() {
     let spot = |x: usize, y: usize| (60..70).contains(&x) && (50..60).contains(&y);

@@ -265,7 +265,7 @@ fn set_identities_hold_bit_for_bit() {
             &join(Merge, &[&a, &join(Intersection, &[&b, &c])]),
             &join(Intersection, &[&join(Merge, &[&a, &b]), &join(Merge, &[&a, &c])]),
         );
-        // Subtracting one by one, or together.
+        // Subtracting one after another, or together.
         same(&join(Difference, &[&a, &b, &c]), &join(Difference, &[&a, &either]));
         same(&join(Difference, &[&join(Difference, &[&a, &b]), &c]), &join(Difference, &[&a, &either]));
         // Idempotence, and subtraction of itself.
@@ -298,7 +298,7 @@ fn coincident_faces_leave_no_skin() {
         (join(Intersection, &[&long, &start]), start.clone()),
     ];
     for _ in 0..40 {
-        // The whole rotated, stretched and moved away.
+        // The full scene rotated, stretched and moved away.
         let rows = glam::DMat4::from(random.affine(2.0, 3.0)).transpose().to_cols_array().map(|x| x as f32);
         let placed = MatrixOp::Matrix(rows);
         let map: DAffine3 = placed.matrix();
@@ -404,7 +404,7 @@ fn disjoint_parts_become_separate_objects() {
     let list: Vec<&scene::Object> = balls.iter().collect();
     let merged = join(Merge, &list);
     assert_eq!(world(&merged).objects().len(), 1000);
-    // A cut through one sphere affects only that one.
+    // A cut through one sphere affects only that sphere.
     let cut = join(Difference, &[&merged, &ball([3.0, 1.0, 0.0], 0.5)]);
     let compiled = world(&cut);
     assert_eq!(compiled.objects().len(), 1000);
@@ -516,7 +516,8 @@ fn rays_that_leave_a_solid_do_not_hit_it_at_their_start() {
     assert!(count > 10_000, "{count}");
 }
 
-/// Coincident crossings, as many as parts: each is visited a few times, not once for each other.
+/// The number of coincident crossings equals the number of parts: each is visited a few times, not
+/// once for every other one.
 #[test]
 fn coincident_parts_take_linear_time() {
     let count = 30_000;
@@ -531,7 +532,7 @@ fn coincident_parts_take_linear_time() {
     }
 }
 
-/// A room: a box without a smaller one, around a centre.
+/// A hollow box around a centre, with walls of thickness `wall`.
 fn room(center: Vec3, half: f32, wall: f32) -> scene::Object {
     let outer = cuboid((center - half - wall).to_array(), (center + half + wall).to_array());
     join(Operation::Difference, &[&outer, &cuboid((center - half).to_array(), (center + half).to_array())])
@@ -548,11 +549,11 @@ fn walls_of_four_steps_of_single_precision_let_nothing_through() {
             for steps in [4.0, 8.0, 20.0] {
                 let world = world(&room(center, half, steps * step));
                 for _ in 0..300 {
-                    // From inside to outside, exactly.
+                    // From exactly inside to exactly outside.
                     let from = center.as_dvec3() + 0.9 * f64::from(half) * random.point().as_dvec3();
                     let ray = Ray64::new(from, random.direction(), 0.0, f32::INFINITY);
                     let hit = world.intersect(ray, &mut ()).unwrap_or_else(|| panic!("{center} {steps} {ray:?}"));
-                    // Rays that leave the wall inwards stay inside.
+                    // Rays that leave the wall inwards stay in the room.
                     let mut way = random.direction();
                     if way.dot(ray.dir()) * hit.surface.n_geo.dot(ray.dir()).abs() > 0.0 {
                         way = -way;
