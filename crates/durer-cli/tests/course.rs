@@ -286,9 +286,9 @@ fn output_name_alone_does_not_decide_the_year() {
     let lit = plain().replace("DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 }", light);
     // In 2016 this light would divide by zero. The scene has another keyword that identifies the
     // year.
-    place.put("lamp.txt", lit.replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8"));
+    place.put("bulb.txt", lit.replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8"));
     let picture = |ending: &str| {
-        let output = place.expect_exit(0, &format!("course -input lamp.txt -size 9 9 -output o.{ending}"));
+        let output = place.expect_exit(0, &format!("course -input bulb.txt -size 9 9 -output o.{ending}"));
         assert!(!output.err.contains("read as"), "{ending}: {}", output.err);
         place.image8(&format!("o.{ending}")).pixels
     };
@@ -303,8 +303,8 @@ fn nan_light_is_reported_with_its_pixel_and_cause() {
     let place = TestFolder::new();
     let light = "PointLight { position 2 4 3 color 0.9 0.9 0.8 }";
     let lit = plain().replace("DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 }", light);
-    place.put("lamp.txt", lit);
-    let output = place.expect_exit(0, "course --dialect f16 -input lamp.txt -size 9 9 -output o.png");
+    place.put("bulb.txt", lit);
+    let output = place.expect_exit(0, "course --dialect f16 -input bulb.txt -size 9 9 -output o.png");
     let text = output.err.lines().find(|line| line.contains("not finite")).unwrap_or_else(|| panic!("{}", output.err));
     assert!(
         text.contains("the first in pixel ") && text.contains("light 0 divides by its falloff, which is missing"),

@@ -237,10 +237,10 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 Disc 
     };
     let write = |base, emitter, sky| place.put("s.txt", scene(base, emitter, sky));
     place.put("paints.csv", "nm,grey,red\n400,0.5,0.1\n580,0.5,0.1\n600,0.5,0.8\n");
-    place.put("lamp.csv", "400 0\n700 3\n");
+    place.put("bulb.csv", "400 0\n700 3\n");
     // The illuminance does not depend on the colour: E = pi L r^2 / (r^2 + d^2).
     for emitter in
-        ["", "emissionSpectrum A", "emissionSpectrum F11", "emissionSpectrum 2700K", "emissionSpectrum lamp.csv"]
+        ["", "emissionSpectrum A", "emissionSpectrum F11", "emissionSpectrum 2700K", "emissionSpectrum bulb.csv"]
     {
         write("baseSpectrum paints.csv:red", emitter, "");
         for color in ["rgb", "spectral"] {
@@ -258,7 +258,7 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 Disc 
             format!(
                 "PerspectiveCamera {{ center 0 1 6 direction 0 -1 -6 up 0 1 0 angle 0.1 }} Background {{ color 0 0 0 }}
 Lights {{ {lights} }} Materials {{ PrincipledMaterial {{ baseSpectrum paints.csv:red specularWeight 0 }}
-  PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 100 emissionSpectrum lamp.csv }} }}
+  PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 100 emissionSpectrum bulb.csv }} }}
 Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {objects} }}"
             ),
         );
@@ -268,11 +268,11 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {obje
     };
     let wanted = shown("", "Disc { center 0 2 0 normal 0 -1 0 radius 0.02 }");
     assert!(wanted[0] > 3.0 * wanted[1], "{wanted:?}");
-    let color = "color 0.04 0.04 0.04 spectrum lamp.csv";
+    let color = "color 0.04 0.04 0.04 spectrum bulb.csv";
     for light in [
         format!("PointLight {{ position 0 2 0 {color} attenuation 0 0 1 }}"),
         format!("SpotLight {{ position 0 2 0 direction 0 -1 0 angle 30 innerAngle 20 {color} }}"),
-        "DirectionalLight { direction 0 -1 0 color 0.01 0.01 0.01 spectrum lamp.csv }".into(),
+        "DirectionalLight { direction 0 -1 0 color 0.01 0.01 0.01 spectrum bulb.csv }".into(),
     ] {
         let found = shown(&light, "");
         let near = |(a, b): (&f64, &f64)| (a - b).abs() < 0.01 * wanted[0];
@@ -282,7 +282,7 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {obje
     for (base, emitter, sky, words) in [
         ("baseSpectrum paints.csv:blue", "", "", "there are grey, red"),
         ("baseSpectrum none.csv", "", "", "none.csv"),
-        ("baseSpectrum lamp.csv", "", "", "must be from 0 to 1"),
+        ("baseSpectrum bulb.csv", "", "", "must be from 0 to 1"),
         ("", "emissionSpectrum warm", "", "use A, D50"),
         ("", "", "cieSky 12", "write `sun x y z`"),
         ("", "", "cieSky 17", "from 1 to 16"),

@@ -108,8 +108,8 @@ fn model_objects_are_reported_once_by_name() {
     place.refused(2, "render a.txt -o a.png", &["a.obj:1:1", "`a.obj` is PLY", "named here"]);
 }
 
-const RAD: &str = "void plastic grey 0 0 5 .5 .5 .5 0 0\nvoid light lamp 0 0 3 9 9 9\ngrey polygon floor 0 0 12 -4 -4 0 4 -4 0 4 4 0 -4 4 0\n\
-    lamp sphere bulb 0 0 4 0 0 3 .5\n!genbox grey box 1 1 1 | xform -t 1 0 0\n";
+const RAD: &str = "void plastic grey 0 0 5 .5 .5 .5 0 0\nvoid light glow 0 0 3 9 9 9\ngrey polygon floor 0 0 12 -4 -4 0 4 -4 0 4 4 0 -4 4 0\n\
+    glow sphere bulb 0 0 4 0 0 3 .5\n!genbox grey box 1 1 1 | xform -t 1 0 0\n";
 
 #[test]
 fn radiance_views_are_cameras() {

@@ -109,7 +109,7 @@ fn photographs_of_a_known_scene_give_its_cameras() {
         "opacity 0.95, marked true | fills true",
         "is left true",
         "another true",
-        "point in several true, told true",
+        "point in several true, note true",
         "all: 20 photographs, ",
         "all inside true",
         "one plane true",
