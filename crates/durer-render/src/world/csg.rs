@@ -7,12 +7,10 @@
 //! for the operations, so that an operation with many parts is not slower.
 //!
 //! Coincident faces: crossings of different parts count as one if the faces are nearly parallel and
-//! their distance across the surfaces is at most what the rounding of the scene's coordinates can
-//! cause: for boxes, one or two steps of single precision at each. Crossings are computed in the
-//! parts' own frames and in double precision, so a wall that is four such steps thick is kept. All
-//! their bits toggle together, so no thin skin remains or appears where two faces share a plane. If
-//! the bit of the solid changes, the surface belongs to the first part in the file that could have
-//! made the change: alone, or as the last.
+//! their distance across the surfaces is at most what single precision can resolve there, about
+//! 2^-19 of the coordinates. All their bits toggle together, so no thin skin remains or appears
+//! where two faces share a plane. If the bit of the solid changes, the surface belongs to the first
+//! part in the file that could have made the change: alone, or as the last.
 //!
 //! Faces that meet at an angle, as at an edge, count as one only within the rounding of the
 //! crossings, which is proportional to the parts' own size however far away they are. A larger
@@ -24,7 +22,7 @@
 use super::solid::{BoolOp, Solid};
 use super::{Geometry, Object, ShadingRules};
 use durer_bvh::{Bvh, TraversalCounter};
-use durer_scene::math::{Aabb, Ray, Ray64, Vec2};
+use durer_scene::math::{Aabb, Ray, Ray64, Vec2, Vec3};
 use durer_scene::shape::{Axis, Shape, ShapeHit, Surface};
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -64,9 +62,8 @@ struct Leaf {
     edge: Edge,
     /// Index of its first triangle.
     first: u32,
-    /// Tolerance for the position of its surface; `None` for an unbounded part, whose tolerance
-    /// follows from the coordinates of the crossing.
-    slack: Option<f32>,
+    /// Minimum tolerance for the position of its surface.
+    slack: f32,
     /// Bound of the error of a crossing.
     rounding: f32,
 }
@@ -163,7 +160,7 @@ impl Csg {
             join => join,
         };
         csg.add(solid, None);
-        csg.slack = csg.leaves.iter().filter_map(|leaf| leaf.slack).map(|slack| 2.0 * slack).fold(0.0, f32::max);
+        csg.slack = csg.leaves.iter().map(|leaf| 2.0 * leaf.slack).fold(0.0, f32::max);
         // Parts do not matter beyond the bounds of the whole, except that they may coincide with
         // parts that do.
         let margin = GRAZING as f32 * csg.slack;
@@ -473,9 +470,8 @@ impl Csg {
         let line = ray.line();
         let speed = line.dir.length();
         let gap = (b.t - a.t) * speed;
-        let at_crossing = 2.0 * f64::from(f32::EPSILON) * line.at(a.t).abs().max_element();
-        let slack = [a, b].map(|event| self.leaves[event.leaf as usize].slack.map_or(at_crossing, f64::from));
-        let slack = slack[0] + slack[1];
+        let [s, u] = [a, b].map(|event| self.leaves[event.leaf as usize].slack);
+        let slack = f64::from(s + u) + 4.0 * f64::from(f32::EPSILON) * line.at(a.t).abs().max_element();
         let [r, q] = [a, b].map(|event| self.leaves[event.leaf as usize].rounding);
         if gap.is_nan() || gap <= f64::from(r + q).min(slack) || gap > GRAZING * slack {
             return gap <= slack;
@@ -532,15 +528,12 @@ fn order(a: &Event, b: &Event) -> std::cmp::Ordering {
     a.t.total_cmp(&b.t).then(a.leaf.cmp(&b.leaf)).then(a.part.cmp(&b.part))
 }
 
-/// Returns a bound on the distance between an object's intended surface and the surface given by
-/// its rounded coordinates: half a rounding step of each coordinate of a corner, and the rounding
-/// in its own frame.
-fn slack_of(object: &Object) -> Option<f32> {
+/// Returns two roundings of an object's coordinates, in world and in object space.
+fn slack_of(object: &Object) -> f32 {
+    let (Some(world), Some(local)) = (object.bounds(), object.local_bounds()) else { return 0.0 };
     let reach = |b: Aabb| b.min.abs().max(b.max.abs());
-    let (world, local) = (reach(object.bounds()?), reach(object.local_bounds()?));
-    let moved = object.to_world.as_ref().map_or(local, |to_world| to_world.spread(local));
-    // Half the diagonal of a cube is slightly less than 0.87.
-    Some(f32::EPSILON * (0.87 * world.max_element() + 2.0 * moved.max_element()))
+    let moved = object.to_world.as_ref().map_or(Vec3::ZERO, |to_world| to_world.spread(reach(local)));
+    2.0 * f32::EPSILON * (reach(world).max_element() + moved.max_element())
 }
 
 #[cfg(test)]

@@ -4,7 +4,6 @@ use super::*;
 use crate::compile::{AccelKind, testing};
 use crate::integrator::spawn::spawn_ray;
 use crate::world::{Hit, SurfaceInteraction, World};
-use durer_scene::math::Vec3;
 use durer_scene::math::random::Random;
 use durer_scene::scene::{self, Group, MatrixOp, MatrixRules, Node, Operation};
 use durer_scene::shape::*;
@@ -529,43 +528,5 @@ fn coincident_parts_take_linear_time() {
         assert_eq!(hit.is_some(), there, "{operation:?}");
         // The first part in the file is visible.
         assert!(hit.is_none_or(|hit| hit.part & !(TURNED | ENTERS) == 0), "{operation:?}");
-    }
-}
-
-/// A hollow box around a centre, with walls of thickness `wall`.
-fn room(center: Vec3, half: f32, wall: f32) -> scene::Object {
-    let outer = cuboid((center - half - wall).to_array(), (center + half + wall).to_array());
-    join(Operation::Difference, &[&outer, &cuboid((center - half).to_array(), (center + half).to_array())])
-}
-
-#[test]
-fn walls_of_four_steps_of_single_precision_let_nothing_through() {
-    let mut random = Random(77);
-    for (far, half) in
-        [(1000.0_f32, 1.0), (300_000.0, 1.0), (300_000.0, 4.0), (1e6, 1.0), (1e6, 8.0), (8_388_000.0, 64.0)]
-    {
-        let step = far.next_up() - far;
-        for center in [Vec3::new(far, 0.0, 0.0), Vec3::new(-far, far, 0.0), Vec3::splat(far)] {
-            for steps in [4.0, 8.0, 20.0] {
-                let world = world(&room(center, half, steps * step));
-                for _ in 0..300 {
-                    // From exactly inside to exactly outside.
-                    let from = center.as_dvec3() + 0.9 * f64::from(half) * random.point().as_dvec3();
-                    let ray = Ray64::new(from, random.direction(), 0.0, f32::INFINITY);
-                    let hit = world.intersect(ray, &mut ()).unwrap_or_else(|| panic!("{center} {steps} {ray:?}"));
-                    // Rays that leave the wall inwards stay in the room.
-                    let mut way = random.direction();
-                    if way.dot(ray.dir()) * hit.surface.n_geo.dot(ray.dir()).abs() > 0.0 {
-                        way = -way;
-                    }
-                    for way in [way, -ray.dir()] {
-                        if way.dot(hit.surface.n_geo) * ray.dir().dot(hit.surface.n_geo) < 0.0 {
-                            let shadow = spawn_ray(&hit.surface, way, f32::INFINITY, None);
-                            assert!(world.occluded(shadow, &mut ()), "{center} {steps} {ray:?} {way}");
-                        }
-                    }
-                }
-            }
-        }
     }
 }
