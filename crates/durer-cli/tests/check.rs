@@ -152,7 +152,7 @@ fn fixing_in_place_reports_the_changes() {
     let before = place.bytes("extra-brace.txt");
     let output = place.run("check extra-brace.txt --fix -o no/such/folder.txt");
     assert_ne!(output.code, Some(0));
-    assert!(output.err.contains("no folder"), "{}", output.err);
+    assert!(output.err.contains("does not exist"), "{}", output.err);
     assert_eq!(place.bytes("extra-brace.txt"), before);
     place.refused(2, "check extra-brace.txt scene.txt --fix -o one.txt", &["--output takes one scene"]);
 }

@@ -113,7 +113,7 @@ fn invalid_photometric_files_names_and_dark_scenes_are_reported() {
     let place = lit();
     place.put("lamp.ies", LIGHT.replace("0 30 60 90", "0 30 20 90"));
     let output = place.expect_exit(2, "render lit.txt -o p.png").err;
-    assert!(output.contains("lamp.ies:5:6") && output.contains("must rise"), "{output}");
+    assert!(output.contains("lamp.ies:5:6") && output.contains("must ascend"), "{output}");
     assert!(!place.path("p.png").exists());
     place.put("lamp.ies", LIGHT);
     place.put("name.txt", LIT.replace("preset gold", "preset golt"));
@@ -280,7 +280,7 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {obje
     }
     let render = "render s.txt -o p.png --size 8x8 --samples 1 -q";
     for (base, emitter, sky, words) in [
-        ("baseSpectrum paints.csv:blue", "", "", "there are grey, red"),
+        ("baseSpectrum paints.csv:blue", "", "", "the columns are grey, red"),
         ("baseSpectrum none.csv", "", "", "none.csv"),
         ("baseSpectrum bulb.csv", "", "", "must be from 0 to 1"),
         ("", "emissionSpectrum warm", "", "use A, D50"),
@@ -418,8 +418,8 @@ Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 } } Group { MaterialIndex
         ("--shutter 1/125", "--f-number"),
         ("--f-number 8", "--shutter"),
         ("--iso 100", "--shutter"),
-        ("--shutter 0 --f-number 8", "expected seconds"),
-        ("--shutter 1/0 --f-number 8", "expected seconds"),
+        ("--shutter 0 --f-number 8", "expected a time in seconds"),
+        ("--shutter 1/0 --f-number 8", "expected a time in seconds"),
         ("--shutter 1/125 --f-number 0", "--f-number"),
     ] {
         place.refused(2, &format!("render s.txt -o q.png --size 1x1 {options}"), &[words]);

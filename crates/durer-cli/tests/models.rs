@@ -128,7 +128,7 @@ fn radiance_views_are_cameras() {
     place.refused(2, "render a.rif -o a.png --camera three", &["unknown view `three`"]);
     place.refused(2, "render a.rad -o a.png --view-file none.vf", &["none.vf"]);
     place.put("b.rad", "void plastic grey 0 0 5 .5 .5 x 0 0\n!genrev a b 1 2 3\n");
-    place.refused(2, "render b.rad -o a.png", &["b.rad:1:31", "`x` is not a number"]);
+    place.refused(2, "render b.rad -o a.png", &["b.rad:1:31", "expected a number, found `x`"]);
 }
 
 const XML: &str = "<scene version='3.0.0'><sensor type='perspective' id='one'><float name='fov' value='40'/><transform name='to_world'>\

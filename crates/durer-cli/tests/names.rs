@@ -177,6 +177,6 @@ fn a_scene_that_is_watched_reads_nothing_else() {
     let output = place.shell(
         "timeout -s INT 3 $DURER render below/scene.txt --dialect durer --watch --size 8x8 --samples 1 -o below/o.png",
     );
-    assert!(output.err.contains("lies outside the scene's folder"), "{}", output.err);
+    assert!(output.err.contains("is outside the scene's folder"), "{}", output.err);
     assert!(!place.path("below/o.png").exists());
 }

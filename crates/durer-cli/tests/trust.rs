@@ -250,7 +250,7 @@ fn unfinished_work_is_kept_unless_restarted() {
             let line = format!("{work} {options} {other}");
             place.refused(2, &line, &["unfinished work", place_of_part, "--resume", "--restart"]);
         }
-        place.refused(2, &format!("{work} {options} --resume --seed 3"), &["another job", "--restart"]);
+        place.refused(2, &format!("{work} {options} --resume --seed 3"), &["a different job", "--restart"]);
         place.refused(2, &format!("{work} {options} --resume --restart"), &["cannot be used with"]);
         assert!(place.bytes(place_of_part) == saved);
         place.expect_exit(0, &format!("render scene.txt --size 48x32 --quiet {options} --restart"));

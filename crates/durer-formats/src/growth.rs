@@ -59,7 +59,7 @@ impl Growth {
         match self.objects.get() <= MAX_OBJECTS {
             true => Ok(()),
             false => {
-                Err(self.over(format!("more than {MAX_OBJECTS} objects, those of instances counted, are too many")))
+                Err(self.over(format!("too many objects: more than {MAX_OBJECTS}, counting those of every instance")))
             }
         }
     }

@@ -29,7 +29,9 @@ impl Host {
         let Ask { session, id, request } = match serde_json::from_str(message) {
             Ok(ask) => ask,
             Err(error) => {
-                let event = Event::Refused { why: format!("invalid request: {error}") };
+                // The error may quote the message, which may be long.
+                let why: String = format!("invalid request: {error}").chars().take(200).collect();
+                let event = Event::Refused { why };
                 return send(Answer { session: 0, id: 0, event }.encode(&[]));
             }
         };

@@ -128,7 +128,7 @@ fn weak_hints_choose_among_the_years_that_fit_and_rule_none_out() {
         assert_eq!(found.dialect, Dialect::F16);
         assert_eq!(found.fitting, [Dialect::F12a5, Dialect::F16]);
     }
-    // A weak hint alone has no effect.
-    let found = guess(b"PerspectiveCamera { }", 0, &[png], &|_| false);
+    // Without a word that distinguishes the years, a weak hint has no effect.
+    let found = guess(b"", 0, &[png], &|_| false);
     assert_eq!(found.dialect, Dialect::F12a4);
 }
