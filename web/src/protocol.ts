@@ -30,11 +30,11 @@ event: Event, };
 
 export type Request = { "kind": "open", 
 /**
- * The name of the file; its ending says the format. Empty for the server's own file.
+ * Name of the file; its extension determines the format. Empty for the server's own file.
  */
 name: string, 
 /**
- * The text; `None` for a file.
+ * Text of the scene; `None` for a file.
  */
 text: string | null, } | { "kind": "give", 
 /**
@@ -142,19 +142,19 @@ direction: [number, number, number],
  */
 t_max: number | null, } | { "kind": "rays", 
 /**
- * Columns of the raster.
+ * Number of columns of the raster.
  */
 columns: number, 
 /**
- * Rows of the raster.
+ * Number of rows of the raster.
  */
 rows: number, 
 /**
- * The only row that is asked for; `None` for all.
+ * The requested row; `None` for all rows.
  */
 row: number | null, } | { "kind": "walk", 
 /**
- * The structure.
+ * Structure to traverse.
  */
 structure: Structure, 
 /**
@@ -162,7 +162,7 @@ structure: Structure,
  */
 origin: [number, number, number], 
 /**
- * Its direction, of any length.
+ * Direction of the ray, of any length.
  */
 direction: [number, number, number], } | { "kind": "boxes" } | { "kind": "values", 
 /**
@@ -174,23 +174,23 @@ left: number,
  */
 top: number, 
 /**
- * Columns.
+ * Number of columns.
  */
 width: number, 
 /**
- * Rows.
+ * Number of rows.
  */
 height: number, } | { "kind": "crop", 
 /**
- * The part; `None` for the whole picture.
+ * Part to render; `None` for the full picture.
  */
 crop: [number, number, number, number] | null, } | { "kind": "denoise", 
 /**
- * True for on.
+ * True to turn it on.
  */
 on: boolean, } | { "kind": "epsilon", 
 /**
- * Least `t`; `None` for the exact starts of rays.
+ * Minimum `t`; `None` for Dürer's exact ray origins.
  */
 epsilon: number | null, } | { "kind": "tree" } | { "kind": "material", 
 /**
@@ -202,7 +202,7 @@ number: number,
  */
 name: string, 
 /**
- * Its numbers.
+ * Values of the field.
  */
 values: Array<number>, } | { "kind": "as_text" } | { "kind": "pack" } | { "kind": "lesson" } | { "kind": "outlines" } | { "kind": "language" } | { "kind": "export", 
 /**
@@ -284,11 +284,11 @@ cast: CastAccount, } | { "kind": "rays",
  */
 rays: Array<RayAccount | null>, } | { "kind": "walk", 
 /**
- * The way.
+ * The traversal.
  */
 walk: WalkAccount, } | { "kind": "boxes", 
 /**
- * The boxes, level by level, up to a limit.
+ * Boxes, level by level, up to a limit.
  */
 boxes: Array<BoxState>, } | { "kind": "values", 
 /**
@@ -300,15 +300,15 @@ left: number,
  */
 top: number, 
 /**
- * Columns.
+ * Number of columns.
  */
 width: number, 
 /**
- * Rows.
+ * Number of rows.
  */
 height: number, 
 /**
- * The numbers: linear light, or what another picture shows.
+ * Linear light, or the values of the picture that is shown instead of colour.
  */
 values: Array<number | null>, } | { "kind": "tree", 
 /**
@@ -320,15 +320,15 @@ nodes: Array<TreeNode>,
  */
 materials: Array<MaterialState>, } | { "kind": "packed", 
 /**
- * Names; the text comes first.
+ * Names of the files; the text is first.
  */
 names: Array<string>, 
 /**
- * Numbers of bytes.
+ * Sizes in bytes.
  */
 sizes: Array<number>, } | { "kind": "lesson", 
 /**
- * Its Markdown; `None` if the server has none.
+ * Lesson in Markdown; `None` if the server has none.
  */
 text: string | null, } | { "kind": "outlines", 
 /**
@@ -456,7 +456,7 @@ code: string,
  */
 message: string, 
 /**
- * Help: how to fix it.
+ * Hint on how to fix the problem.
  */
 help: string | null, 
 /**
@@ -472,7 +472,7 @@ file: string | null,
  */
 place: Place | null, 
 /**
- * Edits that fix the fault.
+ * Edits that fix the problem.
  */
 fix: Array<Change>, };
 
@@ -594,7 +594,7 @@ fields: Array<FieldState>,
  */
 statement: string, 
 /**
- * True if it differs from the camera of the text.
+ * True if the camera differs from the one in the text.
  */
 moved: boolean, };
 
@@ -616,11 +616,11 @@ values: Array<number>,
  */
 text: string, 
 /**
- * Minimum value, if limited.
+ * Minimum value, if there is one.
  */
 least: number | null, 
 /**
- * Maximum value, if limited.
+ * Maximum value, if there is one.
  */
 most: number | null, };
 
@@ -654,20 +654,20 @@ samples: number,
  */
 all_samples: number, 
 /**
- * The part that follows, in pixels of the whole picture: first column, first row, width and
- * height. A coarse one may reach beyond the edge.
+ * Part of the picture that follows, in pixels of the full picture: first column, first row,
+ * width and height. A coarse part may extend beyond the edge.
  */
 region: [number, number, number, number], 
 /**
- * Visible error, the quantity that `durer render --noise-threshold` limits, once it is known.
+ * Visible error, which `durer render --noise-threshold` limits; `None` if not yet known.
  */
 noise: number | null, 
 /**
- * Milliseconds until it is finished, once they are known.
+ * Estimated time until the picture is finished, in milliseconds; `None` if not yet known.
  */
 left_ms: number | null, 
 /**
- * True if it is denoised.
+ * True if the picture is denoised.
  */
 denoised: boolean, 
 /**
@@ -917,8 +917,8 @@ lines: Array<Array<number>>, };
 
 export type Lamp = { 
 /**
- * Position in world space; for a directional light, a point in the direction from which it
- * shines.
+ * Position in world space; for a directional light, a point in the direction from which its
+ * light comes.
  */
 at: [number, number, number], 
 /**
@@ -942,11 +942,11 @@ origin: [number, number, number],
  */
 direction: [number, number, number], 
 /**
- * Position of the first hit along the ray.
+ * Ray parameter of the first hit.
  */
 t: number | null, 
 /**
- * Number of the object that is hit.
+ * Number of the hit object.
  */
 object: number | null, };
 
@@ -956,7 +956,7 @@ export type WalkTest = {
  */
 object: number, 
 /**
- * Position of its first hit along the ray.
+ * Ray parameter of the first hit on the object.
  */
 t: number | null, };
 
@@ -966,21 +966,21 @@ export type WalkStep = {
  */
 bounds: [[number, number, number], [number, number, number]] | null, 
 /**
- * Depth of a box in its tree.
+ * Depth of the box in its tree.
  */
 level: number, 
 /**
- * Objects that are tested there.
+ * Tests of the objects in it.
  */
 tests: Array<WalkTest>, 
 /**
- * Least `t` after it.
+ * Ray parameter of the nearest hit after this step.
  */
 closest: number | null, };
 
 export type WalkAccount = { 
 /**
- * Visited boxes or cells, in order.
+ * Visited boxes or cells, in visiting order.
  */
 steps: Array<WalkStep>, 
 /**
@@ -988,7 +988,7 @@ steps: Array<WalkStep>,
  */
 visits: number, 
 /**
- * Number of tests against objects.
+ * Number of object tests.
  */
 tests: number, 
 /**
@@ -1000,49 +1000,50 @@ objects: number,
  */
 hit: WalkTest | null, 
 /**
- * Boxes of the tree, or cells with objects in them, up to a limit.
+ * Boxes of the tree, or cells that contain objects, up to a limit.
  */
 boxes: Array<BoxState>, };
 
 export type BoxState = { 
 /**
- * Depth; 0 for the box around everything.
+ * Depth; 0 for the root's box.
  */
 level: number, 
 /**
- * Its eight corners, three numbers each: bit 0 of a corner's number is x, bit 1 y, bit 2 z.
+ * The eight corners, three coordinates each: bits 0, 1 and 2 of a corner's number select x, y
+ * and z.
  */
 corners: Array<number>, };
 
 export type TreeNode = { 
 /**
- * Its keyword or file.
+ * Keyword or file name of the node.
  */
 name: string, 
 /**
- * Place in the scene's text.
+ * Position in the scene's text.
  */
 place: Place | null, 
 /**
- * Number of its material.
+ * Number of the node's material.
  */
 material: number | null, 
 /**
- * Nodes below it.
+ * Child nodes.
  */
 nodes: Array<TreeNode>, };
 
 export type MaterialState = { 
 /**
- * Its keyword.
+ * Keyword of the material.
  */
 name: string, 
 /**
- * Place in the scene's text.
+ * Position in the scene's text.
  */
 place: Place | null, 
 /**
- * Its fields.
+ * Fields of the material.
  */
 fields: Array<FieldState>, };
 

@@ -1,13 +1,13 @@
-//! `cargo xtask additions`: measures the effort of adding a feature of each kind. Adds them to a
-//! copy of the sources, builds it and uses it.
+//! `cargo xtask additions`: measures the effort of adding a feature of each kind. Adds the features
+//! to a copy of the sources, builds it and uses them.
 
 use crate::root;
 use anyhow::{Context, Result, bail, ensure};
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
-/// A new feature: its kind, its file and content, and the entries that lists need: file, text to
-/// insert before, and insertion.
+/// A new feature: its kind, file and content, and its entries in existing lists. An entry has a
+/// file, the text to insert before, and the text to insert.
 struct Addition {
     kind: &'static str,
     file: &'static str,

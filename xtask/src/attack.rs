@@ -1,5 +1,5 @@
-//! `cargo xtask attack`: hostile inputs, each kind a subcommand that counts what it tried and what
-//! fell.
+//! `cargo xtask attack`: tests the program with hostile input. Each kind of attack is a subcommand,
+//! which counts its trials and failures.
 
 mod far;
 mod growth;
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// A kind of attack, its default count, and what the count counts.
+/// A kind of attack, with its default number of trials and a description of what is counted.
 struct Kind {
     name: &'static str,
     count: u64,
@@ -32,22 +32,22 @@ const KINDS: [Kind; 7] = [
     Kind { name: "mutated", count: 20_000, of: "mutated files", run: mutated::run },
 ];
 
-/// Environment of an attack.
+/// Settings of an attack.
 struct Attack {
     durer: PathBuf,
     folder: tempfile::TempDir,
     count: u64,
     seed: u64,
-    /// Words after the options of all attacks, for `mutated`.
+    /// Extension of the files that `mutated` uses; empty for all.
     only: String,
 }
 
 /// Result of an attack.
 struct Outcome {
     tried: u64,
-    /// A line for each that fell.
+    /// One line per failure.
     fallen: Vec<String>,
-    /// Anything else worth a line.
+    /// Text to append to the summary.
     note: String,
 }
 
@@ -93,12 +93,12 @@ impl Attack {
         Ok(std::fs::write(path, content)?)
     }
 
-    /// A random number below another, the same for each place.
+    /// Returns a random number less than `below`, deterministic for each `number` and `place`.
     fn random(&self, number: u64, place: u32, below: u64) -> usize {
         (hash(self.seed, number as u32, place, (number >> 32) as u32, 0) % below.max(1)) as usize
     }
 
-    /// Runs the program in the folder under limits of address space (KiB) and time (seconds).
+    /// Runs the program in the folder with limits of address space (KiB) and time (seconds).
     fn limited(&self, arguments: &[&str], space: u64, seconds: u64) -> Result<Output> {
         let limit = format!("ulimit -v {space}; exec timeout -s KILL {seconds} \"$0\" \"$@\"");
         let mut command = Command::new("bash");
@@ -108,20 +108,20 @@ impl Attack {
     }
 }
 
-/// Returns why a run is not one that ends by itself with a picture or an error.
+/// Returns the reason if a run crashed or did not end by itself; `None` for a picture or an error.
 fn broken(output: &Output) -> Option<String> {
     let messages = String::from_utf8_lossy(&output.stderr);
     let last = messages.lines().last().unwrap_or_default();
     match output.status.code() {
         Some(0..=2) if !messages.contains("panicked") => None,
-        // `timeout` kills with 137.
+        // `timeout -s KILL` exits with 137.
         Some(137) => Some("no end".into()),
         Some(code) => Some(format!("exit code {code}: {last}")),
         None => Some(format!("{}: {last}", output.status)),
     }
 }
 
-/// The property tests of job files, with as many names as asked.
+/// Runs the property tests of job files, with the requested number of names.
 fn templates(attack: &Attack) -> Result<Outcome> {
     let rounds = attack.count.div_ceil(2000).to_string();
     let mut command = Command::new(crate::cargo());
@@ -142,7 +142,7 @@ fn kills(attack: &Attack) -> Result<Outcome> {
     })
 }
 
-/// Waits for a child process, at most so long; kills it then, and returns `None`.
+/// Waits for a child process for at most `most`, then kills it and returns `None`.
 fn wait_for(child: &mut std::process::Child, most: Duration) -> Result<Option<Duration>> {
     let start = Instant::now();
     while start.elapsed() < most {
@@ -156,7 +156,7 @@ fn wait_for(child: &mut std::process::Child, most: Duration) -> Result<Option<Du
     Ok(None)
 }
 
-/// Returns the inputs of earlier attacks, if they are at hand.
+/// Returns the inputs of earlier attacks, if they are available.
 fn inputs() -> Vec<PathBuf> {
     let folder = crate::corpus().join("faults/attack");
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();

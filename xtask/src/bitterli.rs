@@ -14,19 +14,19 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Default samples a pixel; a pixel covers 4 x 4 of the reference's.
+/// Default number of samples per pixel. A pixel covers 4 x 4 pixels of the reference.
 const SAMPLES: u32 = 256;
 const STEP: u32 = 4;
 
-/// Limits for the deviation of the mean, and for FLIP after equal exposure.
+/// Maximum deviation of the mean, and maximum FLIP at equal exposure.
 const MAX_OFF: f64 = 0.02;
 const MAX_FLIP: f64 = 0.08;
 
-/// Scenes whose file asks for other depths than Tungsten used: the number of scattering events
-/// after the first hit. With 0, walls and floor of veach-mis agree to a thousandth.
+/// Scenes whose file specifies a different depth than Tungsten used: the number of scattering
+/// events after the first hit. With 0, the walls and floor of veach-mis agree to a thousandth.
 const BOUNCES: [(&str, u32); 2] = [("cornell-box", 62), ("veach-mis", 0)];
 
-/// Scenes whose pbrt file asks for photons: photons a sample, and the radius stated there.
+/// Scenes whose pbrt file requests photons: photons per sample, and the radius in the file.
 const PHOTONS: [(&str, u32, f32); 1] = [("water-caustic", 200_000, 0.01)];
 
 /// Known causes of differences from Tungsten.
@@ -135,7 +135,7 @@ fn compared(folder: &Path, samples: u32, keep: Option<&Path>) -> Result<Row> {
     part.render(&world, &Control::default(), &mut |_, _| {})?;
     let rendered = part.pictures()?;
     let ours = &rendered.layers.first().context("a picture")?.image;
-    // An emitter may exceed the reference's number range: exclude it in both pictures.
+    // Exclude pixels that are infinite in the reference, such as bright emitters, from both.
     let seen = |image: &Image| {
         let pixel = |(&own, other): (&Vec3, &Vec3)| if other.is_finite() { own } else { Vec3::ZERO };
         Image { pixels: image.pixels.iter().zip(&whole.pixels).map(pixel).collect(), ..image.clone() }

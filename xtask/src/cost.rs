@@ -49,7 +49,7 @@ const SAMPLES: u32 = 16;
 /// Luminance weights of Rec. 709.
 const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
-/// Sums of a pixel as in the film, in floating point.
+/// Sums of a pixel as in the film, but in floating point.
 #[derive(Clone, Default)]
 struct Plain {
     color: Vec3,
@@ -77,8 +77,8 @@ impl Plain {
     }
 }
 
-/// Returns the time of the same samples summed exactly, and summed as `f32`: the minimum of several
-/// runs in turns, because disturbances last longer than a row.
+/// Returns the times of the same samples summed exactly and summed as `f32`. Each is the minimum
+/// over alternating runs, because disturbances outlast a single run.
 fn film(world: &World) -> [Duration; 2] {
     let job = Job { width: SIDE, height: SIDE, ..Job::default() };
     let whitted = Whitted { world, settings: job.settings, cancel: None };
@@ -124,9 +124,9 @@ fn large() -> Job {
     Job { width: 800, height: 600, sampling, ..Job::default() }
 }
 
-/// Returns the minimum times of a render on one thread, of one on two threads, and of two renders
-/// at once on one thread each. The last shows what the processors achieve together, as they may be
-/// two hyperthreads of one core.
+/// Returns the minimum times of a render on one thread, of a render on two threads, and of two
+/// simultaneous renders on one thread each. The last shows what the processors achieve together, as
+/// they can be two hyperthreads of one core.
 fn threaded(world: &World) -> [Duration; 3] {
     let render = |threads| {
         let control = Control { threads: Some(threads), ..Control::default() };

@@ -29,7 +29,7 @@ pub struct Row {
 
 /// Result of a comparison.
 struct Finding {
-    /// Share of pixels that differ by more than rounding, in percent, or another measure.
+    /// Percentage of pixels that differ by more than rounding, or another measure.
     share: f64,
     largest: u8,
     verdict: Verdict,
@@ -46,7 +46,7 @@ enum Verdict {
 /// A row that differs from the official picture, and the reason.
 struct Reason {
     picture: &'static str,
-    /// Share of differing pixels, in percent, that the cause explains; a larger share has another
+    /// Percentage of differing pixels that the cause explains. A larger percentage has another
     /// cause.
     most: f64,
     words: &'static str,
@@ -63,7 +63,7 @@ const REASONS: &[Reason] = &[reason(
     "at the horizon, fields are far smaller than a pixel, so rounding of the old program decides",
 )];
 
-/// Pictures that were rendered from an edited scene: old and new text.
+/// Pictures that were rendered from an edited scene, each with the old and new text.
 const AMENDED: &[(&str, &[(&str, &str)])] = &[
     // Recovered from the picture: 5 of its 40,000 pixels differ.
     (
@@ -74,8 +74,7 @@ const AMENDED: &[(&str, &[(&str, &str)])] = &[
             ("size 5", "size 5.00053"),
         ],
     ),
-    // The two materials of the board are swapped; in output7_04a, with the same scene, they are
-    // not.
+    // The two materials of the board are swapped, but not in output7_04a, which has the same scene.
     ("output6_18a.png", &[("materialIndex 3\n\tmaterialIndex 6", "materialIndex 6\n\tmaterialIndex 3")]),
 ];
 
@@ -258,7 +257,7 @@ impl Bench {
         text.contains("transparentColor") || text.contains("refractionIndex")
     }
 
-    /// Tests equality in mean and spread: the reference should look like another seed of ours.
+    /// Compares mean and spread: the reference should look like another seed of our renders.
     fn compare_random(&mut self, row: &Row, reference: &Image8, share: f64, largest: u8) -> Result<Finding> {
         let ours: Vec<Image8> = (0..SEEDS).map(|seed| self.picture(row, seed)).collect::<Result<_>>()?;
         let n = SEEDS as f64;
@@ -266,8 +265,8 @@ impl Bench {
         let values: Vec<Vec<f64>> = ours.iter().map(channels).collect();
         let theirs = channels(reference);
         let mean_of = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
-        // Distance of each picture from the mean of the others, in the same way for ours and the
-        // reference.
+        // Distance of each picture from the mean of the others, computed equally for our pictures
+        // and the reference.
         let sums: Vec<f64> = (0..theirs.len()).map(|i| values.iter().map(|v| v[i]).sum()).collect();
         let spread = |picture: &[f64], others: &dyn Fn(usize) -> f64| {
             (picture.iter().enumerate().map(|(i, v)| square(v - others(i))).sum::<f64>() / picture.len() as f64).sqrt()
@@ -281,7 +280,7 @@ impl Bench {
         let own_spread = mean_of(&own);
         let spread_deviation = (own.iter().map(|s| square(s - own_spread)).sum::<f64>() / (n - 1.0)).sqrt();
         let spread_difference = reference_spread - own_spread;
-        // Four standard deviations, plus the possible effect of truncation to whole grey levels,
+        // Four standard deviations, plus the largest effect of truncation to integer grey levels,
         // which is zero for most pixels.
         let chance = 4.0 * (1.0 + 1.0 / n).sqrt();
         let mean_equal = mean_difference.abs() <= chance * deviation + 0.1;
@@ -299,7 +298,7 @@ impl Bench {
         let name = row.picture.trim_start_matches("reference/").replace('/', "_");
         let shown = [ours, reference].map(|image| image.pixels.iter().map(|p| p.map(f32::from)).collect::<Vec<_>>());
         let mut pixels = Vec::new();
-        // Ours, the official one, and eight times the difference, side by side.
+        // Our picture, the official one, and eight times the difference, side by side.
         let width = ours.width as usize;
         for y in 0..ours.height as usize {
             for part in 0..3 {

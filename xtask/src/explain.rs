@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-/// Number of timed explanations in each scene, and of slowest scenes to report.
+/// Number of timed explanations per scene, and number of slowest scenes to report.
 const TIMED: u32 = 5;
 const SLOWEST: usize = 5;
 
@@ -45,7 +45,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         false => println!("the course is missing: testing only our own scenes"),
     }
     scenes.retain(|path| only.is_none_or(|only| path.to_string_lossy().contains(only.as_str())));
-    // All scenes with sane rules, and with the quirks of their year's program.
+    // Use all scenes twice: without quirks, and with the quirks of their year's program.
     let ways: Vec<(&PathBuf, bool)> = scenes.iter().flat_map(|scene| [(scene, false), (scene, true)]).collect();
     let pool = rayon::ThreadPoolBuilder::new().stack_size(64 << 20).build()?;
     let read = || ways.par_iter().map(|(scene, official)| read(scene, *official, &course)).collect::<Result<Vec<_>>>();

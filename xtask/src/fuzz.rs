@@ -33,7 +33,7 @@ const TARGETS: [(&str, &[&str]); 22] = [
     ("ways", &[]),
 ];
 
-/// Limits: bytes an input, MiB of memory a run, seconds an input.
+/// Limits: bytes per input, MiB of memory, seconds per input.
 const MAX_BYTES: u64 = 16 << 10;
 const MAX_MEMORY: u32 = 2048;
 const MAX_SECONDS: u32 = 20;
@@ -116,7 +116,7 @@ fn hours_of_children() -> Option<f64> {
 
 fn cargo_fuzz(fuzz: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new("cargo");
-    // Another toolchain's cargo started this process and must not select the compiler.
+    // The cargo that started this process uses another toolchain and must not select the compiler.
     command.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO").args(["+nightly", "fuzz"]).args(arguments);
     command.current_dir(fuzz.join(".."));
     command

@@ -1,5 +1,5 @@
 //! `cargo xtask hashes`: prints hashes of the pictures and messages for the scenes, the course and
-//! the sample files, one a line, for later comparison. Refactoring must leave every line unchanged.
+//! the sample files, one per line, for later comparison. A refactoring must not change any line.
 //!
 //! A line is a kind, a path (with options, or the name of a picture), and the hash, with tabs
 //! between them:
@@ -28,24 +28,25 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Number of cases that run at a time, each with one thread.
+/// Number of cases that run at the same time, each with one thread.
 const WORKERS: usize = 2;
 
-/// Time limit of a case: many times the slowest, as the machine may be busy.
+/// Time limit of a case, many times that of the slowest, because the machine can be busy.
 const LIMIT: Duration = Duration::from_secs(240);
 
-/// Memory limit of a case. A share of the machine's memory would refuse different files elsewhere.
+/// Memory limit of a case. A share of the machine's memory would reject different files on each
+/// machine.
 const MEMORY: &str = "4G";
 
-/// Endings of scenes and models, in lower case.
+/// Extensions of scenes and models, in lower case.
 const ENDINGS: [&str; 11] = ["3mf", "glb", "gltf", "obj", "pbrt", "ply", "rad", "rif", "stl", "txt", "xml"];
 
 /// Commands that render, each with one thread.
 const RENDER: &str = "render --hash --threads 1 --no-checkpoint -o @p.pfm";
 const PROGRAM: &str = "course --threads 1";
 
-/// Options for each of our scenes: first every picture without extra samples, then the other
-/// integrators and samplers at lower resolution.
+/// Options for each of our scenes: first all pictures with few samples, then the other integrators
+/// and samplers at lower resolution.
 const OURS: [&str; 6] = [
     "--size 64x48 --samples 4 --show color,depth,normals,geometric-normals,position,uv,barycentric,albedo,object,\
      material,luminance,illuminance,sample-count,variance",
@@ -56,7 +57,7 @@ const OURS: [&str; 6] = [
     "--size 16x12 --samples 16 --integrator path --adaptive --accel grid",
 ];
 
-/// Options for each file of another program.
+/// Options for each file of other programs.
 const THEIRS: &str = "--size 32x24 --samples 2";
 
 /// Options for the course's scenes without a reference picture.
@@ -65,10 +66,10 @@ const COURSE: &str = "-size 48 48 -output @color.tga -depth 0 20 @depth.tga -nor
 /// Folders with meshes for course scenes that lack their own.
 const MESHES: &str = "--assets course/scenes/f04 --assets course/scenes/f16";
 
-/// Separates the name of a case from the name of one of its pictures.
+/// Separator between the name of a case and the name of one of its pictures.
 const PICTURE: &str = ": ";
 
-/// Lines by kind and path: the hash, or the text of an error.
+/// Value of each line by kind and path: the hash, or the text of an error.
 type Lines = BTreeMap<(String, String), String>;
 
 /// One run of the program.
@@ -158,7 +159,7 @@ fn cases(only: Option<&String>) -> Result<Vec<Case>> {
     let corpus = crate::corpus().canonicalize().context("the sample files are missing; set DURER_CORPUS")?;
     course(&corpus, &mut cases)?;
     for folder in ["samples", "meshes"] {
-        // Text files there are licences and tables.
+        // Text files in these folders are licences and tables.
         for file in below(&corpus, folder, true)?.iter().filter(|file| !file.ends_with(".txt")) {
             cases.push(Case::new(Kind::Film, file.clone(), &corpus, &format!("{RENDER} {THEIRS}"), Some(file)));
             cases.push(converted(&corpus, file, "json", ""));
@@ -168,7 +169,7 @@ fn cases(only: Option<&String>) -> Result<Vec<Case>> {
     Ok(cases)
 }
 
-/// Adds the runs of a scene that render nothing.
+/// Adds the runs of a scene that do not render.
 fn read_only(folder: &Path, file: &str, assets: &str, cases: &mut Vec<Case>) {
     cases.extend(["json", "txt", "glb"].map(|ending| converted(folder, file, ending, assets)));
     let case = |kind, words| Case::new(kind, file.into(), folder, &format!("{words} {assets}"), Some(file));
@@ -304,7 +305,7 @@ impl Case {
         };
         let (out, errors) = (plain(&ended.out), plain(&ended.errors));
         if let Kind::Info | Kind::Check = self.kind {
-            // Memory sizes depend on internal structures, which may change.
+            // Memory sizes depend on internal structures, which can change.
             let lines = out.lines().filter(|line| !line.starts_with("memory "));
             let messages = format!("{code}\n{}\n{errors}", lines.collect::<Vec<_>>().join("\n"));
             return Ok(vec![line(kind, Digest::of(messages.as_bytes()).to_string())]);
@@ -344,7 +345,7 @@ impl Case {
 }
 
 impl Kind {
-    /// Returns the first word of its lines.
+    /// Returns the kind as the first word of a line.
     fn word(self) -> &'static str {
         match self {
             Kind::Film => "film",

@@ -1,5 +1,5 @@
 //! `cargo xtask manual`: writes the language reference with pictures, and a grammar for editors,
-//! from the statements in the code.
+//! from the descriptions in the code.
 
 mod python;
 
@@ -24,7 +24,7 @@ pub fn run() -> Result<ExitCode> {
     std::fs::create_dir_all(pictures())?;
     for entry in entries() {
         let Some(scene) = entry.scene() else { continue };
-        // Examples refer to files of the repository's scenes.
+        // Examples can refer to files in the `scenes` folder.
         let file = tempfile::Builder::new().suffix(".txt").tempfile_in(docs().join("../scenes"))?;
         std::fs::write(file.path(), scene)?;
         let picture = pictures().join(picture_name(&entry));
@@ -49,7 +49,7 @@ fn pictures() -> PathBuf {
 
 fn picture_name(entry: &Entry) -> String {
     let chapter = entry.chapter.title().to_lowercase();
-    // Two keywords may differ only in their context: `Noise`.
+    // Two keywords can differ only in their context, for example `Noise`.
     let kind = if entry.doc.contains("instead of the diffuse") { "-color" } else { "" };
     format!("{chapter}-{}{kind}.png", entry.name().to_lowercase())
 }

@@ -1,8 +1,8 @@
-//! Many lights: compares the cost of a room with a hundred thousand lights to one with ten, at
-//! equal error.
+//! Many lights: compares the cost of rendering a room with a hundred thousand lights to one with
+//! ten lights, at equal error.
 //!
-//! The lights have the same total area and power in both rooms, and are outside the picture:
-//! emitters far smaller than a pixel would dominate its noise, whatever the light sampling.
+//! The lights have the same total area and power in both rooms and are outside the picture. Visible
+//! emitters far smaller than a pixel would dominate the noise, regardless of light sampling.
 
 use anyhow::{Context, Result};
 use durer::film::Filter;
@@ -19,14 +19,14 @@ use std::time::Instant;
 /// Largest acceptable ratio of costs.
 const MOST: f64 = 2.0;
 
-/// Number of random placements in each room, because the noise of ten lights depends on where they
-/// are.
+/// Number of random placements in each room, because the noise of ten lights depends on their
+/// positions.
 const PLACINGS: u64 = 4;
 
-/// Number of pictures of each, with different seeds.
+/// Number of pictures per placement, with different seeds.
 const RUNS: u64 = 3;
 
-/// Rooms of the corpus, and the bounds of their interior.
+/// Rooms of the corpus, with the bounds of their interiors.
 const ROOMS: [(&str, [f64; 3], [f64; 3]); 2] = [
     ("kitchen.ply", [-1.930758, -0.034231, -2.479913], [3.614574, 2.523191, 2.593479]),
     ("hall.ply", [-3.535412, -2.480083, -24.03392], [48.30188, 16.92997, 24.325836]),
@@ -126,7 +126,7 @@ pub fn run() -> Result<ExitCode> {
         for placing in 0..PLACINGS {
             let found = |lights| RoomResult::new(room(given, lights, placing)?);
             let (mut few, mut many) = (found(10)?, found(100_000)?);
-            // In turns, so that both see the same machine load.
+            // Alternate, so that both see the same machine load.
             for seed in 1..=RUNS {
                 few.run(seed)?;
                 many.run(seed)?;

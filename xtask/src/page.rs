@@ -35,8 +35,8 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(ExitCode::FAILURE)
 }
 
-/// Measures the page: pictures a second and the time to the first, in Chromium, for a small scene
-/// and a large one; then 10,000 random edits, memory over 1,000, and hostile clients.
+/// Measures the page in Chromium, for a small and a large scene: pictures per second, and time to
+/// the first picture. Then tests 10,000 random edits, memory over 1,000 edits, and hostile clients.
 fn measure(web: &Path) -> Result<ExitCode> {
     let root = root()?;
     let durer = crate::build::durer()?;
@@ -71,8 +71,7 @@ fn install(web: &Path) -> Result<()> {
     if web.join("node_modules/vite").exists() {
         return Ok(());
     }
-    // Not `npm ci`: the lock file names an optional package for Windows that not every registry
-    // has.
+    // Not `npm ci`: the lock file lists an optional Windows package that some registries lack.
     call(Command::new("npm").args(["install", "--no-audit", "--no-fund"]).current_dir(web))
 }
 
@@ -82,7 +81,7 @@ fn build(web: &Path, into: &Path) -> Result<()> {
     call(Command::new("npx").args(["vite", "build", "--emptyOutDir", "--outDir"]).arg(into).current_dir(web))
 }
 
-/// Names and bytes of the files in a folder.
+/// Returns the names and bytes of the files in a folder.
 fn files(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
     let mut all = BTreeMap::new();
     for entry in fs::read_dir(folder).with_context(|| folder.display().to_string())? {
@@ -92,11 +91,11 @@ fn files(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
     Ok(all)
 }
 
-/// SIMD levels of the library as WebAssembly, with their target features. The worker takes the
-/// first that the browser knows.
+/// SIMD levels of the WebAssembly library, with their target features. The worker loads the first
+/// that the browser supports.
 const LEVELS: [(&str, &str); 2] = [("simd128", "+simd128"), ("scalar", "-simd128")];
 
-/// Builds the library as WebAssembly at a level.
+/// Builds the WebAssembly library at a SIMD level.
 fn module(root: &Path, level: &str, feature: &str, folder: &Path) -> Result<()> {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
     let target = target.join("playground").join(level);
@@ -127,7 +126,7 @@ fn module(root: &Path, level: &str, feature: &str, folder: &Path) -> Result<()> 
     )
 }
 
-/// Writes the page, the library as WebAssembly, and what keeps both for times without a network.
+/// Writes the page, the WebAssembly library, and the script that caches both for offline use.
 pub fn playground(arguments: &[String]) -> Result<ExitCode> {
     let root = root()?;
     let folder = PathBuf::from(value(arguments, "-o").context("say where it goes: -o FOLDER")?);

@@ -1,11 +1,11 @@
-//! Compares equal scenes by Dürer and Mitsuba 3: `peers.py` compares pictures, `peers_time.py`
+//! Compares equal scenes in Dürer and Mitsuba 3. `peers.py` compares pictures, `peers_time.py`
 //! times, and `peers_direct.py` times of direct light, also with Blender's Cycles.
 
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-/// Versions for the figures of docs/validation.md.
+/// Versions used for the figures in docs/validation.md.
 const MITSUBA: &str = "mitsuba==3.9.1";
 const BLENDER: &str = "bpy==5.0.1";
 
@@ -34,8 +34,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(if status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Creates a Python environment with Mitsuba once, from the package index; with Blender too if it
-/// supports this Python.
+/// Creates a Python environment with Mitsuba, and with Blender if it supports this Python version.
 fn environment(folder: &Path, blender: bool) -> Result<PathBuf> {
     let python = folder.join("bin/python");
     if !python.exists() {

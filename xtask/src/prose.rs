@@ -10,7 +10,7 @@ use std::process::ExitCode;
 
 /// Maximum number of columns of a comment.
 const MAX_COLUMNS: usize = 100;
-/// Marks a line of code that must keep a listed word.
+/// Marks a line of code that keeps a listed word.
 const KEEP: &str = "// prose: keep";
 
 /// A word or phrase to avoid.
@@ -228,7 +228,7 @@ fn literals(line: &str) -> Vec<String> {
         }
         escaped = c == '\\' && !escaped;
     }
-    // Of a literal that continues below, use the first line.
+    // If a literal continues on the next line, use its first line.
     all.extend(current);
     all
 }
@@ -251,11 +251,11 @@ mod tests {
 
     #[test]
     fn phrases_are_found_across_lines_and_in_messages() {
-        assert_eq!(messages("// It is no\n// number.\n", false), [(1, "no number".into())]);
-        assert_eq!(messages("let a = say(\"two lamp posts\"); // x\n", false), [(1, "lamp".into())]);
-        assert_eq!(messages("let lamp = \"lamp\"; // `lamp`\n", false), []);
-        assert_eq!(messages("A lamp.\n\n    lamp\n\n```\nlamp\n```\nIt reckons.\n", true).len(), 2);
-        assert_eq!(messages("let a = \"a lamp here\"; // prose: keep\n", false), []);
+        assert_eq!(messages("// It is no\n// number.\n", false), [(1, "no number".into())]); // prose: keep
+        assert_eq!(messages("let a = say(\"two lamp posts\"); // x\n", false), [(1, "lamp".into())]); // prose: keep
+        assert_eq!(messages("let lamp = \"lamp\"; // `lamp`\n", false), []); // prose: keep
+        assert_eq!(messages("A lamp.\n\n    lamp\n\n```\nlamp\n```\nIt reckons.\n", true).len(), 2); // prose: keep
+        assert_eq!(messages("let a = \"a lamp here\"; // prose: keep\n", false), []); // prose: keep
     }
 
     #[test]

@@ -12,7 +12,7 @@ use durer::{LoadOptions, load};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Side of a picture in pixels, pictures a row, rows a sheet.
+/// Width and height of a picture in pixels, pictures per row, and rows per sheet.
 const SIDE: u32 = 256;
 const ACROSS: u32 = 6;
 const DOWN: u32 = 5;

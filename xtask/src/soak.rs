@@ -1,5 +1,6 @@
-//! `cargo xtask soak`: random scenes and files of all formats under all integrators, in one process
-//! and as commands. Repeated work has the same hash, memory does not grow, and no handle is left.
+//! `cargo xtask soak`: renders random scenes and files of all formats with all integrators, in one
+//! process and as commands. Checks that repeated work has the same hash, memory does not grow, and
+//! no handle leaks.
 
 use anyhow::{Context, Result, bail, ensure};
 use durer::describe::DescribedList;
@@ -13,12 +14,12 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::time::{Duration, Instant};
 
-/// Share of the time after which memory must not grow any more, and how much it may vary.
+/// Fraction of the time after which memory must not grow, and maximum growth in bytes.
 const WARM: f64 = 0.3;
 const SLACK: u64 = 96 << 20;
-/// Number of rounds from which one is rendered by the command too.
+/// Number of rounds between renders that are repeated with the command.
 const COMMANDS: u64 = 25;
-/// Bytes of a file, at most: larger ones take too long.
+/// Maximum file size in bytes; larger files take too long.
 const MAX_BYTES: u64 = 256 << 10;
 const MEMORY: u64 = 1 << 30;
 
@@ -44,7 +45,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let mut warm: Option<Usage> = None;
     let mut most = Usage::default();
     while start.elapsed() < time {
-        // Every other key is an earlier one, from a window that moves on.
+        // Half of the keys repeat an earlier one, from a sliding window.
         let random = |place: u32, below: u64| hash(seed, rounds as u32, place, 0, 0) % below.max(1);
         let newest = 1 + rounds / 2;
         let key = if random(0, 2) == 0 { newest } else { newest.saturating_sub(random(1, 200)) };
@@ -106,7 +107,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Small scenes and models of the repository.
+/// Returns small scenes and models of the repository.
 fn files() -> Result<Vec<PathBuf>> {
     let (mut found, mut folders) = (Vec::new(), vec![crate::root()?.join("scenes")]);
     while let Some(folder) = folders.pop() {
@@ -128,7 +129,7 @@ fn files() -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Returns the file of a scene; writes random ones.
+/// Returns the file of a scene. Random scenes are written to `folder`.
 fn written(scene: &Scene, seed: u64, folder: &Path) -> Result<PathBuf> {
     Ok(match scene {
         Scene::File(path) => path.clone(),
@@ -142,7 +143,7 @@ fn written(scene: &Scene, seed: u64, folder: &Path) -> Result<PathBuf> {
     })
 }
 
-/// Renders a file in this process, and returns the film's hash; `None` if it is refused.
+/// Renders a file in this process and returns the film's hash; `None` if the file is rejected.
 fn rendered(path: &Path, options: &[(&str, &str)]) -> Result<Option<String>> {
     let load_options = LoadOptions { memory: Some(MEMORY), ..LoadOptions::default() };
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
@@ -158,7 +159,7 @@ fn rendered(path: &Path, options: &[(&str, &str)]) -> Result<Option<String>> {
     Ok(Some(part.hash().to_string()))
 }
 
-/// Renders a file by the command.
+/// Renders a file with the `durer` command and returns the film's hash.
 fn command(durer: &Path, path: &Path, options: &[(&str, &str)], folder: &Path) -> Result<String> {
     let mut command = Command::new(durer);
     command.arg("render").arg(path).args(["--hash", "--quiet", "--no-checkpoint", "--memory", "1G", "-o"]);

@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 
 const POINTS: usize = 1_000_000;
 const RAYS: u32 = 200_000;
-/// Number of runs in turns; times are their minimum.
+/// Number of alternating runs; times are their minimum.
 const TURNS: usize = 7;
 
 pub fn run() -> Result<ExitCode> {

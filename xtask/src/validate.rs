@@ -8,10 +8,10 @@ use anyhow::{Result, bail};
 use std::fmt::Write as _;
 use std::process::ExitCode;
 
-/// Default samples of each case.
+/// Default number of samples per case.
 const SAMPLES: u32 = 1 << 18;
 
-/// A growing table, and the number of its wrong rows.
+/// A table that is being written, and the number of its wrong rows.
 #[derive(Default)]
 struct Table {
     text: String,

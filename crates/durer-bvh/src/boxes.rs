@@ -122,7 +122,8 @@ impl Bvh {
     }
 
     /// Traverses the tree as [`Bvh::traverse`] does, and returns the boxes of the visited nodes and
-    /// leaves in the order of the visits. For drawings: it also walks over the whole tree.
+    /// leaves in visiting order. Meant for drawing: it also traverses the whole tree to find the
+    /// boxes.
     pub fn visits(&self, ray: &Ray, mut test: impl FnMut(usize, f32) -> f32) -> Vec<TreeBox> {
         let boxes: BTreeMap<u32, TreeBox> = shown::boxes(&self.nodes).collect();
         let mut codes = Vec::new();

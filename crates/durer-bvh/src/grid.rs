@@ -35,8 +35,8 @@ impl Grid {
     /// Maximum number of entries in the lists of all cells.
     const MAX_ENTRIES: u64 = 1 << 28;
 
-    /// Numbers of cells along x, y, and z that suit a box with `primitive_count` primitives: about
-    /// two cells per primitive, nearly cubic.
+    /// Suitable numbers of cells along x, y, and z for a box with `primitive_count` primitives:
+    /// about two cells per primitive, nearly cubic.
     pub fn suitable(bounds: Aabb, primitive_count: usize) -> [u32; 3] {
         let size = bounds.size();
         let longest = size.max_element().max(f32::MIN_POSITIVE);
@@ -208,8 +208,8 @@ impl Grid {
     /// if all primitives should be tested instead. `offer` is a trait object, so that the traversal
     /// is compiled once, here, and not for each caller.
     fn offer_cells(&self, ray: &Ray, offer: &mut dyn FnMut(&[u32], f32) -> f32) -> bool {
-        // Far away, rounding moves rays by more than the padding of the cells: visit neighbouring
-        // cells too.
+        // Far away, rounding moves rays by more than the padding of the cells: so also visit
+        // neighbouring cells.
         let reach = [self.bounds.min, self.bounds.max].map(|c| (ray.origin - c).abs().max(c.abs()).max_element());
         let cut = |axis: &usize| self.counts[*axis] > 1;
         let finest = (0..3).filter(cut).map(|axis| self.cell_size()[axis]).fold(f32::INFINITY, f32::min);

@@ -63,7 +63,7 @@ impl InstanceHit {
 /// A tree over instances. Each triangle tree is in memory once, however many instances share it.
 ///
 /// A ray is transformed into the space of an instance in double precision and rounded once; its
-/// origin may be double precision ([`Ray64`]). There it is traced as by [`TriangleBvh`], so it
+/// origin may be double precision ([`Ray64`]). There it is traced as in a [`TriangleBvh`], so it
 /// crosses exactly one of the triangles around an edge. Of hits at the same `t`, the one with the
 /// least instance number, and then with the least triangle number, is the closest.
 ///
@@ -279,7 +279,7 @@ impl InstanceBvh {
     }
 
     /// Finds the hits of each ray, in order: `take` gets the index of the ray in the batch and its
-    /// hits, sorted as by [`InstanceBvh::all_hits`].
+    /// hits, sorted as in [`InstanceBvh::all_hits`].
     pub fn all_hits_batch(&self, rays: &[Ray], mut take: impl FnMut(usize, &[InstanceHit])) {
         rays.iter().enumerate().for_each(|(i, ray)| take(i, &self.all_hits(ray)));
     }

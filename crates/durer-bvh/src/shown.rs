@@ -1,4 +1,4 @@
-//! Boxes of trees, for drawings of them.
+//! Boxes of a tree, for drawing.
 
 use super::node::{self, LEAF, WideNode};
 use crate::math::Aabb;
@@ -8,11 +8,11 @@ use std::ops::Range;
 /// Box of a node or leaf.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TreeBox {
-    /// Bounding box of everything below it.
+    /// Bounding box of its subtree.
     pub bounds: Aabb,
-    /// Depth; 0 for the box around the whole tree.
+    /// Depth; 0 for the root's box.
     pub level: u32,
-    /// Positions of the primitives of a leaf, in leaf order; empty for an inner node.
+    /// Positions of a leaf's primitives in leaf order; empty for an inner node.
     pub items: Range<usize>,
 }
 

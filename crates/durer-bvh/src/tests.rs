@@ -146,7 +146,7 @@ fn slab_is_clipped_by_the_sign_of_the_direction() {
     let b = cube(Vec3::ZERO, 1.0);
     assert_eq!(b.clip(Vec3::new(-3.0, 0.0, 0.0), Vec3::X), Some((2.0, 4.0)));
     assert_eq!(b.clip(Vec3::new(3.0, 0.0, 0.0), Vec3::X * -2.0), Some((1.0, 2.0)));
-    // In a face, in an edge, and beside them.
+    // In a face, in an edge, and just outside them.
     assert_eq!(b.clip(Vec3::new(-3.0, 1.0, 0.0), Vec3::X), Some((2.0, 4.0)));
     assert_eq!(b.clip(Vec3::new(-3.0, 1.0, -1.0), Vec3::X), Some((2.0, 4.0)));
     assert_eq!(b.clip(Vec3::new(-3.0, 1.0f32.next_up(), 0.0), Vec3::X), None);
@@ -211,7 +211,7 @@ fn grid_cells_are_visited_in_order_and_only_up_to_the_hit() {
     assert_eq!(visited(Ray::new(Vec3::splat(3.0), Vec3::X), f32::INFINITY), [[0; 3]; 0]);
 }
 
-/// Such rays are frequent: orthographic cameras, voxels, a sun overhead.
+/// Such rays are frequent, for example with orthographic cameras, voxels, and a sun overhead.
 #[test]
 fn rays_with_zero_components_are_fast() {
     let is_fast = |origin, dir| TraversalRay::new(&Ray::new(origin, dir), 3.0).is_some();

@@ -67,9 +67,9 @@ impl TraversalRay {
     #[inline(always)]
     pub fn new(ray: &Ray, most: f32) -> Option<Self> {
         let (origin, dir) = (Vec3A::from(ray.origin), Vec3A::from(ray.dir));
-        // Coordinates count too: a ray that was transformed into object space is off by their
-        // rounding.
-        // Each lane holds the sum of all, so that a NaN anywhere reaches every lane.
+        // The size of the coordinates matters too, since a ray that was transformed into object
+        // space is off by their rounding. Each lane holds the sum of all, so that a NaN anywhere
+        // reaches every lane.
         let from = origin.abs();
         let reach = (from + from.yzx()) + (from.zxy() + most);
         let size = dir.abs();
@@ -134,7 +134,7 @@ pub(super) trait Visitor {
 
     fn counter(&mut self) -> &mut Self::TraversalCounter;
 
-    /// Called for each visited node with its offset.
+    /// Called at each visited node, with its offset.
     #[inline(always)]
     fn enter(&mut self, _: usize) {}
 

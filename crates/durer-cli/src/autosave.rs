@@ -1,4 +1,4 @@
-//! Saved work of long renders: checkpoints, parts, previews.
+//! Checkpoints, part files and previews of long renders.
 
 use crate::failure::{Failure, bad};
 use crate::guard::{Guard, start_of};
@@ -44,7 +44,7 @@ pub struct Autosave {
 }
 
 impl Autosave {
-    /// Reports before the render what would prevent saving. Saved work is only discarded with
+    /// Checks before the render that its files can be written. Discards saved work only with
     /// `--restart`.
     pub fn new(args: &RenderArgs, output: &Path, guard: &mut Guard) -> Result<Self, Failure> {
         let work = &args.work;
@@ -54,7 +54,7 @@ impl Autosave {
             _ => (lengthened(output, ".part"), "--checkpoint (default PICTURE.part)"),
         };
         let wanted = work.shard.is_some() || work.checkpoint.is_some();
-        // Saved work cannot be placed beside a stream.
+        // A stream has no folder for a checkpoint.
         let beside_stream = !wanted && (output.starts_with("/dev") || output.starts_with("/proc"));
         let place = match work.no_checkpoint || beside_stream {
             true => None,
@@ -74,7 +74,7 @@ impl Autosave {
         let growing = args.watch && !output.starts_with("/dev") && args.view.show == ["color"];
         let growing = growing.then(|| Ok::<_, Failure>((Destination::new(output)?, format(output)?))).transpose()?;
         let preview = work.preview.as_ref().map(|path| {
-            // Check the format first: the name may be invalid.
+            // Check the format first, because the name can be invalid.
             let format = format(path)?;
             Ok::<_, Failure>((guard.writes("--preview", path)?, format))
         });
@@ -114,7 +114,7 @@ impl Autosave {
             let before = Instant::now();
             match save_part(place, part) {
                 Ok(()) => self.is_ours.set(true),
-                // Do not abort: the picture may still be saved elsewhere.
+                // Do not abort: the picture can still be saved elsewhere.
                 Err(error) => self.complain(&error),
             }
             self.saving.set(Some(before.elapsed()));
@@ -144,7 +144,7 @@ impl Autosave {
         }
     }
 
-    /// Saves a part that the user asked for.
+    /// Saves a part file that the user asked for.
     pub fn save(&self, part: &PartialRender) -> Result<(), Failure> {
         let Some(place) = &self.place else { return Ok(()) };
         progress::saving();
@@ -153,7 +153,7 @@ impl Autosave {
         Ok(())
     }
 
-    /// Called when the picture is saved. Removes finished work.
+    /// Called after the picture is saved. Removes saved work that is no longer needed.
     pub fn done(&self, part: &PartialRender, finished: bool) {
         let Some(place) = &self.place else { return };
         if !finished && (self.wanted || self.resume) {
@@ -164,8 +164,8 @@ impl Autosave {
             || self.is_ours.get()
             || read_part(place.path()).is_ok_and(|old| part.same_work(&old).is_ok())
         {
-            // Remove only work of this picture, or work that was to be discarded. A failure leaves
-            // a useless file but does no harm.
+            // Remove only work of this picture, or work that `--restart` discards. If that fails,
+            // the useless file does no harm.
             let _ = std::fs::remove_file(place.path());
         }
     }
@@ -212,8 +212,8 @@ fn what_was_saved(args: &RenderArgs, path: &Path) -> Result<Option<Box<PartialRe
         (Ok(Err(error)), false) => return Err(bad(format!("`{name}` holds earlier work, but {error}; {restart}"))),
         (Err(failure), _) => return Err(failure),
     };
-    // A finished shard is an output like a picture. Beside a picture, a part only exists until the
-    // picture does.
+    // A finished shard is an output, like a picture. Other part files are removed when the picture
+    // is written.
     if work.shard.is_some() && part.is_finished() {
         return Ok(None);
     }
@@ -226,7 +226,8 @@ fn percent(part: &PartialRender) -> u64 {
     100 * done / all.max(1)
 }
 
-/// Checks that a part may replace a file: it does not exist, is empty, or is a part.
+/// Checks that a part file can be written here: the file does not exist, is empty, or is a part
+/// file.
 fn check_is_part(path: &Path) -> Result<(), String> {
     let start = match start_of(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),

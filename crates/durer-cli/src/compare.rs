@@ -101,7 +101,7 @@ fn explain(args: &CompareArgs, all: &mut [ComparedPair], memory: u64, guard: &mu
     for compared in all {
         let (Outcome::Compared(found), Some(picture)) = (&compared.outcome, &compared.pair.picture) else { continue };
         let [reference, test] = read_both([&compared.pair.reference, picture], memory).map_err(bad)?;
-        // All pictures of a class share one reference.
+        // Find the stage once per reference: all pictures of a class share it.
         if stages.iter().all(|(path, _)| *path != compared.pair.reference) {
             stages.truncate(16);
             stages.insert(0, (compared.pair.reference.clone(), stage(args, &compared.pair, &reference, guard)?));

@@ -46,7 +46,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let as_json = name.to_lowercase().ends_with(".json");
     let as_mesh = mesh_format_for(&name).filter(|_| args.to.is_none());
     if as_mesh.is_some() {
-        // The studio's ground does not belong to the model.
+        // The default ground plane is not part of the model.
         options.scene_defaults.studio = Some(DefaultLighting::None);
     }
     let ending = args.output.extension().unwrap_or_default().to_string_lossy().to_lowercase();
@@ -56,9 +56,9 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         return Err(bad(format!("{message}, a model as .gltf or .glb, its meshes as .ply, .obj or .stl")));
     }
     let as_scene = scene_format_for(&name).filter(|format| format.write.is_some() && args.to.is_none());
-    // Render options add what the model lacks later.
+    // Write the model only: the renderer adds a missing camera and lights later.
     options.scene_defaults.bare = as_scene.is_some();
-    // A written camera has no picture: it is framed for a square one.
+    // A camera in a file has no image size, so frame it for a square picture.
     options.scene_defaults.aspect = Some(1.0);
     let loaded = load(&args.scene, &options, &mut files, &mut diagnostics).map_err(report::unreadable)?;
     report::print(&files, &diagnostics, false);
@@ -91,7 +91,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     if !loaded.scene.assets.has_loose() {
         return output::save(&[(&place, text(&loaded.scene))], false);
     }
-    // A text scene refers to files: those of a model go into a folder with the output's name.
+    // A text scene refers to files, so write those of a model into a folder named after the output.
     let stem = args.output.file_stem().unwrap_or_default().to_string_lossy();
     let folder = plain(&stem);
     if folder == name {
@@ -114,12 +114,12 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     output::save(&places.iter().zip(contents).collect::<Vec<_>>(), false)
 }
 
-/// Returns true if the format of the name's extension can be read but not written.
+/// Returns true if files with this extension can be read but not written.
 fn is_only_read(name: &str) -> bool {
     mesh_format_for(name).is_none() && scene_format_for(name).is_some_and(|format| format.write.is_none())
 }
 
-/// Returns the render options that a file asks for, if any.
+/// Returns the render options that a file requests, if any.
 fn requested_picture(render_defaults: &RenderDefaults) -> Option<String> {
     let size = render_defaults.size.map(|(width, height)| format!("--size {width}x{height}"));
     let crop = render_defaults.crop.map(|(left, top, width, height)| format!("--crop {left},{top},{width}x{height}"));

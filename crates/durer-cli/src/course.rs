@@ -1,4 +1,4 @@
-//! `durer course`: the command lines of the course's programs of all years.
+//! `durer course`: accepts the command lines of the course's programs from any year.
 
 mod options;
 mod year;
@@ -58,7 +58,7 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     let options = load_options(&parsed, program_name)?;
     parsed.check_unknown(options.dialect, quiet)?;
     let scene = parsed.text("-input").ok_or_else(|| bad("-input is missing: give the scene file"))?;
-    // Report invalid file names before the work.
+    // Report invalid file names before the render.
     let mut guard = Guard::default();
     let outputs = Outputs::of(&parsed, options.dialect, &mut guard)?;
     let compiled = year::open(Path::new(scene), &options, &parsed, &mut guard)?;
@@ -80,7 +80,7 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
         Ok((rendered, grid.map(|image| Layer::color("color", image)), [samples, filter]))
     })
     .map_err(failed)?;
-    // The interrupt may arrive after the work is done; honour it anyway.
+    // The interrupt can arrive after the work is done; honour it anyway.
     if control.cancel.load(Relaxed) {
         return Err(failed(RenderError::Cancelled));
     }
@@ -177,7 +177,7 @@ fn course_format(name: &str, requested: Option<Dialect>) -> Result<&'static Form
 fn job(arguments: &Arguments, compiled: &CompiledInput) -> Result<Job, Failure> {
     let rules = &compiled.loaded.rules;
     let size = arguments.numbers::<u32>("-size", 2)?;
-    // A camera with a fixed aspect ratio determines the size; the old programs have no such camera.
+    // A camera with a fixed aspect ratio determines the size. The old programs have no such camera.
     let natural = || Raster::natural_size(compiled.world.camera().proportions(), rules.size);
     let (width, height) = size.map_or_else(natural, |size| (size[0], size[1]));
     if width == 0 || height == 0 {
@@ -197,8 +197,8 @@ fn job(arguments: &Arguments, compiled: &CompiledInput) -> Result<Job, Failure> 
     if depth_range.is_some_and(|(min, max)| !(min.is_finite() && max.is_finite() && (min != max || clamped))) {
         return Err(bad("-depth needs two different numbers"));
     }
-    // For an empty range the old program divides zero by zero and writes black, as if everything
-    // were behind the range.
+    // With an empty range the old program divides zero by zero and writes black, as if all depths
+    // were beyond the range.
     let depth_range = depth_range.map(|range| if range.0 == range.1 { (-2.0, -1.0) } else { range });
     let bounces = arguments.number("-bounces")?.unwrap_or(rules.bounces);
     if bounces > WhittedOptions::MAX_BOUNCES {

@@ -17,7 +17,7 @@ pub enum Denoiser {
     Auto,
     /// Open Image Denoise.
     Oidn,
-    /// Built-in denoiser, which gives equal bits on every machine.
+    /// Built-in denoiser, which is bit-identical on every machine.
     Own,
 }
 

@@ -56,8 +56,8 @@ impl ExposureArgs {
 /// Returns a camera's pixel value for 1 cd/m², where 1 is white.
 ///
 /// Source: Lagarde and de Rousiers, *Moving Frostbite to Physically Based Rendering*, SIGGRAPH 2014
-/// course, section 5.1.2: white is 78 / (0.65 S) N² / t, after ISO 12232 and a lens that lets 0.65
-/// of the light through.
+/// course, section 5.1.2. White is 78 / (0.65 S) N² / t, from ISO 12232 and a lens that transmits
+/// 0.65 of the light.
 fn by_camera(shutter: f32, f_number: f32, iso: f32) -> f32 {
     shutter * iso / (1.2 * 100.0 * f_number * f_number)
 }
@@ -67,7 +67,7 @@ fn positive(text: &str) -> Result<f32, String> {
     number.ok_or_else(|| "expected a number above 0".into())
 }
 
-/// Parses seconds, as 0.008 or 1/125.
+/// Parses a time in seconds, for example 0.008 or 1/125.
 fn seconds(text: &str) -> Result<f32, String> {
     let (over, under) = text.split_once('/').unwrap_or((text, "1"));
     let seconds =

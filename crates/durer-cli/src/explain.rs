@@ -255,7 +255,7 @@ fn percentage(share: f32) -> String {
     }
 }
 
-/// Formats a line, preceded by its contribution.
+/// Formats a line with its contribution in front.
 pub fn shown(line: &TextLine, colored: bool, transfer: Transfer) -> String {
     let indent = "  ".repeat(line.depth);
     let text = match line.adds {
@@ -268,7 +268,7 @@ pub fn shown(line: &TextLine, colored: bool, transfer: Transfer) -> String {
     };
     match (colored, line.adds) {
         (false, _) => format!("{indent}{text}"),
-        // Dim terms that add nothing, and remarks on a term.
+        // Dim terms that add nothing, and remarks.
         (true, adds) if line.depth > 0 && adds.is_none_or(|adds| adds.is(0.0)) => {
             format!("{indent}\x1b[2m{text}\x1b[0m")
         }

@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 
 /// Exit code for an invalid scene, option or other input.
 const BAD_INPUT: u8 = 2;
-/// Exit code of `durer compare` for different pictures, as of `cmp` and `diff`, whose 2 means an
-/// error.
+/// Exit code of `durer compare` if pictures differ. `cmp` and `diff` also use 1 for differences and
+/// 2 for errors.
 const DIFFERENT: u8 = 1;
 /// Exit code of `durer check` for findings.
 const FOUND: u8 = 1;
@@ -27,9 +27,9 @@ pub enum Failure {
     Input(Option<String>),
     /// Any other error.
     Other(anyhow::Error),
-    /// `durer compare` found different pictures and has printed so.
+    /// `durer compare` found differences, which are already printed.
     Different,
-    /// `durer check` has printed findings.
+    /// `durer check` found problems, which are already printed.
     Found,
     /// The user interrupted the work; the message says what was saved.
     Interrupted(String),

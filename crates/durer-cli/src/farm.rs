@@ -52,7 +52,7 @@ pub fn run(args: &FarmArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Characters of a job's name: Kubernetes allows 63, of which indices take some.
+/// Maximum length of a job name in characters. Kubernetes allows 63, including the index.
 const LONGEST_NAME: usize = 52;
 
 /// Returns the name of a job: letters, digits and dashes.
@@ -132,8 +132,8 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
     }
 }
 
-/// Removes the lines of the other kind of job: lines that begin with `@frames` belong to
-/// animations, lines that begin with `@still` to single pictures.
+/// Removes the lines for the other kind of job. Lines that begin with `@frames` are for animations,
+/// lines that begin with `@still` for single pictures.
 fn chosen(template: &str, frames: bool) -> String {
     let (here, there) = if frames { ("@frames", "@still") } else { ("@still", "@frames") };
     let lines = template.lines().filter(|line| !line.starts_with(there));
@@ -144,7 +144,7 @@ fn chosen(template: &str, frames: bool) -> String {
         .collect()
 }
 
-/// Replaces each `@KEY@` of a template by its value, in one pass: values are never searched.
+/// Replaces each `@KEY@` of a template by its value, in one pass, so values are not expanded again.
 fn filled(template: &str, values: &[(&str, String)]) -> String {
     let (mut made, mut rest) = (String::new(), template);
     while let Some((before, after)) = rest.split_once('@') {

@@ -85,7 +85,7 @@ impl FramesArgs {
     /// number.
     ///
     /// # Errors
-    /// All frames would be equal.
+    /// Fails if all frames would be equal.
     pub fn resolve(&self, scene: &Path, names: &[&str]) -> Result<Option<(Frames, MotionSource)>, Failure> {
         let all = |count: u16| Frames { first: 0, last: u32::from(count) - 1, step: 1 };
         let Some(frames) = self.frames.or(self.turntable.map(all)) else { return Ok(None) };
@@ -115,7 +115,7 @@ pub fn place(name: &str) -> Option<(usize, usize, usize)> {
     })
 }
 
-/// Replaces each placeholder of a name by the frame's number.
+/// Replaces each placeholder in a name with the frame number.
 pub fn numbered(name: &str, frame: u32) -> String {
     match place(name) {
         Some((from, to, digits)) => format!("{}{frame:0digits$}{}", &name[..from], numbered(&name[to..], frame)),
@@ -146,7 +146,7 @@ pub fn run(args: &mut RenderArgs, frames: Frames, moves: MotionSource) -> Result
     let (scene, output) = (utf8(&args.scene)?, pattern(&utf8(&output_of(args))?));
     let (camera, view_file) =
         (scene_defaults.camera.clone(), scene_defaults.view_file.as_deref().map(utf8).transpose()?);
-    // Read meshes and pictures that frames share once.
+    // Read meshes and images shared between frames only once.
     let kept = Arc::new(AssetCache::default());
     for frame in frames.numbers() {
         (args.scene, args.output) = (numbered(&scene, frame).into(), Some(numbered(&output, frame).into()));

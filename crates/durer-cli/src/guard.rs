@@ -23,7 +23,7 @@ struct NamedFile {
     identity: Identity,
 }
 
-/// Identity of a file, equal for all names of it.
+/// Identity of a file, which all its names share.
 #[derive(PartialEq)]
 struct Identity {
     /// Canonical path; for a file that does not exist yet, within its canonical folder.
@@ -100,7 +100,7 @@ impl Guard {
         if let Some(input) = self.inputs.iter().find(same) {
             return Err(both(&output, input));
         }
-        // Devices and pipes may be written twice.
+        // Devices and pipes can be written twice.
         let file = !path.exists() || path.is_file();
         if let Some(other) = self.outputs.iter().find(same).filter(|_| file) {
             let (what, first) = (output.what, other.what);

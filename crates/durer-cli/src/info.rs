@@ -103,7 +103,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Counts the work of tracing camera rays, in a coarse picture.
+/// Counts the traversal steps of camera rays in a low-resolution picture.
 fn rays(world: &World) -> TraversalStats {
     const SIDE: u32 = 64;
     let (raster, mut counts) = (raster(world, SIDE, SIDE), TraversalStats::default());
@@ -118,7 +118,7 @@ fn mib(bytes: usize) -> f64 {
     bytes as f64 / f64::from(1 << 20)
 }
 
-/// Formats the fields of an object, except some.
+/// Formats the fields of an object, except those in `except`.
 fn fields<T: DescribedList>(item: &T, except: &[&str]) -> String {
     let wanted = item.fields().iter().enumerate().filter(|(_, field)| !except.contains(&field.name));
     let shown = wanted.filter_map(|(i, field)| Some(format!("{} {}", field.name, value(&item.get(i)?))));
@@ -146,13 +146,13 @@ struct WorldCounts {
     bytes: usize,
     picture_bytes: usize,
     tree_bytes: usize,
-    /// Sum over meshes of tree cost times triangles.
+    /// Sum over meshes of tree cost times number of triangles.
     costs: f64,
     object_cost: Option<f64>,
 }
 
 impl WorldCounts {
-    /// Counts a mesh; memory of a shared mesh counts once.
+    /// Counts a mesh. The memory of a shared mesh counts once.
     fn mesh(&mut self, tree: &Arc<MeshTree>, seen: &mut Vec<*const MeshTree>) {
         self.triangles += tree.mesh.len();
         if !seen.contains(&Arc::as_ptr(tree)) {

@@ -18,7 +18,7 @@ pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &LoadedScene, timed:
     args.options.resolve(&loaded.job_context(timed), view.as_ref()).map_err(bad)
 }
 
-/// Warns if the camera does not fill the picture, or its lens is not sampled.
+/// Warns if the camera leaves part of the picture empty, or its lens is not sampled.
 pub fn warn(job: &Job, world: &World) {
     let camera = world.camera();
     let (columns, rows) = durer::render::raster(world, job.width, job.height).empty();

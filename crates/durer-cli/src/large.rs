@@ -54,7 +54,7 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
 /// Statistics and hash of a written picture, or the error.
 type WriteResult = Result<(Statistics, Option<Digest>), BandsError>;
 
-/// A picture that is rendered when it is written.
+/// A picture that is rendered while it is written.
 struct Large<'a> {
     bands: &'a Bands,
     world: &'a World,

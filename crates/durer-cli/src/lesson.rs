@@ -89,7 +89,7 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     let scene = args.scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut lesson = Lesson { scene, steps: Vec::new(), pictures: Vec::new(), transfer };
     let names: Vec<String> = TOPICS.iter().map(|topic| topic.title.to_string()).collect();
-    // Nothing is written yet, so Ctrl-C may end the program here.
+    // Nothing is written yet, so Ctrl-C can end the program here.
     let made = progress::each(&names, TOPICS.iter().collect(), args.quiet, |topic| {
         let steps = teacher.steps(topic, &control).map_err(failed)?;
         steps.into_iter().try_for_each(|step| lesson.add(step))

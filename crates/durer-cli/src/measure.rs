@@ -127,7 +127,7 @@ impl Sums {
     }
 }
 
-/// Returns the first point without a surface just below or above it along its normal.
+/// Returns the first point that has no surface just below or above it along its normal.
 fn in_the_air(world: &World, places: &[(Vec3, Vec3)]) -> Option<Vec3> {
     let bounds = world.bounds();
     let size = (bounds.max - bounds.min).length();
@@ -181,7 +181,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         return Err(bad(format!("{message}; use --integrator path, or add a surface there")));
     }
     let mut sums = vec![Sums::default(); places.len()];
-    // Photons are traced again for each sample.
+    // Photons are traced again for every sample.
     let step = if method.prepares() { 1 } else { args.samples };
     threads::install(args.threads.map(usize::from), || {
         for first in (0..args.samples).step_by(step as usize) {

@@ -127,7 +127,7 @@ pub struct WorkArgs {
 /// Names of pictures that show the sampling rather than the scene.
 pub const DIAGRAMS: [&str; 2] = ["samples", "filter"];
 
-/// Name of the picture of error bounds, which is computed beside the render.
+/// Name of the picture of error bounds, which is computed in addition to the render.
 pub const ERROR: &str = "error";
 
 fn shows() -> Vec<&'static str> {

@@ -23,7 +23,7 @@ use std::sync::{Arc, Mutex};
 /// State shared between a render and `--watch`.
 #[derive(Default)]
 pub struct WatchState {
-    /// Files that the scene uses, besides its own.
+    /// Files that the scene refers to, without the scene file itself.
     pub files: Mutex<Vec<PathBuf>>,
     /// True if a file has been saved since the render began.
     pub stale: AtomicBool,
@@ -77,7 +77,7 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchState) -> Re
         shard => shard.unwrap_or(Shard::WHOLE),
     };
     let output = output_of(args);
-    // Report what would prevent writing before the work.
+    // Check that the output can be written before starting the work.
     let mut guard = Guard::default();
     let (target, autosave) = match (pixel, args.work.shard) {
         (Some(_), _) => (None, None),
@@ -102,7 +102,7 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchState) -> Re
     let bands = match &target {
         Some(target) if large::is_large(&job, needed, memory) => Some(large::bands(args, &job, target, memory)?),
         target => {
-            // Report an invalid size as such, whatever the memory limit.
+            // Report an invalid size as such, regardless of the memory limit.
             checked_count(window.width, window.height).map_err(|error| bad(error.to_string()))?;
             target.as_ref().map_or(Ok(()), |target| target.check_size(window.width, window.height))?;
             None

@@ -1,12 +1,12 @@
-//! Options of other programs, and what they are called here.
+//! Options of other programs and their equivalents in Dürer.
 
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, Error};
 use std::ffi::OsString;
 
-/// Counterpart of an option of another program: its names, the option that a command must have for
-/// the hint to be offered, and the hint.
+/// Equivalent of another program's option: its names, the option that a command needs to have for
+/// the hint to apply, and the hint.
 const POINTERS: &[(&[&str], &str, &str)] = &[
     (&["--width", "--height", "--resolution", "--res", "-size"], "size", "`--size 640x480` has both, the width first"),
     (&["--spp", "--aa", "--antialias", "--samples-per-pixel"], "samples", "samples a pixel are `--samples 64`"),
@@ -24,7 +24,7 @@ const POINTERS: &[(&[&str], &str, &str)] = &[
     (&["--jobs", "--cores"], "threads", "threads are `--threads 4`"),
 ];
 
-/// Replaces the suggestion of an unknown option by the option that does the same.
+/// Replaces clap's suggestion for an unknown option with the equivalent option.
 pub fn corrected(mut error: Error, words: &[OsString], program: &Command) -> Error {
     if error.kind() != ErrorKind::UnknownArgument {
         return error;

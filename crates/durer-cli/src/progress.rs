@@ -9,7 +9,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
-/// State in which a signal that ends the program may arrive.
+/// Reaction to a signal that ends the program.
 enum Phase {
     /// Before anything is written: the signal ends the program.
     Harmless,
@@ -22,13 +22,13 @@ enum Phase {
     Saving(bool),
 }
 
-/// Some programs send a signal twice, to the process and to its group: signals this close together
-/// count as one.
+/// Signals within this interval count as one: some programs send a signal both to the process and
+/// to its group.
 const SAME: Duration = Duration::from_millis(500);
 
-/// The lock is held during changes, so that no save begins while the program ends.
+/// Current phase. The lock is held during changes, so that no save begins while the program ends.
 static PHASE: Mutex<Phase> = Mutex::new(Phase::Harmless);
-/// Time of the last signal that counted.
+/// Time of the last signal, without repeats within [`SAME`].
 static LAST: Mutex<Option<Instant>> = Mutex::new(None);
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -59,7 +59,7 @@ fn interrupt(signal: u8) {
 #[cfg(unix)]
 pub fn hear_interrupts() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
-    // With SIGXFSZ handled, a file beyond the size limit is a write error with a name.
+    // With SIGXFSZ handled, exceeding the file size limit is a write error that names the file.
     let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
     let ignored = ignored_signals();
     let heard = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(move |signal| ignored >> (signal - 1) & 1 == 0);
@@ -118,13 +118,13 @@ pub fn watch<T>(
     result
 }
 
-/// Runs work with a progress bar (on a terminal). There is nothing to save, so signals end the
+/// Runs work with a progress bar (on a terminal). Nothing needs to be saved, so signals end the
 /// program at once.
 pub fn show<T>(control: &Control, quiet: bool, work: impl FnOnce() -> T) -> T {
     if !quiet && std::io::stderr().is_terminal() { with_bar(control, work) } else { work() }
 }
 
-/// Process that runs on behalf of this one, and ends with it.
+/// Child process that ends with this one.
 static CHILD: Mutex<Option<Child>> = Mutex::new(None);
 
 /// Runs a command to its end and returns its output. Signals that end the program end it too.
@@ -142,10 +142,10 @@ pub fn run_child(command: &mut Command) -> std::io::Result<Output> {
     }
 }
 
-/// Ends the program, and the process that runs on its behalf.
+/// Ends the program and its child process.
 fn end(code: u8) {
     if let Some(child) = locked(&CHILD).as_mut() {
-        // It may have ended already.
+        // The child may have ended already.
         let _ = child.kill();
     }
     crate::terminal::end(code)
@@ -179,7 +179,7 @@ fn with_bar<T>(control: &Control, render: impl FnOnce() -> T) -> T {
     })
 }
 
-/// Processes a list one by one, with a progress line on a terminal.
+/// Processes a list item by item, with a progress line on a terminal.
 pub fn each<T, R>(names: &[String], items: Vec<T>, quiet: bool, mut work: impl FnMut(T) -> R) -> Vec<R> {
     let bar = ProgressBar::with_draw_target(Some(items.len() as u64), ProgressDrawTarget::hidden());
     let style = ProgressStyle::with_template("{bar:40} {pos} of {len}  {elapsed}  {msg}");

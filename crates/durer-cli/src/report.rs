@@ -122,7 +122,7 @@ fn text(bytes: &[u8]) -> String {
     }
 }
 
-/// Files reduced to the surroundings of a span: a line may have many megabytes.
+/// Files cut to the text around a span, because a line can have many megabytes.
 struct Excerpt<'f> {
     files: &'f SimpleFiles<String, String>,
     around: Option<Span>,
@@ -164,8 +164,8 @@ impl<'f> files::Files<'f> for Excerpt<'_> {
     }
 }
 
-/// Returns true if a second span can be shown with the first: within one long line, only the
-/// surroundings of the first are.
+/// Returns true if a second span can be shown with the first. In a long line, only the text around
+/// the first span is shown.
 fn fits(first: Option<Span>, second: Span, files: &Files) -> bool {
     let Some(first) = first.filter(|first| first.file == second.file) else { return true };
     let between = first.start.min(second.start) as usize..first.end.max(second.end) as usize;

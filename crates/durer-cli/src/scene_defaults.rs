@@ -1,4 +1,4 @@
-//! Options for models: files that contain objects but no whole scene.
+//! Options for models: files that contain objects but no complete scene.
 
 use clap::{Args, ValueEnum};
 use durer::options::doc;

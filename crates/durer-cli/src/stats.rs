@@ -6,10 +6,10 @@ use durer::render::{PartialRender, Profile, profile};
 use durer::world::World;
 use std::time::{Duration, Instant};
 
-/// Number of samples taken again to measure them.
+/// Number of samples rendered again for the measurement.
 const SAMPLES: u64 = 4096;
 
-/// Times of the stages of the work.
+/// Times of the stages of a render.
 pub struct Stages {
     last: Instant,
     done: Vec<(&'static str, Duration)>,

@@ -48,7 +48,7 @@ const STRUCTURES: [(&str, AccelKind); 3] =
     [("bvh", AccelKind::Bvh), ("grid", AccelKind::Grid(None)), ("none", AccelKind::None)];
 
 /// Returns the available SIMD levels by their names in `DURER_SIMD`. A process chooses its level
-/// once; if the variable is set, as in the child processes, there is only that level.
+/// once. If the variable is set, as in child processes, there is only that level.
 fn simd_levels() -> Vec<&'static str> {
     match std::env::var_os("DURER_SIMD") {
         Some(_) => vec![SimdLevel::chosen().name()],
@@ -124,10 +124,10 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns the hash that a child process finds with other instructions, in fewer ways.
+/// Returns the hash that a child process computes at another SIMD level, with fewer trials.
 fn hash_at(level: &str) -> anyhow::Result<String> {
     let mut arguments: Vec<OsString> = std::env::args_os().skip(1).collect();
-    // An option may be given only once.
+    // An option can be given only once.
     while let Some(at) = arguments.iter().position(|argument| argument == "--trials") {
         arguments.drain(at..(at + 2).min(arguments.len()));
     }

@@ -14,9 +14,9 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
-/// Interval between checks of the files: the user waits for the picture.
+/// Interval between checks of the files; short, because the user waits for the picture.
 const LOOK: Duration = Duration::from_millis(10);
-/// Time for which files must stay unchanged: programs save in several steps.
+/// Time for which files must stay unchanged, because programs save in several steps.
 const PAUSE: Duration = Duration::from_millis(50);
 
 /// Returns the current stamps of the files.
@@ -45,7 +45,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
             }
             Err(failure) => return Err(failure),
         }
-        // If the scene could not be read, keep watching the same files.
+        // If the scene cannot be read, keep watching the same files.
         let found = watched.files.into_inner().unwrap_or_default();
         let before = match found.is_empty() {
             true => before,
@@ -89,7 +89,7 @@ fn settle(files: &[PathBuf]) {
     }
 }
 
-/// Runs some work and cancels it when a file is saved.
+/// Runs `work` and cancels it when a file is saved.
 fn while_watching<R>(files: &[PathBuf], before: &[Option<Stamp>], watched: &WatchState, work: impl FnOnce() -> R) -> R {
     let (finished, wait) = mpsc::channel::<()>();
     std::thread::scope(|scope| {

@@ -12,7 +12,8 @@ fn seen_by(camera: &str) -> String {
 
 const POSE: &str = "center 0 1 8 direction 0 -0.1 -1 up 0 1 0";
 
-/// Returns the bits a pixel and the RGBA pixels of an uncompressed Targa picture, bottom row first.
+/// Returns the bits per pixel and the RGBA pixels of an uncompressed Targa picture, bottom row
+/// first.
 fn targa(place: &TestFolder, name: &str) -> (u8, Vec<[u8; 4]>) {
     let bytes = place.bytes(name);
     let (head, rest) = bytes.split_at(18);
@@ -43,7 +44,7 @@ fn pixels_outside_the_camera_are_transparent_with_any_sampling() {
         let at = |x: usize, y: usize| pixels[y * 40 + x];
         assert_eq!([at(0, 0), at(39, 0), at(0, 39), at(39, 39)], [[0; 4]; 4], "{way}");
         assert_eq!([at(20, 20)[3], at(20, 1)[3], at(38, 20)[3]], [255; 3], "{way}");
-        // The rim is antialiased with several samples a pixel.
+        // The rim is antialiased with several samples per pixel.
         let partly = pixels.iter().filter(|p| ![0, 255].contains(&p[3])).count();
         assert_eq!(partly > 20, way.contains("jitter") || way == "--samples 16", "{way}: {partly}");
         // Area of the disc in pixels.
@@ -101,7 +102,7 @@ fn lens_pictures_are_identical_in_crops_and_on_any_number_of_threads() {
             assert_eq!(part.get(x, y), whole.get(x + 7, y + 9), "{way} {x},{y}");
         }
     }
-    // One sample passes through the lens's centre, as without an aperture.
+    // One sample passes through the centre of the lens, as if there were no aperture.
     let output = place.expect_exit(0, "render lens.txt -o one.pfm --size 40x40 --samples 1").err;
     assert!(output.contains("everything is in focus"), "{output}");
     place.expect_exit(0, "render sharp.txt -o sharp.pfm --size 40x40 --samples 1");

@@ -14,11 +14,11 @@ const CAUSES: &str = include_str!("causes.txt");
 enum Kind {
     /// A base scene or a near miss: no warning.
     Sound,
-    /// The first finding has this code.
+    /// The first finding has the expected code.
     Broken,
 }
 
-/// A scene, with the options of its line.
+/// A scene and its options.
 struct Case {
     line: String,
     kind: Kind,
@@ -27,7 +27,7 @@ struct Case {
     text: String,
 }
 
-/// Adds options; if one is given twice, the last counts.
+/// Adds options; if an option is given twice, the last one counts.
 fn joined(options: &str, more: &str) -> Vec<String> {
     let mut all: Vec<String> = options.split_whitespace().map(String::from).collect();
     for word in more.split_whitespace().filter(|word| word.starts_with("--")) {

@@ -7,7 +7,8 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Broken scenes, named by the code of their finding: `camera-away.backwards.txt`.
+/// Returns the folder and names of the broken scenes. A name begins with the code of the finding:
+/// `camera-away.backwards.txt`.
 fn broken() -> (PathBuf, Vec<String>) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/broken");
     let entries = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -55,7 +56,7 @@ fn cause_is_among_the_first_two() {
             wrong.push(format!("{name}: {codes:?}"));
         }
         for finding in scene["findings"].as_array().unwrap() {
-            // Each place is within an existing file.
+            // Each span is within an existing file.
             let span = &finding["place"];
             if !span.is_null() {
                 let bytes = place.bytes(span["file"].as_str().unwrap());
@@ -151,7 +152,7 @@ fn fixing_in_place_reports_the_changes() {
     let before = place.bytes("extra-brace.txt");
     let output = place.run("check extra-brace.txt --fix -o no/such/folder.txt");
     assert_ne!(output.code, Some(0));
-    assert!(output.err.contains("no folder"), "{}", output.err);
+    assert!(output.err.contains("does not exist"), "{}", output.err);
     assert_eq!(place.bytes("extra-brace.txt"), before);
     place.refused(2, "check extra-brace.txt scene.txt --fix -o one.txt", &["--output takes one scene"]);
 }
@@ -230,7 +231,7 @@ fn faulty_picture_is_reported_after_the_render() {
 
     let course = |scene: &str| place.expect_exit(0, &format!("course -input {scene} -output p.tga -size 30 30")).err;
     assert!(!course("scene.txt").contains("the picture"));
-    // Students judge the light themselves; only a picture of one colour is reported.
+    // Students judge brightness themselves; report only a picture of one colour.
     assert!(!course("color-range.light.txt").contains("the picture"));
     assert!(course("camera-away.point.txt").contains("[camera-away]"));
 }

@@ -242,7 +242,7 @@ fn mistakes_in_real_pictures_are_named() {
     }
 }
 
-/// Rays through the corners of pixels instead of their centres: the most common mistake.
+/// Students often trace rays through pixel corners instead of centres.
 #[test]
 fn border_pixels_and_missing_shadows_are_recognised() {
     let place = TestFolder::new();
@@ -252,9 +252,9 @@ fn border_pixels_and_missing_shadows_are_recognised() {
         place.expect_exit(0, &format!("render whitted.txt --size 150x150 --samples 1 -q -o {name}.png {options}"));
     }
     let words = |name: &str| place.expect_exit(1, &format!("compare right.png {name}.png")).out;
-    // A fine pattern changes everywhere: pixels alone give no diagnosis.
+    // A fine pattern changes everywhere, so pixels alone give no diagnosis.
     assert!(!words("border").contains("noise"), "{}", words("border"));
-    // Brightness has many possible causes: pixels alone give no diagnosis.
+    // Brightness has many possible causes, so pixels alone give no diagnosis.
     assert!(
         words("bare").contains("and the rest is equal: the pictures alone do not show the cause"),
         "{}",
@@ -317,7 +317,7 @@ done();
 #[test]
 fn page_works_in_a_browser_without_network() {
     let (place, a) = rendered();
-    // A name that would end the script if it were not escaped.
+    // Names that would end the script if they were not escaped.
     for (name, left) in
         [("ref/one.ppm", 99), ("ref/</script><b>.ppm", 99), ("mine/one.ppm", 99), ("mine/</script><b>.ppm", 30)]
     {
@@ -364,7 +364,8 @@ Group {
 }
 ";
 
-/// Pictures of paths are judged against their noise, and other dialects' errors are not printed.
+/// Path-traced pictures are compared within their noise, and errors of other dialects are not
+/// printed.
 #[test]
 fn pictures_of_paths_are_judged_against_their_noise() {
     let place = TestFolder::new();
@@ -390,7 +391,8 @@ fn pictures_of_paths_are_judged_against_their_noise() {
         let text = text(name);
         assert_eq!(text["named"][0]["mistakes"][0]["name"], "path-depth", "{text:#}");
     }
-    // A reference of another scene is reported as such, with a share that is judged against noise.
+    // A reference of another scene is reported as such. The fraction of differing pixels is
+    // compared with noise.
     place.put(
         "other.txt",
         ROOM.replace("baseColor 0.7 0.2 0.1", "baseColor 0.1 0.7 0.2").replace("0.6 2 radius", "1.6 2 radius"),

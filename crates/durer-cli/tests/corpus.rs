@@ -40,7 +40,7 @@ fn year_of_every_official_command_is_guessed() {
                 (words[i + 1], words[i + 2]) = ("4".into(), "4".into());
             }
         }
-        // The pictures of the year that was guessed are those of the year that is named.
+        // The guessed year gives the same pictures as the named year.
         let pictures = |named: &[&str]| {
             let mut command = place.command("course");
             let folder = course.join("scenes").join(dialect);
@@ -63,8 +63,8 @@ fn models_converted_to_text_render_the_same_picture() {
     let Some(course) = corpus() else { return };
     let models = course.join("../samples/gltf/khronos");
     let place = TestFolder::new();
-    // Transformed and repeated textures, vertex colours, tangents, skins, thin films, glass,
-    // instances.
+    // Models with transformed and repeated textures, vertex colours, tangents, skins, thin films,
+    // glass and instances.
     for name in MODELS {
         let model = models.join(name);
         let picture = |path: &str| {
@@ -91,7 +91,7 @@ fn converted_scenes_render_the_same_picture() {
         let folder = course.join("scenes").join(dialect);
         let mut scenes: Vec<_> = std::fs::read_dir(&folder).unwrap().map(|e| e.unwrap().path()).collect();
         scenes.retain(|path| {
-            // Splines use another kind of file.
+            // Spline scenes use another file format.
             let name = path.file_name().unwrap().to_string_lossy();
             name.ends_with(".txt") && !name.starts_with("spline")
         });

@@ -170,7 +170,7 @@ fn page_is_self_contained() {
     assert!(!page.contains("http:") && !page.contains("https:"), "nothing is fetched");
 }
 
-/// Collects the names of fields and kinds in a JSON value.
+/// Collects the names of fields and node kinds in a JSON value.
 fn words(json: &Value, found: &mut std::collections::BTreeSet<String>) {
     match json {
         Value::Array(values) => values.iter().for_each(|value| words(value, found)),
@@ -290,7 +290,7 @@ Group {
 }
 ";
 
-/// The equation of a hit, a matrix, a cell, texels and Snell's law stand under their terms.
+/// Terms show their origin: the equation of a hit, a matrix, a cell, texels, Snell's law.
 #[test]
 fn numbers_say_where_they_come_from() {
     let place = TestFolder::new();

@@ -1,5 +1,5 @@
-//! Small files and options that describe large things: counted before memory is taken, and refused
-//! by an error. Nothing aborts.
+//! Small files and options that describe huge data. The size is computed before memory is
+//! allocated, and oversized input is rejected with an error instead of an abort.
 #![cfg(target_os = "linux")]
 
 mod common;
@@ -7,7 +7,8 @@ mod common;
 use common::{SCENE, TestFolder};
 use std::fmt::Write;
 
-/// Runs the program with little address space and time.
+/// Checks that the program rejects a command line with an error, under limits of address space and
+/// time.
 #[track_caller]
 fn refused(place: &TestFolder, line: &str, words: &str) {
     let script = format!("ulimit -v 900000; export RAYON_NUM_THREADS=2; timeout 60 $DURER {line}");
@@ -21,7 +22,7 @@ fn render(file: &str) -> String {
     format!("render {file} --size 8x8 --samples 1 -q --restart -o o.png --threads 2 --memory 256M")
 }
 
-/// A Mitsuba scene of 40 elements, each of which doubles the one before.
+/// Returns a Mitsuba scene of 40 elements, each twice as large as the previous one.
 fn doubled(first: &str, double: impl Fn(usize) -> String, last: &str) -> String {
     let mut scene =
         format!("<scene version=\"3.0.0\"><sensor type=\"perspective\"/><emitter type=\"constant\"/>\n{first}\n");
@@ -53,7 +54,7 @@ fn what_doubles_forty_times_in_a_mitsuba_scene_is_refused() {
         let two = |i: usize| group(i, &instance(i - 1).repeat(2));
         place.put(file, doubled(&group(0, inner), two, &instance(40)));
         refused(&place, &render(file), "error");
-        // Less deep, so that the depth is allowed.
+        // Fewer levels, within the depth limit.
         let shallow = (1..=25).map(two).collect::<String>();
         let scene = format!("<scene version=\"3.0.0\">{}{shallow}{}</scene>", group(0, inner), instance(25));
         place.put(file, scene);
@@ -69,7 +70,7 @@ fn what_doubles_forty_times_in_a_mitsuba_scene_is_refused() {
         place.put(file, doubled(first, both, shown));
         refused(&place, &render(file), "a material of more than 4096 others is too large");
     }
-    // Copies of a material that is almost too large.
+    // Copies of a material that is just below the size limit.
     let mut copies = String::from("<scene version=\"3.0.0\"><bsdf type=\"diffuse\" id=\"b0\"/>\n");
     for i in 1..=11 {
         let part = format!(r#"<ref id="b{}"/>"#, i - 1);
@@ -94,9 +95,10 @@ fn names_that_double_in_the_scene_language_are_refused() {
     }
 }
 
-/// A glTF file of nodes that show a mesh of some primitives.
+/// Returns a glTF file whose nodes share a mesh. With `copies` above 0, each node has that many
+/// instances.
 fn gltf(nodes: usize, primitives: usize, copies: usize) -> String {
-    // Three corners, the places of copies, and nothing else.
+    // The buffer contains only three vertices and the instance translations.
     let zeros = |count: usize| "A".repeat(count.next_multiple_of(3) / 3 * 4);
     let bytes = (12 * copies).max(36);
     let primitive = r#"{"attributes":{"POSITION":0},"indices":2}"#;
@@ -160,7 +162,7 @@ fn rows_that_no_file_holds_count_as_memory() {
     }
 }
 
-/// The header of a JPEG without pixels, with sampling factors of its components.
+/// Returns a JPEG with empty scan data and the given sampling factors of its components.
 fn jpeg(kind: u8, [width, height]: [u16; 2], factors: &[u8]) -> Vec<u8> {
     let mut bytes = vec![0xff, 0xd8];
     let mut segment = |kind: u8, content: &[u8]| {
@@ -196,7 +198,8 @@ fn photographs_take_the_memory_that_their_heads_announce() {
     ] {
         for kind in [0xc0, 0xc1, 0xc2] {
             place.put("p.jpg", jpeg(kind, size, factors));
-            // Address space of the program without the picture, and as much memory as allowed.
+            // The address space suffices for the program and `--memory`, but not for the decoded
+            // picture.
             let script = "ulimit -v 500000; export RAYON_NUM_THREADS=2; \
                 timeout 60 $DURER render texture.txt --dialect durer --size 8x8 --samples 1 -q --restart -o o.png \
                 --threads 2 --memory 16M";
@@ -218,7 +221,7 @@ fn large_pictures_under_limits_of_the_system_are_errors() {
         let line = format!("render scene.txt {options} --samples 1 -q --restart -o o.pfm --threads 2");
         let script = format!("ulimit -v 900000; export RAYON_NUM_THREADS=2; timeout 20 $DURER {line}");
         let output = place.shell(&script);
-        // A tall picture is made in bands, which takes longer.
+        // A tall picture is rendered in bands, which takes longer.
         assert!(matches!(output.code, Some(2 | 124)), "{options}: {:?} {}", output.code, output.err);
         assert!(output.code == Some(124) || output.err.contains("memory"), "{options}: {}", output.err);
     }
@@ -234,11 +237,9 @@ fn large_pictures_under_limits_of_the_system_are_errors() {
             assert!(matches!(output.code, Some(2 | 124)), "{command} {size}: {:?} {}", output.code, output.err);
         }
     }
-    for line in [
-        "course -input scene.txt -size 16384 16384 -output o.tga",
-        "lesson scene.txt -o lesson --size 16384x16384 --samples 1",
-        "photo place scene.txt --backplate o.png -o p.png",
-    ] {
+    for line in
+        ["course -input scene.txt -size 16384 16384 -output o.tga", "photo place scene.txt --backplate o.png -o p.png"]
+    {
         let script = format!("ulimit -v 500000; export RAYON_NUM_THREADS=2; timeout 20 $DURER {line}");
         let output = place.shell(&script);
         assert!(matches!(output.code, Some(0..=2 | 124)), "{line}: {:?} {}", output.code, output.err);

@@ -7,7 +7,7 @@ use common::TestFolder;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// Limit for busy machines; an idle one takes 0.2 s.
+/// Time limit for busy machines; an idle machine takes 0.2 s.
 const SOON: Duration = Duration::from_secs(8);
 
 #[test]
@@ -48,7 +48,7 @@ fn finished_work_is_saved_on_interrupt() {
         "scene.txt --sampler uniform --samples 100 --size 1000x1000",
         "scene.txt --sampler uniform --samples 16 --size 300x300 --filter gaussian --filter-radius 60",
         "scene.txt --jitter --size 3500x3500",
-        // Saving takes time in proportion to the work.
+        // Saving time is proportional to the work done.
         "scene.txt --size 3000x3000 --samples 64",
     ] {
         place.put("old.png", "an old picture");
@@ -188,7 +188,7 @@ fn mesh(side: usize) -> String {
     mesh
 }
 
-/// Pixels of noise in which features are found, as a PPM file.
+/// Returns a PPM file of noise with detectable features.
 fn noise(side: usize, seed: u32) -> Vec<u8> {
     let mut bytes = format!("P6 {side} {side} 255\n").into_bytes();
     let mut state = seed.wrapping_mul(2_654_435_761).max(1);
@@ -199,7 +199,7 @@ fn noise(side: usize, seed: u32) -> Vec<u8> {
     bytes
 }
 
-/// A bundle adjustment problem: cameras that see random points.
+/// Returns a bundle adjustment problem with cameras that see random points.
 fn problem(cameras: usize, points: usize) -> String {
     let number = |i: usize| ((i * 7919) % 1000) as f64 / 500.0 - 1.0;
     let mut text = format!("{cameras} {points} {}\n", cameras * points);
@@ -273,7 +273,8 @@ fn a_verification_leaves_no_process_behind() {
         found.out.trim().parse::<u32>().unwrap_or(0)
     };
     let line = format!("verify {} --trials 3 --size 300x300 --samples 64", place.path("scene.txt").display());
-    // Both while the program itself renders and while one with other instructions does.
+    // Stop it while the program itself renders, and while a child process renders at another SIMD
+    // level.
     for after in [300, 2000, 6000] {
         let _ = place.signalled(&line, Duration::from_millis(after), &["TERM"]);
         std::thread::sleep(Duration::from_millis(200));

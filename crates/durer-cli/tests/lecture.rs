@@ -72,7 +72,7 @@ fn commands_reproduce_the_pictures() {
         let run = Command::new(common::durer()).current_dir(root()).args(arguments).output().unwrap();
         assert!(run.status.success(), "{command}\n{}", String::from_utf8_lossy(&run.stderr));
         let (made, kept) = (std::fs::read(made).unwrap(), std::fs::read(root().join(picture)).unwrap());
-        // The cost picture changes with every improvement of the tree, so it may be older.
+        // The cost picture changes with every improvement of the tree, so it can be outdated.
         let older = command.contains("--show cost");
         assert!(
             older || made == kept,

@@ -34,7 +34,7 @@ fn lesson_folder_has_page_text_and_pictures() {
     place.expect_exit(0, &format!("render scene.txt -o p.png -q {SMALL}"));
     let last = files.iter().rfind(|name| name.ends_with("-supersampling.png")).unwrap();
     assert_eq!(place.bytes(&format!("out/{last}")), place.bytes("p.png"));
-    // A second run writes equal files.
+    // A second run writes identical files.
     place.expect_exit(0, &format!("lesson scene.txt -o again --quiet {SMALL}"));
     assert_eq!(names(&place.path("again")), files);
     assert!(files.iter().all(|name| place.bytes(&format!("out/{name}")) == place.bytes(&format!("again/{name}"))));

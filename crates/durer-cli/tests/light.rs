@@ -58,8 +58,8 @@ Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Box { mi
         let row: Vec<f64> = output.out.lines().nth(1).unwrap().split(',').map(|word| word.parse().unwrap()).collect();
         (row[6], row[7])
     };
-    // 100 cd from 2 m: 25 lux without the pane. Each of its faces reflects 0.04: T = (1 - F) / (1 +
-    // F).
+    // 100 cd at 2 m give 25 lux without the pane. Each face of the pane reflects 0.04: T = (1 - F)
+    // / (1 + F).
     let (mean, error) = lux("--integrator photons --samples 32 --photons 20000 --photon-radius 0.2");
     let expected = 25.0 * 0.96 / 1.04;
     assert!((mean - expected).abs() < 3.0 * error + 0.02 * expected, "{mean} ± {error}, not {expected}");
@@ -113,7 +113,7 @@ fn invalid_photometric_files_names_and_dark_scenes_are_reported() {
     let place = lit();
     place.put("lamp.ies", LIGHT.replace("0 30 60 90", "0 30 20 90"));
     let output = place.expect_exit(2, "render lit.txt -o p.png").err;
-    assert!(output.contains("lamp.ies:5:6") && output.contains("must rise"), "{output}");
+    assert!(output.contains("lamp.ies:5:6") && output.contains("must ascend"), "{output}");
     assert!(!place.path("p.png").exists());
     place.put("lamp.ies", LIGHT);
     place.put("name.txt", LIT.replace("preset gold", "preset golt"));
@@ -237,10 +237,10 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 Disc 
     };
     let write = |base, emitter, sky| place.put("s.txt", scene(base, emitter, sky));
     place.put("paints.csv", "nm,grey,red\n400,0.5,0.1\n580,0.5,0.1\n600,0.5,0.8\n");
-    place.put("lamp.csv", "400 0\n700 3\n");
+    place.put("bulb.csv", "400 0\n700 3\n");
     // The illuminance does not depend on the colour: E = pi L r^2 / (r^2 + d^2).
     for emitter in
-        ["", "emissionSpectrum A", "emissionSpectrum F11", "emissionSpectrum 2700K", "emissionSpectrum lamp.csv"]
+        ["", "emissionSpectrum A", "emissionSpectrum F11", "emissionSpectrum 2700K", "emissionSpectrum bulb.csv"]
     {
         write("baseSpectrum paints.csv:red", emitter, "");
         for color in ["rgb", "spectral"] {
@@ -258,7 +258,7 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 Disc 
             format!(
                 "PerspectiveCamera {{ center 0 1 6 direction 0 -1 -6 up 0 1 0 angle 0.1 }} Background {{ color 0 0 0 }}
 Lights {{ {lights} }} Materials {{ PrincipledMaterial {{ baseSpectrum paints.csv:red specularWeight 0 }}
-  PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 100 emissionSpectrum lamp.csv }} }}
+  PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 100 emissionSpectrum bulb.csv }} }}
 Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {objects} }}"
             ),
         );
@@ -268,11 +268,11 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {obje
     };
     let wanted = shown("", "Disc { center 0 2 0 normal 0 -1 0 radius 0.02 }");
     assert!(wanted[0] > 3.0 * wanted[1], "{wanted:?}");
-    let color = "color 0.04 0.04 0.04 spectrum lamp.csv";
+    let color = "color 0.04 0.04 0.04 spectrum bulb.csv";
     for light in [
         format!("PointLight {{ position 0 2 0 {color} attenuation 0 0 1 }}"),
         format!("SpotLight {{ position 0 2 0 direction 0 -1 0 angle 30 innerAngle 20 {color} }}"),
-        "DirectionalLight { direction 0 -1 0 color 0.01 0.01 0.01 spectrum lamp.csv }".into(),
+        "DirectionalLight { direction 0 -1 0 color 0.01 0.01 0.01 spectrum bulb.csv }".into(),
     ] {
         let found = shown(&light, "");
         let near = |(a, b): (&f64, &f64)| (a - b).abs() < 0.01 * wanted[0];
@@ -280,9 +280,9 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {obje
     }
     let render = "render s.txt -o p.png --size 8x8 --samples 1 -q";
     for (base, emitter, sky, words) in [
-        ("baseSpectrum paints.csv:blue", "", "", "there are grey, red"),
+        ("baseSpectrum paints.csv:blue", "", "", "the columns are grey, red"),
         ("baseSpectrum none.csv", "", "", "none.csv"),
-        ("baseSpectrum lamp.csv", "", "", "must be from 0 to 1"),
+        ("baseSpectrum bulb.csv", "", "", "must be from 0 to 1"),
         ("", "emissionSpectrum warm", "", "use A, D50"),
         ("", "", "cieSky 12", "write `sun x y z`"),
         ("", "", "cieSky 17", "from 1 to 16"),
@@ -358,7 +358,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         row.split(',').nth(6).unwrap().parse().unwrap()
     };
     for (light, expected) in [
-        // E = I / d²; for a flux, I = flux / 4 pi, whatever the hue.
+        // E = I / d². For a flux, I = flux / 4 pi, regardless of the hue.
         ("PointLight { position 0 2 0 color 1 1 1 candela 800 }", 200.0),
         ("PointLight { position 0 2 0 color 0.9 0.5 0.1 lumens 800 }", 800.0 / (4.0 * pi) / 4.0),
         ("SpotLight { position 0 2 0 direction 0 -1 0 color 2 2 2 angle 40 candela 800 }", 200.0),
@@ -418,8 +418,8 @@ Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 } } Group { MaterialIndex
         ("--shutter 1/125", "--f-number"),
         ("--f-number 8", "--shutter"),
         ("--iso 100", "--shutter"),
-        ("--shutter 0 --f-number 8", "expected seconds"),
-        ("--shutter 1/0 --f-number 8", "expected seconds"),
+        ("--shutter 0 --f-number 8", "expected a time in seconds"),
+        ("--shutter 1/0 --f-number 8", "expected a time in seconds"),
         ("--shutter 1/125 --f-number 0", "--f-number"),
     ] {
         place.refused(2, &format!("render s.txt -o q.png --size 1x1 {options}"), &[words]);
@@ -494,6 +494,6 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         let text = output(&format!("Background {{ {sky} }}"));
         assert!(!text.contains("no effect") && !text.contains("grey"), "{sky}: {text}");
     }
-    // Without a background, the message does not suggest to turn it off.
+    // Without a background, the message must not suggest turning it off.
     assert!(!output("").contains("`Background { color 0 0 0 }`"), "{}", output(""));
 }

@@ -108,8 +108,8 @@ fn model_objects_are_reported_once_by_name() {
     place.refused(2, "render a.txt -o a.png", &["a.obj:1:1", "`a.obj` is PLY", "named here"]);
 }
 
-const RAD: &str = "void plastic grey 0 0 5 .5 .5 .5 0 0\nvoid light lamp 0 0 3 9 9 9\ngrey polygon floor 0 0 12 -4 -4 0 4 -4 0 4 4 0 -4 4 0\n\
-    lamp sphere bulb 0 0 4 0 0 3 .5\n!genbox grey box 1 1 1 | xform -t 1 0 0\n";
+const RAD: &str = "void plastic grey 0 0 5 .5 .5 .5 0 0\nvoid light glow 0 0 3 9 9 9\ngrey polygon floor 0 0 12 -4 -4 0 4 -4 0 4 4 0 -4 4 0\n\
+    glow sphere bulb 0 0 4 0 0 3 .5\n!genbox grey box 1 1 1 | xform -t 1 0 0\n";
 
 #[test]
 fn radiance_views_are_cameras() {
@@ -128,7 +128,7 @@ fn radiance_views_are_cameras() {
     place.refused(2, "render a.rif -o a.png --camera three", &["unknown view `three`"]);
     place.refused(2, "render a.rad -o a.png --view-file none.vf", &["none.vf"]);
     place.put("b.rad", "void plastic grey 0 0 5 .5 .5 x 0 0\n!genrev a b 1 2 3\n");
-    place.refused(2, "render b.rad -o a.png", &["b.rad:1:31", "`x` is not a number"]);
+    place.refused(2, "render b.rad -o a.png", &["b.rad:1:31", "expected a number, found `x`"]);
 }
 
 const XML: &str = "<scene version='3.0.0'><sensor type='perspective' id='one'><float name='fov' value='40'/><transform name='to_world'>\
@@ -160,7 +160,7 @@ fn frames_are_times_cameras_and_files() {
     let place = TestFolder::new();
     place.put("a.stl", STL);
     let hash = |words: &str| place.expect_exit(0, &format!("render {words} {SMALL} --hash -q")).out;
-    // A turntable's frame equals the same frame alone, and the view of `--turned`.
+    // A turntable frame equals the same frame rendered alone, and the view with `--turned`.
     let all = hash("a.stl -o a.png --turntable 3");
     let alone: String = (0..3).map(|i| hash(&format!("a.stl -o a.png --turntable 3 --frames {i}"))).collect();
     let turned: String = [0, 120, 240].map(|angle| hash(&format!("a.stl -o a.png --turned {angle}"))).concat();
@@ -204,7 +204,7 @@ fn turntable_rotates_and_fit_moves_the_camera() {
     assert!(!place.path("a.0004.png").exists() && !place.path("a.png").exists());
     place.refused(2, "render a.stl -o a.png --turntable 0", &["--turntable"]);
     place.refused(2, "render a.stl -o a.png --turntable 4 --preview b.png", &["apply to one picture"]);
-    // With --fit, a camera that looked past the model sees it.
+    // With --fit, a camera that looked past the model shows it.
     place.put("a.rad", RAD);
     place.put("a.vf", "VIEW= -vp 0 -900 900 -vd 0 -1 -.1 -vh 40 -vv 30\n");
     let hash = |more: &str| {
@@ -224,7 +224,7 @@ fn environment_lights_a_model() {
     assert_ne!(hash("--environment sky.hdr"), hash(""));
     // The environment's orientation matters.
     assert_ne!(hash("--environment sky.hdr --up y"), hash("--environment sky.hdr --up z"));
-    // A black environment is legal, but reported.
+    // A black environment is valid, but reported.
     place.put("black.pfm", b"PF\n1 1\n-1\n\0\0\0\0\0\0\0\0\0\0\0\0".as_slice());
     let dark =
         place.expect_exit(0, &format!("render a.stl -o dark.pfm {SMALL} --environment black.pfm --integrator path"));

@@ -1,4 +1,5 @@
-//! Names in inputs: files outside the folder, pipes and devices are neither read nor waited for.
+//! File names in inputs: files outside the folder, pipes and devices are never read and never
+//! block.
 #![cfg(unix)]
 
 mod common;
@@ -7,7 +8,7 @@ use common::{ProgramOutput, SCENE, TestFolder};
 use std::os::unix::fs::symlink;
 use std::process::Command;
 
-/// A COLMAP folder of two photographs of 32 x 32 pixels.
+/// Creates a COLMAP folder for two photographs of 32 x 32 pixels.
 fn colmap(place: &TestFolder, folder: &str, names: [&str; 2]) {
     std::fs::create_dir_all(place.path(folder)).unwrap();
     place.put(&format!("{folder}/cameras.txt"), "1 PINHOLE 32 32 30 30 16 16\n");
@@ -80,7 +81,7 @@ fn folders_of_photographs_and_cameras_lead_nowhere_else() {
     for path in ["secret.png", "photos/a.png", "photos/b.png"] {
         picture(&place, path);
     }
-    // Tables of a folder, and the tracks beside a file.
+    // Point tables in a folder, and a tracks file beside a reconstruction.
     colmap(&place, "solved", ["a.png", "b.png"]);
     std::fs::rename(place.path("solved/points3D.txt"), place.path("points")).unwrap();
     for (target, words) in [("../points", "outside the folder `solved`"), ("/dev/zero", "outside the folder `solved`")]
@@ -95,7 +96,7 @@ fn folders_of_photographs_and_cameras_lead_nowhere_else() {
     place.put("sfm/reconstruction.json", "[]");
     symlink("../points", place.path("sfm/tracks.csv")).unwrap();
     refused(&place, "photo convert sfm/reconstruction.json", "outside the folder `sfm`");
-    // Photographs whose sizes a Bundler file lacks.
+    // A Bundler file has no photograph sizes, so the photographs are read.
     let bundle = "# Bundle file v0.3\n2 0\n30 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 0\n30 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0\n";
     place.put("two.out", bundle);
     place.expect_exit(0, "photo convert two.out --pictures photos -o two.gltf -q");
@@ -134,7 +135,7 @@ fn pipes_and_devices_that_are_named_are_refused() {
         refused(&place, line, "is not a regular file");
     }
     refused(&place, "live pipe.txt", "not a file");
-    // A folder of pictures may contain anything.
+    // A folder of pictures can contain any kind of file.
     std::fs::create_dir(place.path("one")).unwrap();
     std::fs::create_dir(place.path("two")).unwrap();
     picture(&place, "one/a.png");
@@ -157,9 +158,9 @@ fn a_lesson_waits_for_no_pipe_and_reads_no_device() {
 #[test]
 fn pipes_with_names_of_temporary_files_delay_no_save() {
     let place = TestFolder::new();
-    // A render that is killed while it saves leaves such a name; ask the program for one.
     let output = place.shell("$DURER render scene.txt --size 8x8 --samples 1 -q -o o.png; ls -a");
     assert_eq!(output.code, Some(0), "{}", output.err);
+    // Killed renders leave temporary files with such names.
     for name in [".durer-ready-1.tmp", ".durer-1.tmp", ".durer-x.tmp"] {
         fifo(&place, name);
     }
@@ -176,6 +177,6 @@ fn a_scene_that_is_watched_reads_nothing_else() {
     let output = place.shell(
         "timeout -s INT 3 $DURER render below/scene.txt --dialect durer --watch --size 8x8 --samples 1 -o below/o.png",
     );
-    assert!(output.err.contains("lies outside the scene's folder"), "{}", output.err);
+    assert!(output.err.contains("is outside the scene's folder"), "{}", output.err);
     assert!(!place.path("below/o.png").exists());
 }

@@ -41,7 +41,11 @@ fn shards_merge_to_the_bytes_of_one_run() {
     place.refused(2, "merge 1.part torn.part 3.part -o m.exr", &["torn.part", "truncated or damaged"]);
     place.refused(2, "merge scene.txt -o m.exr", &["scene.txt", "not a part"]);
     place.refused(2, "merge missing.part -o m.exr", &["missing.part"]);
-    place.refused(2, &format!("{SMALL} --shard 7/7 --shard-by samples -o 7.part"), &["only 6 samples"]);
+    place.refused(
+        2,
+        &format!("{SMALL} --shard 7/7 --shard-by samples -o 7.part"),
+        &["6 samples per pixel are too few"],
+    );
     place.refused(2, &format!("{SMALL} --shard 4/3 -o 4.part"), &["3/3"]);
 }
 
@@ -52,12 +56,12 @@ fn stopped_work_is_resumed() {
     let hash = last_line(&place.expect_exit(0, &format!("{work} -o calm.png")).out);
     place.expect_exit(0, &format!("{work} --time-limit 30ms --checkpoint c.part -o p.png"));
     assert!(place.path("c.part").exists(), "it cannot have been finished in 30 ms");
-    // Saved work of another job is rejected and stays.
+    // Saved work of a different job is rejected and stays.
     let other = |options: &str, words: &[&str]| {
         place.refused(2, &format!("{work} --resume --checkpoint c.part -o p.png {options}"), words);
     };
-    other("--seed 1", &["c.part", "another job", "`seed`"]);
-    other("--bounces 3", &["another job", "`settings`"]);
+    other("--seed 1", &["c.part", "a different job", "`seed`"]);
+    other("--bounces 3", &["a different job", "`settings`"]);
     place.put("scene.txt", SCENE.replace("radius 1", "radius 1.5"));
     other("", &["c.part", "another scene"]);
     place.put("scene.txt", SCENE);
@@ -68,7 +72,7 @@ fn stopped_work_is_resumed() {
     let output = place.expect_exit(0, &format!("{work} --resume --checkpoint c.part -o p.png --threads 3 --tile 40"));
     assert_eq!(last_line(&output.out), hash);
     assert!(place.bytes("p.png") == place.bytes("calm.png") && !place.path("c.part").exists());
-    // Without saved work, --resume starts from the beginning.
+    // Without saved work, --resume starts a new render.
     let output = place.expect_exit(0, &format!("{work} --resume --checkpoint c.part -o p.png"));
     assert_eq!(last_line(&output.out), hash);
 }
@@ -80,7 +84,7 @@ fn single_pixel_is_printed() {
     let one = place.expect_exit(0, &format!("{options} --sample 3")).out;
     assert!(one.starts_with("pixel 20,15, sample 3: 0."), "{one}");
     assert_eq!(place.names(), ["endless.txt", "scene.txt"]);
-    place.refused(2, &format!("{options} --sample 4"), &["samples from 0 to 3"]);
+    place.refused(2, &format!("{options} --sample 4"), &["numbered from 0 to 3"]);
     place.refused(2, "render scene.txt --size 40x30 --pixel 40,0", &["pixel 40,0 is not in the picture"]);
     place.refused(2, "render scene.txt --sample 3", &["--pixel"]);
     place.refused(2, "render scene.txt --pixel 3", &["200,150"]);

@@ -36,7 +36,7 @@ fn error_bounds_do_not_change_the_hash() {
     place.expect_exit(0, &format!("{render} --show error -o e.pfm"));
     let errors = place.image("e.pfm");
     assert!(errors.pixels.iter().all(|error| error.x.is_finite() && error.x >= 0.0));
-    // It equals the error in the pixel's explanation.
+    // It equals the error in `durer explain` for the pixel.
     let explain = "explain glass.txt --integrator photons --photons 500 --size 16x12 --samples 8 --pixel 8,8";
     let output: serde_json::Value =
         serde_json::from_str(&place.expect_exit(0, &format!("{explain} --json")).out).unwrap();

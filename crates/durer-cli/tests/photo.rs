@@ -109,7 +109,7 @@ fn photographs_of_a_known_scene_give_its_cameras() {
         "opacity 0.95, marked true | fills true",
         "is left true",
         "another true",
-        "point in several true, told true",
+        "point in several true, note true",
         "all: 20 photographs, ",
         "all inside true",
         "one plane true",
@@ -143,8 +143,8 @@ fn results_are_independent_of_threads() {
     assert_eq!(place.bytes("1.out"), place.bytes("5.out"));
 }
 
-/// Returns a JPEG whose EXIF has a focal length in millimetres and a sensor resolution in pixels an
-/// inch.
+/// Returns a JPEG whose EXIF has a focal length in millimetres and a sensor resolution in pixels
+/// per inch.
 fn with_exif(jpeg: &[u8], millimetres: [u32; 2], pixels: [u32; 2]) -> Vec<u8> {
     let entry = |tag: u16, kind: u16, value: u32| {
         [&tag.to_be_bytes()[..], &kind.to_be_bytes(), &1_u32.to_be_bytes(), &value.to_be_bytes()].concat()
@@ -164,8 +164,8 @@ fn implausible_exif_is_reported_and_wrong_exif_is_corrected() {
     std::fs::create_dir(place.path("photos")).unwrap();
     let photographs = (0..6).map(|i| (i, std::fs::read(Path::new(PHOTOGRAPHS).join(format!("{i}.jpg"))).unwrap()));
     for (i, jpeg) in photographs {
-        // 330 pixels are true and 660 are possible; one focal length is too long for any lens, one
-        // divides by zero.
+        // A focal length of 330 pixels is true and 660 is possible. One is too long for any lens,
+        // and one divides by zero.
         let (millimetres, pixels) = match i {
             0 => ([5, 1], [1_000_000_000, 1]),
             1 => ([5, 0], [1000, 1]),
@@ -306,7 +306,7 @@ fn broken_files_are_refused_with_their_place() {
         place.put(file, content);
         place.refused(2, command, words);
     }
-    // Pixels counted from the bottom give no camera, although one might see a few of them.
+    // Pixels counted from the bottom fit no camera, although a camera can see a few of them.
     let ours = |name: &str| std::fs::read(Path::new(PHOTOGRAPHS).join(name)).unwrap();
     place.put("2.jpg", ours("2.jpg"));
     let points = String::from_utf8(ours("2.points")).unwrap();

@@ -4,7 +4,7 @@ mod common;
 
 use common::{SCENE, TestFolder};
 
-/// Every kind of sampling.
+/// Sampling options to test.
 const SAMPLINGS: [&str; 9] = [
     "--samples 1",
     "--samples 5",

@@ -188,7 +188,7 @@ fn closed_pipes_and_odd_names_do_not_panic() {
         let output = Command::new("bash").args(["-c", &script]).current_dir(place.path("")).output().unwrap();
         assert!(!String::from_utf8_lossy(&output.stdout).contains("panicked"), "{arguments}");
     }
-    // The reading end of standard error is closed, and there is a message to print.
+    // Nobody reads standard error, and there is a message to print.
     let mut child = place.command("render missing.txt").stderr(Stdio::piped()).spawn().unwrap();
     drop(child.stderr.take());
     assert_eq!(child.wait().unwrap().code(), Some(2));

@@ -1,5 +1,5 @@
-//! Conversion between formats keeps the picture, and the Khronos sample models show what their
-//! cards specify.
+//! Converted scenes give the same picture, and the Khronos sample models show what their cards
+//! specify.
 
 mod common;
 
@@ -73,7 +73,7 @@ fn course_scenes_survive_conversion_to_durer_and_json() {
         // With every quirk of the year's program.
         let requested = format!("{files} --dialect {dialect}");
         assert_eq!(hash(&place, "back.txt", &requested), hash(&place, &path, &requested), "{shown}");
-        // JSON records its dialect: words may have another meaning in another year.
+        // JSON records its dialect, because keywords can have another meaning in another year.
         place.expect_exit(0, &format!("convert {shown} -o scene.json {files}"));
         place.expect_exit(0, &format!("convert scene.json -o back.txt --to {dialect} {files}"));
         let usual = hash(&place, &path, &files);
@@ -135,21 +135,21 @@ fn mesh_is_equal_in_all_formats_with_the_same_attributes() {
     }
 }
 
-/// Rows and columns of the cards' pictures.
+/// Width and height of the cards' pictures in pixels.
 const SIDE: usize = 200;
 
-/// Expected content around a place of a card.
+/// Expected content around a pixel of a card.
 #[derive(Clone, Copy, Debug)]
 enum Mark {
     /// A green tick, and no red cross.
     Tick,
     /// One colour, up to noise.
     Color([u8; 3]),
-    /// The content of another place.
+    /// The content around another pixel.
     As(usize, usize),
 }
 
-/// A card and the expected content at places of it.
+/// A card and the expected content at some of its pixels.
 type Card = (&'static str, &'static [(usize, usize, Mark)]);
 
 /// The cards, with the expected content at pixels of their front view.
@@ -167,7 +167,7 @@ const CARDS: &[Card] = &[
         ],
     ),
     ("NegativeScaleTest", &[(100, 55, Mark::Tick), (100, 73, Mark::Tick)]),
-    // The arrows of transformed coordinates point to the ticks.
+    // The arrows for transformed coordinates point to the ticks.
     ("TextureTransformTest", &[(36, 153, Mark::Tick), (101, 128, Mark::Tick), (154, 141, Mark::Tick)]),
     ("TextureLinearInterpolationTest", &[(57, 143, Mark::Tick), (143, 143, Mark::Tick), (143, 143, Mark::As(57, 143))]),
     ("UnlitTest", &[(53, 100, Mark::Color([255, 127, 0])), (147, 100, Mark::Color([0, 127, 255]))]),
@@ -182,13 +182,13 @@ const CARDS: &[Card] = &[
     ),
 ];
 
-/// Cells behind a hidden back face, which only lights of the studio reach.
+/// Cells behind a hidden back face, which only the studio lights reach.
 const BEHIND: &[Card] = &[
     ("TextureSettingsTest", &[(107, 47, Mark::Tick)]),
     ("NegativeScaleTest", &[(131, 54, Mark::Tick), (131, 73, Mark::Tick)]),
 ];
 
-/// Returns the pixels around a place.
+/// Returns the pixels around a position.
 fn around(picture: &Image8, (x, y): (usize, usize)) -> impl Iterator<Item = [f64; 3]> {
     const REACH: usize = 7;
     let rows = y - REACH..=y + REACH;

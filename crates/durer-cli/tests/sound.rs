@@ -1,5 +1,5 @@
-//! `durer check` reports nothing for valid scenes: those of the repository, and those of the course
-//! except the truly wrong ones.
+//! `durer check` reports nothing for valid scenes: those of the repository, and all course scenes
+//! except those with real faults.
 
 mod common;
 
@@ -22,7 +22,7 @@ const NOTES: [(&str, usize, &str); 8] = [
         2,
         "`scene3_10_exponent_variations_back` and `scene3_12_weird_lighting_specular` are lit as their names say",
     ),
-    ("no-exponent", 2, "two scenes of f12a5 mirror with the colour of highlights that they do not have"),
+    ("no-exponent", 3, "three scenes of f12a5 mirror with the colour of highlights that they do not have"),
     ("no-light", 7, "the first assignment has no lights yet"),
     ("odd-index", 1, "`scene4_07_transparent_sphere_1.0` has glass of index 1, as its name says"),
     ("seen-from-behind", 1, "a triangle of `scene2_07_sphere_triangles` is turned"),
@@ -32,7 +32,7 @@ const NOTES: [(&str, usize, &str); 8] = [
 
 fn scenes(folder: &Path) -> Vec<PathBuf> {
     let mut scenes: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    // Splines use another kind of file.
+    // Spline scenes use another file format.
     let spline = |path: &Path| path.file_name().unwrap().to_string_lossy().starts_with("spline");
     scenes.retain(|path| path.extension().is_some_and(|extension| extension == "txt") && !spline(path));
     scenes.sort();

@@ -74,7 +74,7 @@ const CASES: &[Case] = &[
         "same-parts",
     ),
     ("f04", "--bounces 3", &[(LEFT, "TriangleMesh { obj_file quad.obj }")], "mesh-quads"),
-    // A floor that faces down is not the light's fault.
+    // If a floor faces down, the light is not at fault.
     ("f04", "--bounces 3", &[("normal 0 1 0 offset 0", "normal 0 -1 0 offset 0")], "seen-from-behind"),
     ("f16", "", &[("normal 0 1 0 offset 0", "normal 0 -1 0 offset 0")], "seen-from-behind"),
     // Report the cause, not that nothing is visible or the picture has one colour.
@@ -85,7 +85,7 @@ const CASES: &[Case] = &[
         &[(ANGLE, "OrthographicCamera { center -1.2 1 9 direction 0 0 -1 up 0 1 0 size 0.1 }")],
         "too-narrow",
     ),
-    // Turned to objects below the floor, the camera would see the floor.
+    // If the camera turned to the objects below the floor, it would see the floor.
     (
         "f04",
         "--bounces 3",
@@ -139,7 +139,7 @@ fn cause_is_reported_first() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A colour out of range is not reported as too much light as well; an object behind glass is not
+/// A colour out of range is not also reported as too much light. An object behind glass is not
 /// hidden.
 #[test]
 fn consequences_are_not_reported() {
@@ -185,7 +185,7 @@ fn help_suggests_the_intended_value() {
     assert_eq!(place.bytes("five.txt"), before);
     let (_, text) = found(&place, "f16", "", &[("falloff 0.03", "falloff 0")]);
     assert!(!text.contains("attenuation"), "{text}");
-    // A directional light has no position to move.
+    // A directional light has no position that could be moved.
     let behind =
         ("PointLight { position 3 5 4 color 0.9 0.9 0.9", "DirectionalLight { direction 0.1 1 -0.1 color 0.9 0.9 0.9");
     let (_, text) = found(&place, "f12a4", "", &[behind]);
@@ -211,7 +211,7 @@ Scene { Node { Component<Object> { type sphere radius 1 } }
     place.put("nodes.txt", nodes);
     let output = place.run("check nodes.txt --dialect f23").out;
     assert!(output.contains("`Component<Material> { index 0 }`") && !output.contains("MaterialIndex"), "{output}");
-    // Each mention of `--fix` says what it changes.
+    // Each message that mentions `--fix` says what it changes.
     place.put("bytes.txt", scene("f04", &[("diffuseColor 0.7 0.3 0.2", "diffuseColor 204 51 51")]));
     let output = place.run("check bytes.txt --dialect f04 --bounces 3").out;
     assert!(output.contains("(`--fix` writes `0.8 0.2 0.2`)"), "{output}");

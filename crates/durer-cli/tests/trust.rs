@@ -86,7 +86,7 @@ fn large_pictures_are_refused_by_their_headers() {
         assert_eq!(output.code, Some(2), "{line}: {}", output.err);
         assert!(output.err.contains(words), "{}", output.err);
     }
-    // Readers of other formats decode pictures themselves, within the same memory.
+    // Readers of other formats decode images themselves, within the same memory limit.
     let pbrt = "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n";
     let lit = r#"LightSource "infinite" "string filename" "large.png" Shape "sphere""#;
     let rough = r#"Texture "t" "float" "imagemap" "string filename" "large.png"
@@ -115,7 +115,7 @@ fn large_pictures_are_refused_by_their_headers() {
     let [texture, ..] = with_pictures(&place, "large.png");
     let output = place.shell(&format!("{LIMITED}{texture} --threads 2 --memory 120M"));
     assert!(output.code == Some(2) && output.err.contains("need about 191 MiB"), "{}", output.err);
-    // Six faces exceed the limit together, though each would fit alone.
+    // Six faces together exceed the limit, although each would fit alone.
     place.put("large.png", png(2000, b""));
     let [texture, _, sky] = with_pictures(&place, "large.png");
     assert_eq!(place.shell(&format!("{LIMITED}{texture} --threads 2 --memory 32M")).code, Some(0));
@@ -250,7 +250,7 @@ fn unfinished_work_is_kept_unless_restarted() {
             let line = format!("{work} {options} {other}");
             place.refused(2, &line, &["unfinished work", place_of_part, "--resume", "--restart"]);
         }
-        place.refused(2, &format!("{work} {options} --resume --seed 3"), &["another job", "--restart"]);
+        place.refused(2, &format!("{work} {options} --resume --seed 3"), &["a different job", "--restart"]);
         place.refused(2, &format!("{work} {options} --resume --restart"), &["cannot be used with"]);
         assert!(place.bytes(place_of_part) == saved);
         place.expect_exit(0, &format!("render scene.txt --size 48x32 --quiet {options} --restart"));

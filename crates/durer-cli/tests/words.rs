@@ -59,8 +59,8 @@ fn info_as_text_and_json() {
             .replace("numObjects 2", "numObjects 3"),
     );
     let json: serde_json::Value = serde_json::from_str(&place.expect_exit(0, "info mesh.txt --json").out).unwrap();
-    // One leaf: the root and its one box of equal size. 36 bytes of corners, 4 of an index, 256 of
-    // a node, and 320 of padding for a leaf.
+    // One leaf: the root and its one box of equal size. Vertices take 36 bytes, an index 4, a node
+    // 256, and padding for a leaf 320.
     assert_eq!((json["tree_cost"].as_f64(), json["bytes_per_triangle"].as_f64()), (Some(2.0), Some(616.0)));
 }
 

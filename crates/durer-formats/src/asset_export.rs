@@ -1,5 +1,5 @@
-//! Export of a scene's in-memory assets as files beside its text: meshes as PLY, light profiles as
-//! IES, densities as Mitsuba's volumes, pictures unchanged.
+//! Export of a scene's in-memory assets as separate files: meshes as PLY, light profiles as IES,
+//! densities as Mitsuba volumes, pictures unchanged.
 
 use super::ply::write_whole;
 use super::{extension, photometry, vol};
@@ -18,8 +18,8 @@ pub fn plain(name: &str) -> String {
     name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect()
 }
 
-/// Returns the scene with all its meshes and pictures in files of a folder beside it, together with
-/// these files. Files that the scene names are copied there; unreadable ones keep their names.
+/// Returns the scene with all its meshes and pictures moved to files in `folder`, and these files.
+/// Files that the scene names are copied there; unreadable ones keep their names.
 pub fn export_assets(scene: &Scene, folder: &str, source: &dyn AssetSource) -> (Scene, Vec<AssetFile>) {
     let (files, taken, known, textures) = Default::default();
     let mut put = AssetExport { scene, folder, source, files, taken, known, textures };
@@ -130,7 +130,7 @@ impl AssetExport<'_> {
         }
     }
 
-    /// New name of a light profile, of densities, or of a picture: the name of its file, or of a
+    /// New name of a light profile, a density grid, or a picture: the name of its file, or of a
     /// texture if it has a mapping.
     fn named(&mut self, name: &str) -> String {
         if let Some((known, _)) = self.textures.get(name) {

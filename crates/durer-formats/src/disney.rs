@@ -79,7 +79,7 @@ pub(super) fn passing([reflected, all]: [f32; 2]) -> f32 {
 }
 
 /// Reflectance of Dürer's boundary from [`single_means`]: the single-scattering reflectance,
-/// divided by the sum of single-scattering reflection and refraction, which is below 1 for rough
+/// divided by the total of single-scattering reflection and refraction, which is below 1 for rough
 /// boundaries.
 pub(super) fn kept([reflected, all]: [f32; 2]) -> f32 {
     // Unphysical indices of refraction can make `all` 0.
@@ -116,7 +116,7 @@ mod tests {
         // Mitsuba 3.9.1 measures 0.7456 for a base of 0.7 at roughness 1, with 200,000 pairs of
         // directions.
         assert!((matte_mean(1.0) - 0.7456 / 0.7).abs() < 5e-3, "{}", matte_mean(1.0));
-        // It measures 0.01154 for white sheen alone.
+        // Mitsuba measures 0.01154 for white sheen alone.
         assert!((means(Pair::sheen) - 0.01154).abs() < 5e-4, "{}", means(Pair::sheen));
         assert!((0.0..1.0).contains(&sheen_of_fuzz()), "{}", sheen_of_fuzz());
     }

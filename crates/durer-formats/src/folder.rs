@@ -1,6 +1,6 @@
 //! Asset source that reads folders. Only this module opens a scene's files for reading.
 //!
-//! It reads files below a few allowed folders only, and within a budget of bytes.
+//! It only reads files below a few allowed folders, and only up to a limit in bytes.
 
 use crate::files::unescaped;
 use durer_diag::did_you_mean;
@@ -163,7 +163,7 @@ impl FolderSource {
         })
     }
 
-    /// Path of an existing file after links are resolved, if it may be read.
+    /// Path of an existing file with links resolved, if it may be read.
     ///
     /// # Errors
     ///

@@ -1,43 +1,44 @@
-//! Growth of a file: what a reader makes of it that may be far larger than it. Readers count
-//! objects and bytes here before they make them.
+//! Limits on the objects and bytes that a reader creates from a file, which may be far larger than
+//! the file. Readers count both here before they allocate.
 
 use crate::shared_report::SharedReport;
 use durer_diag::{Span, at_most};
 use std::cell::Cell;
 
-/// Maximum number of objects in a scene, those of instances counted each time.
+/// Maximum number of objects in a scene, counting those of each instance.
 pub(crate) const MAX_OBJECTS: usize = 1 << 20;
-/// Bytes that any file may grow to, and further bytes for each byte of the file.
+/// Memory in bytes that any file may use, and additional memory per byte of the file.
 const FREE: u64 = 256 << 20;
 const TIMES: u64 = 64;
 
-/// Counters of what was made of a file.
+/// Counters of the objects and memory that a file takes.
 pub(crate) struct Growth {
     objects: Cell<usize>,
     /// Remaining bytes.
     left: Cell<u64>,
-    /// Limit on bytes, and the limit that it never exceeds.
+    /// Current limit in bytes, and the limit that it never exceeds.
     limit: Cell<u64>,
     memory: u64,
     is_over: Cell<bool>,
 }
 
-/// A limit was exceeded.
+/// Error: a limit was exceeded.
 #[derive(Debug)]
 pub(crate) struct TooMuch {
     pub message: String,
-    /// True the first time; one message is enough.
+    /// True for the first error; later ones need no message.
     pub is_first: bool,
 }
 
 impl Growth {
-    /// Growth within a memory limit in bytes.
+    /// Counters with a memory limit in bytes.
     pub fn within(memory: u64) -> Self {
         let [left, limit] = [Cell::new(memory), Cell::new(memory)];
         Growth { objects: Cell::new(0), left, limit, memory, is_over: Cell::new(false) }
     }
 
-    /// Growth of a file of some length, in proportion to it and within a memory limit.
+    /// Counters for a file of `length` bytes; the limit is in proportion to it and at most
+    /// `memory`.
     pub fn of_file(length: usize, memory: u64) -> Self {
         let growth = Growth::within(memory.min(FREE));
         let growth = Growth { memory, ..growth };
@@ -45,7 +46,7 @@ impl Growth {
         growth
     }
 
-    /// Adds the bytes of a file to those that may grow.
+    /// Raises the limit in proportion to another `length` bytes.
     pub fn feed(&self, length: usize) {
         let more = TIMES.saturating_mul(length as u64).min(self.memory - self.limit.get());
         self.left.set(self.left.get() + more);
@@ -58,7 +59,7 @@ impl Growth {
         match self.objects.get() <= MAX_OBJECTS {
             true => Ok(()),
             false => {
-                Err(self.over(format!("more than {MAX_OBJECTS} objects, those of instances counted, are too many")))
+                Err(self.over(format!("too many objects: more than {MAX_OBJECTS}, counting those of every instance")))
             }
         }
     }
@@ -73,7 +74,7 @@ impl Growth {
         self.left.get()
     }
 
-    /// Counts `count` things of `size` bytes each.
+    /// Counts `count` items of `size` bytes each.
     pub fn bytes(&self, count: usize, size: usize) -> Result<(), TooMuch> {
         let left = self.left.get().checked_sub((count as u64).saturating_mul(size as u64));
         self.left.set(left.unwrap_or(0));
@@ -117,7 +118,7 @@ mod tests {
         let growth = Growth::of_file(10, u64::MAX);
         assert!(growth.bytes(1, (FREE + 10 * TIMES) as usize).is_ok() && growth.bytes(1, 1).is_err());
         growth.feed(1);
-        // The failed byte was taken.
+        // The request that failed used up the rest.
         assert!(growth.bytes(1, TIMES as usize).is_ok() && growth.bytes(1, 1).is_err());
         assert!(Growth::of_file(usize::MAX, 5).bytes(6, 1).is_err());
         let growth = Growth::within(0);

@@ -52,7 +52,7 @@ const STATEMENTS: &[(&str, Statement)] = &[
     ("vt", Statement::Uv),
     ("vn", Statement::Normal),
     ("f", Statement::Face),
-    // Name of `f` before version 2.11.
+    // Name of `f` in versions before 2.11.
     ("fo", Statement::Face),
     ("o", Statement::Ignored),
     ("g", Statement::Ignored),

@@ -1,16 +1,16 @@
-//! Files packed by gzip.
+//! Files compressed with gzip.
 
 use durer_scene::source::{AssetSource, SourceError};
 use std::io::Read as _;
 use std::sync::Arc;
 
-/// Reads a file by its name in the scene, and unpacks it within the source's budget if it is
-/// packed.
+/// Reads a file by its name in the scene, and decompresses it if necessary, within the source's
+/// budget.
 ///
 /// # Errors
 ///
-/// Those of [`AssetSource::read`]; [`SourceError::Io`] for packed bytes that are damaged or would
-/// become too large.
+/// Errors of [`AssetSource::read`]; [`SourceError::Io`] if compressed data is damaged or exceeds
+/// the budget.
 pub fn read_unpacked(source: &dyn AssetSource, name: &str) -> Result<Arc<[u8]>, SourceError> {
     let bytes = source.read(name)?;
     if !is_packed(&bytes) {
@@ -24,7 +24,7 @@ pub fn read_unpacked(source: &dyn AssetSource, name: &str) -> Result<Arc<[u8]>, 
     Ok(all)
 }
 
-/// Returns true if bytes are a gzip file.
+/// Returns true if the bytes are a gzip file.
 pub fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\x1f\x8b")
 }
@@ -34,7 +34,7 @@ pub fn is_packed(bytes: &[u8]) -> bool {
 ///
 /// # Errors
 ///
-/// A message: the data are damaged or would become too large.
+/// A message if the data is damaged or would exceed the budget.
 pub fn unpacked(bytes: &[u8], budget: u64) -> Result<Arc<[u8]>, String> {
     // Deflate compresses at most 1032 bytes into one. The last four bytes state the size of the
     // last member.

@@ -13,7 +13,7 @@ use std::f32::consts::{PI, TAU};
 /// Number of samples along each side of a texel.
 const PLACES: u32 = 3;
 
-/// Memory per texel in bytes while the picture is made: its colour, and the encoded file, whose
+/// Memory per texel in bytes while the picture is computed: its colour, and the encoded file, whose
 /// buffer may grow to twice its size.
 const MAKING: u64 = 4 * size_of::<Color>() as u64;
 
@@ -45,7 +45,7 @@ pub(super) fn surround(
     Ok(())
 }
 
-/// Returns the memory in bytes that remains beside the pictures.
+/// Returns the part of `memory`, in bytes, that these pictures leave.
 pub(super) fn beside<'a>(pictures: impl IntoIterator<Item = &'a Image>, memory: u64) -> u64 {
     pictures.into_iter().fold(memory, |left, picture| left.saturating_sub(size_of_val(&picture.pixels[..]) as u64))
 }

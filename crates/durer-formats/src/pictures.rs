@@ -10,11 +10,11 @@ use durer_scene::scene::{Picture, PictureBytes, Scene};
 use durer_scene::source::Digest;
 use std::sync::Arc;
 
-/// Memory per pixel in bytes that converting a picture needs beside the picture: the new picture
-/// and its 8-bit data, raw and encoded.
+/// Memory in bytes per pixel needed to convert a picture, in addition to the picture: the new
+/// picture and its 8-bit data, raw and encoded.
 pub(super) const CHANGING: usize = 2 * size_of::<Color>();
 
-/// Reader of pictures beside a scene; reports the errors.
+/// Reads pictures that a scene names; reports the errors.
 #[derive(Clone, Copy)]
 pub(super) struct Pictures<'a> {
     pub input: &'a Input<'a>,

@@ -41,7 +41,7 @@ impl SharedReport {
         self.push(Diagnostic::warning(message).code(NO_COUNTERPART).at(at));
     }
 
-    /// Warns as [`SharedReport::other`] does, but once per message.
+    /// Warns as [`SharedReport::other`] does, once per message.
     pub fn once(&self, at: Span, message: impl Into<String>) {
         self.warn_once(NO_COUNTERPART, at, message);
     }

@@ -1,4 +1,4 @@
-//! Signatures of file formats: first bytes that identify a file, whatever its name.
+//! Signatures of file formats: first bytes that identify a file, regardless of its name.
 
 use durer_diag::{Diagnostic, Span};
 
@@ -40,10 +40,10 @@ const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
     (b"#usda", "USD", None),
 ];
 
-/// Photometric file: a light of a scene, not a scene.
+/// Photometric file: it describes a light, not a scene.
 const LUMINAIRE: &str = "a measured luminaire (IES)";
 
-/// Returns an error if the signature of a file contradicts its format, whose extensions are
+/// Returns an error if a file's signature contradicts its format, whose extensions are
 /// `extensions`.
 pub(super) fn mistaken(bytes: &[u8], file: u32, name: &str, extensions: &[&str]) -> Option<Diagnostic> {
     let (start, what, own) = SIGNATURES.iter().find(|(start, ..)| bytes.starts_with(start))?;

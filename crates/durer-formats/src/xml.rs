@@ -1,6 +1,6 @@
 //! Pull parser of XML whose elements and attributes have spans.
 //!
-//! It rejects two features that scenes do not need: document type declarations, by which a few
+//! It rejects two features that scenes do not need: document type declarations, with which a few
 //! bytes can expand to gigabytes or include another file, and entities other than the five
 //! predefined ones.
 

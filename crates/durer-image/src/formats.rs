@@ -119,7 +119,7 @@ pub struct Format {
     pub layers: bool,
     /// Maximum width or height.
     pub most_side: u32,
-    /// Returns true if the bytes begin with the signature of the format.
+    /// Returns true if the bytes begin with the format's signature.
     begins: fn(&[u8]) -> bool,
     /// Reads the header only.
     head: fn(&[u8]) -> Result<Head, ImageError>,

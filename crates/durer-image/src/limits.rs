@@ -35,11 +35,11 @@ pub(super) fn room_for<T: Clone>(count: usize, item: T) -> Result<Vec<T>, ImageE
     Ok(all)
 }
 
-/// Returns true if this many bytes can be allocated now. If a system limit forbids it, large work
-/// is refused with an error before it starts.
+/// Returns true if this many bytes can be allocated now. Large jobs fail with an error before they
+/// start if a system limit forbids them.
 pub fn can_allocate(bytes: u64) -> bool {
     let length = usize::try_from(bytes).unwrap_or(usize::MAX);
-    // The system gives no pages before something is written to them.
+    // The system provides no pages until they are written.
     Vec::<u8>::new().try_reserve_exact(length).is_ok()
 }
 

@@ -1,9 +1,9 @@
 //! Atomic file writes.
 //!
-//! Bytes go into a temporary file beside the target and are synced; then the file is renamed to the
-//! target. If anything fails, the old file is intact and no temporary file remains. The new file
-//! has the permissions of the old one, or those of an ordinary new file. Symbolic links are
-//! followed; hard links are not.
+//! Bytes are written to a temporary file in the target's folder and synced; then the file is
+//! renamed to the target. If anything fails, the old file is intact and no temporary file remains.
+//! The new file has the permissions of the old one, or those of an ordinary new file. Symbolic
+//! links are followed; hard links are not.
 
 use super::content::Content;
 use super::temporary::{Temporary, remove_stale};
@@ -104,7 +104,7 @@ pub fn save(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), SaveError> {
     save_all(&[(&Destination::new(path.as_ref())?, bytes)])
 }
 
-/// Saves several files: writes all of them beside their targets before the first rename.
+/// Saves several files: writes all of them to temporary files before the first rename.
 ///
 /// # Errors
 /// [`SaveError`]. All files are then unchanged, unless a rename itself fails because the folders
@@ -114,7 +114,7 @@ pub fn save_all<C: Content>(files: &[(&Destination, C)]) -> Result<(), SaveError
     for (place, content) in files.iter().filter(|file| !file.0.is_stream()) {
         staged.push(stage(place.path(), content)?);
     }
-    // Writes to streams cannot be undone, so they follow when the files are safe on the disk.
+    // Writes to streams cannot be undone, so they come after the files are safely on disk.
     for (place, content) in files {
         if let Some(mut stream) = place.stream.as_ref() {
             content.write_to(&mut stream).map_err(|error| SaveError::Io { path: place.path.clone(), error })?;
@@ -122,8 +122,8 @@ pub fn save_all<C: Content>(files: &[(&Destination, C)]) -> Result<(), SaveError
     }
     for (temporary, target) in staged {
         temporary.persist(&target).map_err(|error| SaveError::Io { path: target.clone(), error })?;
-        // Sync the folder, so that the new name survives a power failure. Where folders cannot be
-        // synced, the system decides.
+        // Sync the folder, so that the new name survives a power failure. If folders cannot be
+        // synced, leave it to the system.
         #[cfg(unix)]
         let _ = File::open(folder_of(&target)).and_then(|folder| folder.sync_all());
     }

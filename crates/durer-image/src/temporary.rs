@@ -1,9 +1,9 @@
 //! Temporary files that leave nothing behind, even if the program is killed.
 //!
 //! On Linux, the file has no name until it is complete (`O_TMPFILE`), and vanishes with the
-//! program. Elsewhere it has a name from the start, and on Linux for a moment before it replaces an
-//! old file. The next program removes temporary files left by a killed one: they lack the lock that
-//! a running program holds.
+//! program. Elsewhere it has a name from the start, and on Linux it has one briefly before it
+//! replaces an old file. The next program removes temporary files left by a killed one: they lack
+//! the lock that a running program holds.
 
 use std::fs::{self, File};
 use std::io;

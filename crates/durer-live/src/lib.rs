@@ -37,7 +37,7 @@ pub(crate) struct Shared {
 }
 
 impl Server {
-    /// Listens on a port, or on any if it is 0, with what a page finds.
+    /// Listens on a port (0 for any free one) and serves `start` to pages.
     ///
     /// # Errors
     ///

@@ -31,7 +31,7 @@ pub(crate) fn file(path: &str) -> Option<(&'static [u8], &'static str)> {
     Some((bytes, kind))
 }
 
-/// Returns the page with a mark that tells it to connect to this server.
+/// Returns the page with a marker that makes it connect to this server.
 pub(crate) fn index() -> Vec<u8> {
     let html = String::from_utf8_lossy(file("").map_or(&[][..], |found| found.0));
     html.replacen("<head>", "<head>\n    <meta name=\"durer-server\" content=\"1\" />", 1).into_bytes()

@@ -185,8 +185,7 @@ fn foreign_origins_and_wrong_tokens_are_refused() {
     assert!(hear(&mut socket, "language")["words"].as_array().unwrap().len() > 30);
 }
 
-/// Opens a small scene and edits it to have another number of balls; returns how many objects it
-/// has.
+/// Opens a small scene and edits its number of balls; returns its number of objects.
 fn objects(socket: &mut WebSocket<TcpStream>, count: usize) -> Option<u64> {
     let balls: String = (0..count).map(|i| format!("Sphere {{ center {i} 0 0 radius 0.4 }} ")).collect();
     let text =
@@ -210,7 +209,7 @@ fn clients_that_mean_harm_lose_their_connection_and_nobody_else_does() {
             })
             .collect()
     };
-    // A text of a gibibyte is announced; a frame without a mask; a reserved kind; then noise.
+    // A text announced as one gibibyte; a frame without a mask; a reserved opcode; then noise.
     let mut attacks = vec![
         [vec![0x81, 0xff], (1_u64 << 30).to_be_bytes().to_vec(), vec![0; 4]].concat(),
         [vec![0x81, 0xff], u64::MAX.to_be_bytes().to_vec(), vec![0; 4]].concat(),
@@ -225,12 +224,12 @@ fn clients_that_mean_harm_lose_their_connection_and_nobody_else_does() {
         let stream = socket.get_mut();
         let _ = stream.write_all(&attack);
         let _ = stream.shutdown(std::net::Shutdown::Write);
-        // It is closed, with an answer or without.
+        // The server closes the connection, with or without an answer.
         stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
         let mut rest = Vec::new();
         let _ = stream.read_to_end(&mut rest);
     }
-    // The page's own session has lost nothing.
+    // The page's own session is unaffected.
     ask(&mut page, serde_json::json!({ "kind": "cast", "origin": [2, 0, 9], "direction": [0, 0, -1], "t_max": null }));
     assert_eq!(hear(&mut page, "cast")["cast"]["hit"]["object"], 2);
 }
@@ -265,7 +264,7 @@ fn requests_of_any_size_and_form_are_answered() {
         let why = hear(&mut page, "refused");
         assert!(why["why"].as_str().is_some_and(|why| why.len() < 1000), "{message:.80}: {why}");
     }
-    // Pictures of any size and part are made.
+    // Any size and crop is answered with a picture, even an invalid one.
     for request in [
         r#"{"kind":"size","width":0,"height":0}"#,
         r#"{"kind":"crop","crop":[4294967295,0,0,4294967295]}"#,
@@ -282,7 +281,7 @@ fn a_client_that_does_not_read_keeps_nobody_waiting() {
     let origin = format!("http://{}", server.host());
     let mut deaf = server.connect(&origin).unwrap();
     assert_eq!(objects(&mut deaf, 5), Some(5));
-    // Megabytes of answers for which it never asks the system.
+    // Sends requests for megabytes of answers without reading them.
     for _ in 0..400 {
         ask(&mut deaf, serde_json::json!({ "kind": "language" }));
     }
@@ -302,7 +301,7 @@ fn a_thousand_connections_cost_a_session_nothing() {
     let mut held = Vec::new();
     for i in 0..1000 {
         held.extend(TcpStream::connect(server.host()).ok());
-        // The system limits the number of open connections of a process.
+        // The system limits the number of open connections per process.
         if held.len() > 200 {
             held.drain(..100);
         }

@@ -72,7 +72,7 @@ fn adjustment_reaches_the_published_costs() {
         let report = adjust(&mut all, &Options::default());
         assert!(report.converged && all.fit().cost <= before, "{name}");
     }
-    // It has many outliers, which OpenSfM weights less.
+    // It has many outliers, to which OpenSfM gives less weight.
     let mut berlin = read(&folder.join("opensfm-berlin/reconstruction_example.json")).unwrap();
     let before = berlin.fit().cost;
     adjust(&mut berlin, &Options { loss: Loss::Huber(3.0), ..Options::default() });
@@ -185,7 +185,7 @@ fn stored_places_are_off(solved: &Reconstruction, bundler: &Reconstruction) {
     let (ours, theirs) = (median_residual(solved, bundler), median_residual(bundler, bundler));
     println!("median residual of what Bundler saw: {ours} with our cameras, {theirs} with its own");
     assert!(ours < 0.85 * theirs, "{ours} {theirs}");
-    // Its observations, with a single lens, reproduce our cameras.
+    // Bundler's observations, with a single lens, reproduce our cameras.
     let mut one = bundler.clone();
     one.lenses = vec![durer_photo::Lens { radial: [0.0; 2], ..bundler.lenses[0] }];
     one.views.iter_mut().for_each(|view| view.lens = 0);

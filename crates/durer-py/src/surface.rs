@@ -73,9 +73,8 @@ impl Face<'_> {
     ///
     /// The kernel computes the hit distance in double precision, and decides the hit in single
     /// precision. So a ray that starts in front of a triangle's plane, by more than the rounding of
-    /// its origin, does not hit it on the way forwards. `error` bounds the rounding, each part with
-    /// a factor of two to spare:
-    /// as much again to spare:
+    /// its origin, does not hit it on the way forwards. `error` bounds the rounding, with a factor
+    /// of two to spare in each part:
     ///
     /// - the origin, to single precision in object space;
     /// - the transform to world space and back, in double precision: a translation to and from the
@@ -86,7 +85,7 @@ impl Face<'_> {
     ///   hit what is behind it.
     ///
     /// The origin is off the plane by twice the bound, projected onto the normal, and off the edges
-    /// by eight times: so it is in front of the neighbours too, down to folds of a few degrees.
+    /// by eight times: so it is also in front of the neighbours, down to folds of a few degrees.
     ///
     /// [`Ray64`]: durer::math::Ray64
     fn leave(&self, uv: [f32; 2], dir: Vec3) -> DVec3 {

@@ -2,7 +2,7 @@
 //! Ctrl-C and reports progress.
 //!
 //! Parallel work runs in a [`pool`] of this process, never in rayon's global pool: after a fork,
-//! that one waits for threads which do not exist.
+//! the global pool waits for threads that no longer exist.
 
 use durer::threads;
 use pyo3::prelude::*;
@@ -15,13 +15,13 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Interval of checking signals and reporting progress.
+/// Interval between checks for signals and progress reports.
 pub const LOOK: Duration = Duration::from_millis(50);
 
 /// A process, its requested number of threads, and the pool.
 type KnownPool = (u32, Option<usize>, Option<Arc<ThreadPool>>);
 
-/// Cached pools. They belong to a process: after a fork the threads are gone.
+/// Cached pools. They belong to one process: after a fork, their threads no longer exist.
 static POOLS: Mutex<Vec<KnownPool>> = Mutex::new(Vec::new());
 
 /// Returns the shared pool of this process with the requested number of threads; `None` if threads
@@ -53,23 +53,23 @@ pub fn look(watch: Option<&Py<PyAny>>, done: u64, all: u64) -> PyResult<()> {
     })
 }
 
-/// Tells a job whether it goes on. A single item may take milliseconds, so jobs ask for each item
-/// or for few.
+/// Tells a job whether to continue. A single item may take milliseconds, so jobs check for every
+/// item or every few items.
 pub struct Pace<'a> {
     stop: &'a AtomicBool,
-    /// Work of the calling thread looks for signals itself: the time of the last look, and the
-    /// exception.
+    /// For work on the calling thread, which checks signals itself: the time of the last check, and
+    /// its result.
     own: Option<RefCell<(Instant, PyResult<()>)>>,
 }
 
 impl Pace<'_> {
-    /// Returns true if the work goes on.
+    /// Returns true if the work should continue.
     pub fn goes_on(&self) -> bool {
         if let Some(own) = &self.own {
             let mut own = own.borrow_mut();
             if own.0.elapsed() > LOOK && own.1.is_ok() {
                 *own = (Instant::now(), look(None, 0, 0));
-                // The look may take time too.
+                // The check may take time too.
                 own.0 = Instant::now();
                 self.stop.store(own.1.is_err(), Relaxed);
             }
@@ -77,7 +77,7 @@ impl Pace<'_> {
         !self.stop.load(Relaxed)
     }
 
-    /// Divides a number of items into ranges that are small if items take long.
+    /// Divides items into ranges, which are small if items take long.
     pub fn ranges(&self, count: usize, mut work: impl FnMut(Range<usize>)) {
         const MOST: usize = 128;
         let (mut from, mut step) = (0, 8);
@@ -104,7 +104,7 @@ pub fn each<J: Send>(
         jobs.into_iter().take_while(|_| pace.goes_on()).for_each(|job| work(job, &pace));
         pace.own.map_or(Ok(()), |own| own.into_inner().1)
     };
-    // Too little work for threads.
+    // Too little work for several threads.
     if jobs.len() <= 1 {
         py.detach(|| alone(std::mem::take(&mut jobs)))?;
         return py.check_signals();

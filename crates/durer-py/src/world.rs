@@ -340,7 +340,7 @@ impl Part {
         Ok(layers.into_iter().map(picture).collect())
     }
 
-    /// Returns the names and descriptions of all kinds of pictures beside colour.
+    /// Returns the names and descriptions of all kinds of pictures other than colour.
     #[staticmethod]
     fn kinds() -> Vec<(&'static str, &'static str)> {
         durer::film::aov::AOVS.iter().map(|aov: &Aov| (aov.name, aov.doc)).collect()

@@ -26,8 +26,8 @@ fn started(requested: Option<usize>) -> Vec<mpsc::Sender<ThreadBuilder>> {
     (0..wanted(requested)).map_while(start).collect()
 }
 
-/// Returns a spawn handler that assigns running threads to a pool, which cannot fail half-way as
-/// starting them could.
+/// Returns a spawn handler that assigns running threads to a pool, which cannot fail halfway,
+/// unlike starting new ones.
 fn giving(mut started: Vec<mpsc::Sender<ThreadBuilder>>) -> impl FnMut(ThreadBuilder) -> io::Result<()> {
     move |thread| {
         let sent = started.pop().map(|sender| sender.send(thread));

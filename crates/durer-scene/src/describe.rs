@@ -1,7 +1,7 @@
 //! Descriptions of scene objects: keyword and fields, stated once.
 //!
 //! Every shape, camera, material and light states its keyword and its fields in one `described!`
-//! block. The reader, the writer, the manual and the generator of random test scenes use that
+//! block. The readers, the writers, the manual and the generator of random test scenes all use that
 //! description.
 
 use crate::dialect::{Dialect, DialectSet};
@@ -164,10 +164,11 @@ impl Field {
         self.spellings.iter().find(|(_, set)| dialect.is_in(*set)).map(|(word, _)| *word)
     }
 
-    /// Returns the value that official programs use if the written one breaks the rule, for an
-    /// object's keyword: see [`Quirk::AnyValues`]. `None` if they draw nothing sensible with it.
+    /// Returns the value that official programs use if the written one violates the constraint; see
+    /// [`Quirk::AnyValues`]. `keyword` is the object's keyword. `None` if the programs render
+    /// nothing meaningful with it.
     ///
-    /// [`Quirk::AnyValues`]: crate::dialect::Compat::AnyValues
+    /// [`Quirk::AnyValues`]: crate::dialect::Quirk::AnyValues
     pub fn drawn_anyway(&self, keyword: &str, value: &Value) -> Option<Value> {
         match (keyword, self.name, value) {
             // The program squares the radius; no usable radius is smaller than this.
@@ -456,7 +457,7 @@ pub trait DescribedList: Sized {
     }
 }
 
-/// Every described type is a list of one, so the reader needs only one path.
+/// Every described type is also a list of one type, so the reader needs only one code path.
 impl<T: Describe> DescribedList for T {
     fn kinds() -> Vec<Self> {
         vec![T::default()]

@@ -1,6 +1,7 @@
 //! Dialects of the scene language, as one table of differences.
 //!
-//! A [`Dialect`] is the language of a year; its [`Rules`] define the meaning of its words; its
+//! A [`Dialect`] is the scene language of a year; its [`Rules`] define the meaning of its words;
+//! its
 //! [`Quirk`]s are the known bugs of that year's official program, active only if the user selects
 //! the dialect.
 
@@ -224,31 +225,33 @@ pub struct Rules {
     pub srgb_textures: bool,
     /// First folder in which to look for files.
     pub paths: PathBase,
-    /// True if the ambient light is multiplied by a texture or noise, not only by `diffuseColor`.
+    /// True if the ambient light is multiplied by a texture or noise, instead of only by
+    /// `diffuseColor`.
     pub ambient_textured: bool,
-    /// True if ambient light is 1 1 1, whatever the scene says, in a scene without lights.
+    /// True if a scene without lights has ambient light 1 1 1, regardless of the value in the
+    /// scene.
     pub ambient_alone: bool,
     /// True if coloured, transparent objects cast coloured shadows.
     pub transparent_shadows: bool,
-    /// Bugs of the official program.
+    /// Quirks of the official program.
     pub compat: QuirkSet,
 }
 
 impl Rules {
-    /// True if a compatibility is on.
+    /// True if a quirk is on.
     pub fn has(&self, compat: Quirk) -> bool {
         self.compat & compat.bit() != 0
     }
 
     /// True if the picture must equal an official program's: the rules have an epsilon, and hit
-    /// points are points of the ray, rounding included.
+    /// points are computed from the ray, including its rounding.
     pub fn is_bit_compatible(&self) -> bool {
         self.epsilon.is_some()
     }
 
-    /// Returns these rules without the old program's bugs and with good defaults.
+    /// Returns these rules without the old program's bugs, and with good defaults.
     ///
-    /// A file gets these rules if the user did not select a dialect.
+    /// Used for files if the user did not select a dialect.
     pub fn without_quirks(&self) -> Rules {
         let ours = Dialect::Durer.rules();
         Rules {

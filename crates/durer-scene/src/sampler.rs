@@ -93,7 +93,7 @@ pub const PIXEL_DIMENSION: u32 = 0;
 /// Dimension of positions on the camera's lens. Integrators use the dimensions from 2.
 pub const LENS_DIMENSION: u32 = 1;
 
-/// A sample of a pixel, with the first free dimension. Sample numbers depend on nothing else.
+/// A sample of a pixel, with the first free dimension. Its random numbers depend on nothing else.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SampleId {
     /// Hash of seed and pixel.
@@ -171,7 +171,7 @@ impl<const N: usize> PlainKernel for Pairs<N> {
 /// First dimension for media; the number of scattering events is unlimited.
 const MEDIUM_DIMENSIONS: u32 = 1 << 17;
 
-/// Unlimited sequence of numbers in [0,1) for a path segment in a medium.
+/// Unlimited sequence of numbers in [0,1), for a path segment in a medium.
 #[derive(Clone, Copy, Debug)]
 pub struct Stream {
     id: SampleId,
@@ -222,7 +222,7 @@ pub fn sample_2d(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> Vec2
     Sequence::of(key(seed, x, y), dimension).point(sample)
 }
 
-/// The points of one dimension of a pixel; it stores the hashes that they share.
+/// Points of one dimension of a pixel. Stores the hashes that they share.
 #[derive(Clone, Copy, Debug)]
 pub struct Sequence {
     shuffle: u32,

@@ -17,7 +17,7 @@ pub struct Digest(pub [u8; 32]);
 impl Digest {
     /// Hash of bytes.
     pub fn of(bytes: &[u8]) -> Self {
-        // For less data, threads cost more than they save.
+        // For less data, threads cost more time than they save.
         match bytes.len() < 1 << 20 {
             true => Digest(blake3::hash(bytes).into()),
             false => Digest(blake3::Hasher::new().update_rayon(bytes).finalize().into()),
@@ -205,15 +205,15 @@ pub trait AssetSource: std::fmt::Debug + Sync {
     /// Record of what was read so far.
     fn record(&self) -> &ReadRecord;
 
-    /// Number of bytes that may still be read; unpacking a file takes from them.
+    /// Number of bytes that may still be read; decompressing a file reduces it.
     fn budget(&self) -> u64 {
         u64::MAX
     }
 
-    /// Takes bytes from the budget.
+    /// Subtracts bytes from the budget.
     fn spend(&self, _bytes: u64) {}
 
-    /// Reads a file that the user named, not the scene, so it may be anywhere. Adds it to the
+    /// Reads a file named by the user instead of the scene, which may be anywhere. Adds it to the
     /// record under its path.
     ///
     /// # Errors
@@ -228,7 +228,7 @@ pub trait AssetSource: std::fmt::Debug + Sync {
         None
     }
 
-    /// Adds a file to the record that was read earlier and has not changed since `stamp`.
+    /// Adds a file that was read earlier and has not changed since `stamp` to the record.
     fn skip_reading(&self, name: &str, _stamp: &Stamp, digest: Digest) {
         self.record().add_digest(name, digest);
     }

@@ -128,7 +128,7 @@ fn formulas(object: &Object, ray: &Ray, hit: Option<&Hit>) -> Vec<Row> {
     }
 }
 
-/// Returns a row that states the conclusion.
+/// Returns a row that states a conclusion.
 fn so(words: &str) -> Row {
     Row { name: "so".into(), formula: String::new(), numbers: String::new(), result: words.into(), value: None }
 }

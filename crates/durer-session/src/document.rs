@@ -48,7 +48,7 @@ impl Document {
         Document { path, bytes, options, compiled: None }
     }
 
-    /// The text; `None` for a model.
+    /// Text of the document; `None` for a model.
     pub fn text(&self) -> Option<&str> {
         if self.is_model() { None } else { std::str::from_utf8(&self.bytes).ok() }
     }
@@ -66,7 +66,7 @@ impl Document {
         (true, findings)
     }
 
-    /// True for a file without text in the scene language: a mesh, glTF, or bytes.
+    /// True for a file that is not text in the scene language: a mesh, a glTF file, or other bytes.
     pub fn is_model(&self) -> bool {
         let name = self.path.to_string_lossy();
         let is_written = |format: &SceneFormat| format.write.is_some();
@@ -75,7 +75,8 @@ impl Document {
             || find_scene_format(&self.bytes, &name).is_some_and(is_written)
     }
 
-    /// Changes the scene of a model, and compiles it again. After an error it stays as it is.
+    /// Changes the scene of a model and compiles it again. After an error the document is
+    /// unchanged.
     pub fn change(&mut self, change: impl FnOnce(&mut Scene) -> Result<(), String>) -> Result<(), String> {
         let compiled = self.compiled.as_mut().ok_or("the scene has errors")?;
         let before = compiled.loaded.scene.clone();
@@ -86,7 +87,7 @@ impl Document {
         });
         match changed {
             Ok(mut world) => {
-                // It is no longer what the file holds.
+                // The document no longer equals the file.
                 world.edit().camera = compiled.world.camera().clone();
                 world.look_through(compiled.world.camera().clone());
                 compiled.world = world;
@@ -99,8 +100,8 @@ impl Document {
         }
     }
 
-    /// The scene as a text of the language, and the files that the text names. The camera is that
-    /// of the picture.
+    /// Scene as text in the scene language, and the files that the text names. The camera is the
+    /// picture's current one.
     pub fn as_text(&self) -> Result<(String, Vec<AssetFile>), String> {
         let compiled = self.compiled.as_ref().ok_or("the scene has errors")?;
         let stem = plain(&self.path.file_stem().unwrap_or_default().to_string_lossy());

@@ -5,12 +5,12 @@ use durer::describe::{Constraint, DescribedList, Field, Value};
 use durer::dialect::Dialect;
 use durer::math::Vec3;
 
-/// The fields of a thing with their values.
+/// Fields of an item with their values.
 pub(crate) fn field_states(list: &impl DescribedList) -> Vec<FieldState> {
     list.fields().iter().enumerate().map(|(i, field)| state(field, list.get(i))).collect()
 }
 
-/// Sets the numbers of a field, by its word in the scene language.
+/// Sets the numbers of a field, which is given by its keyword in the scene language.
 pub(crate) fn set_numbers(list: &mut impl DescribedList, word: &str, numbers: &[f32]) -> Result<(), String> {
     let fields = list.fields();
     let at = fields.iter().position(|field| spelled(field) == word).ok_or_else(|| format!("no field `{word}`"))?;

@@ -14,7 +14,7 @@ pub struct Host {
     sessions: BTreeMap<u32, Session>,
     /// Session that received the last request; it has priority for coarse pictures.
     latest: u32,
-    /// Session that worked last; the others have their turns before it.
+    /// Session that worked last; the others get their turn before it.
     worked: u32,
 }
 
@@ -29,7 +29,9 @@ impl Host {
         let Ask { session, id, request } = match serde_json::from_str(message) {
             Ok(ask) => ask,
             Err(error) => {
-                let event = Event::Refused { why: format!("invalid request: {error}") };
+                // The error may quote the message, which may be long.
+                let why: String = format!("invalid request: {error}").chars().take(200).collect();
+                let event = Event::Refused { why };
                 return send(Answer { session: 0, id: 0, event }.encode(&[]));
             }
         };
@@ -56,8 +58,8 @@ impl Host {
         self.sessions.values().any(Session::is_busy)
     }
 
-    /// Works for some milliseconds. Sessions without a picture of their last change come first, and
-    /// among them the one that received the last request; the others take turns.
+    /// Works for a few milliseconds. Sessions whose last change is not visible yet come first,
+    /// starting with the one that received the last request; the others take turns.
     pub fn step(&mut self, send: &mut dyn FnMut(Vec<u8>)) {
         let Some(session) = self.next() else { return };
         self.worked = session;

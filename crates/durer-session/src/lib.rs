@@ -1,5 +1,5 @@
-//! Interactive sessions: edit the text of a scene, move its camera, render progressively from
-//! coarse to fine, and explain pixels.
+//! Interactive sessions: edit a scene's text, move its camera, render progressively from coarse to
+//! fine, and explain pixels.
 //!
 //! [`Session`] does the work and [`Host`] holds several sessions. They exchange the messages of
 //! [`protocol`] and are independent of sockets and browsers: `durer-live` and `durer-wasm`

@@ -1,5 +1,5 @@
-//! Contents of a scene: groups, objects and materials. Models have no text, so their materials are
-//! edited here.
+//! Contents of a scene: groups, objects and materials. The text of a scene is edited elsewhere;
+//! models have no text, so their materials are edited here.
 
 use crate::document::CompiledDocument;
 use crate::fields::{field_states, set_numbers};
@@ -11,14 +11,14 @@ use durer::scene::{Material, Node, Object, Scene};
 /// Maximum number of nodes and of materials.
 const MAX_NODES: usize = 2000;
 
-/// Returns the objects of a scene, as they are grouped.
+/// Returns the objects of a scene as a tree of groups.
 pub(crate) fn nodes(compiled: &CompiledDocument) -> Vec<TreeNode> {
     let mut left = MAX_NODES;
     let root = compiled.scene().root.iter().flat_map(|group| &group.objects);
     root.map_while(|object| node(compiled, object, &mut left)).collect()
 }
 
-/// Returns an object with those below it; `None` beyond the maximum.
+/// Returns an object with its subtree; `None` beyond the maximum.
 fn node(compiled: &CompiledDocument, object: &Object, left: &mut usize) -> Option<TreeNode> {
     *left = left.checked_sub(1)?;
     let below: &[Object] = match &object.node {

@@ -82,8 +82,8 @@ fn reach(bounds: &Aabb) -> f32 {
     0.55 * bounds.size().length().max(1e-3)
 }
 
-/// Rotates a direction by `around` about an axis, then tilts it by `towards` radians towards the
-/// axis.
+/// Rotates a direction about an axis by `around` radians, then tilts it towards the axis by
+/// `towards` radians.
 fn turned(forward: Vec3, axis: Vec3, right: Vec3, around: f32, towards: f32) -> Vec3 {
     let angle = forward.angle_between(axis);
     let limit = std::f32::consts::PI - POLE;
@@ -93,7 +93,7 @@ fn turned(forward: Vec3, axis: Vec3, right: Vec3, around: f32, towards: f32) -> 
     (Quat::from_axis_angle(axis, around) * pitched).normalize_or(forward)
 }
 
-/// Sets the numbers of a camera's field, by its word in the scene language.
+/// Sets the numbers of a camera's field, which is given by its keyword in the scene language.
 pub(crate) fn set_field(camera: &mut Camera, word: &str, numbers: &[f32]) -> Result<(), String> {
     let mut changed = camera.clone();
     set_numbers(&mut changed, word, numbers)?;

@@ -17,7 +17,7 @@ pub(crate) fn outlines(names: &Names) -> Vec<Outline> {
     object_outlines(names.world).enumerate().map(one).collect()
 }
 
-/// Returns the marks of the lights with their names.
+/// Returns the marks of the lights, with their names.
 pub(crate) fn lamps(compiled: &CompiledDocument) -> Vec<Lamp> {
     let marks = light_marks(&compiled.world).take(MAX_LIGHTS).enumerate();
     marks.map(|(i, LightMark { at, is_far })| Lamp { at: at.into(), far: is_far, name: compiled.light(i) }).collect()

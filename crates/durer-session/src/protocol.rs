@@ -44,12 +44,12 @@ pub struct Answer {
 #[cfg_attr(test, derive(TS))]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Request {
-    /// Opens a scene by its text, a file beside that of the server, or the server's own file.
-    /// Answer: [`Event::Opened`], then [`Event::Scene`].
+    /// Opens a scene from its text, from a file in the server's folder, or from the server's own
+    /// file. Answer: [`Event::Opened`], then [`Event::Scene`].
     Open {
-        /// The name of the file; its ending says the format. Empty for the server's own file.
+        /// Name of the file; its extension determines the format. Empty for the server's own file.
         name: String,
-        /// The text; `None` for a file.
+        /// Text of the scene; `None` for a file.
         text: Option<String>,
     },
     /// Uploads a file that the scene refers to.
@@ -136,55 +136,55 @@ pub enum Request {
         /// End of the ray, in lengths of `direction`; `None` for an infinite ray.
         t_max: Option<f32>,
     },
-    /// Asks for the camera's rays through the middles of the pixels of a coarse raster. Answer:
+    /// Requests the camera rays through the pixel centres of a coarse raster. Answer:
     /// [`Event::Rays`].
     Rays {
-        /// Columns of the raster.
+        /// Number of columns of the raster.
         columns: u32,
-        /// Rows of the raster.
+        /// Number of rows of the raster.
         rows: u32,
-        /// The only row that is asked for; `None` for all.
+        /// The requested row; `None` for all rows.
         row: Option<u32>,
     },
-    /// Asks how a ray goes through a structure over the objects. Answer: [`Event::Walk`].
+    /// Requests the traversal of a structure over the objects by a ray. Answer: [`Event::Walk`].
     Walk {
-        /// The structure.
+        /// Structure to traverse.
         structure: Structure,
         /// Origin of the ray.
         origin: [f32; 3],
-        /// Its direction, of any length.
+        /// Direction of the ray, of any length.
         direction: [f32; 3],
     },
-    /// Asks for the boxes of the trees over objects and triangles. Answer: [`Event::Boxes`].
+    /// Requests the boxes of the trees over objects and triangles. Answer: [`Event::Boxes`].
     Boxes,
-    /// Asks for the numbers of some pixels. Answer: [`Event::Values`].
+    /// Requests the values of some pixels. Answer: [`Event::Values`].
     Values {
         /// First column.
         left: u32,
         /// First row.
         top: u32,
-        /// Columns.
+        /// Number of columns.
         width: u32,
-        /// Rows.
+        /// Number of rows.
         height: u32,
     },
-    /// Renders a part of the picture only: first column, first row, width and height.
+    /// Renders only a part of the picture: first column, first row, width and height.
     Crop {
-        /// The part; `None` for the whole picture.
+        /// Part to render; `None` for the full picture.
         crop: Option<[u32; 4]>,
     },
     /// Turns denoising of finished pictures on or off.
     Denoise {
-        /// True for on.
+        /// True to turn it on.
         on: bool,
     },
-    /// Starts secondary rays on the surface, and ignores hits nearer than this, as the programs of
-    /// the course do. Answer: [`Event::Scene`].
+    /// Starts secondary rays exactly on the surface and ignores hits closer than `epsilon`, as the
+    /// programs of the course do. Answer: [`Event::Scene`].
     Epsilon {
-        /// Least `t`; `None` for the exact starts of rays.
+        /// Minimum `t`; `None` for Dürer's exact ray origins.
         epsilon: Option<f32>,
     },
-    /// Asks for the groups and materials of the scene. Answer: [`Event::Tree`].
+    /// Requests the groups and materials of the scene. Answer: [`Event::Tree`].
     Tree,
     /// Sets a field of a material, in a scene without text. Answer: [`Event::Scene`].
     Material {
@@ -192,15 +192,15 @@ pub enum Request {
         number: u32,
         /// Name of the field.
         name: String,
-        /// Its numbers.
+        /// Values of the field.
         values: Vec<f32>,
     },
-    /// Turns a model into a text of the scene language with files beside it. Answer:
+    /// Converts a model to text in the scene language, with separate asset files. Answer:
     /// [`Event::Opened`], then [`Event::Scene`].
     AsText,
-    /// Asks for the scene's text and its files. Answer: [`Event::Packed`], with their bytes.
+    /// Requests the scene's text and its files. Answer: [`Event::Packed`], followed by their bytes.
     Pack,
-    /// Asks for the lesson that the server was started with. Answer: [`Event::Lesson`].
+    /// Requests the lesson that the server was started with. Answer: [`Event::Lesson`].
     Lesson,
     /// Requests the outlines of all objects. Answer: [`Event::Outlines`].
     Outlines,
@@ -281,32 +281,32 @@ pub enum Event {
         /// The results.
         cast: CastAccount,
     },
-    /// Rays of the camera, row by row; `None` where it sees nothing.
+    /// Camera rays, row by row; `None` for a pixel without a ray.
     Rays {
         /// The rays.
         rays: Vec<Option<RayAccount>>,
     },
-    /// The way of a ray through a structure.
+    /// Traversal of a structure by a ray.
     Walk {
-        /// The way.
+        /// The traversal.
         walk: WalkAccount,
     },
     /// Boxes of the trees.
     Boxes {
-        /// The boxes, level by level, up to a limit.
+        /// Boxes, level by level, up to a limit.
         boxes: Vec<BoxState>,
     },
-    /// Numbers of pixels, three each, row by row; `None` for infinity.
+    /// Values of pixels, three per pixel, row by row; `None` for infinity and NaN.
     Values {
         /// First column.
         left: u32,
         /// First row.
         top: u32,
-        /// Columns.
+        /// Number of columns.
         width: u32,
-        /// Rows.
+        /// Number of rows.
         height: u32,
-        /// The numbers: linear light, or what another picture shows.
+        /// Linear light, or the values of the picture that is shown instead of colour.
         values: Vec<Option<f32>>,
     },
     /// Groups and materials of the scene.
@@ -316,16 +316,16 @@ pub enum Event {
         /// The materials, by number.
         materials: Vec<MaterialState>,
     },
-    /// The scene's text and its files; their bytes follow, one after the other.
+    /// Text and files of the scene. Their bytes follow, one file after another.
     Packed {
-        /// Names; the text comes first.
+        /// Names of the files; the text is first.
         names: Vec<String>,
-        /// Numbers of bytes.
+        /// Sizes in bytes.
         sizes: Vec<u32>,
     },
     /// The lesson.
     Lesson {
-        /// Its Markdown; `None` if the server has none.
+        /// Lesson in Markdown; `None` if the server has none.
         text: Option<String>,
     },
     /// Line drawing of the scene.

@@ -32,7 +32,7 @@ const MAX_BYTES: usize = 256 << 20;
 pub struct Start {
     /// File that is opened and saved if a page does not name one.
     pub file: Option<PathBuf>,
-    /// A teacher's lesson in Markdown; scenes that it names are beside it.
+    /// A teacher's lesson in Markdown. The scenes that it names are in the same folder.
     pub lesson: Option<PathBuf>,
 }
 
@@ -50,7 +50,7 @@ pub struct Session {
     /// True until the current scene has been checked.
     unchecked: bool,
     paused: bool,
-    /// Least `t` of secondary rays, in place of exact starts.
+    /// Minimum `t` of secondary rays; `None` for exact ray origins.
     epsilon: Option<f32>,
     /// Stamp of the scene's file when it was last read or saved.
     #[cfg(feature = "fs")]
@@ -321,8 +321,8 @@ impl Session {
         self.read(false, send)
     }
 
-    /// Reads and compiles the text. A moved camera keeps its position unless the text changed the
-    /// camera.
+    /// Reads and compiles the text. A camera that was moved keeps its position, unless its
+    /// statement in the text has changed.
     fn read(&mut self, anew: bool, send: &mut dyn FnMut(Event)) -> Result<(), String> {
         let start = (self.clock)();
         let document = self.document.as_mut().ok_or("no scene is open")?;
@@ -435,7 +435,7 @@ impl Session {
         Ok(Event::Walk { walk: walk::walk(&self.compiled()?.world, structure, &ray)? })
     }
 
-    /// Makes a model a text with files, which is then edited.
+    /// Converts a model to text with asset files, which is edited from then on.
     fn become_text(&mut self, send: &mut dyn FnMut(Event)) -> Result<(), String> {
         let document = self.document.as_mut().ok_or("no scene is open")?;
         let (text, files) = document.as_text()?;
@@ -447,7 +447,7 @@ impl Session {
         self.begin(path, text.into_bytes().into(), send)
     }
 
-    /// The text and its files, with their names.
+    /// Text and files of the scene, with their names.
     fn pack(&self) -> Result<(Vec<String>, Vec<Arc<[u8]>>), String> {
         let document = self.document.as_ref().ok_or("no scene is open")?;
         let own = document.path.with_extension("txt").file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -461,7 +461,7 @@ impl Session {
         Ok(std::iter::once((own, text)).chain(files).unzip())
     }
 
-    /// Shows a finished picture in another way.
+    /// Shows a finished picture again with different display settings.
     fn show_again(&mut self, say: &mut dyn FnMut(Message)) {
         let compiled = self.document.as_ref().and_then(|document| document.compiled.as_ref());
         match compiled.and_then(|compiled| self.viewer.again(compiled, &*self.clock)) {
@@ -479,7 +479,7 @@ impl Session {
         self.viewer.restart(now);
     }
 
-    /// Works for some milliseconds.
+    /// Works for a few milliseconds.
     pub(crate) fn step(&mut self, say: &mut dyn FnMut(Message)) {
         let Some(compiled) = self.document.as_ref().and_then(|document| document.compiled.as_ref()) else {
             self.viewer.rest();
@@ -515,7 +515,7 @@ fn read(path: &Path) -> Result<Arc<[u8]>, String> {
     Ok(std::fs::read(path).map_err(wrong)?.into())
 }
 
-/// A ray of a page.
+/// Converts a ray sent by a page.
 fn ray_of(origin: [f32; 3], direction: [f32; 3]) -> Result<Ray, String> {
     let ray = Ray::new(origin.into(), direction.into());
     match ray.origin.is_finite() && ray.dir.is_finite() && ray.dir != Vec3::ZERO {

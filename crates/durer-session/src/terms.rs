@@ -84,7 +84,7 @@ struct TermFormatter<'a> {
     compiled: &'a CompiledDocument,
     names: Names<'a>,
     tree: &'a Tree,
-    /// Luminance of the whole pixel.
+    /// Luminance of the pixel.
     whole: f32,
 }
 

@@ -1,4 +1,4 @@
-//! Progressive rendering from coarse to fine, in steps of some milliseconds.
+//! Progressive rendering from coarse to fine, in steps of a few milliseconds.
 
 use crate::display::{display, pixels};
 use crate::document::CompiledDocument;
@@ -20,7 +20,7 @@ const BETWEEN: f64 = 160.0;
 const DIVISORS: [u32; 9] = [1, 2, 3, 4, 5, 6, 8, 12, 16];
 /// Maximum width and height of a picture, in pixels.
 const LARGEST: u32 = 8192;
-/// Maximum number of pixels whose values are sent at once.
+/// Maximum number of pixels whose values are sent in one answer.
 const MAX_VALUES: u64 = 4096;
 
 /// The picture of a session.
@@ -31,7 +31,7 @@ pub(crate) struct Viewer {
     pub stops: f32,
     pub tone: String,
     pub moving: bool,
-    /// The part that is rendered, in pixels of the whole picture; `None` for all of it.
+    /// Rendered part, in pixels of the full picture; `None` for all of it.
     pub crop: Option<[u32; 4]>,
     /// True if finished colour pictures are denoised.
     pub denoises: bool,
@@ -44,10 +44,10 @@ pub(crate) struct Viewer {
     reported: f64,
     /// Last finished picture, to show it with other display settings or to export it.
     shown: Option<ProgressiveRender>,
-    /// Denoised picture, once it was requested.
+    /// Denoised picture, if it was requested.
     clean: Option<Layer>,
     rays: u64,
-    /// When the fine picture was begun.
+    /// Time at which the fine picture was started.
     began: f64,
 }
 
@@ -107,7 +107,7 @@ impl Viewer {
         (self.stage, self.changed, self.rays) = (Stage::Coarse, now, 0);
     }
 
-    /// Forgets the measured cost and the last picture, when another scene is opened.
+    /// Discards the measured cost and the last picture when another scene is opened.
     pub fn forget(&mut self) {
         (self.cost, self.shown, self.clean, self.crop) = (None, None, None, None);
     }
@@ -134,7 +134,7 @@ impl Viewer {
         Ok(Job { crop: crop.filter(|crop| *crop != whole).or(job.crop), ..job })
     }
 
-    /// The job of a whole picture.
+    /// Job for the full picture.
     pub fn job_of(&self, compiled: &CompiledDocument, picture: &str) -> Result<Job, String> {
         let options = self.options.clone().size((self.width, self.height));
         options.resolve(&compiled.job_context(), Some(&View { crop: None, show: vec![picture.into()] }))
@@ -193,8 +193,8 @@ impl Viewer {
         while render.next_pass(&compiled.world, &control).map_err(wrong)?.is_some() {}
         let shown = self.picture_of(&render, divisor, 1, None)?;
         let made = (clock() - start) / coarse.window().pixels() as f64;
-        // Average the cost: a first picture with cold caches or a coarse clock soon loses its
-        // influence.
+        // Average the cost, so that the influence of a first picture with cold caches or a coarse
+        // clock soon fades.
         let known = self.cost.map_or(made, |cost| 0.5 * (cost + made));
         self.cost = (made > 0.0).then_some(known).or(self.cost);
         self.tiles = self.cost.map_or(4, |cost| ((STEP / cost / 256.0) as u64).clamp(2, 4096));
@@ -268,7 +268,7 @@ impl Viewer {
         Ok((head, bytes))
     }
 
-    /// The denoised picture, where it is wanted.
+    /// Denoised picture, if denoising is on and applies.
     fn denoised(&self, render: &ProgressiveRender, compiled: &CompiledDocument) -> Result<Option<Layer>, String> {
         if !self.denoises || self.picture != "color" {
             return Ok(None);
@@ -276,7 +276,7 @@ impl Viewer {
         Ok(Some(render.part().noisy(&compiled.world, None).map_err(wrong)?.denoised()))
     }
 
-    /// Numbers of the pixels of a rectangle: those of the colour, or of what another picture shows.
+    /// Values of the pixels in a rectangle: colours, or the values of the picture shown instead.
     pub fn values(&self, [left, top, width, height]: [u32; 4]) -> Result<Vec<Option<f32>>, String> {
         let render = match &self.stage {
             Stage::Fine(render, Some(_)) => render,
@@ -343,7 +343,7 @@ impl Viewer {
     }
 }
 
-/// The part of a crop that is within a picture: a pixel at least.
+/// Intersection of a crop with the picture; at least one pixel.
 fn within(crop: Crop, whole: Crop) -> Crop {
     let left = crop.left.clamp(whole.left, whole.left + whole.width - 1);
     let top = crop.top.clamp(whole.top, whole.top + whole.height - 1);

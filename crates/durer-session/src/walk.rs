@@ -1,4 +1,4 @@
-//! Ways of rays: out of the camera, and through structures over the objects.
+//! Camera rays, and the traversal of structures over the objects by rays.
 
 use crate::protocol::{BoxState, RayAccount, Structure, WalkAccount, WalkStep, WalkTest};
 use durer::bvh::{Bvh, Grid};
@@ -8,11 +8,12 @@ use durer::world::{Accel, Geometry, Object, World};
 
 /// Maximum number of boxes.
 const MAX_BOXES: usize = 3000;
-/// Maximum number of rays, and of objects that a structure is built over for one ray.
+/// Maximum number of rays, and maximum number of objects over which a structure is built for one
+/// ray.
 const MAX_RAYS: u32 = 1 << 16;
 const MAX_OBJECTS: usize = 20_000;
 
-/// Returns the camera's rays through the middles of a raster's pixels, row by row.
+/// Returns the camera rays through the pixel centres of a raster, row by row.
 pub(crate) fn rays(
     world: &World,
     [columns, rows]: [u32; 2],
@@ -33,7 +34,7 @@ pub(crate) fn rays(
     Ok(wanted.flat_map(|y| (0..columns).map(move |x| (x, y))).map(one).collect())
 }
 
-/// Tests of a ray against objects, and the nearest hit so far.
+/// Tests objects against a ray, and keeps the nearest hit.
 struct Walker<'a> {
     world: &'a World,
     ray: Ray64,
@@ -52,7 +53,7 @@ impl Walker<'_> {
         test
     }
 
-    /// End of the interval in which hits still count.
+    /// Returns the end of the interval in which hits count.
     fn end(&self) -> f32 {
         self.closest.and_then(|closest| closest.t).map_or(self.ray.rounded.t_max, f32::next_up)
     }
@@ -63,8 +64,8 @@ impl Walker<'_> {
     }
 }
 
-/// Follows a ray through a structure that is built over all objects with an end. Objects without
-/// one, such as planes, are tested first.
+/// Traverses a structure, built over all bounded objects, with a ray. Unbounded objects such as
+/// planes are tested first.
 pub(crate) fn walk(world: &World, structure: Structure, ray: &Ray) -> Result<WalkAccount, String> {
     let objects = world.objects();
     if objects.len() > MAX_OBJECTS {
@@ -127,8 +128,9 @@ pub(crate) fn walk(world: &World, structure: Structure, ray: &Ray) -> Result<Wal
     Ok(WalkAccount { steps, visits, tests, objects: count, hit: walker.closest, boxes: shown })
 }
 
-/// Returns the boxes of the tree over the objects, and below it of the trees over the triangles of
-/// their meshes. A world of few objects has no tree: it is shown the one that it would have.
+/// Returns the boxes of the tree over the objects and, below it, of the trees over their meshes'
+/// triangles. A world with few objects has no tree; its boxes are those of the tree that would be
+/// built.
 pub(crate) fn boxes(world: &World) -> Vec<BoxState> {
     let bounds: Vec<Aabb> = world.objects().iter().filter_map(Object::bounds).collect();
     let built;
@@ -146,7 +148,7 @@ pub(crate) fn boxes(world: &World) -> Vec<BoxState> {
     for object in world.objects() {
         let Geometry::Mesh(mesh) = &object.geometry else { continue };
         let place = |corner| object.world_point(corner);
-        // The mesh's own box is that of its object.
+        // The root box of a mesh is the box of its object.
         let found = mesh.bvh.boxes().filter(|found| found.level > 0).take(MAX_BOXES);
         meshes.extend(found.map(|found| state(below + found.level, &found.bounds, place)));
         if meshes.len() > 16 * MAX_BOXES {

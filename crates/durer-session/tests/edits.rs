@@ -55,7 +55,7 @@ fn edits_never_end_a_session() {
     let mut host = Host::new(Start::default(), Arc::new(|| 0.0));
     let mut random = Random(1);
     let mut counts = [0_usize; 2];
-    // `cargo xtask page --measure` makes 10,000.
+    // `cargo xtask page --measure` makes 10,000 edits.
     let edits = std::env::var("DURER_EDITS").map_or(1000, |count| count.parse().unwrap());
     for name in ["whitted.txt", "marble.txt", "gear.txt"] {
         let text = std::fs::read_to_string(scenes.join(name)).unwrap();

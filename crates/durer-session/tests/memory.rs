@@ -1,12 +1,12 @@
-//! Memory of a session over many edits. It is a separate process, because the allocations of other
-//! tests would be counted.
+//! Memory of a session over many edits. The test runs in its own process, since allocations of
+//! other tests would be counted.
 
 mod page;
 
 use page::Page;
 use serde_json::json;
 
-/// Resident memory in bytes, where the system tells it.
+/// Resident memory in bytes, if the system reports it.
 fn resident() -> Option<u64> {
     let pages = std::fs::read_to_string("/proc/self/statm").ok()?;
     Some(4096 * pages.split(' ').nth(1)?.parse::<u64>().ok()?)

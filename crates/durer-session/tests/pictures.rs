@@ -1,4 +1,5 @@
-//! Pictures of sessions equal those of the library bit by bit, for any history of requests.
+//! Tests that pictures of sessions equal those of the library bit by bit, for any history of
+//! requests.
 
 mod page;
 
@@ -138,7 +139,8 @@ fn cast_reports_a_verdict_for_each_object() {
     let verdicts: Vec<String> = cast.tests.iter().map(|test| format!("{:?}", test.verdict)).collect();
     assert_eq!(verdicts, ["Missed", "Missed", "Closest"]);
     assert_eq!(cast.hit.as_ref().unwrap().object, 2);
-    // The sphere has center z = -1.6 and radius 1.2; the ray starts at z = 6 in steps of 2.
+    // The sphere's centre is at z = -1.6 and its radius is 1.2; the ray starts at z = 6 and moves
+    // by 2 per unit of t.
     let value = |name: &str| cast.tests[2].rows.iter().find(|row| row.name == name).unwrap().value.unwrap();
     assert!((value("t₁") - 3.2).abs() < 1e-6 && (value("t₂") - 4.4).abs() < 1e-6);
     assert!((f64::from(cast.hit.as_ref().unwrap().t) - value("t₁")).abs() < 1e-6);

@@ -1,4 +1,4 @@
-//! Sessions of `durer-session` in a Web Worker. Requests arrive as JSON text, answers leave as
+//! Sessions of `durer-session` in a Web Worker. Requests arrive as JSON text, and answers leave as
 //! bytes.
 
 use durer_session::{Clock, Host, Start};
@@ -31,7 +31,7 @@ impl Engine {
         self.0.receive(message, &mut |bytes| call(send, &bytes));
     }
 
-    /// Works for some milliseconds. Returns true if work is left.
+    /// Works for a few milliseconds. Returns true if work is left.
     pub fn step(&mut self, send: &Function) -> bool {
         self.0.step(&mut |bytes| call(send, &bytes));
         self.0.is_busy()

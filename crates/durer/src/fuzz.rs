@@ -26,7 +26,7 @@ use std::sync::{Arc, OnceLock};
 
 /// Memory limit for pictures, in bytes.
 const MEMORY: u64 = 64 << 20;
-/// Number of pixels up to which a partial render's pictures are made.
+/// Number of pixels up to which the pictures of a partial render are computed.
 const PIXELS: u64 = 1 << 16;
 
 /// Reads a scene file; writing and reading it again gives the same scene.
@@ -183,11 +183,11 @@ fn folder() -> PathBuf {
     FOLDER.get_or_init(make).clone()
 }
 
-/// Writes the files that random scenes name into a folder.
+/// Writes the files that random scenes refer to into a folder.
 ///
 /// # Errors
 ///
-/// Those of writing.
+/// Errors of writing the files.
 pub fn write_files(folder: &Path) -> std::io::Result<()> {
     let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\n\
                 f 1/1 3/3 2/2\nf 1/1 2/2 4/3\nf 1/1 4/2 3/3\nf 2/1 3/2 4/3\n";
@@ -196,7 +196,7 @@ pub fn write_files(folder: &Path) -> std::io::Result<()> {
     std::fs::write(folder.join("a.ppm"), picture)
 }
 
-/// Returns the text of a scene that bytes determine, which can be rendered.
+/// Returns the text of a random but valid scene, determined by `bytes`.
 pub fn random_scene(bytes: &[u8]) -> String {
     write(&Random::tame(bytes).scene(Dialect::Durer), Dialect::Durer)
 }

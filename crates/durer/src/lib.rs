@@ -34,7 +34,7 @@
 //! }
 //! ```
 //!
-//! This crate is the entry point to the others: it loads files ([`open`], [`load()`]), has the
+//! This crate is the entry point to the others: it loads files ([`open`], [`load()`]), defines the
 //! defaults of pictures ([`job`]), returns reports as JSON ([`report`]), and re-exports the modules
 //! of the crates that do the work.
 

@@ -20,12 +20,12 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Options of loading a scene file.
+/// Options for loading a scene file.
 #[derive(Clone, Debug, Default)]
 pub struct LoadOptions {
-    /// Dialect, with the bugs of that year's program. `None`: detected, without the bugs.
+    /// Dialect, with that year's bugs. `None`: detected, without bugs.
     pub dialect: Option<Dialect>,
-    /// Apply the bugs of a detected dialect too, and also look for files below the current
+    /// Also apply the bugs of a detected dialect, and also look for files below the current
     /// directory, as the course's command line does.
     pub course: bool,
     /// Other hints for detecting the dialect.
@@ -44,7 +44,7 @@ pub struct LoadOptions {
     pub scene_defaults: SceneDefaults,
     /// Acceleration structure over the objects.
     pub accel: AccelKind,
-    /// Number of threads that build the world; `None`: one for each processor.
+    /// Number of threads that build the world; `None`: one per processor.
     pub threads: Option<usize>,
     /// Memory limit of the world in bytes; `None`: unlimited.
     pub memory: Option<u64>,
@@ -189,7 +189,7 @@ pub fn load_text(
         diagnostics.extend(portability(&bytes, file, dialect, diagnostics));
     }
     if let (None, Some(guess)) = (&scene, &guess) {
-        // An error in one dialect may be valid in another.
+        // An error in one dialect may be valid in another one.
         diagnostics.push(guess.note());
     }
     scene.map(|scene| LoadedScene { scene, rules, dialect, guess, source, memory })
@@ -200,8 +200,8 @@ fn budget(options: &LoadOptions) -> u64 {
     FolderSource::DEFAULT_BUDGET.min(options.memory.unwrap_or(u64::MAX))
 }
 
-/// Returns a note about the first construct that the year's own program would reject, unless it was
-/// already reported.
+/// Returns a note about the first construct that the official program of the year would reject,
+/// unless it was already reported.
 fn portability(bytes: &[u8], file: u32, dialect: Dialect, messages: &Diagnostics) -> Diagnostics {
     let (mut strict, mut notes) = (Diagnostics::default(), Diagnostics::default());
     if dialect != Dialect::Durer {
@@ -230,9 +230,10 @@ impl LoadedScene {
         self.source.paths()
     }
 
-    /// Returns the paths of the existing files that the scene names, including those not read yet.
+    /// Returns the paths of the existing files that the scene names, including those that have not
+    /// been read yet.
     pub fn named_files(&self) -> Vec<PathBuf> {
-        // In JSON all names are quoted, and nothing else there is a file.
+        // In JSON, all names are quoted, and no other string is the name of a file.
         let text = json::write(&self.scene, self.dialect);
         let quoted: BTreeSet<&str> = text.split('"').collect();
         // `picture.png:g` is a channel of a file.
@@ -250,7 +251,7 @@ impl LoadedScene {
         Some(write(&self.scene, &output, diagnostics))
     }
 
-    /// Returns a copy of the scene in which embedded data are files of a folder beside it.
+    /// Returns a copy of the scene in which embedded data is moved to files in `folder`.
     pub fn export_assets(&self, folder: &str) -> (Scene, Vec<AssetFile>) {
         export_assets(&self.scene, folder, &self.source)
     }

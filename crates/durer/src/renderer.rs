@@ -48,7 +48,7 @@ impl<'w> Renderer<'w> {
     ///
     /// # Errors
     ///
-    /// Those of [`Renderer::new`].
+    /// Errors of [`Renderer::new`].
     pub fn with_control(scene: &'w CompiledScene, options: RenderJob, control: Control) -> Result<Self, Error> {
         let job = scene.job(&options)?;
         let (world, control) = (scene.world(), Arc::new(control));
@@ -69,7 +69,7 @@ impl<'w> Renderer<'w> {
     ///
     /// # Errors
     ///
-    /// Those of [`Renderer::next_pass`].
+    /// Errors of [`Renderer::next_pass`].
     pub fn finish(mut self) -> Result<Picture, Error> {
         while self.next_pass()?.is_some() {}
         self.image()
@@ -80,7 +80,7 @@ impl<'w> Renderer<'w> {
         Canceller(Arc::clone(&self.control))
     }
 
-    /// Returns the picture so far; black where no pass has finished.
+    /// Returns the picture so far; black until a pass has finished.
     ///
     /// # Errors
     ///
@@ -121,12 +121,12 @@ impl Picture {
         self.layer.image.height
     }
 
-    /// Returns the colours, row by row from the top, each row from the left.
+    /// Returns the colours, row by row from the top, each row from left to right.
     pub fn pixels(&self) -> &[Color] {
         &self.layer.image.pixels
     }
 
-    /// Returns the colour of a pixel, counted from 0 from the upper left; `None` outside.
+    /// Returns the colour of a pixel, counted from 0 at the upper left; `None` outside the picture.
     pub fn pixel(&self, x: u32, y: u32) -> Option<Color> {
         self.layer.image.get(x, y)
     }
@@ -137,7 +137,7 @@ impl Picture {
     }
 
     /// Writes the picture into a file atomically. The extension selects the format: `.exr`, `.hdr`
-    /// and `.pfm` keep linear light, others have eight bits a channel with the sRGB curve.
+    /// and `.pfm` keep linear light, others have eight bits per channel with the sRGB curve.
     ///
     /// # Errors
     ///

@@ -1,5 +1,5 @@
-//! Tests of the structure of the sources: crates name only crates below them, modules of a folder
-//! have no cyclic dependencies, and files stay small.
+//! Tests of the source structure: crates only use crates below them, the modules of a folder have
+//! no cyclic dependencies, and files stay small.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -20,7 +20,7 @@ const LAYERS: [&[&str]; 10] = [
     &["xtask"],
 ];
 
-/// The only dependency that exists for tests alone: scene texts.
+/// The only dependency that exists solely for tests, which read scene texts.
 const FOR_TESTS: (&str, &str) = ("durer-render", "durer-formats");
 
 fn root() -> PathBuf {
@@ -130,8 +130,8 @@ fn target(path: &[String], own: &Module, modules: &BTreeMap<Module, PathBuf>) ->
     Some(at)
 }
 
-/// Returns for each folder the dependencies between its modules. The folder's own `mod.rs` declares
-/// its files and is used by them, so it does not count.
+/// Returns, for each folder, the dependencies between its modules. The folder's `mod.rs` is
+/// excluded: it declares the folder's files and is used by them.
 fn arrows(source: &Path) -> BTreeMap<Module, BTreeMap<String, BTreeSet<String>>> {
     let modules = modules(source);
     let mut arrows: BTreeMap<Module, BTreeMap<String, BTreeSet<String>>> = BTreeMap::new();
@@ -155,7 +155,7 @@ fn arrows(source: &Path) -> BTreeMap<Module, BTreeMap<String, BTreeSet<String>>>
     arrows
 }
 
-/// Returns the modules of a folder that depend on themselves through others.
+/// Returns the modules of a folder that depend on themselves through other modules.
 fn in_circles(arrows: &BTreeMap<String, BTreeSet<String>>) -> Vec<&String> {
     let reaches_itself = |start: &String| {
         let mut seen = BTreeSet::new();

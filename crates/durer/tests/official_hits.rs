@@ -81,7 +81,8 @@ const SUN: &str = "DirectionalLight { direction 0 -1 0 color 1 1 1 }";
 #[test]
 fn secondary_rays_of_2016_start_farther_along_and_those_of_2012_have_a_minimum_t() {
     // A light 0.005 in front of the right wall illuminates the left wall at a distance of 1.995.
-    // The ray hits the right wall at t = 1.99, because it starts 0.01 along its direction.
+    // The ray hits the right wall at t = 1.99, because its start is moved by 0.01 along its
+    // direction.
     let light = "PointLight { position 0.995 1 0 color 1 1 1 falloff 0.25 }";
     let scene = classic(light, &["Plane { normal 1 0 0 offset -1 }", "Plane { normal -1 0 0 offset -1 }"]);
     let left = |world: &World| seen(world, [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]);
@@ -277,7 +278,7 @@ fn glass_of_2012_uses_plane_normals_as_written() {
                MaterialIndex 1 Sphere {{ center 0 -2 0 radius 1 }} }}"
         )
     };
-    // Seen at normal incidence through the pane, the ball has 1 - R of its light.
+    // Seen at normal incidence through the pane, the ball appears with 1 - R of its light.
     let share = |text: &str, off: &[Quirk]| {
         seen(&world_in(Path::new("."), text, Dialect::F12a5, off).0, [0.0, 5.0, 0.0], [0.0, -1.0, 0.0]).x
     };
@@ -303,8 +304,8 @@ fn mirrors_of_2012_and_2016_keep_the_length_that_the_normal_of_a_plane_gives_a_r
                MaterialIndex 1 Sphere {{ center {center} radius 0.3 }} }}"
         )
     };
-    // d - 2 (d·N) N: from (1, -1, 0) it is (1, 7, 0) with this normal, and (1, 1, 0) with a unit
-    // one.
+    // d - 2 (d·N) N: (1, -1, 0) becomes (1, 7, 0) with this normal, and (1, 1, 0) with a unit
+    // normal.
     for dialect in [Dialect::F12a5, Dialect::F16] {
         let share = |center: &str| seen(&world(&scene(center), dialect), [-5.0, 5.0, 0.0], [1.0, -1.0, 0.0]).x;
         assert_eq!((share("1 7 0"), share("5 5 0")), (1.0, 0.0), "{dialect:?}");
@@ -347,7 +348,7 @@ fn spheres_are_hit_at_10000_where_a_ray_leaves_them_until_2019() {
         let found = hit(&world(&classic(SUN, &[ball]), dialect), [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]);
         assert_eq!(found.map(|hit| hit.t), Some(10_000.0), "{dialect:?}");
     }
-    // Since 2020 it is hit there.
+    // Since 2020 it is hit at the start.
     let ball = "Component<Object> { type sphere radius 1 }";
     let found = hit(&world(&nodes(&[ball]), Dialect::F23), [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]);
     assert_eq!(found.map(|hit| hit.t), Some(0.0));
@@ -365,7 +366,7 @@ fn triangles_of_2012_block_a_ray_that_ends_on_them() {
 
 #[test]
 fn normals_of_spheres_are_rounded_as_in_the_program_of_their_year() {
-    // On a ground of radius 1000 they are off by the rounding of the point.
+    // On a ground of radius 1000, the normals are off by the rounding of the point.
     let ground = "Sphere { center 0 -1002 0 radius 1000 }";
     let (eye, dir) = (Vec3::new(1.5, 2.25, 9.0), Vec3::new(0.1, -0.2, -1.0).normalize());
     for dialect in [Dialect::F12a4, Dialect::F16] {

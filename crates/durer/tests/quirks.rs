@@ -210,8 +210,8 @@ fn r0_is_zero_for_rays_that_leave_glass() {
                Material {{ diffuseColor 0 0 0 specularColor 1 1 1 refractionIndex {index} }} }}
              Group {{ numObjects 1 MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }} }}"
         );
-        // Straight through the centre, with a black background for reflected rays: a white
-        // background is attenuated by two passages.
+        // Straight through the centre. The background for reflected rays is black, since a white
+        // background would be attenuated by two passages.
         let mut world = world(&text, Dialect::F12a5, true);
         let settings = WhittedOptions {
             bounces: 4,
@@ -272,8 +272,7 @@ fn meshes_are_read_as_by_each_program() {
         assert_eq!(triangles("square.obj", dialect, true), 1, "{dialect:?}");
         assert_eq!(triangles("square.obj", dialect, false), 2, "{dialect:?}");
     }
-    // Normals by vertex index point along z, those that the faces name point up, where the light
-    // is.
+    // Normals by vertex index point along z; those that the faces name point up, towards the light.
     let light = |official| {
         let world = world_in(folder.path(), &nodes("tilted.obj"), F23, official);
         seen(&world, [0.5, 5.0, -0.3], DOWN).x

@@ -1,5 +1,5 @@
-//! Tests of every scene of the repository: read without diagnostics, rendered identically by every
-//! accelerator, listed in the README and the pictures.
+//! Tests of every scene in the repository: it is read without diagnostics, rendered identically
+//! with every accelerator, and listed in the README and the pictures.
 
 use durer::compile::AccelKind;
 use durer::diag::{Diagnostics, Files};
@@ -18,7 +18,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Returns the names of the files in a folder with this ending, without the ending, sorted.
+/// Returns the names of the files in a folder with this ending, sorted and without the ending.
 fn names(folder: &str, ending: &str) -> Vec<String> {
     let files = fs::read_dir(root().join(folder)).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap());
     let mut names: Vec<String> = files.filter_map(|name| Some(name.strip_suffix(ending)?.to_string())).collect();
@@ -94,7 +94,7 @@ fn scenes_are_identical_for_all_thread_counts_and_accelerators() {
         assert!(picture.iter().any(|p| *p != picture[0]), "{name} has only one colour");
         for (accel, threads) in [(AccelKind::Bvh, 2), (AccelKind::Grid(None), 1), (AccelKind::Grid(None), 2)] {
             let other = pixels(&name, accel, threads);
-            // Do not print whole pictures in the message.
+            // Keep whole pictures out of the message.
             assert!(bits(&other) == bits(&picture), "{name}: {accel:?} on {threads} threads differs");
         }
     }

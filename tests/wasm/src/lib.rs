@@ -127,7 +127,7 @@ impl Hash {
         hit.is_some().into()
     }
 
-    /// Returns the hash. Panics if too few or all rays hit, since such a part tests little.
+    /// Returns the hash. Panics if too few or all rays hit, since such a part would test little.
     fn of(self, hits: usize, rays: usize) -> u64 {
         assert!(hits > rays / 4 && hits < rays, "{hits} of {rays}");
         self.0

@@ -1,4 +1,5 @@
-//! farbfeld: eight letters, two sizes, sixteen bits a channel. Source: farbfeld(5), suckless.org.
+//! farbfeld: a signature of eight bytes, width and height, and 16 bits per channel. Source:
+//! farbfeld(5), suckless.org.
 
 use super::{Depth, Format, Head, Raster};
 use crate::{Image, ImageError};

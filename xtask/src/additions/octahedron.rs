@@ -1,4 +1,4 @@
-//! The regular octahedron: |x| + |y| + |z| <= radius, seen from its centre.
+//! The regular octahedron: |x| + |y| + |z| <= radius, relative to its centre.
 
 use super::{ShapeHit, Shape, Surface, padded};
 use crate::describe::{Constraint, described};

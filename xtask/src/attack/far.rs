@@ -5,14 +5,14 @@ use anyhow::{Context, Result};
 use durer::render::{Control, Job, Sampling, render};
 use std::sync::Arc;
 
-/// Side of the pictures in pixels.
+/// Width and height of the pictures in pixels.
 const SIDE: u32 = 24;
 
 pub fn run(attack: &Attack) -> Result<Outcome> {
     let mut fallen = Vec::new();
     for number in 0..attack.count {
         let random = |place: u32| attack.random(number, place, 1 << 20) as f64 / f64::from(1 << 20);
-        // Distances from 10 to 10^6, and a wall of four steps of single precision or more.
+        // Distances from 10 to 10^6, and a wall at least four single-precision steps thick.
         let far = 10_f64.powf(1.0 + 5.0 * random(0)) as f32;
         let step = f64::from(far.next_up() - far);
         let wall = (4.0 + (60.0 * random(1)).floor()) * step;
@@ -22,7 +22,7 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
             1 => f64::from(far),
             _ => -f64::from(far),
         });
-        // Corners on steps, so that the scene's text is exact.
+        // Round coordinates to steps, so that they are exact in the scene's text.
         let on_step = |x: f64| (x / step).round() * step;
         let half = on_step(half);
         let corner = |grow: f64, sign: f64| center.map(|c| on_step(c) + sign * (half + grow));

@@ -1,14 +1,15 @@
-//! Small files that describe large things, under a limit of address space.
+//! Small files that describe huge data, with a limit of address space.
 
 use super::{Attack, Outcome, broken, inputs, name};
 use anyhow::Result;
 use std::fmt::Write;
 
-/// Address space in KiB, and seconds.
+/// Limits: address space in KiB, and time in seconds.
 const SPACE: u64 = 900_000;
 const SECONDS: u64 = 20;
 
-/// Generators: the name of the file, and the text for a number of levels and of copies in each.
+/// Generators: file name, and a function from the numbers of levels and of copies per level to
+/// text.
 const KINDS: [(&str, fn(usize, usize) -> String); 6] = [
     ("variables.xml", |levels, copies| {
         let value = |i: usize| format!("$a{}_", i).repeat(copies);
@@ -80,7 +81,7 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
         let (levels, copies) = (1 + attack.random(number, 1, 40), 2 + attack.random(number, 2, 6));
         attack.put(file, make(levels, copies))?;
         let memory = ["--memory", ["64M", "256M", "1G", "64G"][attack.random(number, 3, 4)]];
-        // Also without the option, whose default regards the limit.
+        // Half of the trials omit the option, whose default depends on the limit of address space.
         let options = if attack.random(number, 4, 2) == 0 { &memory[..] } else { &[] };
         check(
             file,

@@ -1,11 +1,11 @@
-//! Signals at random times during all commands: they end within half a second.
+//! Signals at random times during all commands. Each command must end within half a second.
 
 use super::{Attack, Outcome, wait_for};
 use anyhow::{Context, Result};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Time from a signal to the end.
+/// Maximum time from a signal to the end of the program.
 const MOST: Duration = Duration::from_millis(500);
 
 /// Commands that take long.
@@ -51,8 +51,8 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
         let took = ended.map_or(Duration::from_secs(20), |_| start.elapsed());
         worst = worst.max((took, line));
         let code = child.wait().context("it ran")?.code();
-        // 0: it ended by itself before. A signal before the handler ends the program without a
-        // code.
+        // 0: the program ended before the signal. A signal that arrives before the handler is
+        // installed ends the program without a code.
         if took > MOST || !matches!(code, None | Some(0 | 129 | 130 | 143)) {
             fallen.push(format!("{line}: {:.2} s after {signal}, exit code {code:?}", took.as_secs_f64()));
         }
@@ -61,7 +61,7 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
     Ok(Outcome { tried: attack.count, fallen, note })
 }
 
-/// Mirrors and glass that split every ray in two: with many bounces, no pixel finishes.
+/// Mirrors and glass that split every ray in two. With many bounces, no pixel finishes.
 const ENDLESS: &str = "PerspectiveCamera { center 0 0 0 direction 0.3 0.1 -1 up 0 1 0 angle 60 }
 Lights { PointLight { position 0 0 0 color 1 1 1 } }
 Materials { Material { reflectiveColor 1 1 1 transparentColor 1 1 1 indexOfRefraction 1.5 } }
@@ -77,7 +77,7 @@ Materials {{ PhongMaterial {{ diffuseColor 0.8 0.3 0.2 }} }} Group {{ MaterialIn
     )
 }
 
-/// A grid of triangles, as an OBJ file.
+/// Returns a grid of triangles as an OBJ file.
 fn mesh(side: usize) -> String {
     let mut mesh = String::new();
     for i in 0..side * side {

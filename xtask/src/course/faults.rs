@@ -35,7 +35,7 @@ impl Scene {
         }
     }
 
-    /// Arguments of the official picture; see the list beside the scenes.
+    /// Arguments of the official picture, as listed beside the scenes.
     fn arguments(&self, depth: &Path) -> Vec<String> {
         let mut words: Vec<String> = match self.name.as_str() {
             "glassplane" => ["-size", "64", "64", "-bounces", "2"].map(String::from).to_vec(),
@@ -102,7 +102,7 @@ pub fn run(durer: &Path, folder: &Path, meshes: &Path, out: &Path, only: Option<
         } else {
             messages.push(String::from_utf8_lossy(&output.stderr).lines().next().unwrap_or("refused").into());
         }
-        // Undefined: one pixel has no position between the first and the last; or a mesh is
+        // Undefined results: a single pixel has no position between first and last, or a mesh is
         // missing.
         let undefined = name.starts_with("size1x1") || messages.iter().any(|line| line.contains("missing-file"));
         wrong += usize::from(!agrees && !undefined);

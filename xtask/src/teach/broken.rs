@@ -6,7 +6,7 @@ use std::process::Command;
 
 const SCENES: &str = include_str!("broken.txt");
 
-/// A scene, its options, and the codes of which one identifies the cause; empty if the scene is
+/// A scene, its options, and the codes that count as naming its fault; no codes if the scene is
 /// correct.
 struct Case {
     name: String,
@@ -63,7 +63,7 @@ pub fn judge(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resu
     let cases = cases()?;
     for case in cases.iter().filter(|case| wanted(&case.name)) {
         std::fs::write(folder.join("broken.txt"), &case.text)?;
-        // The last of two equal options wins.
+        // If an option is given twice, the last one counts.
         let mut options = case.options.clone();
         for name in ["--dialect", "--bounces", "--integrator"] {
             let places: Vec<usize> = (0..options.len()).filter(|&i| options[i] == name).collect();
@@ -115,13 +115,13 @@ pub fn judge(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resu
     Ok(first * 10 >= all * 9 && (first + second) * 100 >= all * 97 && alarms == 0)
 }
 
-/// Returns a program's output, whatever its exit code.
+/// Returns a program's output, regardless of its exit code.
 fn output_of_any(command: &mut Command) -> Result<String> {
     let output = command.stdin(std::process::Stdio::null()).output()?;
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Writes meshes of a box with all kinds of faults.
+/// Writes meshes of a box with faults of all kinds.
 fn meshes(folder: &Path) -> Result<()> {
     let corners = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
     let quads = [[1, 4, 3, 2], [5, 6, 7, 8], [1, 2, 6, 5], [2, 3, 7, 6], [3, 4, 8, 7], [4, 1, 5, 8]];

@@ -1,5 +1,5 @@
 //! Tests the teaching tools: wrong pictures for `durer compare` and broken scenes for `durer
-//! check`, made by a judge that shares nothing with the library but the scene language.
+//! check`. Both come from a judge that shares only the scene language with the library.
 
 mod broken;
 #[allow(clippy::disallowed_methods, reason = "the judge shares no arithmetic with the library")]
@@ -17,7 +17,7 @@ use tracer::{Picture, Tracer};
 /// Outcome of a wrong picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Outcome {
-    /// Named correctly, alone or with others that make the same picture.
+    /// Named correctly, alone or with other mistakes that give the same picture.
     Right,
     /// Reported as unknown.
     Nothing,

@@ -3,7 +3,7 @@
 use super::scene::{Light, Material, Object, Op, Scene, Shape, Year};
 use super::vector::{Matrix, V};
 
-/// A picture: eight bits a channel, the top row first.
+/// A picture with eight bits per channel, top row first.
 pub type Picture = Vec<[u8; 3]>;
 
 pub struct Tracer<'s> {
@@ -198,11 +198,11 @@ impl<'s> Tracer<'s> {
             () => distance,
         };
         let p = if self.is("shadows-from-eye") { self.scene.eye } else { p };
-        // Single precision, as in student programs, which causes acne.
+        // Student programs use single precision, which causes acne.
         let single = |v: V| v.map(|x| f64::from(x as f32));
         let p = if self.is("epsilon-0") { single(p) } else { p };
         match self.hit(p, l, self.epsilon(true), most) {
-            // The second program of 2012 only counts front faces of the nearest object.
+            // The second program of 2012 counts only front faces of the nearest object.
             Some(hit) if self.scene.year == Year::F12a5 => hit.n.dot(l) <= 0.0,
             hit => hit.is_some(),
         }

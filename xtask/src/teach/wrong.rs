@@ -367,7 +367,7 @@ const ALONE: [&[&str]; 12] = [
     &["normals-smooth", "normals-local", "no-falloff"],
 ];
 
-/// Further kinds, by scene.
+/// Further mistakes, by scene.
 const MORE: [(usize, &[&str]); 8] = [
     (
         0,
@@ -398,8 +398,8 @@ const MORE: [(usize, &[&str]); 8] = [
     (10, &["triangle-test", "mesh-first", "scale-inverted", "backs-culled"]),
 ];
 
-/// Mistakes that were missing from the table when the judge was written. Valid answers are their
-/// own name, or none.
+/// Mistakes that the table lacked when the judge was written. Valid answers are their own name, or
+/// none.
 const UNKNOWN: [&str; 7] = [
     "x-ambient-brighter",
     "x-kd-squared",

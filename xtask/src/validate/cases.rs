@@ -20,11 +20,11 @@ pub struct Case {
 
 /// Quantity to measure.
 pub enum What {
-    /// At a point, on the side of a normal.
+    /// Illuminance at a point, on the side of a normal.
     Illuminance(Vec3, Vec3),
-    /// From a point in a direction.
+    /// Luminance from a point in a direction.
     Luminance(Vec3, Vec3),
-    /// Through parallelograms (corner, edges), on the side of the edges' cross product.
+    /// Flux through parallelograms (corner, edges), on the side of the edges' cross product.
     Flux(Vec<[Vec3; 3]>),
 }
 
@@ -42,11 +42,11 @@ const MATTE: &str = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0
 const BLACK: &str = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 }";
 const LIGHT: &str = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1000 }";
 const GLASS: &str = "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 }";
-/// A light's colour is illuminance over pi.
+/// Point light of 100 cd: the colour of a light is illuminance over pi.
 const CANDELAS_100: &str = "color 31.830989 31.830989 31.830989 attenuation 0 0 1";
-/// 1000 lux from the zenith.
+/// Sun at the zenith with 1000 lux.
 const SUN: &str = "DirectionalLight { direction 0 -1 0 color 318.30989 318.30989 318.30989 }";
-/// A sky of uniform luminance, also below the horizon.
+/// Sky of uniform luminance, also below the horizon.
 const EVEN: &str = "color 1000 1000 1000";
 
 /// Form factor from a floor element to a parallel rectangle with a corner above it; arguments are
@@ -219,7 +219,7 @@ fn skies() -> Vec<Case> {
     let open =
         |name, formula, sky: &str, answer| Case { background: sky.into(), ..case(name, formula, floor(), answer) };
     let behind = |name, formula, sky: &str, opening: [Vec3; 3], answer| {
-        // A lid covers what is behind a window.
+        // A lid covers the area behind a window.
         let lid = match opening[0] == window[0] {
             true => "Rectangle { corner -999 2.5 -999 edge0 1001 0 0 edge1 0 0 1998 }",
             false => "",
@@ -284,8 +284,8 @@ fn skies() -> Vec<Case> {
         let answer = through(window, Vec3::Y, |dir| f64::from(known.luminance(dir)));
         all.push(behind(name, "E = ∫ L cosθ dω, by quadrature", sky, window, answer));
     }
-    // A canopy over the window hides the sky above the line to its edge; a screen in front hides
-    // what is below.
+    // A canopy over the window hides the sky above the line to its edge. A screen in front hides
+    // the sky below its top edge.
     let hidden = |low: f32, high: f32| {
         let part = [Vec3::new(2.0, low, -0.8), Vec3::new(0.0, high - low, 0.0), Vec3::new(0.0, 0.0, 1.6)];
         let known = CieSky::new(16, Vec3::Y, 10_000.0, 0.2);

@@ -62,9 +62,8 @@ fn brushed(table: &mut Table) {
     }
 }
 
-/// Area lights seen from the origin. Cylinders are excluded: their density is unbounded at the
-/// silhouette, so the sums over cells are too inaccurate; unit tests compare them with random
-/// sampling.
+/// Area lights seen from the origin. Cylinders are excluded: their pdf is unbounded at the
+/// silhouette, so sums over cells are too inaccurate. Unit tests compare them with random sampling.
 const LIGHTS: [(&str, &str); 6] = [
     ("sphere", "Sphere { center 0.5 2 1 radius 0.7 }"),
     ("disc", "Disc { center 0 2 0.5 normal 0.3 -1 0 radius 1.5 }"),
@@ -93,7 +92,7 @@ pub fn densities(table: &mut Table) -> Result<()> {
         rows.push((format!("Henyey-Greenstein, mean cosine {anisotropy}"), verdict));
     }
     let light = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1 walls thin }";
-    // The density of an area light ends at its edge; integrate cells there more finely.
+    // The pdf of an area light ends at its edge, so integrate cells there more finely.
     let finely = Cells { fine: 40, ..CELLS };
     for (name, group) in LIGHTS {
         let world = world(name, "", light, "", &format!("MaterialIndex 0 {group}"))?;
@@ -124,7 +123,7 @@ pub fn densities(table: &mut Table) -> Result<()> {
     Ok(())
 }
 
-/// Cells are around z, skies around y.
+/// Rotates a direction: cells are around the z axis, skies around the y axis.
 fn turned(v: Vec3) -> Vec3 {
     Vec3::new(v.x, -v.z, v.y)
 }
@@ -144,7 +143,7 @@ fn of_lights(world: &World, cells: Cells) -> Verdict {
         let dir = back(wi);
         let mut ray = Ray64::new(point, dir, 0.0, f32::INFINITY);
         let (mut sum, mut met) = (0.0, Vec::new());
-        // Occluded emitters are sampled too, but never their own far sides.
+        // Occluded emitters are sampled too, but never the far side of an emitter.
         for _ in 0..16 {
             let Some(hit) = world.closest(&ray, &mut ()) else { break };
             if !met.contains(&hit.object) {

@@ -1,9 +1,10 @@
 //! Spatial splits: planes that divide the space of a node, so that parts of a triangle go to both
 //! sides.
 //!
-//! If the boxes of the cheapest partition of references overlap, planes are tried too. A plane
-//! splits the triangles that it intersects, unless it is cheaper to keep one whole on one side.
-//! Source: Stich, Friedrich, Dietrich, *Spatial Splits in Bounding Volume Hierarchies*, HPG 2009.
+//! If the boxes of the cheapest partition of references overlap, planes are also tried. A plane
+//! splits the triangles that it intersects, unless it is cheaper to keep a triangle whole on one
+//! side. Source: Stich, Friedrich, Dietrich, *Spatial Splits in Bounding Volume Hierarchies*, HPG
+//! 2009.
 
 use super::builder::{Bin, Builder, half_area};
 use super::cut::Cut;

@@ -363,7 +363,8 @@ mod tests {
     use super::*;
 
     /// If two children are separated along an axis, closest-hit rays visit the nearer one first.
-    /// Any-hit rays visit the farther one first, unless it is less than half as large.
+    /// Any-hit rays visit the farther one first, unless that is less than half as large as the
+    /// nearer one.
     #[test]
     fn children_are_in_traversal_order() {
         let child = |axis: usize, at: f32, size: f32| {

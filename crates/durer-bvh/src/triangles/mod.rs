@@ -182,7 +182,8 @@ impl TriangleBvh {
         );
     }
 
-    /// Tests occlusion of each ray, in order, in the way of [`TriangleBvh::closest_batch`].
+    /// Tests occlusion of each ray, in order; rays are grouped as in
+    /// [`TriangleBvh::closest_batch`].
     ///
     /// # Panics
     ///
@@ -208,7 +209,7 @@ impl TriangleBvh {
     }
 
     /// Finds the hits of each ray, in order: `take` gets the index of the ray in the batch and its
-    /// hits, sorted as by [`TriangleBvh::all_hits`].
+    /// hits, sorted as in [`TriangleBvh::all_hits`].
     pub fn all_hits_batch(&self, rays: &[Ray], mut take: impl FnMut(usize, &[TriangleHit])) {
         rays.iter().enumerate().for_each(|(i, ray)| take(i, &self.all_hits(ray)));
     }

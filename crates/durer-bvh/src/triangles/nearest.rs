@@ -107,8 +107,8 @@ impl Best {
 /// Nearest point of a triangle: squared distance, position, and second and third barycentric
 /// coordinates.
 ///
-/// It is the foot of the perpendicular, if that lies in the triangle, else the nearest point on an
-/// edge. Triangles without area need no special case.
+/// It is the foot of the perpendicular if that is in the triangle, and otherwise the nearest point
+/// on an edge. Triangles without area need no special case.
 fn nearest_of(point: DVec3, [a, b, c]: [DVec3; 3]) -> (f64, DVec3, [f64; 2]) {
     let (ab, ac, from) = (b - a, c - a, point - a);
     let at = |[u, v]: [f64; 2]| {

@@ -341,7 +341,7 @@ fn axis_parallel_rays_go_together_and_hit_correctly() {
         let (length, away) = ([1e-6, -1.0, 1.0, -1e14][k % 4], [4.0, 1e4][k / 2 % 2]);
         let mut dir = Vec3::splat(small);
         dir[axis] = length;
-        // Through a vertex and beside it.
+        // Through a vertex and just past it.
         let beside = |i: usize| {
             let mut at = *corner - away * length.signum() * Vec3::AXES[axis];
             at[(axis + 1) % 3] += 0.01 * (i % 8) as f32;

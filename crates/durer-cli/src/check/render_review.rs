@@ -22,7 +22,7 @@ pub fn looks(job: &Job, pictures: &[Layer], exposure: f32) -> Option<PictureScan
     Some(looks)
 }
 
-/// Reports every oddity of a picture made by `durer render`.
+/// Reports every visible fault of a picture made by `durer render`.
 pub fn after_render(
     compiled: &CompiledInput,
     job: &Job,
@@ -36,7 +36,8 @@ pub fn after_render(
     RenderReview { compiled, job, statistics, exposure: display.exposure }.look(looks, pictures, is_odd);
 }
 
-/// Reports only single-colour pictures made by `durer course`: no year intends those.
+/// Reports only black or single-colour pictures made by `durer course`. No year's scenes intend
+/// those.
 pub fn after_course(compiled: &CompiledInput, job: &Job, pictures: &[Layer], statistics: &Statistics) {
     let is_odd = |oddity: &Oddity| matches!(oddity, Oddity::Black | Oddity::OneColor);
     let looks = looks(job, pictures, 1.0);
@@ -59,7 +60,7 @@ impl RenderReview<'_> {
         }
     }
 
-    /// Warns of a depth picture without any grey if its range was given.
+    /// Warns if a depth picture with a given range has no grey pixels.
     fn depths(&self, pictures: &[Layer]) {
         let is_requested = self.job.depth_range.is_some();
         let Some(layer) = pictures.iter().find(|layer| layer.name == "depth").filter(|_| is_requested) else { return };

@@ -48,7 +48,7 @@ pub struct CompareArgs {
     /// Print JSON
     #[arg(long)]
     pub json: bool,
-    /// Print a table of comma-separated values, one line a picture
+    /// Print comma-separated values, one line per picture
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
     /// Scene of the pictures, or a folder of scenes with matching names. Tries common mistakes on

@@ -9,7 +9,7 @@ use durer::mistakes::Diagnosis;
 /// Outcome of a comparison.
 pub enum Outcome {
     Compared(Box<Comparison>),
-    /// The reference has no counterpart.
+    /// No picture matches the reference.
     Missing,
     /// The pictures cannot be compared, for this reason.
     Failed(String),
@@ -21,7 +21,7 @@ pub struct ComparedPair {
     pub outcome: Outcome,
     /// Pictures for the report, if one is written.
     pub shown: Option<PairPictures>,
-    /// Ray hits at each region; empty without a scene.
+    /// Hit of the ray through the worst pixel of each region; empty without a scene.
     pub hits: Vec<PixelHit>,
     /// Mistakes that reproduce the picture; `None` without a scene.
     pub diagnosis: Option<Diagnosis>,
@@ -74,12 +74,12 @@ pub struct PairPictures {
     pub heat: String,
 }
 
-/// Returns the name of a pair, prefixed with its student's.
+/// Returns the name of a pair, prefixed with the student's name.
 pub fn name(pair: &Pair) -> String {
     pair.who.as_ref().map_or_else(|| pair.name.clone(), |who| format!("{who}/{}", pair.name))
 }
 
-/// Explains the difference from the pictures alone, one line for each mistake.
+/// Explains the difference from the pictures alone, with one line per cause.
 fn explained(found: &Comparison) -> Vec<String> {
     if found.verdict != Verdict::Different {
         return Vec::new();
@@ -94,7 +94,7 @@ fn explained(found: &Comparison) -> Vec<String> {
     let line = |(i, finding): (usize, &Finding)| {
         let percent = mistakes::percent(finding.explained);
         match i {
-            // A location does not explain the cause.
+            // The location of a difference does not explain it.
             0 if finding.kind.ends_with("-parts") => {
                 format!("{} ({percent} of the squared difference is there)", finding.words)
             }

@@ -49,7 +49,7 @@ pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
     lines
 }
 
-/// Formats a share in percent, rounded down so that only a whole is 100 %.
+/// Formats a fraction as a percentage, rounded down so that only 1 becomes 100 %.
 pub fn percent(share: f64) -> String {
     format!("{:.1} %", (1000.0 * share + 1e-6).floor() / 10.0)
 }

@@ -1,4 +1,4 @@
-//! The scene of a pair of pictures, with the options that made the reference.
+//! The scene of a pair of pictures, with the options that the reference was rendered with.
 
 use super::args::CompareArgs;
 use super::pairs::Pair;
@@ -14,7 +14,7 @@ use durer::mistakes::{DiagnosisInput, off};
 use durer::render::{Job, Sampling};
 use std::path::{Path, PathBuf};
 
-/// Options are accepted as the reference's if at most this share of its pixels differs.
+/// Largest fraction of differing pixels at which options count as those of the reference.
 const SAME: f64 = 0.01;
 /// [`SAME`] for filters wider than a pixel.
 const MAX_OFF: f64 = 0.2;
@@ -41,7 +41,8 @@ struct RenderGuess {
 }
 
 /// Opens the scene of a pair and finds the options that reproduce the reference: the given ones, or
-/// those that students commonly forget (one sample a pixel, the year's dialect, shadows, bounces).
+/// those that students commonly forget (one sample per pixel, the year's dialect, shadows,
+/// bounces).
 pub fn stage(
     args: &CompareArgs,
     pair: &Pair,
@@ -56,7 +57,7 @@ pub fn stage(
     let mut best = (way_off(&first, reference, transfer), first, transfer, None);
     // Filters wider than a pixel make edges inexact.
     let enough = if best.1.1.sampling.is_local() { SAME } else { MAX_OFF };
-    // Paths are not of the course: their dialects have nothing to try.
+    // The course has no path tracer, so there are no other dialects to try.
     if best.0 <= enough || best.1.1.method.transport().is_some() {
         return Ok(Some(finished(args, path, best.1, best.2, None)));
     }
@@ -131,7 +132,7 @@ fn reopened(
     Ok((compiled, job))
 }
 
-/// Opens the scene in a dialect that is only tried: its errors are not printed.
+/// Opens the scene in a candidate dialect, without printing errors.
 fn tried(
     args: &CompareArgs,
     path: &Path,

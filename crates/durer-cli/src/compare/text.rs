@@ -87,7 +87,7 @@ pub fn place(region: &Region) -> String {
     )
 }
 
-/// Formats a difference, as n/255 if it is a whole number of steps.
+/// Formats a tolerance, as n/255 if it is a multiple of 1/255.
 fn tolerance(value: f32) -> String {
     let steps = value * 255.0;
     if (steps - steps.round()).abs() < 1e-3 && steps < 256.0 { format!("{steps:.0}/255") } else { format!("{value}") }
@@ -130,8 +130,8 @@ pub fn table(all: &[ComparedPair], extra: &[PathBuf]) {
     }
 }
 
-/// Returns a table of comma-separated values (RFC 4180), one line a picture: its verdict, measures,
-/// the keywords of its mistakes, and their words.
+/// Returns a table of comma-separated values (RFC 4180) with one line per picture: verdict,
+/// metrics, and the keywords and descriptions of its mistakes.
 pub fn csv(all: &[ComparedPair]) -> String {
     let quoted = |text: &str| match text.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", text.replace('"', "\"\"")),
@@ -176,8 +176,8 @@ pub fn students(all: &[ComparedPair]) -> BTreeMap<String, [usize; 4]> {
     students
 }
 
-/// Returns all results as JSON. `psnr` is null if it is infinite, `ssim` if a picture is too small
-/// for it.
+/// Returns all results as JSON. `psnr` is null if it is infinite. `ssim` is null if a picture is
+/// too small.
 pub fn json(all: &[ComparedPair], extra: &[PathBuf], args: &CompareArgs) -> Value {
     let verdicts = |wanted: &str| all.iter().filter(|compared| compared.verdict() == wanted).count();
     json!({

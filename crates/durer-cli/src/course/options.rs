@@ -139,7 +139,7 @@ impl Arguments {
         zoom.map(Some).ok_or_else(|| bad(format!("{name}: the zoom must be from 1 to 1000")))
     }
 
-    /// Reports unknown options: the program of f12a4 ignored them, the others stopped.
+    /// Reports unknown options. The program of f12a4 ignores them, the others stop.
     pub fn check_unknown(&self, dialect: Option<Dialect>, quiet: bool) -> Result<(), Failure> {
         for word in &self.unknown {
             let near = did_you_mean(word, rows().map(|row| row.0));

@@ -1,7 +1,7 @@
-//! The year of a scene whose words and options leave several open.
+//! Chooses the year of a scene whose keywords and options fit several years.
 //!
-//! Small pictures decide: of the years that fit, the guessed one counts unless its picture has NaN
-//! samples and another's has none.
+//! A small picture is rendered in the guessed year. If it has NaN samples, the first other year
+//! without NaN samples is used instead.
 
 use super::job;
 use super::options::Arguments;
@@ -18,17 +18,17 @@ use durer::math::Vec3;
 use durer::render::{Control, Job, Sampling};
 use std::path::Path;
 
-/// Most pixels across and down a small picture.
+/// Maximum width and height of a trial picture, in pixels.
 const SIDE: u32 = 64;
 
-/// Pixels that look alike differ by at most this much in a channel.
+/// Largest difference per channel between pixels that look the same.
 const ALIKE: f32 = 2.0 / 255.0;
 
-/// Two pictures count as equal if at most one in this many pixels looks different.
+/// Two pictures look the same if at most one pixel in this many differs visibly.
 const ONE_OF: usize = 1000;
 
-/// Opens a scene under the year that fits best. Prints its warnings, and a note where hints
-/// outside the scene's words changed the picture.
+/// Opens a scene in the year that fits best. Prints its warnings, and a note if the chosen year
+/// changes the picture compared with the guess from keywords alone.
 pub fn open(
     scene: &Path,
     options: &LoadOptions,
@@ -66,7 +66,7 @@ pub fn open(
     Ok(chosen)
 }
 
-/// Why a scene is read as of some year.
+/// Explains why a scene is read in a year's dialect.
 fn note(guess: &Guess, dialect: Dialect) -> Diagnostic {
     match guess.dialect == dialect {
         true => guess.note(),
@@ -77,10 +77,10 @@ fn note(guess: &Guess, dialect: Dialect) -> Diagnostic {
     }
 }
 
-/// A small picture.
+/// A small trial picture.
 struct Trial {
     layers: Vec<Layer>,
-    /// Number of its samples that are NaN.
+    /// Number of NaN samples.
     nan: u64,
 }
 

@@ -1,5 +1,5 @@
-//! Open Image Denoise 2, loaded at run time: the functions of its C interface that denoise one
-//! picture.
+//! Bindings to Open Image Denoise 2, loaded at run time: the functions of its C interface that
+//! denoise one picture.
 //!
 //! Source: the documentation at <https://www.openimagedenoise.org>. Results differ in their last
 //! bits between machines.

@@ -1,17 +1,17 @@
-//! Words of the languages of job files. A word is one line of printable characters, whatever the
-//! text contains, so it can end neither a line of a shell script, a comment, nor a YAML block.
+//! Quoting for the languages of job files. Any text becomes a single line of printable characters,
+//! so it cannot end a shell command, a comment or a YAML block.
 
 use crate::frames;
 use std::fmt::Write;
 
-/// Returns true if a character stands for itself in all job files.
+/// Returns true if a character needs no escape in any job file.
 fn is_plain(c: char) -> bool {
-    // Letters of all alphabets are printable in YAML. Other characters beyond ASCII may be line
-    // breaks, marks that reverse the text, or not printable.
+    // Letters of all alphabets are printable in YAML. Other non-ASCII characters can be line
+    // breaks, bidirectional controls or unprintable.
     matches!(c, ' '..='~') && !matches!(c, '\'' | '\\' | '{' | '}') || c.is_alphanumeric()
 }
 
-/// Writes a text as one word of bash.
+/// Quotes text as one bash word.
 ///
 /// Braces are escaped, because `{{` begins an expression in templates of Open Job Description.
 pub fn bash_word(text: &str) -> String {
@@ -27,7 +27,7 @@ pub fn bash_word(text: &str) -> String {
         if is_plain(c) {
             word.push(c);
         } else {
-            // Bytes, because `\u` depends on the locale.
+            // Escape bytes, because `\u` depends on the locale.
             c.encode_utf8(&mut [0; 4]).bytes().for_each(|byte| {
                 let _ = write!(word, "\\x{byte:02x}");
             });
@@ -36,7 +36,7 @@ pub fn bash_word(text: &str) -> String {
     word + "'"
 }
 
-/// Writes the pattern of the frames' files as one word of bash, with the number in `$frame`.
+/// Quotes the file name pattern of the frames as one bash word, with the frame number in `$frame`.
 pub fn bash_word_of_frame(pattern: &str) -> String {
     match frames::place(pattern) {
         None if pattern.is_empty() => String::new(),
@@ -50,12 +50,12 @@ pub fn bash_word_of_frame(pattern: &str) -> String {
     }
 }
 
-/// Changes a path that begins with a dash, so that no command takes it for an option.
+/// Prefixes a path that begins with a dash with `./`, so that no command reads it as an option.
 pub fn not_an_option(path: &str) -> String {
     if path.starts_with('-') { format!("./{path}") } else { path.into() }
 }
 
-/// Writes a text as a string of Python.
+/// Quotes text as a Python string literal.
 pub fn python_string(text: &str) -> String {
     let mut string = String::from("\"");
     for c in text.chars() {
@@ -67,7 +67,7 @@ pub fn python_string(text: &str) -> String {
     string + "\""
 }
 
-/// Writes texts as a list of Python.
+/// Formats texts as a Python list of string literals.
 pub fn python_list(texts: &[String]) -> String {
     format!("[{}]", texts.iter().map(|text| python_string(text)).collect::<Vec<_>>().join(", "))
 }

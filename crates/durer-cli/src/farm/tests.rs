@@ -1,4 +1,5 @@
-//! Job files of scenes with hostile names, read by bash, and by YAML and Python where they exist.
+//! Tests job files for scenes with hostile names, with bash, and with YAML and Python parsers if
+//! installed.
 
 use super::*;
 use durer::sampler::hash;
@@ -55,7 +56,7 @@ const PIECES: [&str; 46] = [
     "*",
 ];
 
-/// Returns a name made of such pieces, the same for each number.
+/// Returns a name made of these pieces; deterministic for each number.
 fn name(number: u32) -> String {
     let random = |i: u32, most: u64| (hash(7, number, i, 0, 0) % most) as usize;
     (0..1 + random(0, 8)).map(|i| PIECES[random(i as u32 + 1, PIECES.len() as u64)]).collect()
@@ -83,7 +84,7 @@ fn made(template: &str, number: u32) -> (String, [String; 3]) {
     (text.unwrap_or_else(|_| panic!("{scene:?} {output:?}")), [scene, output, camera])
 }
 
-/// Runs a program with some input; `None` if it does not exist.
+/// Returns the output of a program that reads a file; `None` if the program is not installed.
 fn piped(program: &str, arguments: &[&str], input: &Path) -> Option<Vec<u8>> {
     let input = std::fs::File::open(input).unwrap();
     let done = Command::new(program).args(arguments).stdin(input).stderr(Stdio::piped()).output().ok()?;
@@ -91,15 +92,15 @@ fn piped(program: &str, arguments: &[&str], input: &Path) -> Option<Vec<u8>> {
     Some(done.stdout)
 }
 
-/// Separator of scripts, which no script contains.
+/// Separator between scripts. No script contains it.
 const END: char = '\0';
 
-/// Runs shell scripts with a `durer` that prints its words.
+/// Runs shell scripts with a stub `durer` that prints its arguments.
 const STUB: &str = r#"mkdir() { :; }; durer() { printf '%s\0' "$@"; printf '\1\0'; }
     SLURM_ARRAY_TASK_ID=2 JOB_COMPLETION_INDEX=1
     while IFS= read -r -d '' script; do (eval "$script"); printf '\2\0'; done"#;
 
-/// Checks that each script runs `durer` once, with exactly the names as words.
+/// Checks that each script runs `durer` once, with exactly the names as arguments.
 fn check_scripts(scripts: &str, names: &[[String; 3]]) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("scripts");
@@ -118,7 +119,7 @@ fn check_scripts(scripts: &str, names: &[[String; 3]]) {
 
 #[test]
 fn names_of_scenes_are_words_of_bash_and_nothing_else() {
-    // An own line, comment or variable of a name would change lines of the template.
+    // A name that escapes its quotes would add lines to the template.
     let lines = |template: &str| made_plain(template).lines().count();
     for template in ["slurm", "k8s", "openjd", "dask"] {
         for number in 0..rounds() {
@@ -135,7 +136,7 @@ fn names_of_scenes_are_words_of_bash_and_nothing_else() {
         let (text, own) = made("slurm", number);
         scripts.extend([&text, "\0"]);
         names.push(own);
-        // The command in the comment, which people copy.
+        // Check the command in the comment too, because users copy it.
         let comment = text.lines().find(|line| line.contains("durer merge")).unwrap();
         assert!(comment.starts_with("# When all tasks have finished:  durer merge "), "{comment}");
     }
@@ -147,7 +148,7 @@ fn made_plain(template: &str) -> String {
     job_file(&args(template, "a.txt", "a.exr", &["--camera", "b"])).unwrap_or_else(|_| panic!("{template}"))
 }
 
-/// Reads YAML documents, each ended by a zero byte; prints the shell scripts in them.
+/// Reads YAML documents, each terminated by a zero byte, and prints the shell scripts in them.
 const YAML: &str = "
 import sys, yaml
 loader = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
@@ -180,7 +181,8 @@ fn names_of_scenes_are_texts_of_yaml_and_nothing_else() {
     }
 }
 
-/// Reads Python programs, each ended by a zero byte; prints their strings that are names.
+/// Reads Python programs, each terminated by a zero byte, and prints the names in their string
+/// literals.
 const PYTHON: &str = "
 import ast, sys
 for text in sys.stdin.buffer.read().decode().split('\\0')[:-1]:

@@ -1,4 +1,4 @@
-//! The folder of a lesson. Only files of a lesson are replaced.
+//! The folder of a lesson. Replaces only files written by a lesson.
 
 use super::step_files::TEXT;
 use crate::failure::{Failure, bad};
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 pub const MARK: &str =
     "<!-- Written by durer lesson, which also replaces or removes the files that are linked here. -->";
 
-/// Bytes of a lesson's text, at most.
+/// Maximum size of a lesson's text in bytes.
 const LONGEST: u64 = 16 << 20;
 
 /// The folder of a lesson.
@@ -27,7 +27,7 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// Reports before the render what would prevent writing.
+    /// Checks before the render that the folder can be written.
     pub fn new(path: PathBuf, guard: &mut Guard) -> Result<Self, Failure> {
         if path.exists() && !path.is_dir() {
             return Err(bad(format!("`{}` is a file; a lesson needs a folder", path.display())));
@@ -71,7 +71,7 @@ impl Folder {
             save_silently(&places.iter().zip(bytes).collect::<Vec<_>>())
         });
         if let Err(failure) = saved {
-            // Remove a folder that this run created; if that fails, it stays empty.
+            // Remove a folder that this run created. If that fails, an empty folder remains.
             let _ = if self.new { std::fs::remove_dir(&self.path) } else { Ok(()) };
             return Err(failure);
         }

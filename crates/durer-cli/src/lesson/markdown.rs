@@ -47,7 +47,7 @@ fn step(text: &mut String, number: usize, step: &StepFiles, scene: &str) {
     let _ = writeln!(text, "In the source:\n\n- {}", places.join("\n- "));
 }
 
-/// Escapes text that contains a foreign name, so that it makes no link and no element.
+/// Escapes text that contains a user's file name, so that it creates no link and no HTML element.
 fn plain(text: &str) -> String {
     text.replace('[', "&#91;").replace(']', "&#93;").replace('<', "&lt;")
 }

@@ -60,8 +60,8 @@ impl Lesson {
         Ok(())
     }
 
-    /// Returns the file of a picture. Equal pictures share a file: a step may begin with the
-    /// picture that ends the previous one.
+    /// Returns the file of a picture. Equal pictures share a file, because a step can begin with
+    /// the picture that ends the previous one.
     fn picture(&mut self, name: String, layer: &Layer) -> Result<String, Failure> {
         let png = png(layer.clone(), self.transfer)?;
         if let Some((there, _)) = self.pictures.iter().find(|picture| picture.1 == png) {

@@ -1,7 +1,7 @@
 //! Input files: photographs, and cameras with points.
 //!
-//! Files that the user names may lie anywhere. Files that another file names, and those found in a
-//! folder, must lie in or below that folder after links are resolved, as the files of a scene.
+//! A file named by the user can be anywhere. A file that another file names, or that is found in a
+//! folder, must be in or below that folder after links are resolved, as for the files of a scene.
 
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
@@ -50,7 +50,7 @@ fn within(source: FolderSource, path: &Path) -> Result<Arc<[u8]>, SourceError> {
     source.budget(most).read_path(&real, &path.to_string_lossy())
 }
 
-/// Runs `work` on a number of threads; all processors if `None`.
+/// Runs `work` with a number of threads; one per processor if `None`.
 pub fn threaded<R: Send>(threads: Option<u16>, work: impl FnOnce() -> R + Send) -> Result<R, Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from)).build()?;
     Ok(pool.install(work))
@@ -63,7 +63,8 @@ pub fn photographs(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let mut paths = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, Failure>>()?;
     let known = |path: &PathBuf| {
         let end = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        // Skip the hidden files that macOS writes beside each file on other systems' disks.
+        // Skip hidden files, such as those that macOS writes beside each file on foreign file
+        // systems.
         let hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
         ["jpg", "jpeg", "png"].contains(&&*end) && !hidden && path.is_file()
     };
@@ -90,7 +91,7 @@ pub fn read(file: &Path, pictures: Option<&Path>, guard: &mut Guard) -> Result<R
     inputs(file).iter().try_for_each(|path| guard.reads(path))?;
     let folder = if file.is_dir() { file } else { folder_of(file) };
     let mut open = |path: &Path| {
-        // The user named the file itself; it names the others, or its folder contains them.
+        // The user named the file itself. It names the other files, or its folder contains them.
         let source = FolderSource::new(folder);
         let source = if path == file { source.allow_outside() } else { source };
         within(source, path).map_err(|error| match error {

@@ -12,7 +12,7 @@ use durer_photo::matching::{GUESS, Matches, Options, describe, match_all};
 use durer_photo::photo;
 use std::path::Path;
 
-/// Share of the progress bar for features; matching takes the rest.
+/// Fraction of the progress bar for features. Matching takes the remaining part.
 const FEATURES: f64 = 0.5;
 
 pub fn run(args: &MatchArgs) -> Result<(), Failure> {

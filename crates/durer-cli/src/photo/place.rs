@@ -29,7 +29,7 @@ use std::sync::Arc;
 const ACROSS: u32 = 4;
 /// Rows of pixels traced at once.
 const BAND: u32 = 64;
-/// Radius in pixels of the neighbourhood that gives a partly covered pixel its shadow.
+/// Radius in pixels of the neighbourhood whose shadow a partly covered pixel takes.
 const NEAR: usize = 2;
 
 pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
@@ -116,7 +116,7 @@ fn has(object: &Object, stand_in: &[bool], wanted: bool) -> bool {
     }
 }
 
-/// Keeps the stand-ins. A solid is one unit: it stays if any part is a stand-in.
+/// Keeps the stand-ins. A solid stays if any part is a stand-in.
 fn kept(objects: Vec<Object>, stand_in: &[bool]) -> Vec<Object> {
     let one = |mut object: Object| {
         if !has(&object, stand_in, true) {
@@ -160,9 +160,9 @@ fn coverage(
     Ok(covered)
 }
 
-/// Composes the photograph: with the render with objects W, without them G, the photograph P,
-/// coverage a and shadow r = W / G, the result is W + (1 - a) r (P - G). That is W for a = 1 and P
-/// W / G for a = 0. In a partly covered pixel, r is the mean of its neighbours.
+/// Composes the photograph. With the render with objects W, the render without them G, the
+/// photograph P, coverage a and shadow r = W / G, the result is W + (1 - a) r (P - G): W for a = 1,
+/// and P W / G for a = 0. In a partly covered pixel, r is the mean over its neighbours.
 fn composed(width: usize, plate: &[Vec3], with: &[Vec3], without: &[Vec3], covered: &[f32]) -> Vec<Vec3> {
     let height = plate.len() / width.max(1);
     let ratio = |w: f32, g: f32| if g > 0.0 { w / g } else { 1.0 };

@@ -30,7 +30,7 @@ pub struct Results {
 }
 
 impl Results {
-    /// Reports before the work what would prevent writing. Folders are created when there is
+    /// Checks before the work that the files can be written. Folders are created only when there is
     /// something to write.
     pub fn new(args: &ResultArgs, guard: &mut Guard) -> Result<Self, Failure> {
         let mut results = Results { outputs: Vec::new(), folders: Vec::new(), files: Vec::new() };
@@ -76,7 +76,7 @@ impl Results {
             save(&places.zip(std::mem::take(&mut self.files)).collect::<Vec<_>>(), quiet)
         })();
         if saved.is_err() {
-            // Remove the folders that this run created; if that fails, they stay empty.
+            // Remove the folders that this run created. If that fails, empty folders remain.
             self.folders.iter().for_each(|folder| drop(std::fs::remove_dir(folder)));
         }
         saved

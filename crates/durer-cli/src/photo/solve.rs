@@ -60,7 +60,7 @@ fn lens_line(all: &Reconstruction, number: usize, lens: &Lens) -> String {
     format!("lens {}: focal length {f:.3} pixels, k1 {k1:.6}, k2 {k2:.6}; {views} photographs", number + 1)
 }
 
-/// Reads the control points, before the work, so that a typo is reported at once.
+/// Reads the control points before the work, so that a mistake in the file is reported at once.
 fn control(args: &SolveArgs, names: &[&str], guard: &mut Guard) -> Result<Option<Vec<Control>>, Failure> {
     let Some(path) = &args.control else { return Ok(None) };
     read_control(&path.to_string_lossy(), &bytes(path, guard)?, names).map(Some).map_err(wrong)

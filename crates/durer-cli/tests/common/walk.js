@@ -24,7 +24,7 @@ const button = name => [...moves.children].find(child => child.textContent === n
   mouse(canvas, "pointerdown", x / canvas.width, y / canvas.height);
   mouse(canvas, "pointerup", x / canvas.width, y / canvas.height);
   await wait();
-  see(`point in several ${chosen.size > 1}, told ${word.textContent.includes(`is in ${chosen.size} photographs`)}`);
+  see(`point in several ${chosen.size > 1}, note ${word.textContent.includes(`is in ${chosen.size} photographs`)}`);
   await go("all", () => button("all of it").click());
   const inside = photographs.filter(p => { const [x, y, z] = pixel(p.center); return z > 0 && x > 0 && y > 0 && x < canvas.width && y < canvas.height; });
   see(`all inside ${inside.length === photographs.length}`);

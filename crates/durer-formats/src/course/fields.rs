@@ -17,7 +17,7 @@ pub(super) enum Order {
 }
 
 impl Reader<'_, '_> {
-    /// Reads `{ field value ... }` into `thing`. `extra` handles words that are not fields; it
+    /// Reads `{ field value ... }` into `item`. `extra` handles words that are not fields; it
     /// returns true if it did.
     pub(super) fn fields<T: DescribedList>(
         &mut self,
@@ -298,7 +298,7 @@ impl Reader<'_, '_> {
         value
     }
 
-    /// True with the quirk `any-values`, which renders senseless values.
+    /// True with the quirk `any-values`, which accepts invalid values.
     pub(super) fn any_values(&self) -> bool {
         self.options.compat & Quirk::AnyValues.bit() != 0
     }
@@ -368,7 +368,7 @@ impl Reader<'_, '_> {
     }
 
     /// Returns an error for a web colour such as `#b38033`, which is a comment in this language, if
-    /// one stands in place of the numbers before `next`.
+    /// one replaces the numbers before `next`.
     fn commented_color(&self, what: &str, after: &str, next: Span) -> Option<Diagnostic> {
         let last = self.last_span();
         let gap = self.text(Span { start: last.end, end: next.start.max(last.end), ..last });

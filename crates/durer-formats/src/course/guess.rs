@@ -25,19 +25,19 @@ pub struct Guess {
     pub reasons: Vec<(String, Option<Span>)>,
     /// Other dialects that fit as well.
     pub others: Vec<Dialect>,
-    /// Dialects that fit the words and the strong hints, the likeliest first.
+    /// Dialects that fit the words and the strong hints, most likely first.
     pub fitting: Vec<Dialect>,
     /// Dialect suggested by the words alone.
     pub by_words: Dialect,
 }
 
 impl Guess {
-    /// A dialect that a file names.
+    /// Guess for a file that names its dialect.
     pub fn certain(dialect: Dialect) -> Self {
         Guess { dialect, reasons: Vec::new(), others: Vec::new(), fitting: vec![dialect], by_words: dialect }
     }
 
-    /// True where hints led to another dialect than the words alone.
+    /// True if hints changed the dialect that the words alone suggest.
     pub fn is_hinted(&self) -> bool {
         self.dialect != self.by_words
     }
@@ -115,7 +115,8 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
             (set::DURER, "only the Dürer dialect names materials".into())
         } else if let Some(set) = dialects_of(&word).filter(|set| match *set {
             set::F23 => is_telling(&word),
-            // Require a block for words of the Dürer dialect: `top` or `min` may be a file name.
+            // A word of the Dürer dialect counts only if a block follows: `top` or `min` may be a
+            // file name.
             set::DURER => braced,
             _ => true,
         }) {
@@ -137,12 +138,12 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
     }
     let first = |left: DialectSet| PREFERENCE.into_iter().find(|d| d.is_in(left));
     let by_words = first(left);
-    // Hints that count least come last: the years that fit are those before them.
+    // Weak hints come last: the dialects that fit are those that remain before them.
     let (weak, strong): (Vec<&Hint>, Vec<&Hint>) = hints.iter().partition(|hint| hint.weak);
     let mut fitting = left;
     for hint in strong.into_iter().chain(weak) {
-        // A hint that contradicts the file and the hints before it tells nothing: options may be
-        // another year's.
+        // Ignore a hint that contradicts the file and the hints before it: options may be those of
+        // another year.
         let keep = left & hint.set;
         if keep != 0 && keep != left && !(hint.weak && reasons.is_empty()) {
             left = keep;

@@ -27,7 +27,7 @@ fn block_of(text: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
     };
     let mut rest = tokens(text, keyword.file).into_iter().filter(|token| token.kind != TokenKind::Comment).map(moved);
     rest.next()?;
-    // A name may stand between the keyword and its block.
+    // A name may come between the keyword and its block.
     let next = rest.next()?;
     let open = if next.kind == TokenKind::Word { rest.next()? } else { next };
     if open.kind != TokenKind::Open {

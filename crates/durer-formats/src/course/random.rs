@@ -44,7 +44,7 @@ impl Random {
         (self.state >> 33) as usize % n
     }
 
-    /// Any finite number, special values included.
+    /// Any finite number, including special values.
     pub fn float(&mut self) -> f32 {
         if self.tame {
             return self.below(129) as f32 / 16.0 - 4.0;

@@ -17,7 +17,7 @@ const DEEPEST: usize = 200;
 pub(super) struct NamedItems {
     pub materials: BTreeMap<String, u32>,
     pub objects: BTreeMap<String, (Object, usize, Span)>,
-    /// Names of objects with errors, which were reported.
+    /// Names of objects with errors, which have already been reported.
     pub broken: BTreeSet<String>,
     /// Number of objects added by `use`.
     pub used: usize,
@@ -45,7 +45,7 @@ pub(super) struct Reader<'a, 'd> {
     /// Token before which a missing `}` was reported. Blocks that end at the same token get one
     /// report.
     pub unclosed_at: Option<usize>,
-    /// True once the rest of the file was given up: later errors are dropped.
+    /// True once reading has been abandoned: later errors are dropped.
     stopped: bool,
     /// Current material for the objects that follow.
     pub material: Option<u32>,
@@ -167,7 +167,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         span
     }
 
-    /// Moves back to the last token, unless the rest of the file was given up.
+    /// Moves back to the last token, unless reading has been abandoned.
     pub(super) fn step_back(&mut self) {
         if !self.stopped {
             self.at -= 1;
@@ -202,8 +202,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
     }
 
-    /// Reports an error, unless the rest of the file was given up. Gives it up after too many
-    /// errors.
+    /// Reports an error, unless reading has been abandoned. Abandons it after too many errors.
     pub(super) fn error(&mut self, error: Diagnostic) {
         if self.stopped {
             return;
@@ -214,7 +213,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
     }
 
-    /// Gives up the rest of the file.
+    /// Abandons the rest of the file.
     pub(super) fn stop(&mut self) {
         self.stopped = true;
         self.at = self.tokens.len();

@@ -362,8 +362,8 @@ impl Reader<'_, '_> {
         Group { objects }
     }
 
-    /// Reads a voxel grid: a box of cells and the spheres that fill them. A component may name it
-    /// by its type.
+    /// Reads a voxel grid: a box of cells and the spheres that fill them. In node files, it is a
+    /// component of that type.
     pub(super) fn voxels(&mut self, keyword: Span) -> Node {
         let (mut grid, mut balls) = (VoxelGrid::default(), Vec::new());
         self.fields(&mut grid, keyword, Order::Any, |reader, word, span| {

@@ -214,7 +214,7 @@ pub(crate) fn flat(op: MatrixOp) -> Option<Diagnostic> {
     flat.then(|| error.help("use a scale of 1 along axes that keep their size"))
 }
 
-/// Error for a complete matrix with senseless values, if it has some.
+/// Error for a complete matrix with invalid values, if any.
 pub(crate) fn senseless(op: MatrixOp) -> Option<Diagnostic> {
     match op {
         MatrixOp::Rotate(axis, _) if axis == Vec3::ZERO => {

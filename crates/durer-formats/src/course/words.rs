@@ -11,7 +11,7 @@ use durer_scene::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-/// Words of the grammar itself, which belong to no described statement.
+/// Words of the grammar itself, which are not part of any described statement.
 const GRAMMAR: [(&str, DialectSet); 37] = [
     ("include", set::DURER),
     ("define", set::DURER),
@@ -116,10 +116,10 @@ pub(super) fn home_of(word: &str) -> Option<&'static str> {
     })
 }
 
-/// Sections at the top of a file, beside the camera.
+/// Top-level sections other than the camera.
 pub(super) const SECTIONS: [&str; 6] = ["Background", "Fog", "Lights", "Textures", "Materials", "Group"];
 
-/// Sections of the Dürer dialect only.
+/// Sections that only the Dürer dialect has.
 pub(super) const OURS: [&str; 2] = ["Fog", "Textures"];
 
 /// Returns the camera that a word begins, in files without nodes.

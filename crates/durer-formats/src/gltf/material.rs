@@ -44,7 +44,7 @@ impl Model<'_> {
         materials.items().enumerate().map(|(i, material)| self.material(i, &material)).collect()
     }
 
-    /// Returns for each material true if some vertices with it have colours.
+    /// Returns, for each material, true if some of its vertices have colours.
     pub(super) fn colored(root: &JsonRef) -> Vec<bool> {
         let mut colored = vec![false; root.get("materials").map_or(0, |materials| materials.items().count())];
         let meshes = root.value.get("meshes").and_then(|meshes| meshes.as_array()).into_iter().flatten();
@@ -275,7 +275,7 @@ impl Model<'_> {
             m.thin_film_weight = share(&e, "iridescenceFactor", 0.0);
             m.thin_film_weight_texture = number(&e, "iridescenceTexture", Channel::Red);
             m.thin_film_ior = at_least("iridescenceIor", 1.3, 1.0);
-            // The file has nanometres, the scene micrometres. Without a texture, the maximum
+            // The file uses nanometres, the scene micrometres. Without a texture, the maximum
             // thickness applies.
             let [thin, thick] = [("iridescenceThicknessMinimum", 100.0), ("iridescenceThicknessMaximum", 400.0)]
                 .map(|(key, or)| at_least(key, or, 0.0));

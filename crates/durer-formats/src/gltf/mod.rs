@@ -86,11 +86,11 @@ struct Model<'a> {
     material_count: usize,
     /// Index of the selected variant, if the file has variants.
     variant: Option<usize>,
-    /// For each material, true if it is translucent by its alpha.
+    /// For each material, true if its alpha makes it translucent.
     blends: Vec<bool>,
     /// For each material, true if some vertices with it have colours.
     colored: Vec<bool>,
-    /// For each material, true if it needs tangents.
+    /// For each material, true if it requires tangents.
     leans: Vec<bool>,
     meshes: Vec<Primitives>,
     /// Weights of the morph targets of each mesh.
@@ -98,10 +98,10 @@ struct Model<'a> {
     skins: Vec<Option<Skin>>,
     cameras: Vec<Option<CameraData>>,
     lights: Vec<Option<LightData>>,
-    /// Amount of decoded data, counted at each use, so that time and memory stay proportional to
-    /// the file.
+    /// Amount of decoded data, counted at each use, so that time and memory stay in proportion to
+    /// the file's size.
     work: Growth,
-    /// Objects, and bytes that are kept.
+    /// Number of objects, and bytes of data that is kept.
     kept: Growth,
     /// Codes of the warnings that were reported.
     reported: RefCell<BTreeSet<&'static str>>,
@@ -328,12 +328,12 @@ impl Model<'_> {
         counted.ok()
     }
 
-    /// Counts bytes that are kept.
+    /// Counts bytes of data that is kept.
     fn keep(&self, count: usize, size: usize, at: &JsonRef) -> Option<()> {
         self.told(self.kept.bytes(count, size), &|| at.pointer())
     }
 
-    /// Reports growth beyond a limit, once.
+    /// Reports that a limit was exceeded, the first time only.
     fn told(&self, counted: Result<(), TooMuch>, pointer: &dyn Fn() -> String) -> Option<()> {
         let found = counted.map_err(|TooMuch { message, is_first }| {
             if is_first {

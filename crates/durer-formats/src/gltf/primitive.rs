@@ -127,12 +127,12 @@ impl Model<'_> {
         }
         let mut pose = self.pose(at, &attributes, count);
         let order = self.order(at, count)?;
-        // Corners, with their normals and coordinates; a strip has a triangle for nearly each
-        // number.
+        // Corners with their normals and texture coordinates. A strip has nearly one triangle per
+        // index.
         let triangles = if mode == TRIANGLES { order.len() / 3 } else { order.len() };
         let lists = 1 + usize::from(has_normals) + usize::from(!data.uvs.is_empty());
         self.keep(triangles, 12 * lists, at)?;
-        // Marks of the vertices in use.
+        // Flags for the vertices in use.
         self.keep(count, 5, at)?;
         data.triangles = match mode {
             TRIANGLES => order.as_chunks::<3>().0.par_iter().copied().collect(),
@@ -170,7 +170,7 @@ impl Model<'_> {
         let name = at.name();
         let message = format!("points and lines of mesh{name} have no surface: small balls and thin sticks are shown");
         self.once_at("points-and-lines", &at.pointer(), &message);
-        // Each becomes a dozen vertices.
+        // Each point or line becomes a dozen vertices.
         self.charge(order.len(), 12 * 64, at)?;
         self.keep(order.len(), 12 * 64, at)?;
         let strip = || order.windows(2).map(|pair| [pair[0], pair[1]]);

@@ -521,7 +521,7 @@ fn damaged_compressed_data_do_not_panic() {
         const TRIES: usize = 400;
         for i in 0..TRIES {
             let mut changed = sound.clone();
-            // The first bytes hold most of the numbers that decide.
+            // Most of the numbers that matter are in the first bytes.
             let at = random(if i % 2 == 0 { changed.len() } else { changed.len().min(64) });
             let end = changed.len().min(at + 1 + random(8));
             match i % 5 {

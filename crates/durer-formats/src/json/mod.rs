@@ -18,8 +18,8 @@ pub const EXTENSION: &str = "json";
 /// Maximum depth of nested objects, as in the scene language.
 const DEEPEST: usize = 200;
 
-/// Returns true if a file is a scene as JSON: it has the extension `.json` or begins with `{`, as
-/// no text of the scene language does. glTF is JSON too, but is not a scene of this kind.
+/// Returns true if a file is a scene as JSON: it has the extension `.json` or begins with `{`,
+/// which no text in the scene language does. glTF is JSON too, but is not a scene of this kind.
 pub fn recognise(bytes: &[u8], name: &str) -> bool {
     let head = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let is_json = super::extension(name) == EXTENSION || head.starts_with(b"{");

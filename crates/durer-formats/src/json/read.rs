@@ -239,7 +239,7 @@ impl Reader<'_> {
             let wrong = |op| senseless(op).or_else(|| flat(op));
             let ops = members.take("matrices").map(|node| self.matrices(node, "matrices", wrong)).unwrap_or_default();
             let inner = self.required(&mut members, "object").and_then(|node| self.object(node));
-            // The transformed object may name the material itself.
+            // The transformed object may name its own material.
             if let (None, Some(inner)) = (stated, &inner) {
                 material = inner.material;
             }

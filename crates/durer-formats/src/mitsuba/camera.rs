@@ -144,7 +144,7 @@ impl Reader<'_> {
         if sensor.kind == "thinlens" && aperture == 0.0 {
             report.bad(sensor.at, "a `thinlens` needs an `aperture_radius`");
         }
-        // Ignore the default planes, which clip nothing that is to be seen.
+        // Ignore the default planes, since they clip nothing visible.
         let near = sensor.number(report, "near_clip").filter(|near| *near > NEAR).unwrap_or(0.0);
         let far = sensor.positive(report, "far_clip");
         let far = far.filter(|far| *far < FAR);
@@ -224,7 +224,7 @@ impl Reader<'_> {
                 self.scene.render_defaults.bounces = Some(0);
                 plugin.known(&["emitter_samples", "bsdf_samples", "shading_samples"]);
             }
-            // These wrap the integrator that makes the picture.
+            // These wrap the integrator that renders the picture.
             "aov" | "moment" => {
                 for (_, inner) in self.parts(plugin, Some("integrator")) {
                     self.integrator(&inner, depth + 1);

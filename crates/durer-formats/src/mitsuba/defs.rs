@@ -28,7 +28,7 @@ impl MaterialDef {
         MaterialDef::Layers(Box::new(matte(Vec3::splat(grey))))
     }
 
-    /// Number of materials in it, at most `most + 1`: a material may stand in it many times.
+    /// Number of materials it consists of, counting repeated ones each time; stops at `most + 1`.
     pub fn count(&self, most: usize) -> usize {
         match self {
             MaterialDef::Mix(a, b, ..) | MaterialDef::Sides(a, b) => {
@@ -74,7 +74,7 @@ pub(super) struct AreaEmitter {
     pub key: Key,
 }
 
-/// Infinite light. A scene of Mitsuba has at most one.
+/// Infinite light. A Mitsuba scene has at most one.
 pub(super) enum InfiniteLight {
     Even(Color, Span),
     Picture {

@@ -22,10 +22,10 @@ use std::sync::Arc;
 const DEEPEST: usize = 15;
 const MAX_FILES: usize = 4096;
 const MAX_ELEMENTS: usize = 1 << 22;
-/// Bytes of a value with its variables replaced.
+/// Maximum size in bytes of a value after variable substitution.
 const MAX_VALUE: usize = 1 << 20;
 
-/// Tags of plugins; `camera` is of Mitsuba 0.6.
+/// Tags of plugins; `camera` is from Mitsuba 0.6.
 const CLASSES: [&str; 14] = [
     "scene",
     "sensor",
@@ -79,7 +79,7 @@ pub(super) struct Loader<'a> {
     pub(super) is_old: bool,
 }
 
-/// The file cannot be read on; the error was reported.
+/// Signals that reading cannot continue; the error has been reported.
 pub(super) struct ErrorReported;
 
 /// Converts a name to snake case: `toWorld` to `to_world`, `intIOR` to `int_ior`.

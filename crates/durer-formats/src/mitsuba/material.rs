@@ -48,7 +48,7 @@ const KNOWN: [&str; 18] = [
 /// Index of refraction of air.
 const AIR: f32 = 1.000277;
 
-/// Materials in one, those that stand in it many times counted each time.
+/// Maximum number of materials in one material, counting repeated ones each time.
 const MAX_PARTS: usize = 4096;
 
 impl Reader<'_> {
@@ -70,7 +70,7 @@ impl Reader<'_> {
         made
     }
 
-    /// Returns true if a material consists of few enough others to be copied.
+    /// Returns true if a material has few enough parts to be copied.
     fn has_room_for(&self, made: &MaterialDef, at: Span) -> bool {
         let count = made.count(MAX_PARTS);
         if count > MAX_PARTS {
@@ -336,7 +336,7 @@ impl Reader<'_> {
             let beckmann = plugin.text(self.report, "distribution").is_none_or(|distribution| distribution != "ggx");
             let boundary = Boundary::new(index, m.specular_roughness, beckmann);
             m.base_color = match m.base_color_texture.is_some() {
-                // For a picture, use middle grey.
+                // If the colour is a picture, use middle grey.
                 true => m.base_color * boundary.below(nonlinear.then_some(0.5)),
                 false => m.base_color.map(|color| boundary.base(color, nonlinear)),
             };

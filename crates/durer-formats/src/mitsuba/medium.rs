@@ -25,10 +25,11 @@ impl Reader<'_> {
         let density = self.density(plugin);
         let color = |name, usual| self.volume_color(plugin, name, usual).max(Vec3::ZERO);
         let (absorption, scattering) = match plugin.get("sigma_s").is_some() || plugin.get("sigma_a").is_some() {
-            // Parameters of Mitsuba 0.6.
+            // Parameters from Mitsuba 0.6.
             true => (color("sigma_a", Vec3::ZERO), color("sigma_s", Vec3::ZERO)),
             false => {
-                // A volume is the density of a medium with extinction 1.
+                // If the extinction is a volume, it becomes the density of a medium with extinction
+                // 1.
                 let extinction = if density.is_some() { Vec3::ONE } else { color("sigma_t", Vec3::ONE) };
                 let albedo = color("albedo", Vec3::splat(0.75)).min(Vec3::ONE);
                 (extinction * (Vec3::ONE - albedo), extinction * albedo)

@@ -1,4 +1,4 @@
-//! Scenes of Mitsuba 3 in XML, and those of Mitsuba 0.6 that use the same plugins.
+//! Scenes of Mitsuba 3 in XML, and Mitsuba 0.6 scenes that use the same plugins.
 //!
 //! Source: *Mitsuba 3 documentation*, "Plugin reference", 2022 to 2025. A scene holds plugins
 //! (shapes, materials, lights), which hold properties and other plugins. A pixel of value 1 shows

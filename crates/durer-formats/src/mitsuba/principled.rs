@@ -35,7 +35,7 @@ impl Reader<'_> {
         };
         let clear = share("spec_trans", 0.0);
         let metallic = if thin { 0.0 } else { metalness };
-        // Use a medium roughness for a picture.
+        // If the roughness is a picture, use a medium roughness.
         let rough = if roughness_texture.is_some() { 0.5 } else { roughness };
         let matte = match (thin, &metalness_texture) {
             (true, _) => disney::matte_mean(rough) * base_color,
@@ -44,7 +44,7 @@ impl Reader<'_> {
         };
         let sheen = share("sheen", 0.0);
         let fuzz_weight = if sheen > 0.0 { sheen * disney::sheen_of_fuzz() } else { 0.0 };
-        // From 0, all on the lit side, to 2, all on the other side.
+        // 0: all on the lit side; 2: all on the other side.
         let through = if thin { self.value(plugin, "diff_trans", 0.0).clamp(0.0, 2.0) } else { 0.0 };
         let m = PrincipledMaterial {
             base_color: matte,

@@ -11,9 +11,9 @@ pub(super) struct Boundary {
     /// Mean transmittance from outside and mean reflectance from inside, rough and smooth.
     rough: [f32; 2],
     smooth: [f32; 2],
-    /// Mean transmittance to the base and out again here.
+    /// Mean transmittance to the base and out again in Dürer.
     passing: f32,
-    /// Mean reflectance here minus Mitsuba's.
+    /// Mean reflectance in Dürer minus that in Mitsuba.
     lost: f32,
 }
 
@@ -43,15 +43,15 @@ impl Boundary {
         if fades { below } else { (below - self.lost / self.passing).max(0.0) }
     }
 
-    /// Mean radiance of a diffuse base through the boundary in Mitsuba, over that here. Mitsuba
-    /// loses light on the way in and on the way out. `left` is the share that stays at each bounce
-    /// if bounces change the colour.
+    /// Mean radiance of a diffuse base through the boundary in Mitsuba, divided by that in Dürer.
+    /// Mitsuba loses light on the way in and on the way out. `left` is the share that remains after
+    /// each bounce, if bounces change the colour.
     pub fn below(&self, left: Option<f32>) -> f32 {
         let shown = |[through, inside]: [f32; 2]| {
             let through = through / self.index;
             through * through / (1.0 - inside * left.unwrap_or(1.0))
         };
-        // A smooth coat darkens as Mitsuba's does.
+        // A smooth coat darkens the base as Mitsuba's does.
         shown(self.rough) / if left.is_some() { shown(self.smooth) } else { self.passing }
     }
 }

@@ -46,7 +46,7 @@ impl Reader<'_> {
         let (report, at) = (self.report, plugin.at);
         let map = plugin.map(report, "to_world");
         let found = match plugin.kind.as_str() {
-            // Shape groups are shown by instances.
+            // Instances show shape groups.
             "shapegroup" => return,
             "instance" => self.instance(plugin, map, objects, depth),
             "merge" => {
@@ -119,7 +119,7 @@ impl Reader<'_> {
                 made
             }
         };
-        // The instance counts too: what it shows may be empty.
+        // Count the instance itself too: its content may be empty.
         if self.room_for(count + 1, property.at) {
             let inner = Object { node: Node::Group((*group).clone()), material: None, span: plugin.at };
             objects.push(inner.placed(map));
@@ -183,7 +183,7 @@ impl Reader<'_> {
     }
 
     fn disk(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
-        // Our discs have other texture coordinates.
+        // Discs in Dürer have different texture coordinates.
         if self.is_pictured(plugin) || self.is_brushed(plugin) || self.is_leaning(plugin) {
             return self.mesh(plugin, "disk", map, || Some(solid::with_tangents(solid::disk())));
         }
@@ -235,7 +235,7 @@ impl Reader<'_> {
         };
         let flat = plugin.truth(report, "face_normals").unwrap_or(false);
         let is_obj = plugin.kind == "obj";
-        // Mitsuba flips v of OBJ files, which have v upwards as ours, but not v of PLY files.
+        // Mitsuba flips v of OBJ files, whose v points up as in Dürer, but not v of PLY files.
         let over = plugin.truth(report, "flip_tex_coords").unwrap_or(is_obj);
         let mirrored = map.matrix3.determinant() < 0.0;
         let input = self.input;

@@ -1,4 +1,4 @@
-//! Daylight: `sunsky`, and `sky` and `sun` of Mitsuba 0.6.
+//! Daylight: `sunsky`, and `sky` and `sun` from Mitsuba 0.6.
 //!
 //! Mitsuba uses the sky of Hosek and Wilkie, *An Analytic Model for Full Spectral Sky-Dome
 //! Radiance*, SIGGRAPH 2012. Dürer uses Preetham's sky, scaled to the same illuminance, and

@@ -1,4 +1,4 @@
-//! Mitsuba's shapes that become meshes here.
+//! Mitsuba shapes that are converted to meshes.
 
 use durer_scene::math::{Vec2, Vec3, fp};
 use durer_scene::shape::MeshData;
@@ -79,8 +79,8 @@ pub(super) fn cylinder(radius: f32) -> MeshData {
     revolution::cylinder(radius, [0.0, 1.0], 360.0)
 }
 
-/// Adds tangents in the direction of growing u. The bitangent follows from the normal and the
-/// tangent, whichever way v grows.
+/// Adds tangents in the direction of increasing u. The bitangent follows from the normal and the
+/// tangent, regardless of the direction of v.
 pub(super) fn with_tangents(mut data: MeshData) -> MeshData {
     let mut tangents = vec![Vec3::ZERO; data.positions.len()];
     for (corners, uvs) in data.triangles.iter().zip(&data.triangle_uvs).filter(|(_, uvs)| !uvs.contains(&NO_INDEX)) {

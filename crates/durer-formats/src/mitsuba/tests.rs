@@ -27,7 +27,7 @@ fn objects(scene: &Scene) -> Vec<&Object> {
         match &object.node {
             Node::Group(group) => group.objects.iter().for_each(|object| gather(object, all)),
             Node::Transform(_, inner) => gather(inner, all),
-            // Ground of the default studio.
+            // Ground of the default scene setup.
             Node::Primitive(Primitive::Plane(_)) => {}
             _ => all.push(object),
         }
@@ -188,7 +188,8 @@ fn errors_are_reported_once() {
 
 #[test]
 fn hostile_files_are_refused() {
-    // Cycles of materials, shapes and files; an entity bomb; deep nesting; instances of instances.
+    // Cycles of materials, shapes and files; an entity expansion bomb; deep nesting; instances of
+    // instances.
     let (scene, messages) = read(
         "<scene><bsdf type='twosided' id='a'><ref id='b'/></bsdf><bsdf type='twosided' id='b'><ref id='a'/></bsdf>\
         <shape type='sphere'><ref id='a'/></shape></scene>",

@@ -111,7 +111,7 @@ impl Reader<'_> {
     pub fn numbers(&mut self, property: &Property, change: impl Fn(f32) -> f32) -> Option<FileName> {
         let fields = self.part(property).filter(|part| part.class == "texture" && part.kind == "checkerboard");
         let texture = match fields {
-            // Mitsuba swaps the fields where it reads a number.
+            // Mitsuba swaps the fields when it reads a number.
             Some(fields) => {
                 let made = self.checkerboard(&fields, [("color1", 0.2), ("color0", 0.4)]);
                 fields.finish(self.report);
@@ -121,7 +121,7 @@ impl Reader<'_> {
         };
         let Texture::Picture(picture, scale, raw) = texture else { return None };
         let decode = if raw { decode_linear } else { decode_srgb };
-        // The number of a colour is its luminance.
+        // A colour converted to a number is its luminance.
         let number = |p: Color| change(scale.x * p.dot(LUMINANCE));
         let picture = self.pictures().changed(&picture, property.at, decode, number)?;
         Some(asset(&mut self.scene, picture, property.at))
@@ -175,7 +175,7 @@ impl Reader<'_> {
             }
         };
         mapping.nearest = match word("filter_type", "bilinear").as_str() {
-            // The last two are of Mitsuba 0.6.
+            // The last two are from Mitsuba 0.6.
             "bilinear" | "ewa" | "trilinear" => false,
             "nearest" => true,
             other => {
@@ -185,7 +185,7 @@ impl Reader<'_> {
             }
         };
         texture.known(&["raw", "accel", "format"]);
-        // A picture's alpha does not cut holes here; `mask` does.
+        // A picture's alpha does not cut holes in Mitsuba; `mask` does.
         mapping.cutoff = Some(0.0);
         let (bytes, scale) = make(&self.loader.path(&name), texture.place("filename"))?;
         Some((Picture { bytes, mapping }, scale))
@@ -196,7 +196,7 @@ impl Reader<'_> {
         let report = self.report;
         let mut map = texture.map(report, "to_uv");
         let old = |name, usual: f32| f64::from(texture.number(report, name).unwrap_or(usual));
-        // Parameters of Mitsuba 0.6.
+        // Parameters from Mitsuba 0.6.
         let scale = glam::DVec3::new(old("uscale", 1.0), old("vscale", 1.0), 1.0);
         map *= DAffine3::from_scale(scale);
         map.translation += glam::DVec3::new(old("uoffset", 0.0), old("voffset", 0.0), 0.0);

@@ -155,7 +155,7 @@ impl Reader<'_, '_> {
             parse_f32(text).map(Some).map_err(problem)
         };
         let color = || -> Result<Option<Vec3>, (Span, String)> {
-            // Colours in CIE XYZ and by spectrum have a word before them.
+            // A colour in CIE XYZ or as a spectrum is preceded by a word.
             let is_xyz = rest.first().is_some_and(|word| word.text == "xyz");
             match numbers(&rest[usize::from(is_xyz)..])[..] {
                 [x, y, z, ..] if is_xyz => {
@@ -324,7 +324,7 @@ fn names_normals(rest: &[Word]) -> bool {
     ["normal", "_nrm", "_ddn", "_norm"].iter().any(|word| stem.contains(word)) || stem.ends_with("_n")
 }
 
-/// Finds a file of the scene: its path as written, or its bare name beside the scene.
+/// Finds a file of the scene: its path as written, or its bare name in the scene's folder.
 fn found(input: &Input, path: &str, span: Span) -> Option<FileName> {
     let portable = path.replace('\\', "/");
     let last = portable.rsplit('/').next().unwrap_or_default();

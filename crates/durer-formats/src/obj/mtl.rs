@@ -27,9 +27,9 @@ pub(super) struct MtlMaterial {
     pub coat_roughness: Option<f32>,
     pub anisotropy: Option<f32>,
     pub diffuse_map: Option<FileName>,
-    /// True if the material has a statement `map_Kd`, even if its file is missing.
+    /// True if the material has a `map_Kd` statement, even if its file is missing.
     pub pictured: bool,
-    /// The other textures and the bump height; all else has default values.
+    /// The other textures and the bump height; all other fields have default values.
     pub pictures: PrincipledMaterial,
 }
 
@@ -95,8 +95,8 @@ impl MtlMaterial {
             // These models have no highlights.
             0 | 1 => 0.0,
             _ if !physical => level,
-            // In a physically based material `Ks` is Disney's `specular`, where 0.5 equals the
-            // reflectance of the index; Blender writes and reads it so.
+            // In a physically based material `Ks` is Disney's `specular`, where 0.5 stands for the
+            // reflectance given by the index, as in Blender.
             _ if self.specular.is_some() || m.specular_color_texture.is_some() => 2.0 * level,
             _ => 1.0,
         };

@@ -61,7 +61,7 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     wires.found.retain(|wires| !wires.lines.is_empty() || !wires.points.is_empty());
     let alone = data.triangles.is_empty() && wires.found.is_empty() && !data.positions.is_empty();
     if alone && !report.has_errors() {
-        // A file of vertices alone is a point cloud.
+        // A file that only has vertices is a point cloud.
         let points = (0..data.positions.len() as u32).collect();
         wires.found.push(Wires { points, ..Wires::default() });
     }
@@ -123,8 +123,8 @@ fn smooth(data: &mut MeshData, switches: &[Switch<u32>]) {
     smoothed(data, |triangle, _| (groups[triangle] > 0).then(|| groups[triangle]));
 }
 
-/// Splits a mesh by material name, in the order of first use; each part comes with the range of a
-/// mention of its name.
+/// Splits a mesh by material name, in the order of first use; each part comes with a range in which
+/// its name is mentioned.
 fn parts(data: &MeshData, bytes: &[u8], switches: &[Switch<Range<usize>>]) -> Vec<(MeshData, Range<usize>)> {
     let runs = runs(switches, data.triangles.len()).map(|(run, at)| (run, at.clone()));
     let before = 0..switches.first().map_or(data.triangles.len(), |switch| switch.0);

@@ -88,7 +88,7 @@ const DEEPEST_FILES: usize = 64;
 const DEEPEST_SCOPES: usize = 1 << 12;
 
 impl Reader<'_> {
-    /// Reads the whole file and returns the scene. Errors are in `said`.
+    /// Reads the whole file and returns the scene. Errors are in the reader's report.
     pub fn read(mut self) -> Scene {
         while !self.report.is_full() {
             let report = self.report;
@@ -301,7 +301,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Skips the value of an `Option`, whose string is its parameter. Options have no effect here.
+    /// Skips the value of an `Option`, whose string is its parameter. Options have no effect in
+    /// Dürer.
     fn skip_value(&mut self) {
         let report = self.report;
         let text = self.text();

@@ -29,7 +29,7 @@ pub(super) enum Kind {
     Spectrum,
 }
 
-/// Type names; `color` and `xyz` are of pbrt-v3.
+/// Type names; `color` and `xyz` are from pbrt-v3.
 const KINDS: [(&str, Kind); 18] = [
     ("integer", Kind::Integer),
     ("float", Kind::Float),

@@ -219,7 +219,7 @@ mod tests {
     use durer_scene::math::{Vec3, fp};
 
     /// Returns a test file with a symmetry, a number of planes around the circle, a flux, and
-    /// intensities by plane and gamma angle, for the `written` planes.
+    /// intensities by plane and gamma angle; only the planes in `written` are in the file.
     fn file(symmetry: u32, count: usize, flux: &str, written: &[f64], value: impl Fn(f64, f64) -> f64) -> String {
         let gammas: Vec<f64> = (0..=36).map(|i| 5.0 * f64::from(i)).collect();
         let planes = (0..count).map(|i| 360.0 / count as f64 * i as f64);

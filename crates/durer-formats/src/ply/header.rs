@@ -97,7 +97,8 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
-    /// True if triangles without normals are shaded flat, whatever the default. A Dürer extension.
+    /// True if triangles without normals are shaded flat, regardless of the default. A Dürer
+    /// extension.
     pub flat: bool,
     /// Byte offset of the first row.
     pub body: usize,

@@ -1,5 +1,5 @@
 //! Commands: `!xform`, `!cat`, `!genbox`, `!genprism` and `!gensky`, optionally piped into `xform`.
-//! No program is run: their output is generated here.
+//! No program is run; this reader generates the output.
 
 use super::body::Facets;
 use super::gensky;

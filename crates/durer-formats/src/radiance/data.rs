@@ -69,8 +69,7 @@ impl Table {
     /// Interpolates linearly in all coordinates; 0 outside the table.
     pub fn at(&self, coordinates: &[f64]) -> f64 {
         const SLACK: f64 = 1e-4;
-        // For each coordinate: the index of the sample below, and the fraction of the way to the
-        // next.
+        // For each coordinate: the index of the sample below, and the fraction towards the next.
         let mut cells = [(0, 0.0); MOST_DIMENSIONS];
         for ((axis, &x), cell) in self.axes.iter().zip(coordinates).zip(&mut cells) {
             let (first, last) = (axis[0].min(axis[axis.len() - 1]), axis[0].max(axis[axis.len() - 1]));

@@ -17,8 +17,8 @@ const POINTS: u32 = 16;
 const MOST_PROFILES: usize = 256;
 
 impl Reader<'_> {
-    /// Replaces a surface by point lights spread over it: area lights here have no directional
-    /// distribution.
+    /// Replaces a surface with point lights spread over it, since Dürer's area lights have no
+    /// directional distribution.
     pub fn point_lights(&mut self, made: &ConvertedModifier, outline: &Outline, span: Span) {
         let Kind::Aimed { radiance, spread, at } = &made.kind else { return };
         let [down, front] = spread.axes();

@@ -280,8 +280,8 @@ impl<'a> Reader<'a> {
         self.scene.root.get_or_insert_default().objects.push(object);
     }
 
-    /// Converts the mist that contains the camera into fog, since camera rays would not know that
-    /// they start inside a body.
+    /// Converts the mist that contains the camera into fog, since camera rays do not know that they
+    /// start inside a body.
     fn step_into_mist(&mut self) {
         let Some(eye) = self.scene.camera.as_ref().map(|camera| camera.pose().center) else { return };
         for (number, fog) in std::mem::take(&mut self.mists) {

@@ -88,8 +88,8 @@ fn commands_are_emulated() {
         let six: f64 = mesh.triangles.iter().map(|t| corner(t[0]).dot(corner(t[1]).cross(corner(t[2])))).sum();
         assert!((six / 6.0 - volume).abs() < 1e-4, "{command}: {}", six / 6.0);
     }
-    // -i repeats a part, -m sets a material; file names in included files are relative to the
-    // scene.
+    // `-i` repeats a part, and `-m` sets a material; file names in included files are relative to
+    // the scene.
     let files = folder(&[
         ("part.rad", b"white sphere s 0 0 4 1 0 0 .25\n"),
         ("red.rad", b"void plastic red 0 0 5 1 0 0 0 0\n!xform -m red part.rad"),

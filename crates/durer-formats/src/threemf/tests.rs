@@ -157,7 +157,7 @@ fn errors_have_positions() {
         (usual().replace("v1='0' v2='2'", "pid='4' p1='0' v1='0' v2='2'"), "no list of properties 4"),
         (usual().replace("<item", "<item transform='1 2'"), "expected twelve numbers, found `1 2`"),
         (usual().replace("<item", "<item transform='0 0 0 0 0 0 0 0 0 0 0 0'"), "expected an invertible transform"),
-        (format!("<!DOCTYPE model>{}", usual()), "a.model:1:1 Error declarations"),
+        (format!("<!DOCTYPE model>{}", usual()), "a.model:1:1 Error document type declarations"),
         (model("<basematerials id='1'/>", "", [""; 4], ITEM), "two resources have the id 1"),
         (usual().replace("</mesh>", "</mash>"), "Error `</mash>` closes an element that is not open"),
     ] {

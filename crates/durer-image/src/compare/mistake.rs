@@ -46,18 +46,19 @@ const ENOUGH: f64 = 0.5;
 /// Maximum number of successive mistakes.
 const STEPS: usize = 3;
 
-/// Share of the picture's own contrast above which the rest is as strong as what is explained: a
-/// nearly uniform picture can be made from any other.
+/// Limit on the remaining difference relative to the picture's contrast. Above it, the remainder is
+/// as strong as the explained part: a nearly uniform picture can be made from any other.
 const MAX_CONTRAST: f64 = 0.1;
-/// Smallest share of the pixels that a rule must reproduce, so that nothing else is different.
+/// Minimum share of the pixels that a rule must reproduce, so that nothing else is different.
 const MATCHED: f64 = 0.97;
-/// Differences above this, in values from 0 to 1, are visible.
+/// Smallest visible difference, for values from 0 to 1.
 const SEEN: f32 = 2.5 / 255.0;
-/// Half a step of eight bits.
+/// Half a step of 8-bit values.
 const HALF: f32 = 0.5 / 255.0;
 
-/// Finds the mistakes that best explain the difference of two pictures; empty if none explains half
-/// of it. If a single mistake explains nearly everything, but more pixels differ, its words say so.
+/// Finds the mistakes that best explain the difference between two pictures; empty if none explains
+/// half of it. If a single mistake explains nearly all of it but further pixels differ, its words
+/// say so.
 pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
     let test = View::of(pair, &pair.test);
     let reference = View::of(pair, &pair.reference);
@@ -85,7 +86,8 @@ pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
     }
 }
 
-/// Finds rules one after another, each of which explains most of what the ones before leave.
+/// Finds rules one after another, each of which explains most of the difference that the previous
+/// ones leave.
 fn chain(pair: &Pair, test: &View, total: f64) -> (Vec<Rule>, Vec<Finding>) {
     let (mut rules, mut findings) = (Vec::new(), Vec::new());
     let mut reference = pair.reference.clone();
@@ -108,20 +110,20 @@ fn chain(pair: &Pair, test: &View, total: f64) -> (Vec<Rule>, Vec<Finding>) {
     (rules, findings)
 }
 
-/// How well rules reproduce a picture, without the pixels that a shift brings in at the edge.
+/// Quality with which rules reproduce a picture, ignoring pixels that a shift moves in at the edge.
 struct Fit {
-    /// Share of the squared difference that is left.
+    /// Remaining share of the squared difference.
     left: f64,
-    /// Squared difference that is left, as a share of the picture's own variance.
+    /// Remaining squared difference, relative to the picture's variance.
     contrast: f64,
-    /// Share of the pixels in which the made picture or the reference differs visibly from the
-    /// picture, and the made one agrees with it up to rounding.
+    /// Share of correctly reproduced pixels (up to rounding) among those where the reproduction or
+    /// the reference visibly differs from the picture.
     matched: f64,
 }
 
 impl Fit {
     fn of(pair: &Pair, rules: &[Rule], test: &View, samples: &[Sample]) -> Fit {
-        // Rounding before the mistake is as large as half a step of the reference.
+        // The reference may have been rounded by up to half a step before the mistake.
         let made = |offset: f32| {
             let start: Vec<Vec3> = pair.reference.iter().map(|value| pair.scale.clamp(*value + offset)).collect();
             rules.iter().fold(start, |pixels, rule| rule.made(&View::of(pair, &pixels)))

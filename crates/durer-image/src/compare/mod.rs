@@ -133,8 +133,8 @@ pub fn memory_needed(reference: &Encoded, test: &Encoded) -> Result<u64, Compare
 /// Compares a picture with a reference.
 ///
 /// If only one of the pictures is linear, both are compared as displayed. A pixel with a value that
-/// is not finite exceeds any tolerance, unless both pictures have the same values there, and is
-/// excluded from the measures.
+/// is not finite exceeds any tolerance, unless both pictures have the same values at that pixel,
+/// and is excluded from the measures.
 ///
 /// # Errors
 /// [`CompareError::Sizes`], and [`CompareError::Image`] for a picture whose pixels do not match its

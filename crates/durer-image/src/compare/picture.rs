@@ -38,8 +38,8 @@ impl Scale {
         }
     }
 
-    /// Smallest visible difference at a value, for a difference `step` of display values. Light is
-    /// judged relative to its strength.
+    /// Smallest visible difference at a value, for a difference `step` of display values. For
+    /// linear light, it is relative to the value.
     pub(super) fn visible(self, value: Vec3, step: f32) -> f32 {
         match self {
             Scale::Linear => step * value.abs().max_element().max(0.05),
@@ -90,7 +90,7 @@ impl Picture {
     /// # Errors
     /// Errors of [`Encoded::read`].
     pub fn decode(encoded: &Encoded, memory: u64) -> Result<Picture, ImageError> {
-        // PNG and PPM with 16 bits per channel contain display values, too.
+        // 16-bit PNG and PPM files contain display values, too.
         let scale = if encoded.depth() == Depth::Float { Scale::Linear } else { Scale::Display };
         Ok(Picture { image: encoded.read(memory, decode_linear)?, scale })
     }

@@ -41,7 +41,8 @@ fn near(value: f64, wanted: f64, within: f64) {
     assert!((value - wanted).abs() < within, "{value} is not {wanted}");
 }
 
-/// Values computed by `flip_evaluator` 1.7, the authors' package, for the same pictures.
+/// Expected values were computed with `flip_evaluator` 1.7, the authors' package, for the same
+/// pictures.
 #[test]
 fn flip_is_that_of_its_authors() {
     let [a, b] = patterns();
@@ -61,8 +62,8 @@ fn flip_is_that_of_its_authors() {
     near(compare(&a, &b, &Options::default()).unwrap().measures.hdr_flip.unwrap(), 0.158_005_94, 2e-5);
 }
 
-/// Value of scikit-image 0.26: `structural_similarity` with `gaussian_weights=True, sigma=1.5,
-/// use_sample_covariance=False`.
+/// Expected value from scikit-image 0.26: `structural_similarity` with `gaussian_weights=True,
+/// sigma=1.5, use_sample_covariance=False`.
 #[test]
 fn ssim_is_that_of_others() {
     let [a, b] = patterns();

@@ -164,8 +164,8 @@ fn chosen(meta: &MetaData) -> Result<(&Header, [Text; 3]), ImageError> {
     single.ok_or_else(|| ImageError::unsupported(NAME, "it has neither channels R, G and B nor a channel Y"))
 }
 
-/// Returns the size of the display window, and the offset of the stored pixels in it. A crop fills
-/// only a part of the window, and some programs store more than is displayed.
+/// Returns the size of the display window, and the offset of the stored pixels in it. The data may
+/// cover only a part of the window, or extend beyond it.
 fn window(header: &Header) -> (Vec2<usize>, Vec2<i64>) {
     let shown = header.shared_attributes.display_window;
     let from = header.own_attributes.layer_position;
@@ -269,7 +269,8 @@ mod tests {
     #[test]
     fn a_crop_lies_where_its_windows_say() {
         use ::exr::prelude::{IntegerBounds, Layer as ExrLayer, LayerAttributes, SpecificChannels};
-        // Pixels (3, 2) and (4, 2) are there; from (1, 1) on 5 x 4 are shown, or only 2 x 2.
+        // Pixels (3, 2) and (4, 2) are stored; the display window starts at (1, 1) and has 5 x 4 or
+        // only 2 x 2 pixels.
         let read = |shown: (usize, usize)| {
             let channels = SpecificChannels::rgb(|at: Vec2<usize>| (at.0 as f32 + 1.0, 0.0_f32, 0.5_f32));
             let attributes = LayerAttributes { layer_position: Vec2(3, 2), ..LayerAttributes::named("a") };
@@ -285,7 +286,7 @@ mod tests {
         let lit: Vec<(usize, f32)> =
             whole.pixels.iter().enumerate().filter(|(_, p)| p.z > 0.0).map(|(i, p)| (i, p.x)).collect();
         assert_eq!(lit, [(5 + 2, 1.0), (5 + 3, 2.0)]);
-        // What lies beyond is not shown.
+        // Pixels outside the display window are dropped.
         assert!(read((2, 2)).pixels.iter().all(|pixel| *pixel == Vec3::ZERO));
     }
 

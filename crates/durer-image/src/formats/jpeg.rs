@@ -5,14 +5,13 @@ use ::image::ImageFormat;
 
 const NAME: &str = "JPEG";
 
-/// The header of a frame: width, height, and the horizontal and vertical sampling factors of its
-/// components.
+/// Frame header: width, height, and the horizontal and vertical sampling factors of its components.
 struct Frame {
     size: [u64; 2],
     factors: Vec<[u64; 2]>,
 }
 
-/// Finds the header of the frame.
+/// Finds the frame header.
 ///
 /// Source: ITU-T T.81, *Digital Compression and Coding of Continuous-Tone Still Images*, annex
 /// B.2.2.
@@ -28,7 +27,7 @@ fn frame(bytes: &[u8]) -> Option<Frame> {
         }
         let length = usize::from(u16::from_be_bytes(*rest.first_chunk()?));
         let segment = rest.get(2..length)?;
-        // Start of frame, with any coding; between them are the markers of tables.
+        // Start of frame, with any coding; the other markers in this range are for tables.
         if matches!(marker, 0xc0..=0xcf) && !matches!(marker, 0xc4 | 0xc8 | 0xcc) {
             let &[_, h1, h0, w1, w0, count, ref components @ ..] = segment else { return None };
             let factors = components.chunks_exact(3).take(count.into());
@@ -39,9 +38,9 @@ fn frame(bytes: &[u8]) -> Option<Frame> {
     }
 }
 
-/// Memory in bytes of the decoder beside the pixels: 16-bit coefficients of all components until
-/// the last scan, and rows of blocks while components are brought to the picture's size. Components
-/// fill whole blocks of the largest sampling factors.
+/// Memory in bytes that the decoder needs in addition to the pixels: 16-bit coefficients of all
+/// components up to the last scan, and rows of blocks while components are upsampled to the
+/// picture's size. Components fill whole blocks of the largest sampling factors.
 fn decoding_bytes(Frame { size, factors }: Frame) -> u64 {
     let [across, down] = [0, 1].map(|axis| factors.iter().map(|factors| factors[axis]).max().unwrap_or(1));
     let (columns, rows) = (size[0].div_ceil(8 * across), size[1].div_ceil(8 * down));

@@ -130,7 +130,7 @@ fn square(lens: &Lens, format: &str) -> Result<(), Error> {
     Err(Error::new(format!("{format} supports square pixels only, but a lens has the aspect {}", lens.aspect)))
 }
 
-/// Returns the bytes of a file, by its path.
+/// Function that returns the bytes of the file at a path.
 pub type Open<'a> = dyn FnMut(&Path) -> Result<Arc<[u8]>, Error> + 'a;
 
 /// Reads a file and decompresses it if it was compressed by gzip or bzip2.
@@ -218,7 +218,7 @@ pub enum Output {
     ColmapText,
     /// COLMAP's folder of binary files.
     ColmapBinary,
-    /// OpenSfM's JSON file, with its tracks beside it.
+    /// OpenSfM's JSON file, with its tracks in a separate file next to it.
     OpenSfm,
     /// PLY file of points.
     Ply,

@@ -28,8 +28,7 @@ impl Solver<'_> {
                 turned += 1;
                 continue;
             }
-            // Angles beyond ten degrees bring no further benefit. A planar scene leaves the lens
-            // undetermined.
+            // Angles beyond ten degrees are not better. A planar scene does not determine the lens.
             let score = count as f64 * (angle.to_degrees() / 10.0).min(1.0) * (1.2 - link.planar);
             if best.as_ref().is_none_or(|best| score > best.0) {
                 best = Some((score, link.pictures, pose));

@@ -21,8 +21,8 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 
 /// Scale of the Cauchy loss in standard deviations. It loses a twentieth of the efficiency for
 /// normal errors (Holland, Welsch, *Robust Regression Using Iteratively Reweighted Least-Squares*,
-/// 1977), but gains much for others: half of the coordinates of salient points are off by a tenth
-/// of a pixel or less, and some by two pixels.
+/// 1977), but gains much for other distributions: half of the coordinates of salient points are off
+/// by a tenth of a pixel or less, and some by two pixels.
 const CAUCHY: f64 = 2.385;
 /// Minimum standard deviation of a salient point in pixels.
 const FINEST: f64 = 0.02;
@@ -86,9 +86,9 @@ pub struct Solution {
 
 /// Reconstructs cameras and points. `progress` receives the number of registered photographs.
 ///
-/// With a wrong focal length, as EXIF contains for photographs that were reduced in size, few
-/// photographs fit, or the focal length moves far. In that case, solves again from the resulting
-/// focal length or from a usual one, and returns the better result.
+/// With a wrong focal length, such as that in the EXIF data of photographs that were reduced in
+/// size, few photographs fit, or the focal length moves far. In that case, solves again from the
+/// resulting focal length or from a typical one, and returns the better result.
 ///
 /// # Errors
 ///
@@ -154,7 +154,7 @@ fn attempt(
         solver.extend();
         let known = solver.registered();
         progress(known);
-        // With many photographs, one more changes little.
+        // With many photographs, one more makes little difference.
         if known > last_adjusted + last_adjusted / 10 {
             solver.adjust(false);
             solver.drop_misfits();

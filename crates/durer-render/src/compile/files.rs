@@ -111,7 +111,7 @@ impl<'r> Loader<'r> {
             };
             let mesh = Mesh::new(data, normals, self.rules.file_normals || by_vertex);
             let mesh = self.centered(mesh);
-            // The official program treats smaller determinants as zero.
+            // As in the official program, which treats smaller determinants as zero.
             let least_volume = if self.rules.has(Quirk::ThinTriangles) { 1e-6 } else { 0.0 };
             Arc::new(self.tree(mesh).least_volume(least_volume))
         });

@@ -92,7 +92,7 @@ fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, 
         tinted: false,
         noise,
         ambient,
-        // A long normal may give an infinite highlight, and infinity times 0 is NaN.
+        // A normal longer than 1 may give an infinite highlight, and infinity times 0 is NaN.
         highlight: highlight(m, rules).filter(|(color, ..)| rules.has(Quirk::RawNormals) || *color != Color::ZERO),
         reflective,
         transparent,

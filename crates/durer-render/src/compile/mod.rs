@@ -70,7 +70,7 @@ impl<'a> Resources<'a> {
 
 /// Compiles a scene into a world. Collects errors and warnings; returns `None` after an error.
 ///
-/// First checks all values with [`Scene::validate`], whatever the source of the scene.
+/// First checks all values with [`Scene::validate`], regardless of the scene's source.
 pub fn compile(
     scene: &Scene,
     rules: &Rules,
@@ -271,7 +271,7 @@ fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Res
     if cells.is_none() {
         let outliers = outliers(&boxes);
         wide = outliers.iter().map(|&i| parts[i]).collect();
-        // From the last to the first, so that the indices stay valid.
+        // Remove from the last to the first, so that the indices stay valid.
         for &i in outliers.iter().rev() {
             parts.remove(i);
             boxes.remove(i);
@@ -293,12 +293,12 @@ fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Res
     Ok(Accel::Grid { grid, parts, wide })
 }
 
-/// Returns the few boxes that reach so far beyond the others that a grid around them has all others
-/// in one cell, by ascending index.
+/// Returns the indices, in ascending order, of the few boxes that extend so far beyond the others
+/// that a grid around all of them would have the others in one cell.
 fn outliers(boxes: &[Aabb]) -> Vec<usize> {
-    /// More are not tested for every ray.
+    /// Maximum number of outliers, since every ray tests them all.
     const MOST: usize = 64;
-    /// Maximum number of cells along an axis: see `Grid::suitable`.
+    /// Maximum number of cells along an axis; see `Grid::suitable`.
     const RATIO: f64 = 256.0;
     if boxes.len() < 2 {
         return Vec::new();
@@ -428,7 +428,7 @@ struct SceneFlattener<'a, 'r> {
     material_count: u32,
     /// True if some object needs the plain material after the last one.
     plain_needed: bool,
-    /// First object without a material, and their number.
+    /// First object without a material, and the number of such objects.
     bare: Option<(Span, usize)>,
     /// Number of transforms around the current object.
     transforms: u32,

@@ -230,7 +230,7 @@ fn tables_of_a_material_are_computed_before_rays_are_traced() {
         ("specularRoughness 0 coatWeight 0.5 coatRoughness 0.2", [true, false, true]),
         ("baseMetalness 1 coatWeight 0.5 coatRoughness 0.2", [false, false, true]),
     ] {
-        // With half its specular weight, an opaque base has another index than glass.
+        // An opaque base with half its specular weight has a different index than glass.
         let text = format!("{CAMERA} Materials {{ PrincipledMaterial {{ specularWeight 0.5 {words} }} }} Group {{ }}");
         let world = super::testing::read(&text);
         let Material::Phong(phong) = &world.materials()[0] else { panic!("{words}") };
@@ -266,7 +266,7 @@ fn what_reaches_far_beyond_the_others_is_no_part_of_a_grid() {
             assert_eq!(world.occluded(&ray, &mut ()), tree.occluded(&ray, &mut ()), "{ray:?}");
         }
     }
-    // A ground and what stands on it are one grid.
+    // The ground and the objects on it share one grid.
     let text = format!("{CAMERA}Group {{ Sphere {{ center 0 -100 0 radius 99 }} {balls} }}");
     let (world, _) = try_read(&text, Dialect::Durer.rules(), AccelKind::Grid(None), Path::new("."));
     assert!(matches!(world.unwrap().accel(), Accel::Grid { wide, .. } if wide.is_empty()));

@@ -109,7 +109,7 @@ pub struct Aov {
     pub picture: fn(Vec3, bool, &Display) -> Color,
     /// True if that colour depends on the values of other pixels.
     pub relative: bool,
-    /// Unit of values in false colours, whose scale is drawn beside them.
+    /// Unit of values in false colours, whose scale is drawn next to the picture.
     pub unit: Option<&'static str>,
 }
 
@@ -120,8 +120,8 @@ impl Aov {
     }
 }
 
-/// Gives pixels without a hit the colour of the previous hit, in rows from the bottom, each from
-/// the left.
+/// Fills pixels without a hit with the colour of the previous hit, in rows from the bottom, each
+/// from left to right.
 pub fn fill_from_last_hit(pixels: &mut [Color], hits: &[bool], width: usize) {
     let rows = pixels.len() / width.max(1);
     let mut last = None;

@@ -73,7 +73,7 @@ impl Pixel {
         true
     }
 
-    /// Checks sums read from a file: could `most_samples` samples produce them?
+    /// Checks if `most_samples` samples could produce these sums, which were read from a file.
     fn is_possible(&self, most_samples: u32) -> bool {
         let (n, most) = (i128::from(self.samples), |greatest: f64, scale: f64| greatest as i128 * scale as i128);
         let within =
@@ -105,8 +105,8 @@ impl Pixel {
         pixel
     }
 
-    /// Returns the colour from which [`Pixel::of_single`] makes these sums. A sample of weight 1
-    /// has one, because its rounded colour is again a single-precision number.
+    /// Inverse of [`Pixel::of_single`]. A sample of weight 1 has one, because its rounded colour is
+    /// again a single-precision number.
     #[inline]
     pub(super) fn single(&self) -> Option<Color> {
         if self.samples != 1 || self.weight != WEIGHT_SCALE as i64 || self.covered != self.weight {
@@ -142,7 +142,7 @@ impl Pixel {
     /// Returns the coverage; see [`Film::coverage`].
     #[inline]
     pub(super) fn coverage(&self) -> f32 {
-        // Also if the weights sum to zero: then coverage counts as complete.
+        // Also if the weights sum to zero: the pixel then counts as fully covered.
         if self.covered == self.weight {
             return 1.0;
         }
@@ -342,7 +342,7 @@ impl Film {
     }
 
     /// Reads bytes of [`Film::write`] into this film, which must have the same window and at most
-    /// `most_samples` samples a pixel. Returns `None` for invalid bytes or impossible sums.
+    /// `most_samples` samples per pixel. Returns `None` for invalid bytes or impossible sums.
     pub fn read(mut self, bytes: &mut Bytes, most_samples: u32) -> Option<Self> {
         for pixel in &mut self.pixels {
             pixel.samples = bytes.whole()?;

@@ -114,7 +114,7 @@ fn words(number: i128) -> [u64; 2] {
 }
 
 impl PackedFilm {
-    /// Packs a film; `samples` is the final number of samples a pixel. A format that stays wide
+    /// Packs a film; `samples` is the final number of samples per pixel. A format that stays wide
     /// enough avoids memory fragmentation.
     pub fn new(film: Film, samples: u32) -> Self {
         if film.rejected() > 0 {

@@ -36,7 +36,7 @@ impl Parameters for AoParameters {
 pub struct AmbientOcclusion<'w> {
     /// The world.
     pub world: &'w World,
-    /// Maximum distance of occluders, in units of the world; infinite for all.
+    /// Maximum distance of occluders, in world units; infinite for no limit.
     pub radius: f32,
 }
 

@@ -53,7 +53,7 @@ impl Body {
 
     /// Returns true if this object fills the space that it shares with another one. Of two closed
     /// objects that is the smaller one, so that ice displaces water wherever they overlap,
-    /// independent of the ray's direction. Otherwise it is the one entered last.
+    /// regardless of the ray's direction. Otherwise it is the one entered last.
     fn fills(&self, other: &Body, met_later: bool) -> bool {
         match (self.size, other.size) {
             (Some(a), Some(b)) if a != b => a < b,
@@ -71,7 +71,7 @@ impl Body {
 pub struct Media(SmallVec<[Body; 2]>);
 
 impl Clone for Media {
-    // Faster than cloning element by element.
+    // This is faster than cloning element by element.
     fn clone(&self) -> Self {
         Media(SmallVec::from_slice(&self.0))
     }
@@ -93,7 +93,7 @@ impl Media {
         Media(SmallVec::from_slice(&[medium]))
     }
 
-    /// Leaves every body.
+    /// Leaves all objects.
     pub fn clear(&mut self) {
         self.0.clear();
     }
@@ -163,7 +163,7 @@ impl Media {
             let others = world.glass_around(start).filter(|&(other, _)| other != object);
             Media::within(world, others.chain([(object, ior)]))
         } else {
-            // With inverted normals it is the wall of a cavity in the surrounding medium.
+            // With inverted normals, it is the wall of a cavity in the surrounding medium.
             let behind = self.object().map_or(Media::default(), |around| self.left(around));
             return Passage {
                 here: if self.is_air() { own.ior } else { self.ior() },

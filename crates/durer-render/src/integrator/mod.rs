@@ -61,8 +61,8 @@ pub trait Integrate {
     /// Returns the radiance along a camera ray, with the random numbers of a sample.
     fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color;
 
-    /// Computes the radiance of neighbouring camera rays, with the same results as one by one.
-    /// `begin` is called with the index of the next ray and returns its sample.
+    /// Computes the radiance of neighbouring camera rays, with the same results as tracing them one
+    /// by one. `begin` is called with the index of the next ray and returns its sample.
     fn radiances<T: TraceListener>(
         &self,
         rays: &[Ray64],
@@ -143,7 +143,7 @@ macro_rules! integrators {
             IntegratorKind: Parameters => delegate { $($variant($type),)+ }
         }
 
-        /// An integrator of a world.
+        /// Integrator for a world.
         #[derive(Clone, Debug)]
         pub enum Integrator<'w> {
             $(#[doc = concat!("Integrator of `", stringify!($variant), "`.")]

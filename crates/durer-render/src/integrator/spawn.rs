@@ -16,8 +16,8 @@ use glam::DVec3;
 /// Creates a secondary ray.
 ///
 /// With an `epsilon`, as in the course, the ray starts on the surface, and hits closer than
-/// `epsilon` do not count. Without it, the ray starts off the surface by a bound on the point's
-/// error, and every hit counts.
+/// `epsilon` do not count. Without it, the ray's origin is offset from the surface by a bound on
+/// the point's error, and every hit counts.
 #[inline(always)]
 pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<Epsilon>) -> Ray64 {
     match epsilon {

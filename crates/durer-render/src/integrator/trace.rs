@@ -20,7 +20,7 @@ use serde::Serialize;
 
 /// Receives the terms of an integrator. The closures are called only by listeners that store terms.
 pub trait TraceListener: TraversalCounter {
-    /// True if terms of zero contribution should be reported too.
+    /// True if terms without a contribution should also be reported.
     const LISTENS: bool = false;
 
     /// Sets the meaning of the lanes of all terms; RGB by default.
@@ -42,8 +42,8 @@ pub trait TraceListener: TraversalCounter {
     ) {
     }
     /// Records, for a node of a path, the transmittance `scale` of the media before it, and the
-    /// throughput: the product of all factors from the camera to here, which scales its value or
-    /// those of its terms in the pixel.
+    /// throughput: the product of all factors from the camera to here, by which its value, or the
+    /// values of its terms, contribute to the pixel.
     fn weigh(&mut self, _node: NodeId, _scale: impl Into<TermValue>, _throughput: impl Into<TermValue>) {}
 }
 
@@ -54,7 +54,7 @@ pub struct NodeId(u32);
 impl NodeId {
     /// No node, returned by listeners that store nothing.
     pub const NONE: NodeId = NodeId(u32::MAX);
-    /// Parent of the term that all others belong to.
+    /// Parent of the root term.
     pub const ROOT: NodeId = NodeId(u32::MAX - 1);
 }
 
@@ -174,7 +174,8 @@ pub struct TraceNode {
     /// its value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub throughput: Option<TermValue>,
-    /// The terms that it sums, in the order of addition; empty if `what` states how it is computed.
+    /// The terms that are summed, in order of addition; empty if `what` states how the value is
+    /// computed.
     pub terms: Vec<TraceNode>,
 }
 
@@ -372,7 +373,7 @@ pub enum TermKind {
         /// The shadow ray; `None` if shadows are off.
         shadow: Option<Shadow>,
     },
-    /// Light over mirrors and glass, estimated from nearby photons; the value is the estimate.
+    /// Light via mirrors and glass, estimated from nearby photons; the value is the estimate.
     Photons {
         /// Search radius.
         radius: f32,
@@ -380,14 +381,14 @@ pub enum TermKind {
         photons: usize,
     },
     /// Light refracted by dispersive glass: only the hero wavelength continues, and the factor
-    /// makes it stand for all four.
+    /// makes up for the other three.
     OneWavelength {
         /// Wavelength in nanometres.
         nm: f32,
     },
     /// The background or sky, for rays that miss.
     Sky,
-    /// Ambient light: the value is the surface's colour; the factor is share · ambient light.
+    /// Ambient light. The value is the surface's colour; the factor is share · ambient light.
     Ambient {
         /// The material's share at the point.
         share: f32,
@@ -406,12 +407,12 @@ pub enum TermKind {
         /// The shadow ray; `None` if shadows are off.
         shadow: Option<Shadow>,
     },
-    /// Diffuse term: the factor is max(0, N·L), the value the surface's colour.
+    /// Diffuse term. The factor is max(0, N·L); the value is the surface's colour.
     Diffuse {
         /// N·L.
         cosine: f32,
     },
-    /// Highlight: the factor is max(0, base)^exponent, the value the specular colour.
+    /// Highlight. The factor is max(0, base)^exponent; the value is the specular colour.
     Highlight {
         /// Name of the base.
         model: &'static str,
@@ -436,7 +437,7 @@ pub enum TermKind {
         /// Weight of the ray.
         weight: f32,
     },
-    /// Reflected and transmitted light beyond the maximum depth.
+    /// Reflected and transmitted light cut off by the maximum depth.
     Spent,
 }
 
@@ -466,7 +467,7 @@ impl TraceRecorder {
         // reached, with its children in reverse.
         while let Some((parent, mut node)) = self.nodes.pop() {
             node.terms.reverse();
-            // A path learns the radiance along its rays only at its end.
+            // A path knows the radiance along its rays only at its end.
             if node.throughput.is_some() && !node.terms.is_empty() {
                 node.value = node.sum();
             }

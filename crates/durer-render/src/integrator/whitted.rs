@@ -39,8 +39,8 @@ pub struct WhittedOptions {
     pub reflection: bool,
     /// Traces transmitted rays.
     pub refraction: bool,
-    /// Minimum throughput of a ray. A colour counts by its largest component; for old programs, by
-    /// its length, as in the course.
+    /// Minimum throughput of a ray. A colour's throughput is its largest component; for old
+    /// programs, its length, as in the course.
     pub least_weight: f32,
 }
 
@@ -73,8 +73,8 @@ pub struct Whitted<'w> {
     pub world: &'w World,
     /// Settings.
     pub settings: WhittedOptions,
-    /// Once set, no more rays are traced, and results are meaningless. A single pixel of many
-    /// mirrors may take long.
+    /// Once set, no more rays are traced, and results are meaningless. A single pixel that shows
+    /// many mirrors may take a long time.
     pub cancel: Option<&'w AtomicBool>,
 }
 
@@ -112,7 +112,7 @@ type Parts<'w> = SmallVec<[ShadedMaterial<'w>; MAX_BATCH]>;
 /// Thread-local buffers, reused for each batch of camera rays.
 struct Scratch {
     queue: Queue,
-    /// Buffer of [`MAX_BATCH`] points.
+    /// Buffer of [`MAX_BATCH`] shading points.
     points: Vec<ShadingPoint>,
     rays: [Ray64; MAX_BATCH],
 }
@@ -308,8 +308,8 @@ impl<'w> Whitted<'w> {
                     *direct = Direct::of(part.phong, *diffuse, point.n, ray.dir(), &seen);
                     dark &= direct.is_dark(part.phong);
                 }
-                // Only listeners need the visibility of a light that adds nothing.
-                // An infinite light times 0 is NaN, as in the official programs.
+                // Only listeners need the visibility of a light that contributes nothing. An
+                // infinite light times 0 is NaN, as in the official programs.
                 let adds_nothing = dark && seen.color.is_finite() || seen.color == Color::ZERO;
                 if adds_nothing && !T::LISTENS {
                     continue;

@@ -6,15 +6,15 @@
 //! Then the final number of each is decided once, from exact sums and in a fixed order.
 //!
 //! The relevant deviation is the one that remains as more samples are taken. For Sobol points it is
-//! far less than the deviation between samples at edges. So it is estimated by how much the second
-//! half of the pilot moves a pixel's mean, not by the variance of its samples.
+//! far less than the deviation between samples at edges. So it is estimated from the change of a
+//! pixel's mean in the second half of the pilot, not from the variance of its samples.
 //!
 //! A pixel's sample count never depends on its own samples. Otherwise, samples that found much
-//! light by chance would attract more samples and count less, and the picture would be too dark
-//! (Kirk and Arvo, *Unbiased Sampling Techniques for Image Synthesis*, 1991). So pixels are
-//! coloured like a chessboard. Each colour has its share of all samples, distributed by the pixels
-//! of the other colour: their samples are independent, and neighbours have about the same variance.
-//! The estimate is therefore unbiased.
+//! light by chance would attract more samples and be weighted less, and the picture would be too
+//! dark (Kirk and Arvo, *Unbiased Sampling Techniques for Image Synthesis*, 1991). So pixels are
+//! split in a checkerboard pattern. Each colour has its share of all samples, and their
+//! distribution depends only on pixels of the other colour, whose samples are independent and whose
+//! variance is about the same. The estimate is therefore unbiased.
 
 #[cfg(test)]
 mod tests;
@@ -25,7 +25,7 @@ use crate::film::{Film, luminance_of};
 use durer_scene::sampler::Sampler;
 use std::sync::Arc;
 
-/// Minimum average number of samples a pixel for adaptive sampling.
+/// Minimum average number of samples per pixel for adaptive sampling.
 pub const LEAST_ADAPTIVE: u32 = 16;
 
 /// Minimum number of samples in half a pilot.
@@ -41,12 +41,12 @@ const MOST: u32 = 1 << 20;
 /// approximates a normal distribution of standard deviation 1.7.
 const WEIGHTS: [f32; 13] = [1.0, 12.0, 66.0, 220.0, 495.0, 792.0, 924.0, 792.0, 495.0, 220.0, 66.0, 12.0, 1.0];
 
-/// Returns half the number of samples of the pilot, for an average of `samples`.
+/// Returns half the number of pilot samples, for an average of `samples`.
 pub(super) fn half(samples: u32) -> u32 {
     (samples / 8).max(LEAST_HALF)
 }
 
-/// Returns the number of samples of the pilot.
+/// Returns the number of pilot samples.
 pub(super) fn pilot(samples: u32) -> u32 {
     2 * half(samples)
 }
@@ -56,8 +56,8 @@ pub(super) fn most(samples: u32) -> u32 {
     samples.saturating_mul(MOST_TIMES).min(MOST.max(samples))
 }
 
-/// Returns the number of samples of a pixel when the average is `end` of `samples`: the pilot's,
-/// plus its share of its final number.
+/// Returns the number of samples of a pixel when the average is `end` of `samples`: the pilot
+/// samples, plus a share of the remaining ones.
 pub(super) fn count(samples: u32, target: u32, end: u32) -> u32 {
     let pilot = pilot(samples);
     if end <= pilot {
@@ -67,10 +67,10 @@ pub(super) fn count(samples: u32, target: u32, end: u32) -> u32 {
     pilot + (more * gone / all) as u32
 }
 
-/// Returns the reason why a job cannot be sampled adaptively, if there is one.
+/// Returns the reason why a job cannot be sampled adaptively, if any.
 pub(super) fn refusal(job: &Job, is_whole: bool) -> Option<String> {
     let is_spread = match job.sampling {
-        // The number of samples rejects `Center` below.
+        // `Center` is rejected below, by its number of samples.
         Sampling::Center | Sampling::Filtered { .. } => true,
         Sampling::Course2004 { sampler, filter: None, .. } => matches!(sampler, Sampler::Sobol | Sampler::Random),
         _ => false,
@@ -95,7 +95,7 @@ pub(super) fn refusal(job: &Job, is_whole: bool) -> Option<String> {
 }
 
 /// Returns the variance of the mean luminance of each pixel in a block, from half a pilot and the
-/// whole: half the difference of two independent halves, squared, is an unbiased estimate.
+/// whole: the square of half the difference between two independent halves is an unbiased estimate.
 pub(super) fn variances(half: &Film, all: &Film, rect: Crop) -> Arc<[f32]> {
     let luminance = |film: &Film, (x, y)| luminance_of(film.resolve(x, y));
     let square = |place| {
@@ -129,8 +129,8 @@ pub(super) fn around(variances: &[f32], width: usize) -> Vec<f32> {
     found
 }
 
-/// Distributes `samples` a pixel in proportion to standard deviations, at least the pilot's for
-/// each. Samples that no pixel needs are left over.
+/// Distributes an average of `samples` per pixel in proportion to standard deviations; each pixel
+/// gets at least the pilot samples. Samples that no pixel needs are left over.
 pub(super) fn divided(deviations: &[f32], samples: u32) -> Vec<u32> {
     let (least, most) = (f64::from(pilot(samples)), f64::from(most(samples)));
     let wanted = |factor: f64, deviation: f32| (factor * f64::from(deviation)).clamp(least, most);

@@ -124,7 +124,7 @@ impl Bands {
     }
 }
 
-/// Returns true if the camera has a ray for each pixel of a grid that includes the corners.
+/// Returns true if the camera has a ray at each point of a grid that includes the corners.
 fn sees_all(world: &World, job: &Job) -> bool {
     const ACROSS: u32 = 256;
     let (window, raster) = (job.window(), super::raster(world, job.width, job.height));

@@ -14,7 +14,7 @@ use std::str::FromStr;
 /// Width and height of a block in pixels.
 pub const BLOCK: u32 = 8;
 
-/// The blocks of a window in reading order. Blocks at the window's edges may be smaller.
+/// Blocks of a window in reading order. Blocks at the window's edges may be smaller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Blocks {
     window: Crop,

@@ -6,10 +6,10 @@ use std::time::Duration;
 /// Execution options and progress. They do not change a finished picture.
 #[derive(Debug, Default)]
 pub struct Control {
-    /// Number of threads; `None`: all of the machine.
+    /// Number of threads; `None`: one per processor.
     pub threads: Option<usize>,
-    /// Side of a tile in pixels, the task of a thread; rounded up to a multiple of 8. `None`:
-    /// automatic.
+    /// Side length of a tile in pixels, rounded up to a multiple of 8; each thread works on one
+    /// tile at a time. `None`: automatic.
     pub tile: Option<u32>,
     /// Time limit after which no more samples are taken, once every pixel has one.
     pub time: Option<Duration>,
@@ -27,7 +27,7 @@ pub struct Control {
     pub done: AtomicU64,
     /// Number of rays traced so far.
     pub rays: AtomicU64,
-    /// True if `all` covers several renders, which continue to count in `done`.
+    /// True if `all` covers several renders, which all count in `done`.
     pub goes_on: bool,
 }
 
@@ -36,8 +36,8 @@ pub struct Control {
 pub(super) enum RunLimit {
     /// Until everything is done.
     End,
-    /// Until all passes with at most this many samples a pixel are done.
+    /// Until all passes with at most this many samples per pixel are done.
     Samples(u32),
-    /// After the single pass that ends with this many samples a pixel.
+    /// After the single pass that ends with this many samples per pixel.
     Pass(u32),
 }

@@ -50,7 +50,7 @@ pub(super) fn kept_bytes(job: &Job, side: u32) -> u64 {
     }
 }
 
-/// Content of a picture by the course's sampling, which stores colours only. If the camera sees
+/// Content of a picture sampled as in the course, which stores colours only. If the camera sees
 /// nothing at some sample, a second picture is rendered as a mask: white where the camera sees,
 /// black elsewhere.
 #[derive(Default)]

@@ -29,8 +29,8 @@ pub struct NoisyPicture {
 }
 
 impl PartialRender {
-    /// Returns the current colour picture with its guides, from one ray a pixel. Does not change
-    /// the sums and hash of the part.
+    /// Returns the current colour picture with its guides, traced with one ray per pixel. Does not
+    /// change the sums and hash of the part.
     ///
     /// # Errors
     /// [`RenderError`], as for a picture with one ray a pixel.

@@ -53,7 +53,7 @@ pub struct Explanation {
 pub enum Mean {
     /// Weighted mean of the pixel's own samples, by the film's exact sums.
     Own,
-    /// 2004: samples of neighbouring pixels count too; the weighted mean, summed in double
+    /// 2004: samples of neighbouring pixels contribute too; the weighted mean is summed in double
     /// precision.
     Around,
     /// 2012: sub-pixels are blurred along rows, then along columns, then averaged. The weights
@@ -124,8 +124,8 @@ pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, 
 }
 
 /// Explains a pixel, given its number of samples if known. With a noise threshold or adaptive
-/// sampling, computing the number takes some rendering; for an adaptive picture, a quarter of the
-/// whole.
+/// sampling, computing the number takes some rendering; for an adaptive picture, a quarter of all
+/// samples of the picture.
 ///
 /// # Errors
 /// See [`explain`].
@@ -194,8 +194,8 @@ fn error(world: &World, job: &Job, source: &Samples, explanation: &Explanation) 
     ErrorBound::new(&sums(&own), &sums(twin.as_ref().unwrap_or(&own)))
 }
 
-/// Returns the number of samples of a pixel. With a noise threshold it depends on its block, with
-/// adaptive sampling on the pilot of the whole picture.
+/// Returns the number of samples of a pixel. With a noise threshold it depends on the pixel's
+/// block, and with adaptive sampling on the pilot of the full picture.
 fn count(world: &World, job: &Job, (x, y): (u32, u32)) -> Result<u32, RenderError> {
     let samples = job.sampling.samples();
     let window = if job.window().holds(x, y) { job.window() } else { job.whole() };

@@ -49,8 +49,8 @@ pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image
 fn occupied(world: &World) -> Option<Grid> {
     let Accel::Grid { grid, parts, .. } = world.accel() else { return None };
     let object = |part: usize| &world.objects()[parts[part].0 as usize];
-    // A sphere occupies cells by the distance of the centres alone, as in the course's programs:
-    // also beyond its bounds.
+    // Only the distance between the centres decides if a sphere occupies a cell, as in the course's
+    // programs, even beyond the sphere's bounds.
     let half = 0.5 * grid.cell_bounds([0; 3]).size();
     let is_sphere = |object: &Object| {
         object.to_world.is_none() && matches!(object.geometry, Geometry::Primitive(Primitive::Sphere(_)))

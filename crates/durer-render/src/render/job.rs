@@ -47,8 +47,8 @@ pub enum Sampling {
 }
 
 impl Sampling {
-    /// Returns the final number of samples of a pixel. It is one if samples affect other pixels
-    /// too: the finished value.
+    /// Returns the final number of samples of a pixel. If samples affect several pixels, it is 1,
+    /// for the finished value.
     pub fn samples(self) -> u32 {
         match self {
             Sampling::Filtered { samples, .. } => samples.max(1),
@@ -57,7 +57,7 @@ impl Sampling {
         }
     }
 
-    /// Returns the sampling with another number of samples a pixel, if it has one.
+    /// Returns the sampling with another number of samples per pixel, if it has one.
     pub fn with_samples(self, number: u32) -> Self {
         match self {
             Sampling::Filtered { filter, .. } => Sampling::Filtered { samples: number, filter },
@@ -89,8 +89,8 @@ pub struct Job {
     /// Noise threshold: a block stops when its estimated error is below it, see [`passes::error`].
     /// `None`: never.
     pub noise: Option<f32>,
-    /// Adaptive sampling: the number of samples is an average; noisier pixels get more, as the
-    /// pilot estimates.
+    /// Adaptive sampling: the number of samples is an average; pixels that are noisier in the pilot
+    /// get more.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub adaptive: bool,
     /// Integrator.
@@ -103,7 +103,7 @@ pub struct Job {
     /// Other pictures to render.
     #[serde(serialize_with = "aov_names", deserialize_with = "named_aovs")]
     pub aovs: Vec<&'static Aov>,
-    /// Depths shown as black and white; `None`: minimum and maximum of the picture, without the
+    /// Depths shown as black and white; `None`: minimum and maximum of the picture, excluding the
     /// horizon of a plane.
     pub depth_range: Option<(f32, f32)>,
     /// Scale of the false colours of light; `None`: from 0 to a percentile of the picture.
@@ -152,7 +152,7 @@ impl Default for Job {
 }
 
 impl Job {
-    /// Maximum samples a pixel.
+    /// Maximum number of samples per pixel.
     pub const MAX_SAMPLES: u32 = 1 << 20;
     /// Maximum radius of a filter in pixels.
     pub const MAX_FILTER_RADIUS: f32 = 64.0;
@@ -270,7 +270,7 @@ impl Job {
         if self.ray_aovs().any(|(aov, _)| aov.relative) { self.whole() } else { self.window() }
     }
 
-    /// Returns true if the noise threshold stops a block before its last sample.
+    /// Returns true if the noise threshold ends a block before its last sample.
     pub(super) fn is_done(&self, film: &crate::film::Film, rect: Crop, samples: u32, gain: f32) -> bool {
         self.noise.is_some_and(|noise| samples >= passes::LEAST && passes::error(film, rect, gain) <= f64::from(noise))
     }

@@ -11,10 +11,10 @@ use std::sync::Arc;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MergeError {
-    /// No parts were given.
+    /// No parts were passed.
     #[error("give at least one part to merge")]
     NoParts,
-    /// A part belongs to another picture than the first.
+    /// A part belongs to a different picture than the first part.
     #[error("`{name}` cannot be merged with `{first}`: {error}")]
     Foreign {
         /// Name of the part.

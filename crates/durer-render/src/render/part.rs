@@ -26,7 +26,7 @@ pub struct PartialRender {
     pub(super) blocks: Blocks,
     pub(super) ray_blocks: Blocks,
     state: Mutex<State>,
-    /// Number of times it was locked.
+    /// Number of times the state was locked.
     #[cfg(test)]
     pub(super) locked: std::sync::atomic::AtomicU64,
 }
@@ -48,8 +48,8 @@ pub(super) struct BlockSamples {
     pub(super) to: u32,
     /// Number of rays traced for them.
     pub(super) rays: u64,
-    /// Their sums, if there are any. Shared, so that a reader holds the lock only to clone the
-    /// pointer.
+    /// Sums of the samples, if there are any. Shared, so that a reader holds the lock only to clone
+    /// the pointer.
     pub(super) film: Option<Arc<PackedFilm>>,
     /// Variances of its pixels' means, once the pilot is complete.
     pub(super) variances: Option<Arc<[f32]>>,
@@ -273,8 +273,8 @@ impl PartialRender {
         statistics
     }
 
-    /// Returns the visible error so far, the quantity that [`Job::noise`] limits: its root mean
-    /// square over the pixels. `None` unless every pixel has two samples.
+    /// Returns the visible error so far, which [`Job::noise`] limits: a root mean square over the
+    /// pixels. `None` unless every pixel has two samples.
     pub fn noise(&self) -> Option<f64> {
         let (gain, state) = (self.gain(), self.state());
         let (mut squares, mut pixels) = (0.0, 0);

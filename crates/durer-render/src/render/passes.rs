@@ -11,8 +11,8 @@ pub const LEAST: u32 = 16;
 /// Returns the number of samples of every pixel after each pass: 1, 2, 4, 8, 16, 24, 32, 48, 64, 96
 /// and so on, up to `samples`.
 ///
-/// They depend on the number of samples only, so decisions at the ends of passes do not depend on
-/// how the picture is rendered.
+/// The ends only depend on the number of samples, so decisions at the ends of passes do not depend
+/// on how the picture is rendered.
 pub fn ends(samples: u32) -> impl Iterator<Item = u32> {
     let powers = (0..32).flat_map(|k| {
         let power = 1_u32 << k;
@@ -22,8 +22,8 @@ pub fn ends(samples: u32) -> impl Iterator<Item = u32> {
     powers.flatten().take_while(move |&end| end < samples).chain([samples])
 }
 
-/// Iterator over passes. Joins passes that would end too soon to be seen, if that does not change
-/// the result: a pass packs and unpacks every block.
+/// Iterator over passes. Joins passes that are too short to be visible, if that does not change the
+/// result, since each pass packs and unpacks every block.
 pub struct Passes<I: Iterator<Item = u32>> {
     ends: Peekable<I>,
     joins: bool,
@@ -100,7 +100,7 @@ mod tests {
     fn short_passes_are_joined_unless_they_make_decisions() {
         let of = |joins| Passes::new(ends(100), 0, joins, [0; 2]).collect::<Vec<_>>();
         assert_eq!(of(false), ends(100).collect::<Vec<_>>());
-        // The passes do no work.
+        // The passes take no time.
         assert_eq!(of(true), [1, 100]);
         assert_eq!(Passes::new(ends(100), 0, true, [8, 24]).collect::<Vec<_>>(), [1, 8, 24, 100]);
         let mut slow = Passes::new(ends(8), 0, true, [0; 2]);

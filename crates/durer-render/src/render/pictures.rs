@@ -87,8 +87,8 @@ impl PartialRender {
         ]
     }
 
-    /// Writes the colours so far, row by row, for formats that support it: the whole picture is
-    /// never in memory. `display` is called with all of them, some rows at a time.
+    /// Writes the colours so far, row by row, for formats that support it; the full picture is
+    /// never in memory. `display` is called on a few rows at a time, until all are done.
     ///
     /// # Errors
     /// Errors of the file, and [`BandsError::Image`] for formats that need all rows at once.
@@ -174,7 +174,7 @@ impl PartialRender {
         let state = self.state();
         let (colors, coverage) = self.colors(&state);
         let variance = self.summed(&state, |sums| Vec3::splat(sums.variance() as f32));
-        // With too few samples, assume the pixel's own brightness as its error.
+        // With too few samples, use the pixel's own brightness as its error.
         let sure = |(value, color): (&(Vec3, PrimaryHit), &Color)| match value.0.x.is_finite() {
             true => value.0.x,
             false => color.max_element() * color.max_element(),
@@ -247,15 +247,15 @@ impl PartialRender {
     }
 }
 
-/// Depths beyond this many times those of 95 % of the hits are a horizon.
+/// A hit counts as part of a horizon if its depth is more than this many times the 95th percentile.
 const HORIZON: f32 = 4.0;
 
 fn of_hits(values: &[(Vec3, PrimaryHit)]) -> impl Iterator<Item = Vec3> {
     values.iter().filter(|value| value.1 == PrimaryHit::Hit).map(|value| value.0)
 }
 
-/// Returns the bounds of the depths at hits, without the horizon of a plane, which would leave one
-/// grey to all else.
+/// Returns the range of the depths at hits, excluding the horizon of a plane, which would leave a
+/// single grey for everything else.
 fn seen_depths(values: &[(Vec3, PrimaryHit)]) -> Aabb {
     let mut bounds = Aabb::around(of_hits(values));
     let mut depths: Vec<f32> = of_hits(values).map(|value| value.x).collect();

@@ -10,9 +10,9 @@ use std::sync::atomic::Ordering::Relaxed;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
-    /// Samples a pixel so far; fewer where a noise threshold was met.
+    /// Samples per pixel so far; fewer in blocks below the noise threshold.
     pub samples: u32,
-    /// Maximum samples a pixel.
+    /// Maximum number of samples per pixel.
     pub all_samples: u32,
     /// Number of rays traced so far.
     pub rays: u64,

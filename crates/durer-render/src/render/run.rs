@@ -194,8 +194,8 @@ struct Clock<'a> {
     pause: Duration,
     control: &'a Control,
     stop: &'a AtomicBool,
-    /// True if every pixel has a sample, or gets all of them at once: before that, the picture has
-    /// holes.
+    /// True if every pixel has a sample, or if all pixels get one at once: until then, the picture
+    /// has holes.
     whole: bool,
     out_of_time: bool,
 }
@@ -274,7 +274,7 @@ impl Work<'_> {
         });
     }
 
-    /// Takes samples until each pixel that needs more has this many.
+    /// Takes samples until every pixel has `end` samples, unless it needs fewer.
     fn pass(&self, end: u32, alone: PollFn) {
         if !self.stop.load(Relaxed) {
             self.samples.integrator.prepare(end - 1);
@@ -320,8 +320,8 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Computes finished pixels of a tile for samplings that affect several pixels: at once if it
-    /// is a rectangle, otherwise block by block.
+    /// Computes finished pixels of a tile for samplings in which a sample affects several pixels:
+    /// in one step if the tile is a rectangle, otherwise block by block.
     fn finish(&self, tile: &[usize], at: &SampleCursor) -> Result<(), Cancelled> {
         let blocks = &self.part.blocks;
         let rects: Vec<_> = tile.iter().map(|&index| blocks.rect(index)).collect();

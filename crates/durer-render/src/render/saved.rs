@@ -35,7 +35,7 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PartError {
-    /// The bytes are something else.
+    /// The bytes are not a saved part.
     #[error("it is not a part file")]
     NotAPart,
     /// The bytes are truncated or damaged.

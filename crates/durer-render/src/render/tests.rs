@@ -82,7 +82,7 @@ fn film_does_not_depend_on_how_it_is_rendered() {
             let other = way.make(&world, &job, &AtomicBool::new(false)).unwrap();
             let difference = compare(&plain, &other);
             assert!(difference.is_none(), "{:?}, {way}: {difference:?}", job.sampling);
-            // Compare the pictures and attributes too, not only the sums.
+            // Also compare the pictures and attributes, not only the sums.
             let (a, b) = (plain.pictures().unwrap(), other.pictures().unwrap());
             assert_eq!((a.statistics, &a.attributes), (b.statistics, &b.attributes), "{way}");
             let bits = |layers: &[durer_image::Layer]| -> Vec<u32> {
@@ -94,7 +94,7 @@ fn film_does_not_depend_on_how_it_is_rendered() {
     assert_ne!(one_ray(1), one_ray(2));
 }
 
-/// Samples are generated and shaded in batches, but explained and replayed one by one.
+/// Samples are generated and shaded in batches, but explained and replayed one at a time.
 #[test]
 fn film_equals_the_sum_of_single_samples() {
     let folder = tempfile::tempdir().unwrap();
@@ -212,8 +212,8 @@ fn noise_threshold_controls_the_number_of_samples() {
     let counts: Vec<f32> = part.pictures().unwrap().layers[1].image.pixels.iter().map(|p| p.x).collect();
     let (least, most) = counts.iter().fold((f32::MAX, 0.0_f32), |(a, b), &n| (a.min(n), b.max(n)));
     assert!(least == passes::LEAST as f32 && most >= 3.0 * least, "{least} {most}");
-    // The true error is as requested, against a picture with many more samples, pixel by pixel in
-    // sqrt(Y).
+    // The true error matches the threshold, measured against a picture with many more samples,
+    // pixel by pixel in sqrt(Y).
     let truth = all(&world, &Job { sampling: filtered(1024), noise: None, ..job.clone() }).pictures().unwrap();
     let (ours, truth) = (&part.pictures().unwrap().layers[0].image, &truth.layers[0].image);
     let seen = |p: &Vec3| (0.2126 * p.x + 0.7152 * p.y + 0.0722 * p.z).max(1.0 / 256.0).sqrt();
@@ -288,8 +288,8 @@ fn parts_survive_serialization_and_invalid_bytes_are_rejected() {
         assert!(matches!(PartialRender::read(&changed), Err(PartError::Damaged)), "{at}");
     }
     assert!(matches!(PartialRender::read(b"P6 1 1 255 ..."), Err(PartError::NotAPart)));
-    // With a valid checksum the content is arbitrary: reading gives an error, or a canonical part
-    // whose pictures can be made.
+    // With a valid checksum, the content is arbitrary: reading it gives an error, or a canonical
+    // part that can be converted to pictures.
     for at in (8..bytes.len() - 32).filter(|at| *at < 1500 || at % 7 == 0) {
         for new in [0, 0x80, 0xff, bytes[at] ^ 4] {
             let mut changed = bytes[..bytes.len() - 32].to_vec();
@@ -347,7 +347,7 @@ fn panic_is_an_error_with_its_sample_and_other_work_is_kept() {
     };
     assert_eq!(panicked.sample, Some(0), "{panicked}");
     assert!(panicked.message.contains("index out of bounds") && panicked.to_string().contains("pixel "), "{panicked}");
-    // Replaying the sample panics too; distant neighbours do not.
+    // Replaying the sample panics, too; distant neighbours do not panic.
     let alone = |x, y| {
         let one = || replay(&broken, &job, &Control::default(), (x, y), Some(0)).map(|color| color.is_some());
         std::panic::catch_unwind(std::panic::AssertUnwindSafe(one))
@@ -406,7 +406,7 @@ fn memory_is_estimated_before_it_is_allocated() {
     // A shard by tiles only stores the sums of the pixels in its tiles.
     let shard = Shard { index: 1, count: 100, by: ShardBy::Tiles };
     assert!(PartialRender::bytes_needed(&job, shard) < PartialRender::bytes_needed(&job, Shard::WHOLE));
-    // The stored samples of the course count too.
+    // The stored samples of the course count as memory, too.
     let filter = Some(CourseFilter::Gaussian { sigma: 30.0 });
     let course = Sampling::Course2004 { sampler: Sampler::Random, samples: 65536, filter };
     let part = PartialRender::new(&world, &Job { sampling: course, ..small() }, Shard::WHOLE).unwrap();

@@ -7,7 +7,7 @@ use durer_scene::source::Digest;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// A way to render a picture.
+/// One way of rendering a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RenderVariant {
     /// Index among worlds of the same scene with different acceleration structures.
@@ -34,7 +34,7 @@ impl fmt::Display for RenderVariant {
     }
 }
 
-/// An error of rendering in some way.
+/// An error of rendering a variant.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum VariantError {
@@ -57,7 +57,7 @@ impl RenderVariant {
     pub const PLAIN: RenderVariant =
         RenderVariant { world: 0, threads: 1, tile: 16, shards: 1, by: ShardBy::Tiles, interruptions: 0, seed: 0 };
 
-    /// Returns a numbered way, determined by the job and the number of worlds.
+    /// Returns a numbered variant, determined by the job and the number of worlds.
     pub fn numbered(number: u64, job: &Job, worlds: usize) -> RenderVariant {
         let pick = |dimension: u32, count: u64| hash(number, 0, 0, 0, dimension) % count.max(1);
         let samples = u64::from(job.sampling.samples());
@@ -77,7 +77,7 @@ impl RenderVariant {
         }
     }
 
-    /// Renders the job's picture in this way.
+    /// Renders the job's picture as this variant specifies.
     ///
     /// # Errors
     /// [`VariantError`].
@@ -123,7 +123,7 @@ impl RenderVariant {
     }
 }
 
-/// A way that gives a different film.
+/// A variant that gives a different film.
 #[derive(Clone, Debug)]
 pub struct Difference {
     /// Expected hash.

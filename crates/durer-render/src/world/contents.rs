@@ -39,8 +39,8 @@ pub struct Contents {
     pub shading: ShadingRules,
     /// Rules for displaying AOVs.
     pub display: DisplayRules,
-    /// Rules of the dialect from which the others were resolved. Rendering does not use them;
-    /// checks, lessons and the student's tracer do.
+    /// Rules of the dialect from which the others were resolved. They are not used for rendering,
+    /// but by checks, lessons and the student's tracer.
     pub(crate) rules: Rules,
 }
 
@@ -63,7 +63,7 @@ pub struct Assets {
 
 impl World {
     /// Edits the description's data. Changes the world's [identity](World::digest); data derived
-    /// from objects, such as the acceleration structure, stay.
+    /// from objects, such as the acceleration structure, is kept.
     pub fn edit(&mut self) -> &mut Contents {
         self.edited = true;
         self.extents.clear();
@@ -160,8 +160,8 @@ impl World {
         self.contents.display
     }
 
-    /// Returns the dialect's rules that it was compiled with, for checks, lessons and the student's
-    /// tracer.
+    /// Returns the dialect's rules with which the scene was compiled, for checks, lessons and the
+    /// student's tracer.
     pub fn rules(&self) -> &Rules {
         &self.contents.rules
     }

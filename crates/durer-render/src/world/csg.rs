@@ -4,27 +4,25 @@
 //! the line, each crossing toggles one part's inside bit, and with it the counts of the operations
 //! above it. Where the bit of the whole changes, the line enters or leaves the solid. Source: Roth,
 //! *Ray Casting for Modeling Solids*, Computer Graphics and Image Processing 18, 1982; with counts
-//! for the operations, so that an operation of many parts costs no more.
+//! for the operations, so that an operation with many parts is not slower.
 //!
 //! Coincident faces: crossings of different parts count as one if the faces are nearly parallel and
-//! their distance across the surfaces is at most what the rounding of the scene's coordinates can
-//! cause: for boxes, one or two steps of single precision at each. Crossings are computed in the
-//! parts' own frames and in double precision, so a wall of four such steps stands. All their bits
-//! toggle together, so no thin skin is left, or appears, where two faces share a plane. If the bit
-//! of the whole changes, the surface belongs to the first part in the file that could have made the
-//! change: alone, or as the last.
+//! their distance across the surfaces is at most what single precision can resolve there, about
+//! 2^-19 of the coordinates. All their bits toggle together, so no thin skin remains or appears
+//! where two faces share a plane. If the bit of the solid changes, the surface belongs to the first
+//! part in the file that could have made the change: alone, or as the last.
 //!
 //! Faces that meet at an angle, as at an edge, count as one only within the rounding of the
 //! crossings, which is proportional to the parts' own size however far away they are. A larger
 //! tolerance would lose corners near the edge, and light would leak in.
 //!
-//! The `part` of a hit is the index of a triangle or shape among those of all parts, with two flag
-//! bits: the surface is inverted, and the ray enters the solid.
+//! A hit's `part` is the index of a triangle or shape among those of all parts, with two flag bits:
+//! the surface is inverted, and the ray enters the solid.
 
 use super::solid::{BoolOp, Solid};
 use super::{Geometry, Object, ShadingRules};
 use durer_bvh::{Bvh, TraversalCounter};
-use durer_scene::math::{Aabb, Ray, Ray64, Vec2};
+use durer_scene::math::{Aabb, Ray, Ray64, Vec2, Vec3};
 use durer_scene::shape::{Axis, Shape, ShapeHit, Surface};
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -64,9 +62,8 @@ struct Leaf {
     edge: Edge,
     /// Index of its first triangle.
     first: u32,
-    /// Tolerance for the position of its surface; `None` for an unbounded part, whose tolerance is
-    /// that of the coordinates at the crossing.
-    slack: Option<f32>,
+    /// Minimum tolerance for the position of its surface.
+    slack: f32,
     /// Bound of the error of a crossing.
     rounding: f32,
 }
@@ -113,19 +110,19 @@ struct Scratch {
     state: State,
 }
 
-/// Containment of the current point.
+/// For the current point, the parts that contain it.
 #[derive(Default)]
 struct State {
     counts: Vec<u32>,
     inside: Vec<bool>,
-    /// For each part, id of the last group of coincident crossings that includes one of the part.
-    /// Ids are never reused.
+    /// For each part, id of the last group of coincident crossings that includes a crossing of this
+    /// part. Ids are never reused.
     groups: Vec<u64>,
     last_group: u64,
 }
 
 impl State {
-    /// Starts outside of all parts.
+    /// Starts outside all parts.
     fn begin(&mut self, parts: usize, start: &[u32]) {
         self.counts.clear();
         self.counts.extend_from_slice(start);
@@ -163,7 +160,7 @@ impl Csg {
             join => join,
         };
         csg.add(solid, None);
-        csg.slack = csg.leaves.iter().filter_map(|leaf| leaf.slack).map(|slack| 2.0 * slack).fold(0.0, f32::max);
+        csg.slack = csg.leaves.iter().map(|leaf| 2.0 * leaf.slack).fold(0.0, f32::max);
         // Parts do not matter beyond the bounds of the whole, except that they may coincide with
         // parts that do.
         let margin = GRAZING as f32 * csg.slack;
@@ -340,8 +337,8 @@ impl Csg {
     ///
     /// A ray that leaves the solid knows its starting side. If the crossings disagree, it starts
     /// closer to an edge than single precision can resolve, and a face is on the wrong side of its
-    /// origin. A face that the ray should hit, it hits at once; a face that should be behind it, it
-    /// ignores.
+    /// origin. Then the ray hits a face that it should hit at once, and ignores a face that should
+    /// be behind it.
     fn sweep(&self, ray: &Ray64, inside: Option<bool>, scratch: &mut Scratch) -> Option<(ShapeHit, u32)> {
         let Scratch { events, state } = scratch;
         if events.is_empty() {
@@ -452,8 +449,8 @@ impl Csg {
         (1.001 * GRAZING * (f64::from(self.slack) + 4.0 * f64::from(f32::EPSILON) * reach), speed)
     }
 
-    /// Returns the end of the group of crossings that coincide with one, each of another part: see
-    /// the head of this file.
+    /// Returns the end of the group of crossings that coincide with the first, each from a
+    /// different part: see the head of this file.
     fn coincident(&self, ray: &Ray64, events: &[Event], from: usize, state: &mut State) -> usize {
         state.last_group += 1;
         let State { groups, last_group: group, .. } = state;
@@ -473,9 +470,8 @@ impl Csg {
         let line = ray.line();
         let speed = line.dir.length();
         let gap = (b.t - a.t) * speed;
-        let at_crossing = 2.0 * f64::from(f32::EPSILON) * line.at(a.t).abs().max_element();
-        let slack = [a, b].map(|event| self.leaves[event.leaf as usize].slack.map_or(at_crossing, f64::from));
-        let slack = slack[0] + slack[1];
+        let [s, u] = [a, b].map(|event| self.leaves[event.leaf as usize].slack);
+        let slack = f64::from(s + u) + 4.0 * f64::from(f32::EPSILON) * line.at(a.t).abs().max_element();
         let [r, q] = [a, b].map(|event| self.leaves[event.leaf as usize].rounding);
         if gap.is_nan() || gap <= f64::from(r + q).min(slack) || gap > GRAZING * slack {
             return gap <= slack;
@@ -494,14 +490,14 @@ impl Csg {
     /// Returns the crossing whose surface is visible, of a group that changed the whole together.
     fn choose<'e>(&self, events: &'e [Event], state: &mut State) -> &'e Event {
         let mut could: Vec<&Event> = Vec::new();
-        // Crossings whose undoing would undo the change.
+        // Crossings without which the change would not happen.
         for event in events {
             if self.toggle(event.leaf, state) {
                 could.push(event);
             }
             self.toggle(event.leaf, state);
         }
-        // Crossings that would make the change alone: undo all, and redo each.
+        // Crossings that cause the change alone: undo all, and redo each.
         for event in events {
             self.toggle(event.leaf, state);
         }
@@ -532,15 +528,12 @@ fn order(a: &Event, b: &Event) -> std::cmp::Ordering {
     a.t.total_cmp(&b.t).then(a.leaf.cmp(&b.leaf)).then(a.part.cmp(&b.part))
 }
 
-/// Returns a bound of the distance between an object's surface as it was meant and as its rounded
-/// coordinates have it: half a rounding of each coordinate of a corner, and the rounding within
-/// its own frame.
-fn slack_of(object: &Object) -> Option<f32> {
+/// Returns two roundings of an object's coordinates, in world and in object space.
+fn slack_of(object: &Object) -> f32 {
+    let (Some(world), Some(local)) = (object.bounds(), object.local_bounds()) else { return 0.0 };
     let reach = |b: Aabb| b.min.abs().max(b.max.abs());
-    let (world, local) = (reach(object.bounds()?), reach(object.local_bounds()?));
-    let moved = object.to_world.as_ref().map_or(local, |to_world| to_world.spread(local));
-    // Half the diagonal of a cube is slightly less than 0.87.
-    Some(f32::EPSILON * (0.87 * world.max_element() + 2.0 * moved.max_element()))
+    let moved = object.to_world.as_ref().map_or(Vec3::ZERO, |to_world| to_world.spread(reach(local)));
+    2.0 * f32::EPSILON * (reach(world).max_element() + moved.max_element())
 }
 
 #[cfg(test)]

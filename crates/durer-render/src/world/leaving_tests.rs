@@ -112,8 +112,8 @@ fn normals_follow_mirrored_and_sheared_surfaces() {
             let world = testing::shapes(&[(shape.clone(), affine)], AccelKind::Bvh);
             let Some((ray, first)) = hit(&world, &shape, &affine, &mut random) else { continue };
             let surface = world.interaction(ray, first).surface;
-            // World-space field of the surface: the distance of the inversely transformed point
-            // from the shape.
+            // Signed distance to the surface in world space: the distance of the inversely
+            // transformed point from the shape.
             let inverse = affine.inverse();
             let field = |p: DVec3| distance(&shape, inverse.transform_point3(p));
             let p = surface.point();

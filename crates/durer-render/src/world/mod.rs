@@ -51,12 +51,12 @@ pub struct World {
     bodies: Vec<u32>,
     /// Extent of each object, computed on first use; empty if light enters no object.
     extents: Vec<OnceLock<Option<f32>>>,
-    /// Simple shapes outside the structure, tested eight at a time.
+    /// Simple shapes outside the tree, tested eight at a time.
     pub(crate) packs: PrimitivePacks,
     /// The whole world in a form for batches of rays, if it has few objects.
     pub(crate) small_world: Option<SmallWorld>,
-    /// Other objects outside the structure: unbounded ones, and all if they are so few that no tree
-    /// pays.
+    /// Other objects outside the structure: unbounded ones, or all objects if there are too few for
+    /// a tree to pay off.
     pub(crate) loose: Vec<u32>,
     pub(crate) accel: Accel,
     /// Spheres of the tree in the order of its leaves, which saves a lookup. Other objects have
@@ -75,7 +75,8 @@ pub enum Accel {
         grid: Grid,
         /// Object and part of each element of the grid.
         parts: Vec<(u32, u32)>,
-        /// Object and part of the few that reach far beyond the grid. Every ray tests them.
+        /// Object and part number of the few parts that extend far beyond the grid. Every ray tests
+        /// them.
         wide: Vec<(u32, u32)>,
     },
     /// Brute force.

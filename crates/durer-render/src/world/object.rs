@@ -281,7 +281,7 @@ impl Object {
         let local = self.local_ray(ray);
         let crossing = match &self.geometry {
             Geometry::Primitive(shape) => shape.intersect(&local),
-            // Reject the rays that the tree rejects: they hit nothing.
+            // Reject the rays that the tree rejects, because they cannot hit anything.
             Geometry::Mesh(_) if !durer_bvh::internal::is_sound(&local) => None,
             Geometry::Mesh(tree) => tree
                 .bvh

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub enum Epsilon {
     /// Hits count beyond this `t`.
     Least(f32),
-    /// Offset of the ray's start, in multiples of its direction.
+    /// The ray's origin is offset by this multiple of its direction.
     Along(f32),
 }
 
@@ -20,14 +20,16 @@ pub struct ShadingRules {
     /// Rule that keeps secondary rays off surfaces. `None`: they start next to the surface, by the
     /// bound on its error, and every hit counts.
     pub epsilon: Option<Epsilon>,
-    /// A hit's position is the rounded point of the ray, without a bound on its error.
+    /// A hit's position is the rounded point on the ray, without an error bound.
     pub points_on_ray: bool,
-    /// A ray carries one index of refraction, and behind glass is air. Otherwise media nest.
+    /// A ray carries one index of refraction, and air is assumed behind glass. Otherwise, media
+    /// nest.
     pub one_medium: bool,
-    /// A ray's throughput is multiplied by the length of a colour. Otherwise by its largest
+    /// A ray's throughput is multiplied by the length of a colour; otherwise, by its largest
     /// component.
     pub weight_by_length: bool,
-    /// The shading normal decides which side of a surface is visible. Otherwise the geometric one.
+    /// The shading normal determines which side of a surface is seen; otherwise, the geometric
+    /// normal.
     pub shaded_sides: bool,
     /// A surface seen from behind is black, unless it is shaded on both sides.
     pub black_backs: bool,
@@ -43,9 +45,9 @@ pub struct ShadingRules {
     pub long_mirrors: bool,
     /// R0 assumes that the ray's side of glass is air.
     pub exit_r0: bool,
-    /// Only a blocker seen from its front casts a shadow.
+    /// Only a blocker that is seen from its front casts a shadow.
     pub shadow_fronts: bool,
-    /// A ray that leaves glass without having entered it comes from air.
+    /// A ray that leaves glass without having entered it is assumed to start in air.
     pub air_at_eye: bool,
     /// Only meshes have texture coordinates.
     pub mesh_textures: bool,
@@ -71,10 +73,10 @@ pub struct DisplayRules {
     /// The background of a depth picture is black, even if far is white.
     #[serde(default)]
     pub black_sky: bool,
-    /// For misses, a picture of normals shows the previous hit's normal, in rows from the bottom.
+    /// At misses, a normal picture shows the previous hit's normal, in rows from the bottom.
     #[serde(default)]
     pub stale_normals: bool,
-    /// A depth is clamped to the given range before it becomes a grey.
+    /// A depth is clamped to the given range before it is converted to grey.
     #[serde(default)]
     pub clamped_depths: bool,
     /// Lumens per watt by colour channel, if light is in watts.

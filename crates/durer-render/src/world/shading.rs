@@ -54,7 +54,7 @@ fn bent(n: Vec3, n_geo: Vec3, wo: Vec3) -> Vec3 {
         return n;
     }
     let across = n - cosine * n_geo;
-    // Differences from rounding have no direction.
+    // A difference due to rounding has no meaningful direction.
     if across.length_squared() < 1e-8 {
         return n_geo;
     }
@@ -243,7 +243,7 @@ impl World {
         dir.dot(at.surface.n_geo) > 0.0 && self.parts(at).iter().all(|part| hides_backs(part.phong))
     }
 
-    /// Returns true if there are such faces.
+    /// Returns true if some material has hidden backs.
     pub(crate) fn finds_hidden_backs(&self) -> bool {
         self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if hides_backs(phong)))
     }
@@ -331,8 +331,8 @@ impl World {
 }
 
 /// Adds the lobes of the course's material in physical units: matte with `diffuseColor` over pi,
-/// Blinn's or Phong's highlight, and delta lobes for mirror and glass. Scales the whole down if it
-/// would reflect more than it receives.
+/// Blinn's or Phong's highlight, and delta lobes for mirror and glass. Scales all lobes down if
+/// they would reflect more light than arrives.
 fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, view: View) {
     let View { lanes, wo, normal, eta, .. } = view;
     let phong = part.phong;

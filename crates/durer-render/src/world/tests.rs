@@ -1,4 +1,4 @@
-//! Tests that the three structures return the same hits, bit for bit.
+//! Tests that the three structures return identical hits, bit for bit.
 
 use super::*;
 use crate::compile::{AccelKind, testing};

@@ -299,7 +299,8 @@ mod tests {
         std::thread::spawn(move || {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
             let cell = OnceLock::new();
-            // Yield as a thread does that waits for a part of the table: it steals the next tile.
+            // Yield as a thread does while it waits for a part of the table: it steals the next
+            // tile.
             let tile = || *once(&cell, || (rayon::yield_now(), 5).1);
             let _ = sender.send(pool.install(|| rayon::join(tile, tile)));
         });

@@ -27,7 +27,7 @@ pub struct Film {
     weight: f32,
 }
 
-/// Place of a metal's index between the largest (0) and the smallest (1) that its reflectance
+/// Position of a metal's index between the largest (0) and the smallest (1) that its reflectance
 /// allows. This value suits gold, copper, silver and aluminium.
 ///
 /// Source of the formulas: Gulbrandsen, *Artist Friendly Metallic Fresnel*, JCGT 3(4), 2014.
@@ -139,13 +139,13 @@ fn airy(first: f32, second: Vec2, phase: f32) -> f32 {
 }
 
 /// Mean of [`airy`] over a colour channel under daylight: its Fourier series in the phase, with
-/// each order averaged over daylight.
+/// each order averaged over the daylight spectrum.
 fn by_orders(first: f32, second: Vec2, shift: f32, channel: usize) -> f32 {
     let (r1, r2) = (first * first, second.length_squared());
     let through = 1.0 - r1;
     let again = through * through * r2 / (1.0 - r1 * r2).max(1e-6);
     let mut sum = r1 + again;
-    // Each order is the one before times `step`.
+    // Each order is the previous one times `step`.
     let step = -first * second;
     let mut order = step;
     for number in 1..=ORDERS {

@@ -25,8 +25,8 @@ fn polarised(cosine: f32, eta: f32) -> [f32; 2] {
     [parallel * parallel, perpendicular * perpendicular]
 }
 
-/// Reflected colours of a metal at normal incidence and at cosine 1/7, seen from a medium of index
-/// `outside`.
+/// Colours of a metal's reflection at normal incidence and at cosine 1/7, seen from a medium of
+/// index `outside`.
 pub fn conductor_colors(eta: &SpectrumSource, k: &SpectrumSource, outside: f32) -> [Color; 2] {
     [1.0, 1.0 / 7.0].map(|cosine| match (eta, k) {
         (SpectrumSource::Rgb(n), SpectrumSource::Rgb(k)) => {
@@ -128,7 +128,7 @@ pub fn schlick_82(f0: Color) -> Color {
     f0 + (Color::ONE - f0) * fp::pow(6.0 / 7.0, 5.0)
 }
 
-/// Reflectance of a metal by its colour at normal incidence and a tint at 82 degrees.
+/// Reflectance of a metal, given by its colour at normal incidence and a tint at 82 degrees.
 ///
 /// Source: Kutz, Hasan and Edmondson, *Novel aspects of the Adobe Standard Material*, 2021, section
 /// 2.3; OpenPBR, Metal.
@@ -143,7 +143,7 @@ impl F82 {
     /// Metal that reflects all light at every angle.
     pub const WHITE: F82 = F82 { f0: Spectrum::ONE, dip: Spectrum::ZERO };
 
-    /// Metal by its colour at normal incidence and its tint.
+    /// Metal with a colour at normal incidence and a tint.
     pub fn new(f0: Spectrum, tint: Spectrum) -> Self {
         const COSINE: f32 = 1.0 / 7.0;
         let rest = 1.0 - COSINE;
@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn conductor_colours_agree_for_curve_and_rgb() {
-        // Gold by three wavelength bands, and by three colours.
+        // Gold given by three wavelength bands, and by three colours.
         let curve = |c: [f32; 3]| {
             let rows = [[300.0, c[2]], [489.0, c[2]], [490.0, c[1]], [579.0, c[1]], [580.0, c[0]], [900.0, c[0]]];
             SpectrumSource::Curve(rows.to_vec())

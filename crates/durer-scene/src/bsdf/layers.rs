@@ -125,7 +125,7 @@ fn parts(shares: Spectrum, of: Spectrum) -> Spectrum {
 /// View of a point of a principled material.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
-    /// Lanes that light is carried in.
+    /// Lanes in which light is represented.
     pub lanes: &'a Lanes,
     /// Local direction to the viewer.
     pub wo: Vec3,
@@ -169,7 +169,7 @@ impl<'t> Stack<'_, 't> {
         if m.fuzz_weight > 0.0 && !view.inside {
             let roughness = m.fuzz_roughness;
             let reflectance = albedo::fuzz(mu, roughness);
-            // At grazing angles the fibres would reflect more light than arrives.
+            // At grazing angles, the fibres would reflect more light than arrives.
             let scale = m.fuzz_weight * (1.0 / reflectance).min(1.0);
             bsdf.push(
                 Fuzz { roughness },
@@ -241,7 +241,7 @@ impl<'t> Stack<'_, 't> {
     /// Film on a dielectric of relative index `eta`, if there is one.
     fn film(&self, eta: f32) -> Option<Film> {
         let m = self.here;
-        // Outside is air. From inside, the body is before the film.
+        // The outside is air. Seen from inside, the body is in front of the film.
         let ior = m.thin_film_ior * eta.min(1.0);
         (m.thin_film_weight > 0.0)
             .then(|| Film::on_dielectric(self.view.lanes, m.thin_film_thickness, ior, eta, m.thin_film_weight))
@@ -331,7 +331,7 @@ impl<'t> Stack<'_, 't> {
             return bsdf.push(Mirror, reflected, reflected.max_element());
         }
         let reflectance = self.facets(ggx, roughness);
-        // Every further reflection takes the metal's colour again.
+        // Every further reflection is tinted by the metal's colour again.
         let again = Spectrum::ONE + self.base * ((1.0 - reflectance) / reflectance);
         let rough = Rough { ggx: ggx.clamped(), facet: Facet::Metal(f82), behind: false };
         bsdf.push(rough, weight * again, (weight * f82.at(mu)).max_element());
@@ -339,7 +339,7 @@ impl<'t> Stack<'_, 't> {
 
     fn glass(&self, bsdf: &mut Bsdf<'t>, roughness: f32, weight: Spectrum) {
         let (m, View { wo, inside, eta, .. }) = (self.here, self.view);
-        // With a depth the colour belongs to the body, not to its surface.
+        // With a depth, the colour belongs to the interior, instead of the surface.
         let tint = match m.transmission_depth > 0.0 {
             true => Spectrum::ONE,
             false => self.view.lanes.reflectance(m.transmission_color),
@@ -381,7 +381,7 @@ impl<'t> Stack<'_, 't> {
         let (m, wo, mu) = (self.here, self.view.wo, self.view.wo.z);
         let (eta, ggx) = (m.specular_ior, Ggx::new(roughness, m.specular_anisotropy));
         let color = self.view.lanes.reflectance(m.transmission_color);
-        // With a depth the inside has the colour; without one the colour tints all transmitted
+        // With a depth, the interior has the colour; without one, the colour tints all transmitted
         // light.
         let (inside, tint) = if m.transmission_depth > 0.0 { (Some(color), Spectrum::ONE) } else { (None, color) };
         let sheet = Sheet { eta, inside };

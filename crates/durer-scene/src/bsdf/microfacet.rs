@@ -65,8 +65,8 @@ impl Ggx {
         if slope == 0.0 {
             return 0.0;
         }
-        // This is (sqrt(1 + s) - 1) / 2 without cancellation. Along the surface everything is
-        // hidden.
+        // This is (sqrt(1 + s) - 1) / 2 without cancellation. For directions along the surface,
+        // everything is hidden.
         let s = slope / z2;
         if s.is_finite() { 0.5 * s / ((1.0 + s).sqrt() + 1.0) } else { f32::INFINITY }
     }

@@ -69,7 +69,7 @@ impl Cells {
         }
         let mut expected: Vec<f64> = (0..all).map(|cell| self.expected(cell, &pdf)).collect();
         let density = expected.iter().sum::<f64>() / f64::from(self.samples);
-        // Failed samples account for the remainder to 1.
+        // Failed samples account for the missing probability.
         expected.push((f64::from(self.samples) * (1.0 - density)).max(0.0));
         let mut cells: Vec<(f64, f64)> = expected.into_iter().zip(counts).collect();
         cells.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -206,7 +206,7 @@ impl<'a> Furnace<'a> {
     }
 
     /// Albedo at a roughness and a cosine of the view, and its standard error. Light that enters
-    /// glass counts by its flux, since its radiance grows with the square of the index.
+    /// glass is measured by its flux, since its radiance grows with the square of the index.
     pub fn gives(&self, roughness: f32, cosine: f32, samples: u32) -> (f64, f64) {
         self.gives_to(FurnaceView { roughness, cosine, ..FurnaceView::default() }, samples)
     }
@@ -268,6 +268,6 @@ pub(super) fn reflectance(bsdf: &Bsdf, wo: Vec3, samples: u32) -> (f64, f64) {
     }
     let n = f64::from(samples);
     let mean = sums.0 / n;
-    // The stratified points have a smaller error than this estimate, or barely a larger one.
+    // The error of the stratified points is smaller than this estimate, or only slightly larger.
     (mean, ((sums.1 / n - mean * mean).max(0.0) / n).sqrt())
 }

@@ -1,6 +1,6 @@
 //! Aperture of a lens: a disc, or a regular polygon if the lens has straight blades.
 //!
-//! Shirley and Chiu's concentric map takes the unit square to the disc and preserves relative areas
+//! Shirley and Chiu's concentric map maps the unit square to the disc and preserves relative areas
 //! and neighbourhoods (*A Low Distortion Map Between Disk and Square*, Journal of Graphics Tools
 //! 2(3), 1997). A sector of the disc then maps to the triangle of a blade: the fraction of the
 //! angle becomes the position along the blade, and the radius scales the triangle.

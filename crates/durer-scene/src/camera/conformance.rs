@@ -1,5 +1,5 @@
-//! Tests of properties that every [`Camera`] must have: each default camera and random ones
-//! generated from its description.
+//! Tests of properties that every [`Camera`] must have: for each kind, the default camera and
+//! random ones generated from its description.
 
 use super::*;
 use crate::describe::{Constraint, DescribedList, Field, Kind, Value};
@@ -50,7 +50,7 @@ fn random_camera(kind: &Camera, random: &mut Random) -> Camera {
             assert_eq!(field.rule.validate(&value), Ok(()), "{}", field.name);
             camera.set(i, value);
         }
-        // Reject cameras that see almost nothing: they would pass every test.
+        // Reject cameras that see almost nothing, since they would pass every test.
         let seen = (0..200).filter(|_| looked(&camera, random).1.is_some()).count();
         if camera.validate().is_ok() && seen > 40 {
             return camera;
@@ -65,7 +65,7 @@ fn frame(camera: &Camera) -> CameraBasis {
 /// Random sample in the natural picture, and its ray.
 fn looked(camera: &Camera, random: &mut Random) -> (CameraSample, Option<Ray>) {
     let half = camera.proportions().map_or(Vec2::ONE, |sides| sides / sides.max_element());
-    // Keep off the edge, so that rounding does not leave the picture.
+    // Stay off the edge, so that rounding does not leave the picture.
     let point = 0.98 * half * Vec2::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0));
     let sample = CameraSample { lens: Vec2::new(random.unit(), random.unit()), ..CameraSample::at(point) };
     (sample, camera.ray(&frame(camera), &sample))
@@ -202,8 +202,8 @@ fn footprints_match_areas_by_differences() {
                 skipped += 1;
                 continue;
             };
-            // If the step sizes disagree, at a joint of a path for example, differences do not
-            // approximate the slope.
+            // If different step sizes disagree, for example at a joint of a path, differences do
+            // not approximate the slope.
             let apart = (fine - coarse).abs().max((fine - coarsest).abs());
             let stated = f64::from(camera.footprint(&frame(camera), &sample, t));
             let tolerance = 0.001 * fine + error + apart;

@@ -86,8 +86,8 @@ impl EyeCircle {
             return None;
         }
         let distance = square.sqrt();
-        // Seen from the circle's centre, the point lies this much farther to the right than seen
-        // from the eye.
+        // Seen from the circle's centre, the point is this much farther to the right than seen from
+        // the eye.
         let heading = fp::atan2_f64(point.x, point.z) - fp::atan2_f64(self.radius, distance);
         Some((wrapped(heading), distance))
     }

@@ -173,7 +173,7 @@ pub trait Projection {
     ///
     /// # Errors
     ///
-    /// A message that says why the camera is invalid.
+    /// A message with the reason why the camera is invalid.
     fn validate(&self) -> Result<(), String> {
         Ok(())
     }
@@ -183,7 +183,8 @@ pub trait Projection {
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray>;
 
     /// Calls `take` with the index and the ray of each sample, in order. See [`Projection::ray`]. A
-    /// callback lets the caller store each ray in place: copying whole packets stalls.
+    /// callback lets the caller store each ray in place: copying entire packets stalls the
+    /// processor.
     fn rays<const N: usize>(
         &self,
         frame: &CameraBasis,

@@ -1,4 +1,4 @@
-//! Dome picture: a fisheye projector throws it on the dome, for a viewer at another position.
+//! Dome picture: a fisheye projector projects it onto the dome, for a viewer at another position.
 //!
 //! A point of the picture leaves the projector P in a direction d (an equidistant fisheye along the
 //! dome's pole) and meets the dome, a part of a unit sphere, at D = P + s d. The viewer V sees it

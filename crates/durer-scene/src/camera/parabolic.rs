@@ -4,8 +4,8 @@
 //! reflects every ray towards the focus along the axis: a direction at the angle θ from the axis is
 //! seen at r = h tan(θ/2). The picture is oriented like a map seen from above; for a viewer in the
 //! focus who looks up, left and right are exchanged. The rim of the disc sees half the field of
-//! view, r = 1 at θ = angle / 2; the horizon is at r = h. The lens itself, which hides the centre
-//! of a real picture, is left out.
+//! view, r = 1 at θ = angle / 2; the horizon is at r = h. The lens, which hides the centre of a
+//! real picture, is omitted.
 //!
 //! Source: Nayar, *Catadioptric Omnidirectional Camera*, CVPR 1997; Baker, Nayar, *A Theory of
 //! Single-Viewpoint Catadioptric Image Formation*, IJCV 35(2), 1999.

@@ -4,7 +4,7 @@
 //! point -w (x, y) of the film, with w = f tan(angle / 2). Light reaches it along straight lines
 //! through all points h of the hole: direction = (h + w (x, y), f). A far point blurs to a disc as
 //! large as the hole, a near point to a larger disc, so a small hole gives an almost sharp picture.
-//! Diffraction is left out.
+//! Diffraction is ignored.
 //!
 //! Source: Renner, *Pinhole Photography*, 4th edition, 2008, chapter 5, for the geometry.
 

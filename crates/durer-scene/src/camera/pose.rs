@@ -159,7 +159,7 @@ impl CameraBasis {
         let screen_point = aim == Aim::ScreenPoint;
         let unit = |v, fallback| if screen_point { scaled_or(v, fallback) } else { aim.unit_or(v, fallback) };
         let forward = unit(pose.direction, Vec3::NEG_Z);
-        // Operands of the cross product: some years use the direction of any length.
+        // Operands of the cross product: some years use the direction without normalising it.
         let (along, over) = match aim {
             Aim::Of2012 | Aim::Of2016 => (pose.direction, pose.up),
             Aim::Of2020 => (forward, aim.unit_or(pose.up, Vec3::Y)),

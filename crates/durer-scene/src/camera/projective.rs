@@ -13,7 +13,7 @@
 //! ```
 //!
 //! Rays need the inverse, by Newton's method. The camera sees nothing where the distortion folds
-//! back on itself: the model has no meaning there.
+//! back on itself, since the model is meaningless there.
 //!
 //! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 //! sections 6.1, 6.2 and A4.1; Brown, *Decentering Distortion of Lenses*, Photogrammetric
@@ -101,7 +101,8 @@ impl ProjectiveCamera {
         (1.0 + s * (k1 + s * (k2 + s * k3)), k1 + s * (2.0 * k2 + s * 3.0 * k3))
     }
 
-    /// True if the distorted radius grows with the radius all the way from the centre to a point.
+    /// True if the distorted radius increases with the radius everywhere between the centre and a
+    /// point.
     fn unfolded(&self, point: DVec2) -> bool {
         let end = point.length_squared();
         // d/dr of r (1 + k1 r² + ...), as a function of s = r²; its extrema are at the roots of its

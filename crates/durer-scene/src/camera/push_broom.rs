@@ -1,8 +1,8 @@
-//! Push-broom: a line of pixels that moves in a straight line while it records, as in satellites
-//! and scanners.
+//! Push-broom camera: a line of pixels that moves in a straight line while it records, as in
+//! satellites and scanners.
 //!
-//! The column at the fraction u of the way is a fan of rays from e(u) = start + u (end - start):
-//! direction = forward + h up, |h| <= tan(angle / 2). The picture has perspective across the way,
+//! The column at the fraction u of the path is a fan of rays from e(u) = start + u (end - start):
+//! direction = forward + h up, |h| <= tan(angle / 2). The picture has perspective across the path,
 //! but not along it. The area across a ray grows linearly with distance: t |m·right| / |direction|²
 //! per du dh, m = end - start.
 //!
@@ -43,7 +43,7 @@ impl PushBroomCamera {
         self.end.as_dvec3() - self.start.as_dvec3()
     }
 
-    /// Returns the fraction of the way and the height in the fan for a sample.
+    /// Returns the fraction of the path and the height in the fan for a sample.
     fn column(&self, sample: &CameraSample) -> Option<(f64, f64)> {
         let sheet = self.sheet();
         let place = sheet.place(sample.point.as_dvec2());
@@ -53,7 +53,7 @@ impl PushBroomCamera {
 }
 
 impl Projection for PushBroomCamera {
-    /// Pose half way.
+    /// Pose halfway along the path.
     fn pose(&self) -> Pose {
         let center = self.start.as_dvec3() + 0.5 * self.way();
         Pose { center: center.as_vec3(), direction: self.direction, up: self.up }
@@ -66,7 +66,7 @@ impl Projection for PushBroomCamera {
     fn validate(&self) -> Result<(), String> {
         let frame = CameraBasis::new(self.pose(), CameraRules::default());
         let sideways = self.way().dot(frame.right.as_dvec3()).abs();
-        // False for a way of length 0 too.
+        // Also false for a path of length 0.
         let moves = sideways > 1e-6 * self.way().length();
         match moves {
             true => Ok(()),

@@ -17,7 +17,8 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// Raster of a given size. Its larger side spans the square, unless the rules say otherwise.
+    /// Raster of a given size. Its larger side spans the square, unless the rules specify
+    /// otherwise.
     ///
     /// If the camera has natural proportions, its picture fits inside, undistorted.
     pub fn new(width: u32, height: u32, proportions: Option<Vec2>, rules: CameraRules) -> Self {
@@ -47,7 +48,7 @@ impl Raster {
     pub fn empty(&self) -> (u32, u32) {
         let Some(half) = self.natural else { return (0, 0) };
         let size = Vec2::new(self.width as f32, self.height as f32);
-        // Less than a pixel is due to rounding of the size.
+        // A difference of less than a pixel is due to rounding of the size.
         let empty = (size - half * (size / half).min_element()).floor();
         (empty.x as u32, empty.y as u32)
     }

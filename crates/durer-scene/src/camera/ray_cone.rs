@@ -3,10 +3,10 @@
 use super::{Camera, CameraBasis, CameraSample, Projection};
 use crate::math::Vec2;
 
-/// Cone around a camera ray that stands for a part of the picture.
+/// Cone around a camera ray that covers an area of the picture.
 ///
-/// One cone, of the picture's centre, serves the whole picture. Source: Amanatides, *Ray Tracing
-/// with Cones*, SIGGRAPH 1984.
+/// A single cone, at the picture's centre, is used for the full picture. Source: Amanatides, *Ray
+/// Tracing with Cones*, SIGGRAPH 1984.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayCone {
     /// Width at the camera, in world units.
@@ -45,7 +45,7 @@ mod tests {
         let perspective = PerspectiveCamera { angle: 90.0, ..Default::default() };
         let cone_of_pixel = cone(Camera::Perspective(perspective), 0.01);
         assert!((cone_of_pixel.width_at(0.0)).abs() < 1e-6);
-        // At distance 2 the whole square is 4 wide.
+        // At distance 2 the square is 4 wide.
         assert!((cone_of_pixel.width_at(2.0) - 0.02).abs() < 1e-6);
         let orthographic = OrthographicCamera { size: 6.0, ..Default::default() };
         let cone_of_pixel = cone(Camera::Orthographic(orthographic), 0.01);

@@ -1,9 +1,9 @@
-//! The tangent in single precision that the official programs of 2016 and 2020 called.
+//! Single-precision tangent as called by the official programs of 2016 and 2020.
 //!
-//! It is off by a unit in the last place for one angle in thirty, 60 degrees among them, and all
-//! rays with it.
+//! The result is off by one unit in the last place for one angle in thirty, for example 60 degrees,
+//! which changes all camera rays.
 //!
-//! Source: fdlibm, Sun Microsystems 1993, as glibc before 2.40 has it in single precision.
+//! Source: fdlibm, Sun Microsystems 1993, in the single-precision version of glibc before 2.40.
 
 #![expect(clippy::excessive_precision, reason = "as the source writes them")]
 
@@ -24,17 +24,18 @@ const SERIES: [f32; 13] = [
     2.5907305826e-05,
 ];
 
-/// A quarter of pi, and the rest of it.
+/// Pi/4 as the sum of two numbers.
 const QUARTER: [f32; 2] = [7.8539812565e-01, 3.7748947079e-08];
-/// Half of pi in parts: the first 17 bits, the rest, the next 17 bits, and the rest after these.
+/// Pi/2 in parts: the first 17 bits and the remainder; then the next 17 bits and the remainder
+/// after those.
 const HALF: [f32; 4] = [1.5707855225e+00, 1.0804334124e-05, 1.0804273188e-05, 6.0770999344e-11];
-/// Above this the series is taken of the angle that is missing to a quarter of pi.
+/// Above this, the series is evaluated for pi/4 minus the angle.
 const LARGE: f32 = f32::from_bits(0x3f2c_a140);
 
-/// Below this a straight line is near enough.
+/// Below this, the linear approximation is accurate enough.
 const TINY: f32 = 1.0 / 8192.0;
 
-/// Tangent of an angle from 0 to half of pi, in radians.
+/// Tangent of an angle in radians, from 0 to pi/2.
 pub(super) fn tangent(x: f32) -> f32 {
     if x <= QUARTER[0] {
         return series([x, 0.0], false);
@@ -48,7 +49,7 @@ pub(super) fn tangent(x: f32) -> f32 {
     series([over, (rest - over) - part], true)
 }
 
-/// Tangent of the sum of an angle and its rest; the negative reciprocal of it where `turned`.
+/// Tangent of the sum of an angle and its low-order part; the negative reciprocal if `turned`.
 fn series([mut x, mut rest]: [f32; 2], turned: bool) -> f32 {
     let sign = if turned { -1.0 } else { 1.0 };
     let (is_negative, is_large) = (x < 0.0, x.abs() >= LARGE);
@@ -64,7 +65,7 @@ fn series([mut x, mut rest]: [f32; 2], turned: bool) -> f32 {
     }
     let square = x * x;
     let fourth = square * square;
-    // Every second coefficient, from the last.
+    // Every second coefficient, from last to first.
     let sum = |first: usize| SERIES.iter().skip(first).step_by(2).rev().copied().reduce(|sum, c| c + fourth * sum);
     let (odd, even) = (sum(1).unwrap_or(0.0), square * sum(2).unwrap_or(0.0));
     let cube = square * x;
@@ -77,7 +78,7 @@ fn series([mut x, mut rest]: [f32; 2], turned: bool) -> f32 {
     if !turned {
         return whole;
     }
-    // The reciprocal in two parts.
+    // Compute the reciprocal in two parts.
     let high = |x: f32| f32::from_bits(x.to_bits() & 0xffff_f000);
     let (first, inverse) = (high(whole), -1.0 / whole);
     let second = r - (first - x);
@@ -92,7 +93,7 @@ mod tests {
 
     #[test]
     fn tangents_are_those_of_the_library() {
-        // Made by glibc 2.36.
+        // Values from glibc 2.36.
         for (degrees, bits) in TANGENTS {
             let radians = (std::f64::consts::PI * f64::from(degrees) / 180.0) as f32;
             assert_eq!(tangent(radians / 2.0).to_bits(), bits, "{degrees}");

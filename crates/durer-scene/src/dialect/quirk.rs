@@ -1,6 +1,6 @@
 //! Named bugs of the official programs.
 
-/// Set of compatibilities, as bits.
+/// Set of quirks, as bits.
 pub type QuirkSet = u64;
 
 macro_rules! quirks {
@@ -12,7 +12,7 @@ macro_rules! quirks {
         pub enum Quirk { $($(#[doc = $doc])+ $variant,)+ }
 
         impl Quirk {
-            /// Every compatibility, with name and meaning.
+            /// Every quirk, with its name and meaning.
             pub const ALL: &'static [(Quirk, &'static str, &'static str)] =
                 &[$((Quirk::$variant, $name, concat!($($doc, "\n"),+)),)+];
         }
@@ -127,12 +127,12 @@ quirks! {
 }
 
 impl Quirk {
-    /// Returns its bit.
+    /// Returns the quirk's bit.
     pub const fn bit(self) -> QuirkSet {
         1 << self as u8
     }
 
-    /// Returns the compatibility of a name.
+    /// Returns the quirk with a name.
     pub fn from_name(name: &str) -> Option<Quirk> {
         Quirk::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
     }

@@ -141,7 +141,7 @@ impl AffineBody {
         let distance = to.length();
         let wi = to / distance;
         let cosine = -wi.dot(self.area_vector(n).normalize_or_zero());
-        // A convex body shows its outside to points outside, and its inside to points inside.
+        // From outside, only the outside of a convex body is visible; from inside, only its inside.
         let hidden = match self.has_inside(origin) {
             Some(true) => cosine > 0.0,
             Some(false) => cosine < 0.0,
@@ -151,8 +151,8 @@ impl AffineBody {
         (!hidden && pdf.is_finite() && pdf > 0.0).then_some(EmitterPoint { wi, distance, cosine, pdf })
     }
 
-    /// Pdf per solid angle with which [`AffineBody::sample`] chooses a direction that hits the
-    /// surface at `distance`.
+    /// Pdf per solid angle of [`AffineBody::sample`] for a direction that hits the surface at
+    /// `distance`.
     pub fn pdf(&self, from: DVec3, wi: Vec3, distance: f32) -> f32 {
         let origin = self.origin(from);
         let way = self.inverse(wi);
@@ -263,7 +263,7 @@ impl AffineBody {
                 }
                 let share = ((rest - base - lid) / side).min(1.0);
                 let growth = top - 1.0;
-                // Choose heights in proportion to the radius there.
+                // Sample heights in proportion to the radius at each height.
                 let mean = 0.5 * (1.0 + top);
                 let height = 2.0 * share * mean / (1.0 + (1.0 + 2.0 * growth * share * mean).max(0.0).sqrt());
                 let (sin, cos) = fp::sin_cos_turn(u.y);
@@ -377,7 +377,8 @@ mod tests {
     fn uniform_points_integrate_to_the_area() {
         const COUNT: u32 = 1 << 14;
         for closed in bodies() {
-            // Integrals over the surface: of 1, and of the normal, which is 0 for a closed surface.
+            // Integrals over the surface: of 1, and of the normal; the latter is 0 for a closed
+            // surface.
             let (mut area, mut normals) = (0.0_f64, DVec3::ZERO);
             for i in 0..COUNT {
                 let Some((_, n, density)) = closed.point(sampler::sample_2d(6, 0, 0, i, 0)) else { continue };

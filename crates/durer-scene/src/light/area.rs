@@ -15,7 +15,7 @@ pub enum EmitterShape {
     Triangle(DVec3, [Vec3; 2]),
     /// Corner and two edges.
     Parallelogram(DVec3, [Vec3; 2]),
-    /// Centre, two half axes at any angle, and the share of the radius that is cut out.
+    /// Centre, two half axes at any angle, and the inner radius as a share of the outer one.
     Ellipse(DVec3, [Vec3; 2], f32),
     /// Centre and radius.
     Sphere(DVec3, f32),
@@ -264,7 +264,7 @@ impl Window {
         // Cosines of the angles between the normals of the four planes through the edges.
         let nz = |a: f64| a / (a * a + near.z * near.z).sqrt();
         let [n0, n1, n2, n3] = [-nz(near.y), nz(far.x), nz(far.y), -nz(near.x)];
-        // Angles as complex numbers: a product adds its angles, modulo whole turns.
+        // Angles as complex numbers: a product adds its angles, modulo full turns.
         let angle = |cosine: f64| DVec2::new(cosine, ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt());
         let [g0, g1, g2, g3] = [angle(-n0 * n1), angle(-n1 * n2), angle(-n2 * n3), angle(-n3 * n0)];
         let right = g2.rotate(g3);
@@ -272,8 +272,8 @@ impl Window {
         let turns = fp::atan2_turn_f64(all.y, all.x);
         let solid_angle = std::f64::consts::TAU * if turns < 0.0 { turns + 1.0 } else { turns };
         let k = DVec2::new(right.x, -right.y);
-        // `turns` has an error of 2e-9, too much for a small angle. An error below 0 would also
-        // wrap to a whole turn.
+        // `turns` has an error of 2e-9, which is too much for a small angle. A slightly negative
+        // result would also wrap to a full turn.
         let known = turns.abs() > 1e-4;
         known.then_some(Window { axes: [x, y, z], near, far, solid_angle, b: [n0, n2], k })
     }

@@ -107,7 +107,8 @@ pub struct LightLiSample {
     pub color: Color,
 }
 
-/// Interface of every light. No method has a default, so the compiler names what a new light lacks.
+/// Interface of every light. No method has a default, so the compiler lists the methods that a new
+/// light lacks.
 pub trait Illuminate {
     /// Light that arrives at a point, without occlusion.
     fn illuminate(&self, point: DVec3) -> LightLiSample;
@@ -124,7 +125,7 @@ pub trait Illuminate {
     /// Light with its strength in its colour, converted from candela, lumen or lux if written so.
     fn in_units(&self) -> Self;
 
-    /// Checks the fields together. The rule in the statement checks each field alone.
+    /// Checks combinations of fields. The constraints in the description check each field alone.
     ///
     /// # Errors
     ///
@@ -134,7 +135,7 @@ pub trait Illuminate {
     /// Position, as written; `None` for a light at infinity.
     fn position(&self) -> Option<Vec3>;
 
-    /// Direction in which the light travels, or the axis of its beam, as written, of any length;
+    /// Direction in which the light travels or the axis of its beam, as written and of any length;
     /// `None` for a light that is equally strong in all directions.
     fn direction(&self) -> Option<Vec3>;
 
@@ -143,7 +144,7 @@ pub trait Illuminate {
     fn cone(&self) -> Option<f32>;
 
     /// Position, and the light that arrives at distance 1 in the strongest direction; `None` for a
-    /// light at infinity, and for one that does not fade with the square of the distance.
+    /// light at infinity, or with another falloff than the inverse square.
     fn place(&self) -> Option<(Vec3, Color)>;
 
     /// Angular radius in degrees, the same from every point.

@@ -45,7 +45,7 @@ impl PhotometricLight {
 }
 
 impl Illuminate for PhotometricLight {
-    /// Light for an intensity of 1 candela in all directions, to be multiplied by the profile.
+    /// Light at an intensity of 1 candela in all directions, to be multiplied by the profile.
     fn illuminate(&self, point: DVec3) -> LightLiSample {
         let offset = (self.position.as_dvec3() - point).as_vec3();
         let distance = offset.length();
@@ -177,7 +177,8 @@ impl Profile {
         row(j) * (1.0 - b) + row(j + 1) * b
     }
 
-    /// Maps a horizontal angle into the range of written angles, by the symmetry that they imply.
+    /// Maps a horizontal angle into the range of angles in the file, using the symmetry that this
+    /// range implies.
     fn folded(&self, angle: f32) -> f32 {
         let (first, last) = (self.horizontal[0], self.horizontal[self.horizontal.len() - 1]);
         if self.horizontal.len() == 1 {

@@ -46,7 +46,7 @@ impl SpotLight {
         [self.angle, self.inner_angle.min(self.angle)].map(|degrees| fp::sin_cos_degrees(f64::from(degrees)).1 as f32)
     }
 
-    /// Solid angle with the same flux at the constant intensity of the axis.
+    /// Solid angle that would give the same flux at the constant intensity of the axis.
     fn fills(&self) -> f32 {
         let [outer, inner] = self.cosines();
         // Means over the fade of s^2, of s^2 (3 - 2 s) and of s^4.

@@ -69,7 +69,7 @@ pub trait Pattern {
 /// Maximum number of noise octaves; finer ones are below the precision of `f32`.
 pub const MAX_OCTAVES: u32 = 32;
 
-/// True if a field holds the index of another material.
+/// True if a field contains the index of another material.
 pub fn is_material_index(field: &Field) -> bool {
     field.name.starts_with("material")
 }

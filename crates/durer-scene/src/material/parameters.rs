@@ -11,11 +11,11 @@ macro_rules! parameters {
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Parameters {
             $(#[doc = concat!("[`PrincipledMaterial::", stringify!($field), "`] at the point.")] pub $field: $type,)+
-            /// Factor of the reflection of an opaque base or a metal, at all angles.
+            /// Factor on the reflection of an opaque base or a metal, at all angles.
             pub reflection: f32,
-            /// Factor of the light that enters a scattering body.
+            /// Factor on the light that enters a scattering interior.
             pub entering: Vec3,
-            /// True if there is a scattering body, even if its share is 0 at this point.
+            /// True if there is a scattering interior, even if its share is 0 at this point.
             pub has_body: bool,
         }
 

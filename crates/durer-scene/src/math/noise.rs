@@ -26,7 +26,7 @@ fn permute(i: i32) -> i32 {
 /// Perlin's improved noise: smooth, zero at integer points, within about (-1, 1).
 pub fn perlin(p: Vec3) -> f32 {
     let floor = p.floor();
-    // The lattice repeats every 256 cells, as the permutation does.
+    // The lattice repeats every 256 cells, since the permutation does.
     let cell = floor.rem_euclid(Vec3::splat(256.0));
     let (x, y, z) = (cell.x as i32, cell.y as i32, cell.z as i32);
     let f = p - floor;

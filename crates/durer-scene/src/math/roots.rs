@@ -38,7 +38,7 @@ pub fn quartic(c: [f64; 5], low: f64, high: f64) -> ([f64; 4], usize) {
     between(&c, &turns[..count], low, high)
 }
 
-/// Sign changes of a polynomial that is monotonic between these cuts.
+/// Sign changes of a polynomial that is monotonic between the given points.
 fn between(c: &[f64], cuts: &[f64], low: f64, high: f64) -> ([f64; 4], usize) {
     let mut roots = [0.0; 4];
     let mut count = 0;
@@ -94,7 +94,7 @@ mod tests {
             let mut made: [f64; 4] = std::array::from_fn(|_| f64::from(random.between(-1.0, 1.0)));
             made.sort_by(f64::total_cmp);
             let scale = f64::from(random.between(0.1, 10.0));
-            // (t - a)(t - b)(t - c)(t - d), one factor after the other.
+            // (t - a)(t - b)(t - c)(t - d), multiplied factor by factor.
             let mut c = [scale, 0.0, 0.0, 0.0, 0.0];
             for root in made {
                 for i in (0..5).rev() {

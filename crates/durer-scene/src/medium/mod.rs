@@ -49,9 +49,9 @@ impl MediumRegion {
 /// Result of sampling a distance along a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DistanceSample {
-    /// The light passed the segment. Throughput factor.
+    /// The light passed through the segment; the throughput factor.
     Passed(Spectrum),
-    /// The light was scattered. Distance and throughput factor.
+    /// The light was scattered; the distance and the throughput factor.
     Scattered(f32, Spectrum),
 }
 
@@ -74,11 +74,11 @@ impl Segment {
     }
 }
 
-/// Maximum number of steps through a grid. Strongly varying densities take many.
+/// Maximum number of steps through a grid. Strongly varying densities need many steps.
 const MAX_STEPS: u32 = 1 << 16;
 
 impl Medium {
-    /// Returns true if the medium scatters light, not only absorbs it.
+    /// Returns true if the medium scatters light, instead of only absorbing it.
     pub fn scatters(&self) -> bool {
         self.albedo.max_element() > 0.0
     }

@@ -129,7 +129,7 @@ fn discrepancies_match_theory() {
     for side in [4_u32, 8, 12] {
         let n = side * side;
         let of = |sampler| mean(sampler, n);
-        // Centres of n cells: the box that ends just before a row of centres lacks half a row.
+        // Centres of n cells: a box that ends just before a row of centres misses half a row.
         let regular = of(Sampler::Uniform);
         let step = 1.0 / f64::from(side);
         assert!((0.5 * step..1.01 * step).contains(&regular), "{n}: {regular}");

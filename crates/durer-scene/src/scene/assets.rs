@@ -85,7 +85,7 @@ described! {
 }
 
 impl NamedTexture {
-    /// Description of a named picture; `None` if its bytes are not in a file.
+    /// Description of a named texture; `None` if its bytes are not in a file.
     pub fn of(name: &str, picture: &Picture) -> Option<Self> {
         let PictureBytes::File(file) = &picture.bytes else { return None };
         Some(NamedTexture::with_mapping(name, file, picture.mapping))

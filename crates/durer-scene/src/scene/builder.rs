@@ -215,7 +215,7 @@ impl SceneBuilder {
         if scene.camera.is_none() {
             found.push(Diagnostic::error("the scene has no camera").code("no-camera"));
         }
-        // A handle of another builder may name a mesh that this builder does not have.
+        // A handle from another builder may refer to a mesh that this builder does not have.
         let meshes = self.objects.iter().filter_map(|placed| match &placed.node {
             Node::Mesh(mesh) => Some(&mesh.obj_file.path),
             _ => None,

@@ -57,7 +57,7 @@ pub struct SceneDefaults {
     pub up: Option<Axis>,
     /// View; `None`: the model's own camera, else a three-quarter view.
     pub view: Option<View>,
-    /// Light; `None`: the model's own, else [`DefaultLighting::Soft`].
+    /// Lighting; `None`: the model's own lights, or else [`DefaultLighting::Soft`].
     pub studio: Option<DefaultLighting>,
     /// Name of the camera to use; `None`: the first.
     pub camera: Option<String>,
@@ -70,12 +70,12 @@ pub struct SceneDefaults {
     pub view_file: Option<PathBuf>,
     /// Environment map that lights the model instead of the default lights.
     pub environment: Option<PathBuf>,
-    /// True to move the model's own camera to where it shows the whole model.
+    /// True to move the model's own camera to a position from which the full model is visible.
     pub fit: bool,
-    /// Degrees by which the camera orbits the model, counter-clockwise seen from above, at a
-    /// distance from which the whole model is visible from all angles; `None` for a single picture.
+    /// Degrees by which the camera orbits the model, counter-clockwise as seen from above, at a
+    /// distance that shows the full model at all angles; `None` for a single picture.
     pub turned: Option<f32>,
-    /// True to add and replace nothing, since the scene is written in another format.
+    /// True to neither add nor replace anything, because the scene is written in another format.
     pub bare: bool,
     /// True to use the model's own light only, even if there is none.
     pub own_light: bool,
@@ -113,8 +113,8 @@ const PLACES: u32 = 48;
 const FILLED: f64 = 0.86;
 
 impl SceneDefaults {
-    /// Adds what a scene lacks. `up` is the usual up axis of its format. With `dark`, a scene with
-    /// a camera or emitters but without lights is complete.
+    /// Adds the parts that a scene lacks. `up` is the usual up axis of its format. With `dark`, a
+    /// scene with a camera or emitters but without lights is complete.
     pub fn complete(&self, scene: &mut Scene, up: Axis, dark: bool) {
         let sides = Sides::new(self.up.unwrap_or(up));
         let framed = scene.camera.is_none() || self.view.is_some() || self.turned.is_some();
@@ -140,7 +140,7 @@ impl SceneDefaults {
         }
     }
 
-    /// A camera that shows the whole scene, centred.
+    /// A centred camera that shows the full scene.
     fn camera(&self, scene: &Scene, sides: &Sides, view: View) -> Camera {
         let &Sides { right, up, front } = sides;
         let (back, above) = match view {
@@ -154,7 +154,7 @@ impl SceneDefaults {
         self.framed(scene, sides, (back, above), view == View::ThreeQuarter)
     }
 
-    /// A camera that shows the whole scene from a direction.
+    /// A camera that shows the full scene from a direction.
     fn framed(&self, scene: &Scene, sides: &Sides, (back, above): (DVec3, DVec3), perspective: bool) -> Camera {
         let forward = -back.normalize();
         let across = forward.cross(above).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
@@ -303,7 +303,7 @@ fn give_material(scene: &mut Scene) {
     }
 }
 
-/// Extent of the visible points in the camera's axes, from which the closest camera that shows them
+/// Extent of the visible points in the camera's axes, from which the closest suitable camera
 /// follows.
 struct VisibleExtent {
     /// Half the picture's width and height at distance 1.
@@ -349,7 +349,7 @@ impl VisibleExtent {
         let [x, y] = self.reach.map(|[a, b]| 0.5 * (a + b));
         let far = |i: usize| (self.reach[i][1] - self.reach[i][0]) / (2.0 * self.slopes[i]);
         let z = far(0).min(far(1));
-        // A single point needs a distance too.
+        // A single point needs a distance, too.
         let size = (0..3).map(|i| self.high[i] - self.low[i]).fold(0.0, f64::max);
         let near = self.low[2] - z;
         [x, y, if near > 1e-6 * size && size > 0.0 { z } else { self.low[2] - size.max(1.0) }]

@@ -82,8 +82,8 @@ impl MatrixOp {
         }
     }
 
-    /// True if the product of the matrices of one transform counts as flat: its determinant is
-    /// within the rounding error of 1 in single precision.
+    /// True if the product of the matrices of one transform counts as singular: its determinant is
+    /// at most the rounding error of 1 in single precision.
     pub fn is_tiny(ops: &[MatrixOp], rules: MatrixRules) -> bool {
         is_tiny(MatrixOp::product(ops, MatrixRules { dropped_shear: false, dropped_tiny: false, ..rules }))
     }
@@ -93,8 +93,8 @@ fn is_tiny(map: DAffine3) -> bool {
     map.matrix3.determinant().abs() < f64::from(f32::EPSILON)
 }
 
-/// Makes the axes of a map perpendicular, one after the other, which leaves translation, rotation
-/// and scale.
+/// Makes the axes of a map perpendicular, one after another, which leaves only translation,
+/// rotation and scale.
 ///
 /// Source: Spencer W. Thomas, *Decomposing a Matrix into Simple Transformations*, Graphics Gems II
 /// (1991), VII.1.

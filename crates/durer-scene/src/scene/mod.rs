@@ -95,8 +95,7 @@ impl Background {
     ///
     /// # Errors
     ///
-    /// A message, if the position of the sun is given twice, incompletely, or by an invalid date or
-    /// time.
+    /// A message if the sun's position is given twice, incompletely, or by an invalid date or time.
     pub fn way_to_sun(&self) -> Result<Option<Vec3>, String> {
         let angles = [("sunAltitude", self.sun_altitude.is_some()), ("sunAzimuth", self.sun_azimuth.is_some())];
         let clock = [
@@ -150,7 +149,8 @@ impl Background {
         self.way_to_sun().ok().flatten()
     }
 
-    /// Returns true if the sun is below the horizon: then neither the sun nor its sky emits light.
+    /// Returns true if the sun is below the horizon, so that neither the sun nor its sky emits
+    /// light.
     pub fn is_night(&self) -> bool {
         self.sun().is_some_and(|way| way.y < 0.0)
     }
@@ -187,7 +187,7 @@ impl RenderDefaults {
     }
 }
 
-/// A whole scene.
+/// A complete scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
     /// The camera.
@@ -230,8 +230,8 @@ impl Scene {
         Node::Mesh(TriangleMesh { obj_file: FileName { path: name.to_string(), span } })
     }
 
-    /// Returns true if it has light or materials that only a path tracer can render: principled or
-    /// hair materials, fog, an environment, a sun or a sky.
+    /// Returns true if the scene has lights or materials that only a path tracer can render:
+    /// principled or hair materials, fog, an environment, a sun or a sky.
     pub fn is_physical(&self) -> bool {
         let layered = |m: &Spanned<Material>| matches!(m.value, Material::Principled(_) | Material::Hair(_));
         let background = &self.background;

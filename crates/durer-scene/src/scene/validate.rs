@@ -14,8 +14,8 @@ use crate::shape::Shape;
 use crate::texture::CieSky;
 use durer_diag::{Diagnostic, Diagnostics, Span};
 
-/// Maximum nesting of objects. The scene language allows 200 levels, each of which is at most three
-/// here.
+/// Maximum nesting of objects. The scene language allows 200 levels, each of which becomes at most
+/// three levels in a scene.
 pub const MAX_NESTING: usize = 640;
 
 /// Maximum nesting of materials made of other materials, and maximum number of leaves of one.
@@ -26,14 +26,14 @@ impl Scene {
     /// Checks all values: each field against its rule, that numbers are finite, combinations of
     /// fields, numbers of materials, and nesting. Reports errors only. The compiler calls it first.
     ///
-    /// An object read from a file may have the number of a material that does not exist: readers
-    /// warn, and the object is drawn in plain grey, as by the course's programs.
+    /// An object read from a file may have a material number that does not exist. Readers warn, and
+    /// the object is rendered in plain grey, as in the course's programs.
     pub fn validate(&self) -> Diagnostics {
         self.validate_as(0)
     }
 
-    /// Checks as [`Scene::validate`], but under [`Quirk::AnyValues`] accepts values that official
-    /// programs draw.
+    /// Checks as [`Scene::validate`], but accepts values that official programs render if
+    /// [`Quirk::AnyValues`] is set.
     pub fn validate_as(&self, compat: QuirkSet) -> Diagnostics {
         let any = compat & Quirk::AnyValues.bit() != 0;
         let mut found = Validator { diagnostics: Diagnostics::default(), materials: self.materials.len(), any };
@@ -65,8 +65,8 @@ impl Background {
     ///
     /// # Errors
     ///
-    /// A message, if the sun's position is given twice, incompletely or by a time that does not
-    /// exist, or if a standard sky lacks the sun that it depends on.
+    /// A message if the sun's position is given twice, incompletely or by an invalid time, or if a
+    /// standard sky that depends on the sun has none.
     pub fn validate(&self) -> Result<(), String> {
         let sun = self.way_to_sun()?;
         let lacks_sun = self.environment.is_none() && self.cie_sky.is_some_and(CieSky::wants_sun) && sun.is_none();
@@ -82,7 +82,7 @@ impl Fog {
     ///
     /// # Errors
     ///
-    /// A message, if only one corner of its box is given, or the box is empty.
+    /// A message if only one corner of the box is given, or if the box is empty.
     pub fn validate(&self) -> Result<(), String> {
         match (self.min, self.max) {
             (Some(min), Some(max)) if !min.cmplt(max).all() => {
@@ -99,7 +99,7 @@ struct Validator {
     diagnostics: Diagnostics,
     /// Number of materials of the scene.
     materials: usize,
-    /// True to accept values that official programs draw.
+    /// True to accept values that official programs render.
     any: bool,
 }
 
@@ -154,8 +154,8 @@ impl Validator {
         }
     }
 
-    /// Rejects materials that are made of themselves or of later ones, nested too deeply, or made
-    /// of too many parts.
+    /// Rejects materials that consist of themselves or of later ones, nested too deeply, or made of
+    /// too many parts.
     fn nested_materials(&mut self, scene: &Scene) {
         // Nesting depth and maximum number of parts of each material.
         let mut sizes: Vec<(u32, u64)> = Vec::with_capacity(scene.materials.len());
@@ -212,7 +212,7 @@ impl Validator {
     }
 
     fn matrices(&mut self, ops: &[MatrixOp], span: Span) {
-        // A rotation about a NaN axis has a finite matrix, that of a rotation about y; check the
+        // A rotation about a NaN axis has a finite matrix, that of a rotation about y, so check the
         // axis too.
         let is_finite = |op: &MatrixOp| match op {
             MatrixOp::Rotate(axis, _) => axis.is_finite() && op.matrix().is_finite(),

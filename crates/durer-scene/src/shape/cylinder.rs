@@ -99,7 +99,8 @@ impl Cylinder {
         let (shift, near) = axis.near(line);
         let ((y, o), (slope, d)) = (axis.split(near.origin), axis.split(near.dir));
         let r = f64::from(self.radius);
-        // Treat a line as parallel to the axis if its perpendicular component is mere rounding.
+        // Treat a line as parallel to the axis if its perpendicular component is pure rounding
+        // error.
         let across = d.length_squared();
         let across = if across > 1e-30 * near.dir.length_squared() { across } else { 0.0 };
         let chord = Chord::LINE.quadratic(across, o.dot(d), o.length_squared() - r * r, SIDE);

@@ -67,9 +67,9 @@ fn share(i: usize, count: usize) -> f32 {
 /// A terrain with walls down from its border and a floor: a closed mesh whose triangles are
 /// computed on demand.
 ///
-/// Its vertices are those of the terrain, one at the floor below each border vertex, and the centre
-/// of the floor. Its triangles are those of the terrain, then two wall triangles for each step
-/// along the border, then one floor triangle for each.
+/// The vertices are those of the terrain, one on the floor below each border vertex, and the centre
+/// of the floor. The triangles are those of the terrain, then two wall triangles per step along the
+/// border, then one floor triangle per step.
 #[derive(Clone, Debug)]
 pub struct Terrain {
     /// The terrain.
@@ -223,7 +223,7 @@ impl Triangles for Terrain {
         let ([columns, rows], vertex) = (self.sides(), vertex as usize);
         let (column, row) = (vertex % columns, vertex / columns);
         // For each cell at the vertex: its offset from the vertex, and the corner that the vertex
-        // is in each of its two triangles.
+        // forms in each of its two triangles.
         for (across, down, corners) in
             [(1, 1, [Some(2), Some(1)]), (0, 1, [Some(1), None]), (1, 0, [None, Some(2)]), (0, 0, [Some(0); 2])]
         {

@@ -45,8 +45,8 @@ impl Default for Form {
 }
 
 impl Mesh {
-    /// Creates a mesh from a mesh file's data. `rule` computes normals for triangles without any,
-    /// or for all triangles unless `file_normals`.
+    /// Creates a mesh from a mesh file's data. `rule` computes normals for triangles without
+    /// normals, or for all triangles unless `file_normals` is set.
     pub fn new(data: impl Into<Arc<MeshData>>, rule: MeshNormals, file_normals: bool) -> Self {
         let data = data.into();
         let made = made(&data, rule, file_normals);
@@ -130,8 +130,8 @@ impl Mesh {
         Mesh { form: Form::Lists(data.into()), made: None, center: self.center }
     }
 
-    /// Returns the mesh with every triangle grown about one of its corners; the normals are
-    /// extrapolated.
+    /// Returns the mesh with every triangle scaled by `times` about one of its corners; the normals
+    /// are extrapolated.
     pub fn grown(&self, corner: usize, times: f32) -> Mesh {
         let mut data = self.to_data().into_owned();
         let (normals, triangle_normals) = self.normals();
@@ -233,8 +233,9 @@ impl Mesh {
         own + made.map_or(0, Normals::bytes)
     }
 
-    /// An edge with an odd number of adjacent triangles; `None` if there is none, so that a line
-    /// crosses the mesh an even number of times. Corners at equal positions are identified.
+    /// An edge with an odd number of adjacent triangles; `None` if there is none, which means that
+    /// every line crosses the mesh an even number of times. Corners at equal positions are
+    /// identified.
     pub fn open_edge(&self) -> Option<[Vec3; 2]> {
         // A height field with walls and floor is closed.
         self.lists()?;
@@ -339,7 +340,8 @@ impl Mesh {
     /// Surface of a triangle at a crossing.
     #[inline]
     pub fn surface(&self, part: u32, crossing: &ShapeHit) -> Surface {
-        // Load everything that may miss the cache before any computation waits for it.
+        // Load everything that may miss the cache before starting any computation that depends on
+        // it.
         let (corners, normals) = (self.corners(part), self.corner_normals(part));
         let uvs = self.corner_uvs(part);
         let mut surface = triangle_surface(corners, normals, crossing.uv);

@@ -36,7 +36,7 @@ pub struct MeshData {
     /// Tangents by position index: the direction in which u grows, and the sign of the bitangent
     /// relative to the cross product of normal and tangent; may be empty.
     pub tangents: Vec<[f32; 4]>,
-    /// True if triangles without normals are flat, whatever the rule for missing normals.
+    /// True if triangles without normals are flat, regardless of the rule for missing normals.
     pub flat: bool,
 }
 
@@ -62,7 +62,7 @@ pub trait Triangles: Sync {
     /// Positions of the corners of a triangle.
     #[inline]
     fn corners(&self, number: usize) -> [Vec3; 3] {
-        // The closure of `map` would not be inlined here.
+        // A closure passed to `map` would not be inlined here.
         let [a, b, c] = self.triangle(number);
         [self.position(a), self.position(b), self.position(c)]
     }
@@ -129,8 +129,8 @@ impl MeshData {
     ///
     /// # Errors
     ///
-    /// A message, if an index is out of range, a position is not finite, or the lengths of lists by
-    /// triangle or by position differ.
+    /// A message if an index is out of range, a position is not finite, or the lengths of
+    /// per-triangle or per-position lists differ.
     pub fn validate(&self) -> Result<(), String> {
         let below = |triangles: &[[u32; 3]], count: usize| {
             triangles.iter().flatten().all(|&i| (i as usize) < count || i == NO_INDEX)

@@ -175,8 +175,8 @@ pub struct Surface {
     pub shadow_offsets: [Vec3; 2],
     /// Linear red, green, blue and opacity of the mesh's vertices; all 1 without vertex colours.
     pub color: [f32; 4],
-    /// Number of the solid whose boundary this is, if that has several parts; a ray that leaves it
-    /// uses the number to determine the side where it starts.
+    /// Number of the solid whose boundary this is, if the solid has several parts; a ray that
+    /// leaves it uses the number to determine the side where it starts.
     pub solid: Option<u32>,
 }
 
@@ -240,9 +240,9 @@ impl Surface {
     }
 }
 
-/// Distance in errors that points keep from the edges of a shape, so that secondary rays start in
-/// front of the neighbouring face too. This holds for faces that meet at more than about 10
-/// degrees, since the start moves by two errors along the normal.
+/// Distance that points keep from the edges of a shape, in units of their error, so that secondary
+/// rays start in front of the neighbouring face too. This holds for faces that meet at more than
+/// about 10 degrees, since the start moves by two errors along the normal.
 const INSET: f32 = 16.0;
 
 /// Clamps a coordinate on a face from 0 to `end` to [`INSET`] errors off both ends.
@@ -311,13 +311,13 @@ pub trait Shape {
     /// shape.
     fn starts_inside(&self, line: &Line) -> bool;
 
-    /// The shape translated to the origin, and the translation; `None` if it has no position, or
-    /// `f32` does not represent the result exactly.
+    /// The shape translated to the origin, and the translation; `None` if it has no position, or if
+    /// `f32` cannot represent the result exactly.
     fn centered(&self) -> Option<(Self, Vec3)>
     where
         Self: Sized;
 
-    /// Checks combinations of fields. The description has the constraint of each field.
+    /// Checks combinations of fields. The constraints in the description check each field alone.
     ///
     /// # Errors
     ///

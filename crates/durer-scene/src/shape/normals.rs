@@ -13,7 +13,7 @@ use std::ops::Range;
 const MANY: usize = 64;
 /// Minimum number of vertices per thread.
 const AT_ONCE: usize = 256;
-/// Number of vertices processed in parallel; all at once would need much memory.
+/// Number of vertices processed in parallel; processing all at once would need too much memory.
 const PER_TASK: usize = 64 * AT_ONCE;
 
 /// Normals at the corners of triangles.
@@ -80,7 +80,7 @@ impl Normals {
 }
 
 /// Normals of all triangles, computed by a rule for triangles without normals, or for all unless
-/// `file_normals`; `None` if the mesh needs only its own normals.
+/// `file_normals` is set; `None` if the mesh needs only its own normals.
 pub(super) fn made(data: &MeshData, rule: MeshNormals, file_normals: bool) -> Option<Normals> {
     let own: (&[Vec3], &[[u32; 3]]) = match file_normals {
         true => (&data.normals, &data.triangle_normals),

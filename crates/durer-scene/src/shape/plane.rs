@@ -26,7 +26,7 @@ impl Shape for Plane {
     fn intersect(&self, ray: &Ray) -> Option<ShapeHit> {
         let n = self.normal.as_dvec3();
         let slope = n.dot(ray.dir.as_dvec3());
-        // A parallel ray divides by zero, an infinite one by infinity: neither hits.
+        // For a parallel ray this divides by zero, for an infinite one by infinity: neither hits.
         let t = ((f64::from(self.offset) - n.dot(ray.origin.as_dvec3())) / slope) as f32;
         (slope.is_finite() && t.is_finite() && ray.contains(t)).then_some(ShapeHit { t, uv: Vec2::ZERO })
     }

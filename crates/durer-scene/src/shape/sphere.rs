@@ -49,8 +49,8 @@ impl Shape for Sphere {
         Some(Aabb { min: self.center - self.radius - pad, max: self.center + self.radius + pad })
     }
 
-    /// Returns true if the box's bounding sphere intersects this sphere: the course's test, which
-    /// has false positives.
+    /// Returns true if the box's bounding sphere intersects this sphere. This is the course's test,
+    /// which has false positives.
     fn overlaps(&self, cell: &Aabb) -> bool {
         let reach = self.radius + 0.5 * cell.size().length();
         (cell.center() - self.center).length() <= reach * (1.0 + gamma(8))

@@ -59,7 +59,7 @@ fn quadric(random: &mut Random, center: Vec3, size: f32) -> Quadric {
 }
 
 /// Signed distance of a point from each face or its continuation, along the normal. Only the
-/// largest must be exact where it is zero.
+/// largest must be exact, and only where it is zero.
 pub fn faces(shape: &Primitive, p: DVec3) -> Vec<f64> {
     let flat = |n: DVec3, at: Vec3| vec![n.normalize().dot(p - at.as_dvec3())];
     // Height and distance from the axis between two points, and the height of the other end.
@@ -121,7 +121,8 @@ pub fn distance(shape: &Primitive, p: DVec3) -> f64 {
     faces(shape, p).into_iter().fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Returns true for a point on a quadric so far from the origin that rounding dominates its terms.
+/// Returns true for a point on a quadric that is so far from the origin that rounding dominates the
+/// polynomial's terms.
 pub fn too_far(shape: &Primitive, p: DVec3, reach: f64) -> bool {
     matches!(shape, Primitive::Quadric(_)) && p.length() > 20.0 * reach
 }

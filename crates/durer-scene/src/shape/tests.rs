@@ -40,7 +40,7 @@ fn crossings(shape: &Primitive, o: DVec3, d: DVec3) -> Vec<(f64, bool)> {
             let slack = 8.0 * f64::from(f32::EPSILON) * reach * n.length() * d.length() / n.dot(d).abs();
             if least < -slack { Vec::new() } else { vec![(t, least > slack)] }
         }
-        // The others are tested against their insides, or are flat.
+        // The other shapes are tested against their insides, or are flat.
         _ => {
             let mut all = Vec::new();
             shape.crossings(&Line { origin: o, dir: d }, &mut |t, _| all.push((t, true)));
@@ -54,7 +54,7 @@ fn first_crossing_in_the_open_interval_is_found() {
     let mut random = Random(1);
     let mut found = [0; 11];
     for round in 0..40_000 {
-        // Sizes from 1e-6 to 1e6, and far beyond those in scenes.
+        // Sizes from 1e-6 to 1e6, far beyond those in real scenes.
         let size = match round % 16 {
             14 => 1e-16,
             15 => 1e16,
@@ -87,7 +87,7 @@ fn first_crossing_in_the_open_interval_is_found() {
                 assert!(grazing || all.iter().any(|c| near(c.0, t)), "{shape:?} {ray:?} {crossing:?} {all:?}");
                 found[kind] += 1;
             }
-            // A certain crossing inside the interval must neither be missed nor skipped.
+            // A certain crossing inside the interval must not be missed.
             for &(t, _) in all.iter().filter(|c| c.1) {
                 let clear = |end: f32| !near(t, f64::from(end));
                 if clear(t_min) && clear(t_max) && ray.contains(t as f32) {
@@ -133,7 +133,7 @@ fn surface_is_on_the_shape_within_its_error_and_bounds() {
             let sag = 0.5 * f64::from(surface.curvature) * surface.error.as_dvec3().length_squared();
             let off = distance(&shape, p);
             assert!(off.abs() <= bound + sag + 1e-15 * p.length(), "{shape:?} {surface:?} {off}");
-            // The error is of the order of rounding.
+            // The error is of the order of the rounding error.
             let reach = p.length() + f64::from(size + away);
             assert!(surface.error.as_dvec3().max_element() <= 1e-5 * reach, "{surface:?}");
             assert!((n.length() - 1.0).abs() < 2e-7 && (surface.n_shade.length() - 1.0).abs() < 2e-7);
@@ -150,8 +150,9 @@ fn surface_is_on_the_shape_within_its_error_and_bounds() {
             let difference =
                 |v: DVec3| (distance(&shape, p + step * v) - distance(&shape, p - step * v)) / (2.0 * step);
             let gradient = DVec3::new(difference(DVec3::X), difference(DVec3::Y), difference(DVec3::Z));
-            // A step of 1e-5 of the size has third-order terms of its square relative to the least
-            // radius; the rounding of the point adds an error relative to that radius.
+            // A step of 1e-5 of the size has third-order terms in the square of the step relative
+            // to the smallest radius of curvature; the rounding of the point adds an error relative
+            // to that radius.
             let bend = f64::from(surface.curvature * size);
             let slack = 1e-6 + (1e-5 * bend) * (1e-5 * bend) + 2e-7 * (1.0 + bend) * f64::from(1.0 + away / size);
             assert!((gradient - n).length() < slack, "{shape:?} {surface:?} {gradient}");
@@ -182,7 +183,7 @@ fn invalid_ray_hits_nothing() {
                         let mut broken = ray;
                         broken.dir[axis] = value;
                         assert_eq!(shape.intersect(&broken), None, "{shape:?} {broken:?}");
-                        // Also with all other components zero.
+                        // Also if all other components are zero.
                         broken.dir = Vec3::AXES[axis] * value;
                         assert_eq!(shape.intersect(&broken), None, "{shape:?} {broken:?}");
                         broken = ray;

@@ -161,7 +161,7 @@ pub fn triangle_surface(corners: [Vec3; 3], normals: Option<[Vec3; 3]>, uv: Vec2
         let [front, back] = offsets_of_corners(position, corners, normals);
         shadow_offsets = [mixed(front, barycentric), mixed(back, barycentric)];
     }
-    // The stored normals define the outside, whatever the winding of the corners.
+    // The stored normals define the outside, regardless of the winding of the corners.
     let n_geo = if n_geo.dot(n_shade) < 0.0 { -n_geo } else { n_geo };
     Surface {
         position,
@@ -186,10 +186,10 @@ fn mixed([a, b, c]: [Vec3; 3], barycentric: Vec3) -> Vec3 {
 /// For each corner, the offset from a point of the triangle up to the corner's tangent plane, zero
 /// if the point is above that plane; then the same for the other side.
 ///
-/// Their barycentric mean leads to the curved surface that the normals imply. A shadow ray that
-/// starts there does not hit the flat neighbours, which would darken whole triangles of a coarse
-/// mesh along the terminator. Source: Johannes Hanika, *Hacking the Shadow Terminator*, Ray Tracing
-/// Gems II (2021), chapter 4.
+/// The barycentric mean of the offsets leads to the curved surface that the normals imply. A shadow
+/// ray that starts there does not hit the flat neighbours, which would darken whole triangles of a
+/// coarse mesh along the terminator. Source: Johannes Hanika, *Hacking the Shadow Terminator*, Ray
+/// Tracing Gems II (2021), chapter 4.
 #[inline(always)]
 fn offsets_of_corners(point: Vec3, corners: [Vec3; 3], normals: [Vec3; 3]) -> [[Vec3; 3]; 2] {
     let mut shadow_offsets = [[Vec3::ZERO; 3]; 2];

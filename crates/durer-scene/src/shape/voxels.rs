@@ -1,5 +1,5 @@
-//! Box of equal cells, some of them filled, as the course of 2003 displays its grid's rasterization
-//! of a sphere.
+//! Box of equal cells, some of them filled, as used by the course of 2003 to display how its grid
+//! rasterizes a sphere.
 
 use super::{MeshData, Sphere};
 use crate::describe::{Constraint, described};
@@ -52,7 +52,7 @@ impl VoxelGrid {
                         if beside[axis] < cells[axis] && filled(beside) {
                             continue;
                         }
-                        // The corners of the face; a far face follows the next axis first.
+                        // The corners of the face; for a far face, the next axis comes first.
                         let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
                         let first = data.positions.len() as u32;
                         for (a, b) in [(0, 0), (1, 0), (1, 1), (0, 1)] {

@@ -51,7 +51,7 @@ impl Lanes {
         let ratio = Color::select(known, color / curve.color, Color::ZERO);
         // A channel that the curve lacks takes the largest factor of the others.
         let ratio = Color::select(known, ratio, Color::splat(ratio.max_element()));
-        // Avoid tinting grey by rounding.
+        // Keep rounding from tinting grey.
         let even = ratio.max_element() - ratio.min_element() <= 1e-5 * ratio.max_element();
         let tint = if even { Spectrum::splat(ratio.max_element()) } else { self.coefficient(ratio) };
         tint * waves.nm.map(|nm| curve.at(nm))
@@ -68,7 +68,7 @@ fn at(rows: &[[f32; 2]], nm: f32) -> f32 {
     }
 }
 
-/// Colour, for the standard observer, of the curve times a light.
+/// Colour of the curve times a light, as seen by the standard observer.
 fn seen(rows: &[[f32; 2]], light: impl Fn([f64; 4]) -> f64) -> Color {
     let channel = |[a, b, c]: [f32; 3]| {
         let [a, b, c] = [a, b, c].map(f64::from);

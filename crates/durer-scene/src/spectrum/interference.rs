@@ -13,7 +13,7 @@ const STEP: f32 = 5.0;
 const ENTRIES: usize = 3_200;
 
 /// Mean of exp(2 pi i s / wavelength) over daylight, for the standard observer's red, green and
-/// blue and a path difference `s` in nanometres: 1 for none, near 0 for long ones.
+/// blue and a path difference `s` in nanometres: 1 for no difference, near 0 for large ones.
 ///
 /// Source of this sum by orders: Belcour and Barla, *A Practical Extension to Microfacet Theory for
 /// the Modeling of Varying Iridescence*, SIGGRAPH 2017. They fit the observer by Gaussians; this is

@@ -1,8 +1,8 @@
 //! Spectra in light transport: four lanes at once.
 //!
-//! Along a path the lanes are red, green, blue and green again (so that the fourth adds no new
-//! value), or the radiance at four wavelengths. [`Lanes::reflectance`] and [`Lanes::light`] convert
-//! colours to lanes, and [`Lanes::color`] converts back.
+//! Along a path the lanes are red, green, blue and green again (so the fourth adds no new value),
+//! or the radiance at four wavelengths. [`Lanes::reflectance`] and [`Lanes::light`] convert colours
+//! to lanes, and [`Lanes::color`] converts back.
 //!
 //! Source of four wavelengths on one path: Wilkie and others, *Hero Wavelength Spectral Sampling*,
 //! EGSR 2014.
@@ -31,7 +31,7 @@ use tables::{FIRST, LAST, OBSERVER_AND_DAYLIGHT, STEP};
 /// Radiance, or a factor of it, in four lanes.
 pub type Spectrum = glam::Vec4;
 
-/// Representation of colours in light transport.
+/// Representation of colour in light transport.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ColorMode {
@@ -127,8 +127,8 @@ impl Lanes {
         }
     }
 
-    /// Emission spectrum of a colour, by its measured spectrum if there is one. Calls `measured` in
-    /// spectral mode only.
+    /// Emission spectrum of a colour, from its measured spectrum if there is one. Calls `measured`
+    /// in spectral mode only.
     pub fn light_of<'c>(&self, color: Color, measured: impl FnOnce() -> Option<&'c Curve>) -> Spectrum {
         match self {
             Lanes::Rgb => self.light(color),
@@ -176,7 +176,7 @@ impl Waves {
         &self.observer
     }
 
-    /// Samples four wavelengths by the sensitivity of the eye, from equidistant numbers.
+    /// Samples four wavelengths in proportion to the eye's sensitivity, from equidistant numbers.
     fn new(u: f32) -> Self {
         let nm = Spectrum::from_array([0.0, 0.25, 0.5, 0.75].map(|step| wavelength((u + step).fract())));
         let at = |column: usize| nm.map(|nm| observer_and_daylight(nm)[column]);

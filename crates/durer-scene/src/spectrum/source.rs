@@ -67,8 +67,8 @@ impl SpectrumSource {
         }
     }
 
-    /// Value at a wavelength in nanometres. A colour is blue below 490 nm, green to 580 nm, and red
-    /// from there.
+    /// Value at a wavelength in nanometres. A colour is blue below 490 nm, green up to 580 nm, and
+    /// red above.
     pub fn at(&self, nm: f32) -> f32 {
         match self {
             SpectrumSource::Rgb(c) | SpectrumSource::Illuminant(c) => match nm {

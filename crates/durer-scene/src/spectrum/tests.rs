@@ -95,10 +95,10 @@ fn illuminants_have_their_published_chromaticities() {
         assert!((a - x).abs() < 3e-4 && (b - y).abs() < 3e-4, "{name}: {a} {b}, not {x} {y}");
         assert!((curve.color().dot(Color::new(0.2126, 0.7152, 0.0722)) - 1.0).abs() < 1e-3, "{name}");
     }
-    // D65 by the daylight formula agrees with the table that defines white.
+    // D65 computed by the daylight formula agrees with the table that defines white.
     let d65 = illuminants::illuminant("D65").unwrap();
     assert!((d65.color() - Color::ONE).abs().max_element() < 2e-3, "{}", d65.color());
-    // 2856 K with today's constant matches the definition of A.
+    // 2856 K with the current radiation constant matches the definition of A.
     let [a, b] = chromaticity(&illuminants::illuminant("2856K").unwrap());
     assert!((a - 0.44758).abs() < 3e-4 && (b - 0.40745).abs() < 3e-4, "{a} {b}");
     assert!(["D", "F99", "100K", "K", "warm"].iter().all(|name| illuminants::illuminant(name).is_none()));

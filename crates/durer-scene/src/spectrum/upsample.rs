@@ -1,8 +1,9 @@
 //! Spectral upsampling: smooth spectra for colours.
 //!
 //! Source: Jakob and Hanika, *A Low-Dimensional Function Space for Efficient Spectral Upsampling*,
-//! Computer Graphics Forum 38(2), 2019: a spectrum is a sigmoid of a parabola in the wavelength.
-//! Its three coefficients are fitted on a grid of colours and interpolated between grid points.
+//! Computer Graphics Forum 38(2), 2019: a spectrum is a sigmoid of a quadratic function of the
+//! wavelength. Its three coefficients are fitted on a grid of colours and interpolated between grid
+//! points.
 
 #[cfg(test)]
 use super::integral;

@@ -45,7 +45,7 @@ fn days_of(year: i32, month: i32) -> i32 {
     }
 }
 
-/// Altitude above the horizon and azimuth from north over east, in degrees, at a place given in
+/// Altitude above the horizon and azimuth from north through east, in degrees, at a place given in
 /// degrees north and east.
 pub fn sun([latitude, longitude]: [f64; 2], moment: &Moment) -> [f64; 2] {
     let n = moment.days();
@@ -89,7 +89,7 @@ mod tests {
         let [altitude, azimuth] = at([39.742476, -105.1786], [2003, 10, 17], [12.0, 30.0, 30.0], -7.0);
         assert!((altitude - 39.872).abs() < 0.01 && (azimuth - 194.340).abs() < 0.01, "{altitude} {azimuth}");
         // Meeus, *Astronomical Algorithms*, example 25.a: declination -7.78507 on 1992 October 13.
-        // It is the altitude as seen from the pole.
+        // It equals the altitude seen from the pole.
         let [altitude, _] = at([90.0, 0.0], [1992, 10, 13], [0.0; 3], 0.0);
         assert!((altitude + 7.785).abs() < 0.01, "{altitude}");
         // Almanac data: the solstice of 21 June 2026 at 8:25, and the equinox of 20 March 2026 at
@@ -102,7 +102,7 @@ mod tests {
 
     #[test]
     fn sun_position_agrees_across_time_zones() {
-        // The same moment by another clock, and by a clock that already shows the next day.
+        // The same moment given by another clock, and by a clock that already shows the next day.
         let [date, next] = [[2024, 2, 28], [2024, 2, 29]];
         let place = [-33.9, 151.2];
         let here = at(place, date, [20.0, 0.0, 0.0], 0.0);

@@ -35,7 +35,7 @@ pub const OVERCAST: u32 = 16;
 pub struct CieSky {
     /// Coefficients of types 1 to 15; `None` for type 16.
     numbers: Option<[f32; 5]>,
-    /// Unit vector to the sun, whose own light is not included.
+    /// Unit vector to the sun. Its direct light is not included.
     sun: Vec3,
     /// Factor from relative luminance to cd/m^2.
     scale: f32,

@@ -1,9 +1,10 @@
 //! Environment maps with importance sampling.
 //!
-//! Directions are sampled in proportion to the radiance above the mean. BSDF sampling finds nearly
-//! uniform parts too, and multiple importance sampling combines both, so light samples are best
-//! spent on the rest. Source: Karlík, Šik, Vévoda, Skřivan, Křivánek, *MIS Compensation: Optimizing
-//! Sampling Techniques in Multiple Importance Sampling*, SIGGRAPH Asia 2019.
+//! Directions are sampled in proportion to the radiance above the mean. Multiple importance
+//! sampling combines light samples with BSDF samples. Since BSDF sampling handles nearly uniform
+//! parts well, light samples are best spent on the brighter parts. Source: Karlík, Šik, Vévoda,
+//! Skřivan, Křivánek, *MIS Compensation: Optimizing Sampling Techniques in Multiple Importance
+//! Sampling*, SIGGRAPH Asia 2019.
 
 use crate::math::{Color, Vec2, Vec3, fp};
 use glam::Vec4;
@@ -34,7 +35,7 @@ pub struct Environment {
     /// Mean brightness over all directions, before scaling.
     mean: f32,
     rows: Arc<[Row]>,
-    /// Start indices for the search in a row's cumulative weights, one per step of the wanted
+    /// Start indices for the search in a row's cumulative weights, one per step of the searched
     /// fraction.
     hints: Arc<[u32]>,
     /// Cumulative weights of the rows, from the top.
@@ -50,8 +51,8 @@ struct Row {
     share: f32,
 }
 
-/// Minimum weight of a direction, as a fraction of its brightness. Only light sampling finds some
-/// light, such as that behind panes where paths end.
+/// Minimum weight of a direction, as a fraction of its brightness. Some light is only found by
+/// light sampling, for example behind panes at which paths end.
 const LEAST: f32 = 0.05;
 
 /// Number of entries per start index.
@@ -74,7 +75,7 @@ fn hints(sums: &[f32]) -> impl Iterator<Item = u32> {
 
 impl Environment {
     /// Creates a map from linear colours, top row first. `None` if the number of colours is not
-    /// width times height, or without light.
+    /// width times height, or if the map is black.
     pub fn new(width: u32, height: u32, texels: Vec<Color>, degrees: f32, scale: Color) -> Option<Self> {
         let (width, height) = (width as usize, height as usize);
         if width == 0 || height == 0 || texels.len() != width * height {
@@ -144,14 +145,14 @@ impl Environment {
         self.scale * (self.columns[self.height - 1] * PI / 2.0 / (self.width * self.height) as f32)
     }
 
-    /// Approximate maximum of radiance over pdf. Directions with the lowest pdf for their
-    /// brightness reach it.
+    /// Approximate maximum of radiance over pdf. It is reached in the directions with the lowest
+    /// pdf relative to their brightness.
     pub fn most_of_one(&self) -> Color {
         4.0 * PI * self.mean_above() / LEAST
     }
 
-    /// Temporary memory of [`Environment::new`] in bytes per texel, beside the given texels: the
-    /// texels with their sums, the sums alone, and the hints while they grow.
+    /// Temporary memory of [`Environment::new`] in bytes per texel, in addition to the given
+    /// texels: the texels with their sums, the sums alone, and the hints while they grow.
     pub const MAKING: usize = size_of::<Vec4>() + size_of::<[f32; 2]>();
 
     /// Size in memory in bytes.
@@ -186,7 +187,7 @@ impl Environment {
         self.density_in((x, y), place.sine)
     }
 
-    /// Pdf of a texel per solid angle, by the sine of the angle to the y axis.
+    /// Pdf per solid angle of a texel; `sine` is the sine of the angle to the y axis.
     fn density_in(&self, (x, y): (usize, usize), sine: f32) -> f32 {
         let (Row { sum, share }, row) = (self.rows[y], self.row(y));
         if sum <= 0.0 {
@@ -250,7 +251,7 @@ fn choose<T>(entries: &[T], sum: impl Fn(&T) -> f32, whole: f32, hints: &[u32], 
     while i > 0 && sum(&entries[i - 1]) > wanted {
         i -= 1;
     }
-    // Compare several entries at once to avoid mispredicted branches.
+    // Compare several entries at once to avoid branch mispredictions.
     while let Some(ahead) = entries[i..last].first_chunk::<AHEAD>() {
         let below = ahead.iter().filter(|entry| sum(entry) <= wanted).count();
         i += below;

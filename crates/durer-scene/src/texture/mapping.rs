@@ -54,7 +54,7 @@ pub struct Mapping {
     pub cutoff: Option<f32>,
     /// Factor of the slopes in a normal map; 1 keeps the stored slopes.
     pub strength: f32,
-    /// Channel to read as a number; `None` reads red, or for opacity alpha if there is one.
+    /// Channel to read as a number; `None`: red, or alpha for opacity if there is an alpha channel.
     pub channel: Option<Channel>,
     /// Parameter values for 0 and 1 in the texture.
     pub range: [f32; 2],

@@ -20,8 +20,8 @@ impl Texture {
         !self.levels.is_empty()
     }
 
-    /// Returns the texture at half the width and height. A texel is the mean of the linear values
-    /// that it covers. 8-bit colours are rounded to 8 bits again.
+    /// Returns the texture at half the width and height. Each texel is the mean of the linear
+    /// values of the texels that it covers. 8-bit colours are rounded to 8 bits again.
     fn halved(&self) -> Texture {
         let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
         let mean = |i: u32, j: u32| {
@@ -112,7 +112,7 @@ mod tests {
         assert_eq!(at(0.0), 0.0);
         assert_eq!(at(1.0), 0.0);
         assert_eq!(at(2.0), 0.5);
-        // Halfway between two levels in the logarithm.
+        // Halfway between two levels on a logarithmic scale.
         assert!((at(2.0_f32.sqrt()) - 0.25).abs() < 1e-6, "{}", at(2.0_f32.sqrt()));
         assert_eq!(at(1e30), 0.5);
         assert_eq!(at(f32::NAN), 0.0);

@@ -49,8 +49,8 @@ enum Opacity {
 }
 
 impl Texture {
-    /// Creates a texture from 8-bit texels, top row first. `None` unless there are width times
-    /// height of them, and at least one.
+    /// Creates a texture from 8-bit texels, top row first. `None` unless their number is width
+    /// times height and at least one.
     pub fn new(width: u32, height: u32, texels: Vec<[u8; 3]>) -> Option<Self> {
         let values = Box::new(std::array::from_fn(|i| i as f32 / 255.0));
         Texture::of(width, height, texels.len(), || Texels::Eight(texels.into(), values))

@@ -1,27 +1,28 @@
-//! Texels that a lookup reads, for explanations.
+//! Texels used by a texture lookup, for explanations.
 
 use super::{Texels, Texture};
 use crate::math::{Color, Vec2};
 
-/// A texel of a lookup.
+/// One texel of a lookup.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tap {
-    /// Column and row, from the upper left.
+    /// Column and row, from the upper left corner.
     pub place: (u32, u32),
-    /// Weight in the mean.
+    /// Weight in the lookup.
     pub weight: f32,
-    /// The three bytes of the file, if it has eight bits.
+    /// The file's three bytes, if it has 8 bits per channel.
     pub bytes: Option<[u8; 3]>,
     /// Colour.
     pub color: Color,
 }
 
 impl Texture {
-    /// Returns the texels that [`Texture::at`] reads and their weights, without those of weight 0;
-    /// their weighted sum is its value, but for the mapping's factors.
+    /// Returns the texels that [`Texture::at`] uses, with their weights; texels of weight 0 are
+    /// omitted. Their weighted sum is the value of the lookup before the mapping's factors.
     pub fn taps(&self, uv: Vec2) -> Vec<Tap> {
         let (width, height) = (f64::from(self.width), f64::from(self.height));
-        // Position of the first texel's corner, its share, and the texel at a column or row.
+        // Position of the first texel's corner, the fraction between texels, and the texel at a
+        // column and row.
         let (x, y, nearest) = match &self.mapping {
             Some(mapping) => {
                 let place = mapping.place(uv);

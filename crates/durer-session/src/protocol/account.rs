@@ -199,8 +199,8 @@ pub struct Outline {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Lamp {
-    /// Position in world space; for a directional light, a point in the direction from which it
-    /// shines.
+    /// Position in world space; for a directional light, a point in the direction from which its
+    /// light comes.
     pub at: [f32; 3],
     /// True for a directional light.
     pub far: bool,

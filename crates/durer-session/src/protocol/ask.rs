@@ -1,24 +1,24 @@
-//! Answers about rays, structures and models.
+//! Answers to requests about rays, structures and models.
 
 use super::scene::{FieldState, Place};
 use serde::{Deserialize, Serialize};
 #[cfg(test)]
 use ts_rs::TS;
 
-/// A structure over the objects of a scene.
+/// Acceleration structure over the objects of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Structure {
-    /// A tree of boxes.
+    /// Bounding volume hierarchy.
     Tree,
     /// A uniform grid.
     Grid,
-    /// None: every object is tested.
+    /// No structure: every object is tested.
     Nothing,
 }
 
-/// A ray of the camera.
+/// A camera ray.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct RayAccount {
@@ -26,19 +26,19 @@ pub struct RayAccount {
     pub origin: [f32; 3],
     /// Direction, of length 1.
     pub direction: [f32; 3],
-    /// Position of the first hit along the ray.
+    /// Ray parameter of the first hit.
     pub t: Option<f32>,
-    /// Number of the object that is hit.
+    /// Number of the hit object.
     pub object: Option<u32>,
 }
 
-/// Test of a ray against an object.
+/// Test of an object against a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct WalkTest {
     /// Number of the object.
     pub object: u32,
-    /// Position of its first hit along the ray.
+    /// Ray parameter of the first hit on the object.
     pub t: Option<f32>,
 }
 
@@ -48,29 +48,29 @@ pub struct WalkTest {
 pub struct WalkStep {
     /// Two opposite corners; `None` for objects outside the structure.
     pub bounds: Option<[[f32; 3]; 2]>,
-    /// Depth of a box in its tree.
+    /// Depth of the box in its tree.
     pub level: u32,
-    /// Objects that are tested there.
+    /// Tests of the objects in it.
     pub tests: Vec<WalkTest>,
-    /// Least `t` after it.
+    /// Ray parameter of the nearest hit after this step.
     pub closest: Option<f32>,
 }
 
-/// Way of a ray through a structure.
+/// Traversal of a structure by a ray.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct WalkAccount {
-    /// Visited boxes or cells, in order.
+    /// Visited boxes or cells, in visiting order.
     pub steps: Vec<WalkStep>,
     /// Number of visited nodes or cells.
     pub visits: u32,
-    /// Number of tests against objects.
+    /// Number of object tests.
     pub tests: u32,
     /// Number of objects.
     pub objects: u32,
     /// The first hit.
     pub hit: Option<WalkTest>,
-    /// Boxes of the tree, or cells with objects in them, up to a limit.
+    /// Boxes of the tree, or cells that contain objects, up to a limit.
     pub boxes: Vec<BoxState>,
 }
 
@@ -78,9 +78,10 @@ pub struct WalkAccount {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct BoxState {
-    /// Depth; 0 for the box around everything.
+    /// Depth; 0 for the root's box.
     pub level: u32,
-    /// Its eight corners, three numbers each: bit 0 of a corner's number is x, bit 1 y, bit 2 z.
+    /// The eight corners, three coordinates each: bits 0, 1 and 2 of a corner's number select x, y
+    /// and z.
     pub corners: Vec<f32>,
 }
 
@@ -88,13 +89,13 @@ pub struct BoxState {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct TreeNode {
-    /// Its keyword or file.
+    /// Keyword or file name of the node.
     pub name: String,
-    /// Place in the scene's text.
+    /// Position in the scene's text.
     pub place: Option<Place>,
-    /// Number of its material.
+    /// Number of the node's material.
     pub material: Option<u32>,
-    /// Nodes below it.
+    /// Child nodes.
     pub nodes: Vec<TreeNode>,
 }
 
@@ -102,10 +103,10 @@ pub struct TreeNode {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct MaterialState {
-    /// Its keyword.
+    /// Keyword of the material.
     pub name: String,
-    /// Place in the scene's text.
+    /// Position in the scene's text.
     pub place: Option<Place>,
-    /// Its fields.
+    /// Fields of the material.
     pub fields: Vec<FieldState>,
 }

@@ -56,7 +56,7 @@ pub enum Motion {
     },
     /// Restores the camera of the text.
     Home,
-    /// Moves back along the view direction until the whole scene is visible.
+    /// Moves back along the view direction until the full scene is visible.
     Frame,
 }
 
@@ -107,7 +107,7 @@ pub struct Finding {
     pub code: String,
     /// Message in one sentence.
     pub message: String,
-    /// Help: how to fix it.
+    /// Hint on how to fix the problem.
     pub help: Option<String>,
     /// Effect on the picture.
     pub effect: Option<String>,
@@ -115,7 +115,7 @@ pub struct Finding {
     pub file: Option<String>,
     /// Place in the file.
     pub place: Option<Place>,
-    /// Edits that fix the fault.
+    /// Edits that fix the problem.
     pub fix: Vec<Change>,
 }
 
@@ -201,7 +201,7 @@ pub struct CameraState {
     pub fields: Vec<FieldState>,
     /// Statement of the camera in the scene language.
     pub statement: String,
-    /// True if it differs from the camera of the text.
+    /// True if the camera differs from the one in the text.
     pub moved: bool,
 }
 
@@ -217,9 +217,9 @@ pub struct FieldState {
     pub values: Vec<f32>,
     /// Value, if it is a word or a file name.
     pub text: String,
-    /// Minimum value, if limited.
+    /// Minimum value, if there is one.
     pub least: Option<f32>,
-    /// Maximum value, if limited.
+    /// Maximum value, if there is one.
     pub most: Option<f32>,
 }
 
@@ -241,14 +241,14 @@ pub struct PictureHead {
     pub samples: u32,
     /// Samples per pixel of the finished picture.
     pub all_samples: u32,
-    /// The part that follows, in pixels of the whole picture: first column, first row, width and
-    /// height. A coarse one may reach beyond the edge.
+    /// Part of the picture that follows, in pixels of the full picture: first column, first row,
+    /// width and height. A coarse part may extend beyond the edge.
     pub region: [u32; 4],
-    /// Visible error, the quantity that `durer render --noise-threshold` limits, once it is known.
+    /// Visible error, which `durer render --noise-threshold` limits; `None` if not yet known.
     pub noise: Option<f64>,
-    /// Milliseconds until it is finished, once they are known.
+    /// Estimated time until the picture is finished, in milliseconds; `None` if not yet known.
     pub left_ms: Option<f64>,
-    /// True if it is denoised.
+    /// True if the picture is denoised.
     pub denoised: bool,
     /// Number of rays traced.
     pub rays: f64,

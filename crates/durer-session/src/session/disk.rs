@@ -23,8 +23,8 @@ impl Session {
         Err("files cannot be saved here".into())
     }
 
-    /// Reads the scene's file again if it was changed. A text that was edited here stays: the page
-    /// hears of the conflict when it saves.
+    /// Reads the scene's file again if it has changed. Text that was edited here is kept; the page
+    /// learns of the conflict when it saves.
     #[cfg(feature = "fs")]
     pub(crate) fn look_at_disk(&mut self, say: &mut dyn FnMut(Message)) {
         let Some(document) = self.document.as_ref().filter(|_| self.on_disk) else { return };
@@ -42,7 +42,7 @@ impl Session {
         }
     }
 
-    /// Takes over what is in the scene's file now.
+    /// Accepts the current content of the scene's file, if it equals `text`.
     #[cfg(feature = "fs")]
     pub(crate) fn take_over(&mut self, text: &str) {
         if let Some(document) = self.document.as_ref().filter(|_| self.on_disk)

@@ -1,4 +1,4 @@
-//! Page side of the protocol, for tests.
+//! The page's side of the protocol, for tests.
 
 #![allow(dead_code, reason = "each test uses a part")]
 
@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// A host with a clock that goes on by a millisecond at each look.
+/// A host whose clock advances by one millisecond each time it is read.
 pub struct Page(Host);
 
 impl Page {
@@ -28,7 +28,7 @@ impl Page {
         all
     }
 
-    /// Pictures until the session rests.
+    /// Returns the pictures that the session sends until it is idle.
     pub fn pictures(&mut self) -> Vec<(PictureHead, Vec<u8>)> {
         let mut all = Vec::new();
         while self.0.is_busy() {

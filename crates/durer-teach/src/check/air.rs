@@ -1,4 +1,4 @@
-//! Checks of fog: too dense, or without an end.
+//! Checks of fog: too dense, or outside the picture.
 
 use super::finding::{Finding, number, percent};
 use super::scene_probe::SceneProbe;
@@ -9,7 +9,7 @@ use durer_scene::math::{Color, fp};
 /// Fog is opaque if it transmits less than this.
 const WALL: f32 = 0.01;
 
-/// Reports a box of fog that no camera ray goes through before it hits something.
+/// Reports a fog box that no camera ray crosses before it hits a surface.
 pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let (Some(fog), Some(written)) = (world.fog(), &scout.subject.scene.fog) else { return Vec::new() };
@@ -18,7 +18,7 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
         let end = probe.seen.as_ref().map_or(f32::INFINITY, |seen| seen.t);
         place.bounds.clip(probe.ray.origin, probe.ray.dir).is_some_and(|(from, to)| to > 0.0 && from < end)
     };
-    // Fog beside the picture may still shade what is in it.
+    // Fog outside the picture can still dim visible objects.
     let around = world.bounds();
     let apart = around.is_empty()
         || (0..3).any(|axis| place.bounds.min[axis] > around.max[axis] || place.bounds.max[axis] < around.min[axis]);

@@ -12,11 +12,11 @@ use durer_scene::math::{Ray, Vec2, Vec3};
 use durer_scene::scene::Material as Written;
 use durer_scene::shape::{Flip, Shape};
 
-/// Maximum number of visible points at which an area light is judged.
+/// Maximum number of visible points at which the contribution of an area light is measured.
 const MAX_PLACES: usize = 200;
 /// Sample points on an area light.
 const ON_LIGHT: [Vec2; 4] = [Vec2::new(0.3, 0.2), Vec2::new(0.7, 0.3), Vec2::new(0.2, 0.7), Vec2::new(0.8, 0.8)];
-/// An area light whose share of its possible light is below this contributes nothing.
+/// Fraction of its possible light below which an area light counts as contributing nothing.
 const NOTHING: f32 = 0.1;
 const HARDLY: f32 = 0.03;
 
@@ -122,8 +122,8 @@ fn contribution(scout: &SceneProbe, light: u32) -> Option<(AreaLightShare, bool)
     (contribution.rays > 0).then_some((contribution, flat))
 }
 
-/// Returns the distance that an area light's normal travels, as a share of the scene's size; `None`
-/// if it hits nothing.
+/// Returns the distance from an area light to the first hit along its normal, as a fraction of the
+/// scene's size; `None` if there is no hit.
 fn reach(scout: &SceneProbe, object: &Object) -> Option<f32> {
     let (form, normal) = emitter_of(object, 0)?;
     let (point, n, _) = form.point(normal, Vec2::splat(0.5))?;

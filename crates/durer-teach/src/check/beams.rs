@@ -95,8 +95,8 @@ pub(super) fn inner_angle(scout: &SceneProbe) -> Vec<Finding> {
     lights.filter_map(say).take(MAX_SOUGHT).collect()
 }
 
-/// Returns the distance and the object if a light is so close to a surface that it lights little
-/// but a spot on it.
+/// Returns the distance and the object if a light is so close to a surface that it lights only a
+/// spot.
 fn touching(scout: &SceneProbe, light: usize) -> Option<(f32, u32)> {
     let point = point(&scout.world().lights()[light])?;
     point.attenuation.filter(|a| a.z > 0.0 || a.y > 0.0)?;

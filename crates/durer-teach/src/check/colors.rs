@@ -15,7 +15,7 @@ const BLACK: f32 = 0.01;
 /// Colours that differ by less than this look the same.
 const ALIKE: f32 = 2.0 / 255.0;
 
-/// Minimum number of rays that hit an object before it counts as lost in the background.
+/// Minimum number of rays that must hit an object for it to count as lost in the background.
 const FEWEST_LOST: usize = 6;
 
 /// Iterates over the Phong materials: index, description and compiled material.
@@ -112,7 +112,7 @@ pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
         .at(written.span)
         .effect(if diffuse < 0.15 { "it is black, or nearly black" } else { "only its diffuse colour is visible" })
         .help(help);
-    // If that year's program traces no secondary rays by default, their absence is intended.
+    // If that year's program traces no secondary rays by default, their absence is intentional.
     let seen: usize = all.iter().map(|(i, ..)| rays(scout, *i)).sum();
     let black: usize =
         all.iter().filter(|(.., phong)| phong.diffuse.max_element() < 0.1).map(|(i, ..)| rays(scout, *i)).sum();
@@ -122,7 +122,8 @@ pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
     vec![finding.whole(whole)]
 }
 
-/// Reports mirrors and glass whose rays the options switch off or cut inside the body.
+/// Reports mirrors and glass whose secondary rays are disabled by the options, or end inside the
+/// body.
 fn switched_off(scout: &SceneProbe, all: &[(u32, &Spanned<Written>, &Phong)]) -> Vec<Finding> {
     let settings = &scout.subject.job.settings;
     let dark = |phong: &Phong| phong.diffuse.max_element() < 0.15;
@@ -210,7 +211,7 @@ struct ColorField {
     color: Color,
     block: Span,
     fields: [&'static str; 2],
-    /// Largest plausible value.
+    /// Largest plausible channel value.
     most: f32,
 }
 

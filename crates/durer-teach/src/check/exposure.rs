@@ -15,14 +15,14 @@ use durer_scene::math::{Color, fp};
 /// lost.
 const BEYOND: f32 = 1.0 + VISIBLE;
 const FAR_BEYOND: f32 = 1.25;
-/// Largest shares of the visible points that may be clipped, or far too bright: above, it is more
-/// than highlights.
+/// Largest fractions of visible points that may be clipped, or far too bright. Above these, more
+/// than highlights is affected.
 const MAX_CUT: f32 = 0.4;
 const MAX_FAR: f32 = 0.2;
 
 /// Largest share of white pixels in a picture that still shows something.
 const MAX_WHITE: f32 = 0.5;
-/// Largest share of white among the surfaces that are lit, whatever the background.
+/// Largest fraction of white points on lit surfaces, regardless of the background.
 const MAX_WHITE_THINGS: f32 = 0.8;
 
 /// Converts a factor of light to stops.
@@ -33,7 +33,7 @@ fn stops_of(factor: f32) -> f32 {
 /// Reports a picture in physical units (path tracing, or a sky in cd/m^2) that eight bits show as
 /// white.
 fn white(scout: &SceneProbe) -> Vec<Finding> {
-    // Emitters may be white, and an unlit background says nothing.
+    // Emitters may be white, and an unlit background does not count.
     let lit = |probe: &Probe| probe.seen.as_ref().is_some_and(|seen| !scout.world().may_emit(seen.material));
     let all = scout.light();
     let objects: Vec<Color> = (scout.lit_probes().filter(|(probe, color)| lit(probe) && color.max_element() > VISIBLE))

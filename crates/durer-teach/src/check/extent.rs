@@ -13,7 +13,8 @@ use durer_scene::scene::{MatrixOp, Node, Object};
 
 /// Minimum size in pixels of a recognisable object.
 const FEWEST_PIXELS: f32 = 6.0;
-/// Ratios of sizes above which an object is out of scale: harmless, and spoiling the picture.
+/// Size ratios above which an object is out of scale, for harmless objects and for objects that
+/// spoil the picture.
 const OUT_OF_SCALE: f32 = 3e3;
 const HARMFUL: f32 = 100.0;
 /// Ratio of sizes above which an object that contains the camera is out of scale.
@@ -73,7 +74,7 @@ pub(super) fn too_small(scout: &SceneProbe) -> Vec<Finding> {
 /// radians.
 pub(super) fn too_narrow(scout: &SceneProbe) -> Vec<Finding> {
     let (bounds, span, larger) = (scout.world().bounds(), scout.subject.scene.camera_span, scout.larger());
-    // The camera is not too close to an object that is seen whole.
+    // The camera is not too close to an object that is entirely visible.
     let seen =
         scout.world().objects().iter().zip(scout.visibilities()).filter(|(_, sight)| **sight == Visibility::Seen);
     let sizes: Vec<f32> = seen.filter_map(|(object, _)| pixels(scout, object.bounds()?)).collect();
@@ -151,8 +152,8 @@ pub(super) fn times_larger(scout: &SceneProbe, object: u32) -> Option<f32> {
     (times > SWALLOWING && times.is_finite()).then_some(times)
 }
 
-/// Returns true if a large object spoils the picture: it is invisible in spite of its size, or
-/// hides other objects.
+/// Returns true if a large object spoils the picture: it is invisible despite its size, or hides
+/// other objects.
 fn is_harm(scout: &SceneProbe, object: u32) -> bool {
     let visibilities = scout.visibilities();
     let hides = visibilities.contains(&Visibility::Hidden(object));
@@ -163,7 +164,7 @@ fn is_harm(scout: &SceneProbe, object: u32) -> bool {
         return true;
     }
     match visibilities[object as usize] {
-        // Other checks judge the position of a ball that only hides or only blocks.
+        // Other checks report a ball that only hides objects or only blocks light.
         Visibility::Seen => hides && keeps_light || (hides || keeps_light) && !ball,
         _ => true,
     }
@@ -184,7 +185,7 @@ pub(super) fn swallows_wrongly(scout: &SceneProbe, object: u32) -> bool {
 }
 
 /// Returns true if an object around the camera is a ball meant as the ground: it is far larger than
-/// all else, and the camera is near its top, far from its middle.
+/// everything else, and the camera is near its top, far from its centre.
 fn is_ground(scout: &SceneProbe, object: u32) -> bool {
     let own = &scout.world().objects()[object as usize];
     let Some(bounds) = own.bounds().filter(|_| is_ball(own)) else { return false };
@@ -195,8 +196,8 @@ fn is_ground(scout: &SceneProbe, object: u32) -> bool {
     times_larger(scout, object).is_some() && off.length() > 0.8 * radius && high
 }
 
-/// Returns true if an object around the camera is far larger than all else, and so dark that it is
-/// no sky and no room.
+/// Returns true if an object around the camera is far larger than everything else, and too dark for
+/// a sky or a room.
 fn is_dark_shell(scout: &SceneProbe, object: u32) -> bool {
     let own = &scout.world().objects()[object as usize];
     if !scout.is_physical()
@@ -212,8 +213,8 @@ fn is_dark_shell(scout: &SceneProbe, object: u32) -> bool {
     dark * 10 >= all * 9
 }
 
-/// Returns true if an object is a sky: a ball far around the camera, and lights outside of it are
-/// the ones that it blocks.
+/// Returns true if an object is a sky: a large ball around the camera that blocks lights outside
+/// it, and only those.
 fn is_sky_before_lights(scout: &SceneProbe, object: u32) -> bool {
     let own = &scout.world().objects()[object as usize];
     let Some(bounds) = own.bounds().filter(|_| is_ball(own)) else { return false };
@@ -269,7 +270,8 @@ pub(super) fn out_of_scale(scout: &SceneProbe) -> Vec<Finding> {
     let holds_eye = |object: u32| around.contains(&object) && swallows_wrongly(scout, object);
     for &(object, size) in &sizes {
         let ratio = if size > middle { size / middle } else { middle / size };
-        // Of two objects either may be wrong: the small one is invisible, the large one hides.
+        // Either of the two objects may be wrong: the small one is invisible, or the large one
+        // hides others.
         let spoils = size > middle && is_harm(scout, object);
         if found.len() >= MAX_SOUGHT
             || ratio
@@ -283,8 +285,8 @@ pub(super) fn out_of_scale(scout: &SceneProbe) -> Vec<Finding> {
         {
             continue;
         }
-        // A huge ball may be the ground or the sky. What holds the camera has its own finding, as a
-        // light behind the sky.
+        // A huge ball can be the ground or the sky. Objects around the camera and lights outside a
+        // sky have their own findings.
         if size > middle && (!spoils || holds_eye(object) || is_sky_before_lights(scout, object)) {
             continue;
         }

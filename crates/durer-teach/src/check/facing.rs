@@ -89,7 +89,7 @@ pub(super) fn from_behind(scout: &SceneProbe) -> Vec<Finding> {
             let note = Diagnostic::note(message)
                 .at(scout.object_span(i as u32))
                 .effect("a ray tracer that does not shade back faces, such as the course's without `-shade_back`, leaves it black");
-            // Flipping a plane's normal and offset gives the same plane, and it looks the same if
+            // Negating a plane's normal and offset gives the same plane, which looks the same if
             // backs are shaded.
             return Finding::from(if plane(&scout.world().objects()[i]).is_some() {
                 note
@@ -110,7 +110,7 @@ pub(super) fn from_behind(scout: &SceneProbe) -> Vec<Finding> {
     turned_away.take(MAX_SOUGHT).map(say).collect()
 }
 
-/// Reports connected triangles of the scene file that wind the other way than most of them.
+/// Reports connected triangles of the scene file whose winding is opposite to that of most others.
 pub(super) fn turned_triangles(scout: &SceneProbe) -> Vec<Finding> {
     let mut soups: Vec<(Option<Affine>, Vec<u32>)> = Vec::new();
     for (i, object) in scout.world().objects().iter().enumerate() {
@@ -156,7 +156,7 @@ fn turned_of(scout: &SceneProbe, soup: &[u32]) -> Vec<Finding> {
         diagnostic = turned(scout, diagnostic, soup[i as usize]);
     }
     if !topology.is_closed() && count * 3 > soup.len() {
-        // Sheets that only touch have no common side.
+        // Sheets that only touch share no edge.
         diagnostic.severity = Severity::Note;
     }
     vec![Finding::from(diagnostic)]

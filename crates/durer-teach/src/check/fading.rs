@@ -1,4 +1,4 @@
-//! Checks of lights with attenuation: how much of them arrives, and their divisors.
+//! Checks of lights with attenuation: how much light arrives, and whether the divisor is valid.
 
 use super::finding::{Finding, number, vector};
 use super::lights::{each, place, useless, written};

@@ -34,7 +34,7 @@ pub(super) fn hidden(scout: &SceneProbe) -> Vec<Finding> {
     }
     let covered = scout.seen().count();
     let is_plane = scout.world().objects()[front as usize].bounds().is_none();
-    // An object may stand behind another on purpose; behind an infinite plane nothing is ever
+    // An object can be behind another on purpose, but nothing behind an infinite plane is ever
     // visible.
     let few = !is_plane && covered * 2 < scout.probes.len();
     if hidden == 0 || others > 0 || few || scout.is_glass(front) {
@@ -118,8 +118,8 @@ fn in_the_way(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// Reports a plane between the camera and all bounded objects, even if something else, such as the
-/// sky, is visible beside it.
+/// Reports a plane between the camera and all bounded objects, even if other objects, such as the
+/// sky, are visible beside it.
 pub(super) fn below_plane(scout: &SceneProbe) -> Vec<Finding> {
     let objects = scout.world().objects();
     let mut front = None;
@@ -182,7 +182,7 @@ pub(super) fn plane_before(scout: &SceneProbe, object: &Object) -> Option<u32> {
     world.hits_of_each(&way).map(|hit| hit.object).find(|&other| world.objects()[other as usize].bounds().is_none())
 }
 
-/// Mirrors the camera's height at a plane, if all objects stand on that plane.
+/// Reflects the camera position through a plane, if all objects stand on that plane.
 fn raised(scout: &SceneProbe, object: u32) -> Option<Vec3> {
     let (n, d) = ground(scout, object)?;
     let eye = scout.world().camera().pose().center;

@@ -72,7 +72,7 @@ pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = enclosed(scout);
     found.extend(each(scout, |light, verdict| {
         let Verdict::Inside(object) = verdict else { return None };
-        // Photons leave a body of glass.
+        // Photons can leave a glass body.
         if scout.subject.job.method.prepares() && transmits(scout, object) {
             return None;
         }

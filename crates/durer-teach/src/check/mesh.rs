@@ -9,7 +9,8 @@ use durer_render::world::{Material, Object as Placed};
 use durer_scene::dialect::Quirk;
 use durer_scene::math::Vec3;
 
-/// Share of triangles without area that is above what the poles of a surface of revolution have.
+/// Fraction of zero-area triangles above which they are not just the poles of a surface of
+/// revolution.
 const MANY_FLAT: f32 = 0.03;
 
 /// Reports triangles without area.
@@ -59,7 +60,7 @@ pub(super) fn holes(scout: &SceneProbe) -> Vec<Finding> {
     for mesh in scout.meshes().iter().filter(|mesh| mesh.glass(scout).is_none() && mesh.topology.open > 0) {
         let seen = scout.seen().filter(|(_, seen)| mesh.is_shown_at(scout.object_span(seen.object)));
         let (all, backs) = seen.fold((0, 0), |(all, backs), (_, s)| (all + 1, backs + usize::from(s.from_behind)));
-        // A sheet is visible from mostly one side.
+        // An open sheet is seen mostly from one side.
         if backs * 50 < all || backs * 10 > all * 7 || all == 0 {
             continue;
         }
@@ -90,7 +91,7 @@ pub(super) fn flat_glass(scout: &SceneProbe) -> Vec<Finding> {
     };
     let flat: Vec<(&Placed, String)> =
         world.objects().iter().filter(glass).filter_map(|object| Some((object, what(object)?))).collect();
-    // Triangles that close a body are a body.
+    // Triangles that form a closed surface have an inside.
     let corners: Vec<_> = flat
         .iter()
         .filter_map(|(object, _)| Some(triangle(object)?.map(|corner| object.world_point(corner))))
@@ -196,7 +197,7 @@ fn other_normal(bytes: &[u8], file: u32) -> Option<Span> {
     None
 }
 
-/// Reports triangles that wind the other way than their neighbours.
+/// Reports triangles whose winding is opposite to that of their neighbours.
 pub(super) fn winding(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for mesh in scout.meshes().iter().filter(|mesh| mesh.odd_normals.is_none()) {
@@ -238,9 +239,9 @@ pub(super) fn inside_out(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Reports closed meshes of a model whose triangles wind clockwise seen from outside.
+/// Reports closed meshes of a model whose triangles are clockwise when seen from outside.
 fn models_inside_out(scout: &SceneProbe) -> Vec<Finding> {
-    // A transform that mirrors turns the winding round, as formats have it.
+    // Formats reverse the winding under a mirroring transform, so skip mirrored meshes.
     let kept = |object: &Placed| {
         object.to_world.as_ref().is_none_or(|to_world| {
             to_world.vector(Vec3::X).cross(to_world.vector(Vec3::Y)).dot(to_world.vector(Vec3::Z)) > 0.0
@@ -258,7 +259,7 @@ fn models_inside_out(scout: &SceneProbe) -> Vec<Finding> {
             .at(scout.object_span(index))
             .effect("programs that leave out backs show its inside; as glass it bends light the wrong way")
             .help("let its faces go round counter-clockwise, seen from outside");
-        // Modelling programs leave small pieces so, and nobody sees them.
+        // Modelling programs leave small inverted pieces, which are hardly visible.
         let severity = if most { Severity::Warning } else { Severity::Note };
         Some(Finding::from(Diagnostic { severity, ..diagnostic }))
     };

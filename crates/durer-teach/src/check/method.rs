@@ -1,4 +1,4 @@
-//! Checks of the method against what lights the scene.
+//! Checks that the integrator supports the scene's light sources and that their light arrives.
 
 use super::area_lights::emissive_objects;
 use super::colors::background_span;
@@ -12,14 +12,14 @@ use durer_render::world::Material;
 use durer_scene::math::{Color, Vec3};
 use durer_scene::scene::Material as Written;
 
-/// Light below which a surface is black in eight bits.
+/// Radiance below which a surface is black in eight bits.
 const BLACK: f32 = 0.001;
-/// Share of the visible surfaces in tenths that is black in a picture without light.
+/// Minimum fraction of black surfaces, in tenths, in a picture without light.
 const MOSTLY: usize = 9;
-/// Number of surfaces below which nothing is judged.
+/// Minimum number of surface samples for a judgement.
 const FEWEST: usize = 20;
 
-/// Reports a scene whose only light is of a kind that Whitted's method does not know.
+/// Reports a scene whose only light is of a kind that Whitted's method does not support.
 pub(super) fn wrong_integrator(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     if !matches!(scout.subject.job.method, IntegratorKind::Whitted(_)) || !world.lights().is_empty() {
@@ -53,7 +53,8 @@ pub(super) fn black_sky(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(alone)]
 }
 
-/// Reports a path-traced picture in which nearly all surfaces are black although something shines.
+/// Reports a path-traced picture in which nearly all surfaces are black although the scene has
+/// light.
 pub(super) fn mostly_black(scout: &SceneProbe) -> Vec<Finding> {
     if !scout.is_physical() || scout.is_dark() || scout.world().fog().is_some() {
         return Vec::new();
@@ -91,7 +92,8 @@ pub(super) fn mostly_black(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(Diagnostic { span, ..diagnostic }).whole(true)]
 }
 
-/// Reports mirrors that have nothing to show: they are all that is seen, and around them is black.
+/// Reports mirrors with nothing to reflect: only mirrors are visible, and their surroundings are
+/// black.
 pub(super) fn nothing_mirrored(scout: &SceneProbe) -> Vec<Finding> {
     if scout.is_physical() || scout.subject.job.settings.bounces == 0 {
         return Vec::new();

@@ -1,9 +1,9 @@
 //! Diagnosis of scenes whose picture is black, white, empty or odd, with fixes.
 //!
-//! A [`SceneProbe`] traces a coarse grid of camera rays through the world and keeps what each
-//! found. The checks of the table [`CHECKS`] examine these probes, the meshes and the description.
-//! Every finding has a stable code, a place, an effect on the picture, a proposed change and, if
-//! that is mechanical, the edit of the scene's text.
+//! A [`SceneProbe`] traces a coarse grid of camera rays through the world and records their hits.
+//! The checks of the table [`CHECKS`] examine these probes, the meshes and the description. Every
+//! finding has a stable code, a place, an effect on the picture, a suggested change and, if it is
+//! mechanical, an edit of the scene's text.
 
 mod aim;
 mod air;
@@ -60,7 +60,7 @@ pub use table::{CHECKS, Check, rank};
 const EMPTIES: [&str; 7] =
     ["camera-inside", "camera-away", "too-small", "too-narrow", "all-missed", "hidden-behind", "below-plane"];
 
-/// Causes, and the findings that are suppressed beside each because they follow from it.
+/// Causes, each with the findings that are suppressed because they follow from it.
 const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("wrong-integrator", &["no-light", "no-emitter", "too-dark", "same-color", "one-color", "nothing-mirrored"]),
     ("black-sky", &["no-emitter", "too-dark", "one-color"]),
@@ -158,8 +158,9 @@ pub fn reported(diagnostics: &Diagnostics) -> Vec<Finding> {
 }
 
 /// Sorts findings: errors, then warnings about the whole picture, other warnings, then notes.
-/// Within a level, the order of the table (causes before consequences), each kind once before any
-/// kind repeats. Of many findings of a kind, the last one shown counts the rest.
+/// Within a level, the order is that of the table (causes before consequences), and each kind
+/// appears once before any kind repeats. If a kind has many findings, the last one shown counts the
+/// others.
 fn ordered(mut found: Vec<Finding>) -> Vec<Finding> {
     let level = |finding: &Finding| match finding.diagnostic.severity {
         Severity::Error => 0,

@@ -178,7 +178,7 @@ pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
             [x, y, z, u, v, w]
         });
         let there = places.entry(key).or_default();
-        // Compare with the first 16 only, so that many at one place stay cheap.
+        // Compare with the first 16 only, so that many objects at one place stay cheap.
         if found.len() >= MAX_SOUGHT {
             break;
         }
@@ -190,7 +190,7 @@ pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Reports flat objects that lie in a plane, where depth cannot tell the two apart.
+/// Reports flat objects that lie in a plane, where depth cannot separate the two.
 fn in_plane(scout: &SceneProbe) -> Vec<Finding> {
     let objects = scout.world().objects();
     let planes: Vec<(usize, &Plane)> = objects

@@ -12,9 +12,9 @@ use durer_scene::spectrum::ColorMode;
 
 /// Thickness in micrometres above which a film shows no colours.
 const THICKEST_FILM: f32 = 10.0;
-/// Mean free path, as a multiple of a body's thickness, above which the body hardly scatters.
+/// Mean free path, as a multiple of a body's thickness, above which the body hardly scatters light.
 const LONGEST_WAY: f32 = 30.0;
-/// Index of refraction that bends light.
+/// Minimum difference of the index of refraction from 1 that bends light.
 const BENDS: f32 = 1e-3;
 
 /// A used material: its index, description and parameters.
@@ -37,7 +37,7 @@ pub(super) fn thick_film(scout: &SceneProbe) -> Vec<Finding> {
     layers(scout).into_iter().filter_map(say).collect()
 }
 
-/// Reports scattering bodies that are thinner than the way light goes between two scatterings.
+/// Reports scattering bodies that are much thinner than their mean free path.
 pub(super) fn wide_scatter(scout: &SceneProbe) -> Vec<Finding> {
     let say = |(index, written, m): Used| {
         let thick = thickness(scout, index)?;
@@ -59,7 +59,7 @@ pub(super) fn wide_scatter(scout: &SceneProbe) -> Vec<Finding> {
     if scout.is_physical() { layers(scout).into_iter().filter_map(say).collect() } else { Vec::new() }
 }
 
-/// Reports glass that should spread colours in a picture that is not computed by wavelength.
+/// Reports dispersive glass in a picture that is not rendered spectrally.
 pub(super) fn no_spectrum(scout: &SceneProbe) -> Vec<Finding> {
     let transport = scout.subject.job.method.transport();
     if transport.is_none_or(|transport| transport.color == ColorMode::Spectral) {
@@ -69,7 +69,8 @@ pub(super) fn no_spectrum(scout: &SceneProbe) -> Vec<Finding> {
         if m.transmission_dispersion_scale <= 0.0 || m.transmission_weight < 0.5 || m.walls == Walls::Thin {
             return None;
         }
-        // Some presets and models spread colours for those who look for them.
+        // Ignore dispersion that comes from a preset or model, which is often not intended to be
+        // visible.
         let value = scout.value(written.span, &["transmissionDispersionScale"])?;
         let diagnostic = Diagnostic::note(format!("material {index} spreads colours, and light has none to spread"))
             .at(value)
@@ -80,7 +81,7 @@ pub(super) fn no_spectrum(scout: &SceneProbe) -> Vec<Finding> {
     layers(scout).into_iter().filter_map(say).take(MAX_SOUGHT).collect()
 }
 
-/// Reports glass and mirrors that paths are too short for.
+/// Reports glass and mirrors for which paths have too few bounces.
 pub(super) fn short_paths(scout: &SceneProbe) -> Vec<Finding> {
     let bounces = scout.subject.job.settings.bounces;
     let say = |(index, written, m): Used| {

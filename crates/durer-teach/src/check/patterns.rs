@@ -12,7 +12,7 @@ use durer_scene::scene::Material as Written;
 const STEPS: u32 = 24;
 /// Number of changes within a pixel above which a pattern is noise.
 const MAX_CHANGES: usize = 3;
-/// Cells this many times wider than the whole scene show no pattern.
+/// Cells this many times wider than the scene show no pattern.
 const COARSEST: f32 = 3.0;
 /// Minimum number of visible points for a judgement.
 const FEWEST: usize = 20;

@@ -5,7 +5,7 @@ use durer_scene::math::Color;
 
 /// Share of pixels clipped in all channels above which a picture is mostly white.
 const MAX_WHITE: f32 = 0.5;
-/// Share of rejected samples above which the cause is more than a speck.
+/// Share of rejected samples above which more than a speck is affected.
 const MAX_REJECTED: f64 = 0.001;
 
 /// A visible fault of a picture.

@@ -1,4 +1,4 @@
-//! Checks of where transforms place objects, and of corrections.
+//! Checks of where transforms place objects, with corrections.
 
 use super::scene_probe::SceneProbe;
 use durer_diag::Span;

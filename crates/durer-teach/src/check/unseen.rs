@@ -52,7 +52,7 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
                 scout.object(first)
             ),
         };
-        // An object outside the picture may be there for its shadow or its light, unless almost
+        // An object outside the picture can be there for its shadow or its light, unless almost
         // nothing else is left.
         let own = |(_, seen): &(_, &crate::check::probes::ProbeHit)| {
             scout.world().objects()[seen.object as usize].bounds().is_some()
@@ -80,10 +80,10 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
             (false, true) => "move it outside, or move or shrink the other object",
             (false, false) => "is it on the wrong side of the other object, or is that object in the way?",
         };
-        // An object may stand behind another on purpose.
+        // An object can be behind another on purpose.
         let one = hidden.iter().all(|(_, other)| *other == by);
         let severity = match below(scout, by, first) {
-            // Behind a plane that is all before it an object is never seen.
+            // An object behind an infinite plane is never visible.
             true => Severity::Warning,
             false if plane || inside || one => severity(hidden.len()),
             false => Severity::Note,
@@ -105,7 +105,7 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Returns true if an object is wholly on the other side of a plane than the camera.
+/// Returns true if an object and the camera are on opposite sides of a plane.
 fn below(scout: &SceneProbe, plane: u32, object: u32) -> bool {
     let Some((n, d)) = super::hidden::ground(scout, plane) else { return false };
     let eye = scout.world().camera().pose().center.dot(n) - d;
@@ -210,7 +210,7 @@ pub(super) fn flat_field(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Returns a warning about a landscape whose picture has the same value everywhere.
+/// Returns a warning about a landscape whose height map has the same value everywhere.
 fn even_field(scout: &SceneProbe, object: &durer_scene::scene::Object, size: Vec3) -> Option<Finding> {
     let is_it = |own: &&Object| own.span.file == object.span.file && own.span.start == object.span.start;
     let mesh = scout.world().objects().iter().find(is_it).and_then(|own| match &own.geometry {
@@ -218,7 +218,7 @@ fn even_field(scout: &SceneProbe, object: &durer_scene::scene::Object, size: Vec
         Geometry::Primitive(_) | Geometry::Solid(_) => None,
     })?;
     let step = (mesh.len() / 2000).max(1);
-    // Its sides and its underside say nothing.
+    // Ignore its sides and underside.
     let upper = |[a, b, c]: &[Vec3; 3]| {
         let n = (*b - *a).cross(*c - *a);
         n.y.abs() > 1e-3 * n.length() && n.y > 0.0

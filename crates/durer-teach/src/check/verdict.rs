@@ -11,9 +11,9 @@ use durer_scene::math::{Color, Ray, Vec3};
 
 /// Half a step of eight bits: smaller contributions are invisible.
 pub(super) const VISIBLE: f32 = 1.0 / 512.0;
-/// Number of lights that are judged; the rest count as working.
+/// Maximum number of lights that are judged; the rest count as working.
 pub(super) const MAX_JUDGED: usize = 500;
-/// A light that contributes to a smaller share of the visible points counts as useless.
+/// A light that reaches a smaller share of the visible points counts as useless.
 const SHARE: f32 = 0.002;
 /// A light is blocked if more than this share of the points facing it is in shadow.
 const MAX_BLOCKED: f32 = 0.95;
@@ -117,7 +117,7 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
         return Verdict::Missing;
     }
     let visible = all.iter().filter(|lit| lit.adds.abs().max_element() > VISIBLE).count();
-    // With only a few lights, each is meant to be visible.
+    // If there are only a few lights, each is meant to be visible.
     let most = all.iter().map(|lit| lit.adds.abs().max_element()).fold(0.0, f32::max);
     let arrives = all.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
     if grid.world().lights().len() <= 3 && most > VISIBLE && most < 6.0 * VISIBLE && arrives < 12.0 * VISIBLE {
@@ -137,9 +137,9 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
     let blocked: Vec<u32> = facing.iter().filter_map(|lit| lit.blocker).collect();
     if facing.len() - blocked.len() > all.len() / 50 && !is_blocked {
         let most = facing.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
-        // At a grazing angle a surface is dark whatever its colour.
+        // At a grazing angle, a surface is dark regardless of its colour.
         let colored = |seen: &ProbeHit| match &grid.world().materials()[seen.material as usize] {
-            // Of what reflects no light by itself, as a mirror, nothing cancels.
+            // Mirrors and other surfaces without diffuse reflection cannot cancel a light's colour.
             Material::Phong(phong) => phong.diffuse.max_element() >= 0.05,
             Material::Solid(..) => true,
         };
@@ -222,8 +222,8 @@ fn behind_plane(grid: &ProbeGrid, light: &Light) -> Option<u32> {
     (is_seen && world.objects()[hit.object as usize].bounds().is_none()).then_some(hit.object)
 }
 
-/// Returns true if an object around a light lets none out: it blocks the light, or no visible
-/// surface faces the light.
+/// Returns true if no light escapes from an object around a light: it blocks the light, or no
+/// visible surface faces the light.
 fn keeps_light(grid: &ProbeGrid, object: u32, all: &[&LightContribution]) -> bool {
     let shadows = grid.subject.job.settings.shadows;
     let blocks = all.iter().any(|lit| lit.blocker == Some(object));

@@ -80,8 +80,8 @@ pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Returns true if an object around the camera is the only thing that ends, is seen from behind
-/// alone, and fills much of the picture.
+/// Returns true if an object around the camera is the only bounded one, is seen only from behind,
+/// and fills much of the picture.
 fn is_alone(scout: &SceneProbe, object: u32) -> bool {
     let world = scout.world();
     let ended = world.objects().iter().filter(|object| object.bounds().is_some()).count();
@@ -101,7 +101,7 @@ fn leave(bounds: Aabb, from: Vec3, direction: Vec3) -> Vec3 {
     from + 1.5 * way * direction
 }
 
-/// Returns what the camera should see: the bounds of all bounded objects, or the nearest point of a
+/// Returns the target of the camera: the bounds of all bounded objects, or the nearest point of a
 /// plane.
 pub(super) fn target(scout: &SceneProbe) -> Option<Aabb> {
     let (world, eye) = (scout.world(), scout.world().camera().pose().center);
@@ -171,7 +171,7 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     }
     let to = center - pose.center;
     let angle = degrees(pose.direction, to);
-    // With a degenerate `up` the picture may be rotated; only far off-axis does that not matter.
+    // A degenerate `up` can rotate the picture. Report the direction only if it is far off.
     let turned = pose.up.normalize_or_zero().cross(pose.direction.normalize_or_zero()).length() < 1e-3;
     if turned && angle < 60.0 {
         return Vec::new();
@@ -261,7 +261,7 @@ pub(super) fn missed(scout: &SceneProbe) -> Vec<Finding> {
     if scout.seen().next().is_some() || world.objects().is_empty() {
         return Vec::new();
     }
-    // Objects may be visible between the probes.
+    // Objects can be visible between the probes.
     let hit = scout.visibilities().contains(&Visibility::Seen);
     let Some(bounds) = target(scout).filter(|bounds| !hit && aims(scout, bounds.center())) else { return Vec::new() };
     let mut diagnostic = Diagnostic::warning("every ray misses, although the camera looks at the center of the scene")
@@ -296,7 +296,7 @@ pub(super) fn plane_through(scout: &SceneProbe) -> Vec<Finding> {
         !clear && cut >= 2 && cut * 3 >= boxes.len() * 2
     };
     let say = |number: u32| {
-        // Objects may be sunk into a floor on purpose.
+        // Objects can be sunk into a floor on purpose.
         let floor = ground(scout, number).is_some_and(|(n, _)| n.dot(world.camera_frame().up).abs() > 0.8);
         let severity = if floor { Severity::Note } else { Severity::Warning };
         let message = format!("the {} passes through the middle of most objects", scout.object(number));

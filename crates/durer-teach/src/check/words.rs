@@ -10,7 +10,7 @@ use durer_scene::dialect::Dialect;
 use durer_scene::math::Vec3;
 use durer_scene::scene::Material;
 
-/// Adds to a finding what only the compiled scene shows.
+/// Adds facts from the compiled scene to a finding.
 pub(super) fn complete(scout: &SceneProbe, finding: &mut Finding) {
     match finding.diagnostic.code {
         "no-light" => no_light(scout, finding),
@@ -46,7 +46,8 @@ pub(super) fn complete(scout: &SceneProbe, finding: &mut Finding) {
     }
 }
 
-/// The node grammar writes placement around an object, other years inside it.
+/// Adds help about placement: the node grammar places an object by a node around it, other years
+/// inside the object.
 fn foreign_in_nodes(scout: &SceneProbe, finding: &mut Finding) {
     finding.diagnostic.severity = Severity::Note;
     let word = finding.diagnostic.span.map(|span| scout.text(span)).unwrap_or_default();
@@ -59,7 +60,7 @@ fn foreign_in_nodes(scout: &SceneProbe, finding: &mut Finding) {
     }
 }
 
-/// A scene of flat colours needs no lights.
+/// Completes the finding about missing lights. A scene of flat colours needs none.
 fn no_light(scout: &SceneProbe, finding: &mut Finding) {
     let scene = scout.subject.scene;
     let plain = |material: &Material| match material {
@@ -97,8 +98,8 @@ fn up_parallel(scout: &SceneProbe, finding: &mut Finding) {
     }
 }
 
-/// An index one too large means that materials were counted from 1; with a single material this is
-/// certain.
+/// Suggests a material index. An index one too large means that materials are counted from 1; with
+/// a single material this is certain.
 fn material_index(scout: &SceneProbe, finding: &mut Finding) {
     finding.diagnostic.effect = finding.diagnostic.help.take();
     let count = scout.subject.scene.materials.len();
@@ -123,8 +124,8 @@ fn material_index(scout: &SceneProbe, finding: &mut Finding) {
     }
 }
 
-/// Fixes all indices if no object uses material 0 and one uses the index after the last: they count
-/// from 1.
+/// Fixes all indices if no object uses material 0 and an object uses the index after the last: they
+/// are counted from 1.
 fn from_one(scout: &SceneProbe, finding: &mut Finding, count: usize) -> bool {
     let span = finding.diagnostic.span.unwrap_or_default();
     let uses = scout.subject.files.bytes(span.file).map(|bytes| place::values(bytes, span.file, "MaterialIndex"));

@@ -112,7 +112,7 @@ pub(super) fn tiny_highlight(scout: &SceneProbe) -> Vec<Finding> {
     seen(scout).filter_map(say).take(MAX_SOUGHT).collect()
 }
 
-/// Reports a highlight colour without an exponent, which then is 1.
+/// Reports a highlight colour without an exponent, which is then 1.
 pub(super) fn no_exponent(scout: &SceneProbe) -> Vec<Finding> {
     match scout.world().rules().highlight {
         Highlight::None => return no_highlight(scout).into_iter().collect(),
@@ -135,8 +135,8 @@ pub(super) fn no_exponent(scout: &SceneProbe) -> Vec<Finding> {
     seen(scout).filter(|(.., phong)| bare(phong)).map(say).take(MAX_SOUGHT).collect()
 }
 
-/// Notes a highlight's colour without an exponent in a dialect without highlights, which takes it
-/// for the colour of a mirror.
+/// Notes a highlight colour without an exponent in a dialect without highlights, which reads it as
+/// the colour of a mirror.
 fn no_highlight(scout: &SceneProbe) -> Option<Finding> {
     let bare = |phong: &PhongMaterial| {
         phong.specular_color.max_element() > 0.02
@@ -265,7 +265,7 @@ pub(super) fn same_parts(scout: &SceneProbe) -> Vec<Finding> {
     materials.iter().enumerate().filter_map(say).take(MAX_SOUGHT).collect()
 }
 
-/// Reports ambient light that leaves no room for the lights.
+/// Reports ambient light so bright that other lights have little visible effect.
 pub(super) fn full_ambient(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let ambient = world.ambient();

@@ -9,11 +9,11 @@ const ROUNDING: i32 = 1;
 /// Share of the pixels that a step must change to be visible.
 const MIN_SHARE: f64 = 0.001;
 
-/// The difference of two pictures.
+/// Difference between two pictures of a scene.
 #[derive(Clone, Debug)]
 pub struct Change {
-    /// Grey where nothing changes, lighter where the picture gets lighter and darker where it gets
-    /// darker: half the difference in eight bits.
+    /// Difference picture: grey where nothing changes, lighter where the picture gets lighter and
+    /// darker where it gets darker. Half the difference in eight bits.
     pub picture: Layer,
     /// Number of all pixels.
     pub pixels: usize,

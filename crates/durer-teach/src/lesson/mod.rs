@@ -1,8 +1,8 @@
-//! A scene in the order of the lecture: pictures, equation and effect of each step.
+//! Shows a scene in the order of the lecture: pictures, equation and effect of each step.
 //!
-//! The steps are one table, [`TOPICS`]; [`Teacher`] renders their pictures in order. A step that
-//! changes nothing in a scene is shown in a small built-in scene instead. Path-tracing steps are
-//! only shown for scenes that are rendered by path tracing and have the effect.
+//! The steps are one table, [`TOPICS`]; [`Teacher`] renders their pictures in order. If a step
+//! changes nothing in a scene, it is shown in a small built-in scene. Path-tracing steps are only
+//! shown for path-traced scenes that have the effect.
 
 mod change;
 mod plan;
@@ -35,9 +35,9 @@ pub struct Step {
     pub topic: &'static Topic,
     /// Title of the step.
     pub title: String,
-    /// True if the step uses the built-in scene because the other lacks the effect.
+    /// True if the step uses the built-in scene because the user's scene lacks the effect.
     pub ours: bool,
-    /// Reason why the other scene lacks the effect.
+    /// Reason why the user's scene lacks the effect.
     pub lacking: &'static str,
     /// True if the step continues the previous step's topic.
     pub goes_on: bool,
@@ -45,7 +45,7 @@ pub struct Step {
     pub before: Option<Picture>,
     /// The picture after the step.
     pub after: Picture,
-    /// An SVG drawing beside the picture.
+    /// SVG drawing to show with the picture.
     pub plan: Option<String>,
     /// The difference of the two pictures.
     pub change: Option<Change>,
@@ -127,7 +127,7 @@ fn steps(
             words,
         };
         if topic.shots.len() == 1 {
-            // The first picture of another quantity: there is nothing to subtract.
+            // The first picture of another quantity has nothing to compare with.
             let words = stage.facts(shot, &shown);
             steps.extend(words.map(|words| step(None, None, words)));
         } else if let Some((before_shot, before)) = &last {

@@ -1,4 +1,4 @@
-//! A scene that can be rendered without parts of its light and with common mistakes.
+//! A scene that can be rendered with parts of its light removed and with common mistakes.
 
 use super::topics::{Glass, PathSettings, Shot, ShotOptions, Topic};
 use crate::mistakes::{SceneVariant, of_name};
@@ -26,7 +26,7 @@ pub const OWN_SCENE: &str = include_str!("scene.txt");
 /// File name of the built-in scene in messages.
 pub const OWN_SCENE_NAME: &str = "our-scene.txt";
 
-/// Samples a pixel if the job has only one.
+/// Number of samples per pixel if the job has only one.
 const SAMPLES: u32 = 16;
 
 /// Number of pictures cached for later steps.
@@ -58,8 +58,7 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// Creates a stage for a compiled scene. Of the job, only the colour of the whole picture is
-    /// used.
+    /// Creates a stage for a compiled scene. Ignores the job's crop and AOVs.
     pub fn new(scene: Scene, files: Files, world: World, job: Job) -> Self {
         let (lights, ambient) = (world.lights().to_vec(), world.ambient());
         let (materials, rules) = (world.materials().to_vec(), world.rules().clone());
@@ -80,7 +79,7 @@ impl Stage {
         Stage::new(scene, files, world, Job { width, height, ..Job::default() })
     }
 
-    /// Returns the reason if the scene's dialect has no such effect at all.
+    /// Returns a reason if the scene's dialect does not support the effect.
     pub(super) fn year_lacks(&self, topic: &str) -> Option<&'static str> {
         let (highlights, secondary) = (self.rules.highlight, self.rules.secondary);
         match topic {
@@ -141,7 +140,7 @@ impl Stage {
         Ok(shown)
     }
 
-    /// Applies the lights, materials and mistake of a look to the world.
+    /// Applies the lights, materials and mistake of a shot to the world.
     fn arrange(&mut self, look: &ShotOptions) {
         let (lights, ambient) = match look.lights {
             true => (self.lights.clone(), self.ambient),
@@ -198,13 +197,13 @@ impl Stage {
         }
     }
 
-    /// Returns true if no light of the scene is of a kind that Whitted's method knows.
+    /// Returns true if Whitted's method supports none of the scene's lights.
     pub(super) fn needs_paths(&self) -> bool {
         self.has_paths() && self.lights.is_empty()
     }
 
-    /// Returns a look with paths in place of Whitted's method where that shows no light: direct
-    /// light is the same step with either.
+    /// Returns the options of a shot, with path tracing if Whitted's method would show no light.
+    /// Direct light is the same step with either method.
     fn carried(&self, look: ShotOptions) -> ShotOptions {
         match self.needs_paths() && look.lights && look.paths.is_none() && look.bounces == 0 {
             true => ShotOptions { paths: Some(PathSettings::PLAIN), sampled: true, ..look },
@@ -212,8 +211,8 @@ impl Stage {
         }
     }
 
-    /// Returns the reason if a topic takes light that only Whitted's method shows step by step, and
-    /// that method does not know the scene's light.
+    /// Returns a reason if a topic needs Whitted's method and that method does not support the
+    /// scene's lights.
     pub(super) fn method_lacks(&self, topic: &Topic) -> Option<&'static str> {
         let bounces = topic.shots.iter().any(|shot| shot.look.bounces > 0 && shot.look.paths.is_none());
         (self.needs_paths() && bounces)
@@ -254,8 +253,8 @@ impl Stage {
         hits.map(|at| at.hit.t).filter(|t| t.is_finite()).collect()
     }
 
-    /// Describes a picture that is not compared with another, in a sentence; `None` if it shows
-    /// nothing.
+    /// Describes a picture that is not compared with another, in a sentence; `None` if there is
+    /// nothing to describe.
     pub(super) fn facts(&self, shot: &Shot, shown: &LessonPicture) -> Option<String> {
         let values = &shown.values.pixels;
         match shot.value {
@@ -323,8 +322,8 @@ impl Stage {
     }
 }
 
-/// Returns a useful depth range for a scene with an infinite ground: from the minimum to three
-/// times as far from it as the median.
+/// Returns a useful depth range for a scene with an infinite ground: from the minimum to at most
+/// three times as far beyond it as the median.
 fn depth_range(mut depths: Vec<f32>) -> Option<(f32, f32)> {
     depths.sort_by(f32::total_cmp);
     let (least, most) = (*depths.first()?, *depths.last()?);

@@ -95,7 +95,7 @@ fn path_steps_appear_only_in_scenes_that_show_them() {
     assert_eq!(names(&of_paths("caustic.txt")), ["soft-shadows", "bounces", "mis", "caustic"]);
     // Sunlight has no visible extent.
     assert_eq!(names(&of_paths("prism.txt")).last(), Some(&"spectrum"));
-    // Whitted's method has none of these steps.
+    // Whitted's method has no path-tracing steps.
     assert!(lesson(stage("whitted.txt", 24)).iter().all(|step| !step.topic.is_of_paths()));
 }
 
@@ -107,7 +107,8 @@ fn multiple_importance_sampling_has_less_noise_than_either_strategy() {
     let topic = TOPICS.iter().find(|topic| topic.name == "mis").unwrap();
     let noise: Vec<f64> =
         topic.shots.iter().map(|shot| plates.show(shot, &Control::default()).unwrap().noise.unwrap()).collect();
-    // Sampling lights only fails by rare bright samples, which few samples miss.
+    // The error of light sampling alone comes from rare bright samples, most of which are missing
+    // here.
     assert!(noise[2] < 0.95 * noise[0] && noise[2] < 0.5 * noise[1], "{noise:?}");
 }
 
@@ -142,7 +143,8 @@ fn moved_normals_are_transformed_by_the_matrix_itself() {
     }
 }
 
-/// A ball of radius 1 in the middle of the picture, seen from 5 away: rays that miss are no hits.
+/// A ball of radius 1 in the centre of the picture, 5 away from the camera. Rays that miss it have
+/// no distance.
 #[test]
 fn distances_are_those_of_the_rays_that_hit() {
     let mut stage = stage("whitted.txt", 24);

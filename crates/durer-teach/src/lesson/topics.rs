@@ -4,7 +4,7 @@
 use durer_render::integrator::Direct;
 use durer_scene::spectrum::ColorMode;
 
-/// Parts of the light that are computed, and the mistake that is made.
+/// Parts of the light that a shot shows, and the mistake that it makes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShotOptions {
     /// True if there are lights; otherwise each surface shows its own colour.
@@ -19,7 +19,7 @@ pub struct ShotOptions {
     pub glass: Glass,
     /// Name of the mistake to make, from [`crate::mistakes::MISTAKES`].
     pub mistake: Option<&'static str>,
-    /// True if a pixel has more than one sample.
+    /// True if a pixel has several samples.
     pub sampled: bool,
     /// Options of path tracing; `None` for Whitted's method.
     pub paths: Option<PathSettings>,
@@ -39,7 +39,7 @@ pub struct PathSettings {
 }
 
 impl PathSettings {
-    /// Paths with both ways to sample lights, in red, green and blue.
+    /// Path tracing in RGB, with both sampling strategies for direct light.
     pub const PLAIN: PathSettings =
         PathSettings { direct: Direct::Both, photons: false, color: ColorMode::Rgb, disperses: true };
 }
@@ -49,7 +49,7 @@ impl PathSettings {
 pub enum Glass {
     /// Opaque.
     None,
-    /// Transmits everything; no reflection in place of Fresnel's law.
+    /// Transmits all light, without Fresnel reflection.
     Transmits,
     /// As in the scene.
     Fresnel,
@@ -84,7 +84,7 @@ pub struct Topic {
     pub title: &'static str,
     /// Explanation for a student who has read the steps before.
     pub words: &'static str,
-    /// Equations, one a line.
+    /// Equations, one per line.
     pub equations: &'static [&'static str],
     /// Places of the equations in the source.
     pub places: &'static [SourcePlace],

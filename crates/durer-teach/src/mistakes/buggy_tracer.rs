@@ -1,7 +1,7 @@
 //! A student's tracer: a second implementation of Whitted's algorithm with optional mistakes.
 //!
-//! It is separate from [`Whitted`], so that the renderer never checks for mistakes. Without
-//! mistakes it returns the same colours bit for bit, which a test verifies.
+//! It is separate from [`Whitted`], so that the renderer never checks for mistakes. A test verifies
+//! that without mistakes it returns bit-identical colours.
 
 mod hits;
 
@@ -55,7 +55,7 @@ impl<'w> BuggyTracer<'w> {
 
     fn trace(&self, ray: &Ray64, mut path: RayState) -> Color {
         let mut rest = *ray;
-        // Some mistakes find the same hidden surface again; limit the loop.
+        // With some mistakes a ray finds the same surface again, so limit the loop.
         for _ in 0..64 {
             let behind = self.bugs.behind.is_some_and(|rays| rays == BehindOrigin::All || path.first);
             let from = if behind { f32::NEG_INFINITY } else { rest.rounded.t_min };
@@ -91,7 +91,8 @@ impl<'w> BuggyTracer<'w> {
         if let (Geometry::Mesh(tree), true) = (&object.geometry, bugs.long_mixed)
             && let Some(mixed) = tree.mesh.mixed_normal(hit.part, hit.uv)
         {
-            // Rotations and uniform scales preserve the length that interpolation lost.
+            // Use the length of the interpolated normal, which rotations and uniform scales
+            // preserve.
             surface.n_shade *= mixed.length();
         }
         if let (Geometry::Mesh(tree), true) = (&object.geometry, bugs.mixed_otherwise > 0) {
@@ -237,7 +238,7 @@ impl<'w> BuggyTracer<'w> {
         color
     }
 
-    /// Returns the light that arrives, with the tracer's mistakes.
+    /// Returns the incident light, with the tracer's mistakes.
     fn illuminated(&self, light: &Light, point: DVec3) -> LightLiSample {
         let mut seen = light.illuminate(point);
         if self.bugs.lights.all_negated {
@@ -288,7 +289,7 @@ impl<'w> BuggyTracer<'w> {
                     PointLightDirection::MinusPosition => seen.to_light = -point.position.normalize_or(seen.to_light),
                 }
             }
-            // The course has neither.
+            // The course has neither kind of light.
             Light::Spot(_) | Light::Photometric(_) => {}
         }
         seen

@@ -24,15 +24,15 @@ pub enum HitChoice {
     LastTriangle,
     /// The nearest, but spheres are not hit from inside.
     NearRoots,
-    /// The nearest that is seen from its front; with `true` of triangles alone.
+    /// The nearest front-facing hit; with `true`, only triangles are culled.
     Fronts(bool),
-    /// The nearest object, of meshes the first triangle in the file that is hit.
+    /// The nearest object; in meshes, the first triangle in the file that is hit.
     FirstOfMesh,
-    /// The nearest object, of meshes the last triangle in the file that is hit.
+    /// The nearest object; in meshes, the last triangle in the file that is hit.
     LastOfMesh,
     /// The nearest, with wrong roots of spheres.
     Roots(Roots),
-    /// The nearest, with ray directions moved like points into object space.
+    /// The nearest, with ray directions transformed like points into object space.
     MovedDirection,
 }
 
@@ -123,7 +123,7 @@ pub enum HalfVector {
     Mean,
 }
 
-/// Rays for which hits behind their origin count.
+/// Rays for which hits behind the origin count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BehindOrigin {
     /// Every ray.
@@ -154,7 +154,7 @@ pub enum LightSum {
     GreatestOfAll,
 }
 
-/// Attenuation of light with distance d, beside the factors of the scene.
+/// Attenuation of light at distance d, in addition to the factors of the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Attenuation {
     /// Divided by the scene's polynomial.
@@ -224,7 +224,7 @@ pub enum Glass {
     RootAdded,
     /// Indices exchanged, in Fresnel's law too.
     Exchanged,
-    /// The part along the normal has the wrong sign.
+    /// The normal component has the wrong sign.
     SignChanged,
     /// The root left out.
     NoRoot,
@@ -244,7 +244,7 @@ pub enum Fresnel {
     None,
     /// This share is reflected at every angle.
     Share(f32),
-    /// Reflected and transmitted shares exchanged.
+    /// Reflected and transmitted fractions are exchanged.
     Exchanged,
     /// Schlick's approximation with the angle of the incoming ray also when it leaves glass.
     Incoming,
@@ -290,7 +290,7 @@ pub struct HighlightBugs {
     pub factor: Option<f32>,
     /// Absolute value as the base of the power.
     pub two_sided: bool,
-    /// Blinn's model also where N·L <= 0.
+    /// Blinn's highlight also where N·L <= 0.
     pub everywhere: bool,
     /// Direction R of Phong's model.
     pub mirror: Mirror,
@@ -316,7 +316,7 @@ pub enum Reach {
     Right,
     /// 1.
     One,
-    /// d²: t goes to d, and the ray's direction has the length d.
+    /// d²: t ends at d, for a ray direction of length d.
     Squared,
 }
 
@@ -375,7 +375,7 @@ pub struct SecondaryBugs {
     pub glass: Glass,
     /// Fresnel term of glass.
     pub fresnel: Fresnel,
-    /// Local light is scaled by what the mirror's colour leaves.
+    /// Local light is scaled by 1 minus the mirror's colour.
     pub mixed: bool,
     /// Reflected light is multiplied by the diffuse colour.
     pub times_diffuse: bool,
@@ -408,7 +408,7 @@ pub struct Bugs {
     pub normals: Normals,
     /// Interpolated mesh normals are not normalised.
     pub long_mixed: bool,
-    /// Meshes have one normal a triangle.
+    /// Meshes have one normal per triangle.
     pub flat: bool,
     /// Triangle normals are negated.
     pub triangles_turned: bool,
@@ -456,11 +456,11 @@ pub enum Aspect {
     Right,
     /// The smaller side spans the angle.
     Smaller,
-    /// The smaller side spans more by the factor by which it should span less.
+    /// The smaller side is scaled by the reciprocal of the correct factor.
     Turned,
 }
 
-/// Deviations of camera rays, beside the scene's rules.
+/// Deviations of camera rays, in addition to the scene's rules.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraBugs {
     /// Position in the pixel; (0.5, 0.5) is the centre.
@@ -469,14 +469,14 @@ pub struct CameraBugs {
     pub scale: f32,
     /// Treatment of non-square pictures.
     pub aspect: Aspect,
-    /// Number of rays a pixel.
+    /// Number of rays per pixel.
     pub rays: RayCount,
 }
 
-/// Number of rays a pixel.
+/// Number of rays per pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RayCount {
-    /// As the job says.
+    /// As in the job.
     #[default]
     Right,
     /// One.
@@ -509,7 +509,7 @@ impl CameraBugs {
 /// Deviations in the conversion of light to a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum OutputBug {
-    /// The transfer curve.
+    /// The transfer curve, which is correct.
     #[default]
     Right,
     /// This many times the value, modulo 256.
@@ -518,7 +518,7 @@ pub enum OutputBug {
     Scaled,
     /// Rounded instead of truncated, or the reverse.
     OtherRounding,
-    /// Values to the power of the reciprocal; 0 means the sRGB curve.
+    /// Raised to the reciprocal of this power; 0 means the sRGB curve.
     CurveMore(f32),
     /// c / (1 + c).
     Toned,
@@ -529,9 +529,9 @@ pub enum OutputBug {
     /// Grey: 0 the mean of the channels, 1 and 2 luma of Rec. 601 and luminance, 3 the maximum, 4
     /// red, 5 green, 6 blue.
     Grey(u32),
-    /// This many levels.
+    /// Quantised to this many levels.
     Steps(u32),
-    /// Values to this power; 0 means without the sRGB curve, or its inverse.
+    /// Raised to this power; 0 means without the sRGB curve, or its inverse.
     CurveLess(f32),
 }
 

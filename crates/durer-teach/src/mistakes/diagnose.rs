@@ -1,4 +1,4 @@
-//! Finds the mistake that made a picture by rendering the table's rows, alone and in pairs.
+//! Finds the mistakes that explain a picture by rendering the table's rows, alone and in pairs.
 
 use super::bugs::PictureTurn;
 use super::pictures::View;
@@ -12,12 +12,12 @@ use durer_scene::math::Vec3;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// Numbers of pixels at which all mistakes are tried, then the remaining ones.
+/// Numbers of pixels for trials: `FEW` for all mistakes, `COARSE` and `FULL` for the best of them.
 const FEW: usize = 400;
 const COARSE: usize = 1600;
 const FULL: usize = 16_000;
-/// Number of pixels for the first trial of pairs, and number of pairs kept at each larger number of
-/// pixels.
+/// Number of pixels for the first trial of pairs, and numbers of pairs that remain at each larger
+/// number of pixels.
 const FEWEST: usize = 72;
 const KEPT: [usize; 3] = [200, 30, 8];
 /// Number of mistakes that are tried at `COARSE` pixels.
@@ -129,7 +129,7 @@ fn all_tried(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diag
     };
     let (some, coarse) = (few(FEW), few(COARSE));
     let mut singles = search.trials(search.singles(), &some);
-    // A mistake that changes nothing in this scene explains nothing.
+    // A mistake without effect in this scene explains nothing.
     singles.retain(|trial| differing(&trial.made, &some.base) > 0);
     progress(0.2);
     let mut better = search.trials(best(&mut singles, MAX_SINGLES), &coarse);
@@ -154,7 +154,7 @@ fn all_tried(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diag
     progress(0.6);
     let (pairs, tried_pairs) = search.pairs(&better, &singles, [&few(FEWEST), &some, &coarse, &full]);
     progress(1.0);
-    // Two mistakes always explain more than one; require much more.
+    // Two mistakes always explain more than one, so require much more.
     let rest = |named: &[Explanation]| named.first().map_or(1.0, |named| 1.0 - named.explained);
     let named = if rest(&pairs) < 0.35 * rest(&single) { pairs } else { single };
     let tried = [tried, tried_pairs].concat();
@@ -184,7 +184,7 @@ pub fn off(question: &DiagnosisInput) -> f64 {
 }
 
 impl<'a> Search<'a> {
-    /// Returns all single mistakes with all their values.
+    /// Returns all mistakes, one at a time, with all their values.
     fn singles(&self) -> Vec<Vec<(&'static Mistake, f32)>> {
         let lights = self.base.world.lights().len();
         let rows = MISTAKES.iter().copied().flatten();
@@ -260,7 +260,8 @@ impl<'a> Search<'a> {
         vec![(mistake, if round > 0.0 && fits(round) { round } else { at })]
     }
 
-    /// Tries pairs of the best mistakes with all others, the best of them at ever more pixels.
+    /// Tries pairs of the best mistakes with all others, and the best pairs at more and more
+    /// pixels.
     fn pairs(
         &self,
         best_of: &[Trial],
@@ -276,7 +277,7 @@ impl<'a> Search<'a> {
                 let (a, b) = (a.mistakes[0], b.mistakes[0]);
                 let key = |one: (&Mistake, f32)| (one.0.name, one.1.to_bits());
                 let pair = (key(a).min(key(b)), key(a).max(key(b)));
-                // Mistakes that depend on rounding match anything and explain nothing.
+                // Mistakes that depend on rounding match any picture and explain nothing.
                 let shaky = a.0.step == "epsilon" || b.0.step == "epsilon";
                 if a.0.name != b.0.name && !shaky && known.insert(pair) {
                     pairs.push(vec![a, b]);
@@ -351,8 +352,8 @@ fn sort(trials: &mut [Trial]) {
     trials.sort_by(|a, b| b.fit.explained.total_cmp(&a.fit.explained));
 }
 
-/// Returns the best trials' mistakes: three quarters by squared difference, the rest by matching
-/// pixels.
+/// Returns the mistakes of the best trials: three quarters by squared difference, the rest by
+/// matching pixels.
 fn best(trials: &mut [Trial], count: usize) -> Vec<Vec<(&'static Mistake, f32)>> {
     sort(trials);
     let (first, others) = trials.split_at_mut(trials.len().min(count - count / 4));
@@ -360,7 +361,7 @@ fn best(trials: &mut [Trial], count: usize) -> Vec<Vec<(&'static Mistake, f32)>>
     first.iter().chain(others.iter().take(count / 4)).map(|trial| trial.mistakes.clone()).collect()
 }
 
-/// Returns the trials that match most pixels; a few outliers can spoil the squared difference.
+/// Returns the trials that match the most pixels; a few outliers can spoil the squared difference.
 fn best_matched(trials: &[Trial]) -> impl Iterator<Item = &Trial> {
     let mut sorted: Vec<&Trial> = trials.iter().collect();
     sorted.sort_by(|a, b| b.fit.matched.total_cmp(&a.fit.matched));
@@ -374,13 +375,14 @@ struct Thresholds {
 }
 
 impl Thresholds {
-    /// Fit of a mistake beside which something more is different.
+    /// Fit of a mistake if the picture has another difference too.
     const NEARLY: Thresholds = Thresholds { explained: 0.985, matched: 0.9 };
-    // The right mistake leaves only rounding at edges; a larger rest means another mistake.
+    // The right mistake leaves only rounding differences at edges; a larger rest means another
+    // mistake.
     const SINGLE: Thresholds = Thresholds { explained: 0.99, matched: 0.95 };
     /// Two mistakes fit more pictures by chance than one.
     const PAIR: Thresholds = Thresholds { explained: 0.995, matched: 0.97 };
-    /// Minimum fit with a fitted value.
+    /// Minimum fit of a mistake with a fitted value.
     const FITTED: Thresholds = Thresholds { explained: 0.999, matched: 0.97 };
     /// Fit at which the search stops.
     const CLEAR: Thresholds = Thresholds { explained: 0.995, matched: 0.98 };
@@ -408,7 +410,7 @@ fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Thresholds) -> Vec<Ex
             && difference(&best.made, &other.made) <= 0.01 * total
     };
     let rest = |trial: &Trial| 1.0 - trial.fit.explained;
-    // A perfect fit has only perfect rivals.
+    // Only near-perfect fits are rivals of a perfect fit.
     let (slack, off) = if Thresholds::PERFECT.passes(&best.fit) { (0.001, 0.01) } else { (0.01, 0.1) };
     let rival = |other: &&Trial| {
         !equal(other)

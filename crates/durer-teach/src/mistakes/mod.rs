@@ -1,9 +1,9 @@
 //! Common mistakes as one table, and their pictures of a scene.
 //!
-//! A row of [`MISTAKES`] states an error of a student's program in words and in both forms of the
-//! code, and changes a [`SceneVariant`] so that a [`BuggyTracer`]'s picture shows it.
+//! A row of [`MISTAKES`] describes an error of a student's program in words and as correct and
+//! wrong code, and changes a [`SceneVariant`] so that a [`BuggyTracer`]'s picture shows it.
 //! [`diagnose()`] renders the rows, alone and in pairs, and names the one that explains a given
-//! picture; the lesson shows some of them. A new mistake is a new row.
+//! picture. The lesson shows some of them. A new mistake is a new row.
 
 mod buggy_tracer;
 pub mod bugs;
@@ -26,7 +26,7 @@ pub use question::{Diagnosis, DiagnosisInput, Explanation};
 pub use table::{Formulas, MISTAKES, Mistake, Values, of_name};
 pub use variant::SceneVariant;
 
-/// Tries all mistakes of the job's method. `told` receives the progress, from 0 to 1.
+/// Tries all mistakes of the job's method. `reported` receives the progress, from 0 to 1.
 pub fn diagnose(question: &DiagnosisInput, reported: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     match question.job.method.transport() {
         Some(_) => paths::diagnose(question, reported),
@@ -34,8 +34,8 @@ pub fn diagnose(question: &DiagnosisInput, reported: &(dyn Fn(f64) + Sync)) -> D
     }
 }
 
-/// Returns the share of the reference in which the scene's own picture differs from it: of a sample
-/// of its pixels, or for paths of the blocks that differ by more than noise.
+/// Returns the fraction of the reference in which the scene's own picture differs from it: of a
+/// sample of its pixels, or with path tracing of the blocks that differ by more than noise.
 pub fn off(question: &DiagnosisInput) -> f64 {
     match question.job.method.transport() {
         Some(_) => paths::off(question),

@@ -15,16 +15,16 @@ pub enum Slant {
 /// Choice of scattered directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Chosen {
-    /// By the BSDF, divided by its density.
+    /// BSDF sampling, divided by the pdf.
     #[default]
     Right,
-    /// By the BSDF, not divided.
+    /// BSDF sampling, not divided by the pdf.
     Undivided,
-    /// Uniform over the hemisphere, divided by the density of the cosine.
+    /// Uniform over the hemisphere, divided by the pdf of cosine sampling.
     Uniform,
-    /// By the BSDF, in the frame of the surface taken for the world.
+    /// BSDF sampling, with local coordinates used as world space.
     LocalFrame,
-    /// By the BSDF, with one random number for two.
+    /// BSDF sampling, with one random number for both dimensions.
     OneNumber,
 }
 
@@ -40,9 +40,9 @@ pub enum Lacks {
     Cosine,
     /// The light's area.
     Area,
-    /// The division by the probability of the light among all.
+    /// The division by the probability of choosing the light.
     Choice,
-    /// The division by the density.
+    /// The division by the pdf.
     Density,
 }
 
@@ -54,7 +54,7 @@ pub enum Sky {
     Right,
     /// Upside down.
     UpsideDown,
-    /// Its density lacks the sine of the polar angle.
+    /// Its pdf lacks the sine of the polar angle.
     NoSine,
 }
 
@@ -75,17 +75,17 @@ pub enum Mean {
 pub struct Paths {
     /// Cosine at surfaces.
     pub slant: Slant,
-    /// The matte lobe lacks 1/π; with `true` for light samples alone.
+    /// The diffuse lobe lacks 1/π; with `true`, only for light samples.
     pub no_pi: Option<bool>,
     /// Scattered directions.
     pub chosen: Chosen,
     /// Light samples.
     pub lacks: Lacks,
-    /// Both strategies count in full.
+    /// Both sampling strategies count in full.
     pub unweighted: bool,
-    /// Paths that survive Russian roulette are not divided by the probability.
+    /// Paths that survive Russian roulette are not divided by the survival probability.
     pub roulette: bool,
-    /// Emitters shine to both sides.
+    /// Emitters emit on both sides.
     pub two_sided: bool,
     /// Environment.
     pub sky: Sky,

@@ -70,7 +70,7 @@ impl View<'_> {
     }
 
     fn value(&self, output: OutputBug, light: Color) -> Vec3 {
-        // Extremely large values are white, whatever the integer overflow of an old program gave.
+        // Huge values are white, despite the integer overflow of an old program.
         let light = if light.is_finite() { light.min(Color::splat(1e6)) } else { light };
         let light = if output == OutputBug::Toned { light.map(|v| v / (1.0 + v.max(0.0))) } else { light };
         let light = match output {

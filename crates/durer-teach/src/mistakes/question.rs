@@ -50,8 +50,8 @@ pub struct Diagnosis {
     /// Explanations of the picture, more than one if several give the same picture; empty if none
     /// does.
     pub named: Vec<Explanation>,
-    /// A mistake that reproduces nearly all of the difference, while something more is different.
-    /// Only if nothing is named.
+    /// A mistake that reproduces nearly all of the difference, but the picture has another
+    /// difference too. `None` if `named` is not empty.
     pub nearly: Option<Explanation>,
     /// Remark if no mistake is named.
     pub remark: Option<String>,

@@ -211,7 +211,7 @@ fn each_usual_mistake_is_named() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Further kinds, usual in this course.
+/// Further mistakes that are common in this course.
 const FURTHER: [(&str, f32); 22] = [
     ("sphere-normals", 0.0),
     ("sphere-roots", 0.0),

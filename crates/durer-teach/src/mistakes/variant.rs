@@ -200,7 +200,7 @@ impl<'s> SceneVariant<'s> {
         if let Some(root) = &self.scene.root {
             placed(root, DAffine3::IDENTITY, &|ops| product(ops, rules), &mut places);
         }
-        // Solids are split into pieces; skip if objects and transforms do not correspond.
+        // Solids are split into pieces; do nothing if objects and transforms do not correspond.
         if places.len() != self.world.objects().len() {
             return;
         }
@@ -213,11 +213,11 @@ impl<'s> SceneVariant<'s> {
     }
 
     fn rebuild(&mut self) {
-        // Building a tree never fails, unlike a grid.
+        // Building a BVH never fails, unlike a grid.
         let _ = compile::rebuild(&mut self.world, AccelKind::Bvh);
     }
 
-    /// Adds the other half of its parallelogram to every triangle.
+    /// Extends every triangle to a parallelogram.
     pub fn parallelograms(&mut self) {
         let mut halves = Vec::new();
         for object in &mut self.world.edit().objects {
@@ -240,8 +240,7 @@ impl<'s> SceneVariant<'s> {
         self.rebuild();
     }
 
-    /// Lets every triangle go on beyond the side opposite a corner, as if that side were not
-    /// tested.
+    /// Extends every triangle beyond the side opposite a corner, as if that side were not tested.
     pub fn wedges(&mut self, corner: usize) {
         for object in &mut self.world.edit().objects {
             match &mut object.geometry {

@@ -1,4 +1,4 @@
-//! Forms of options' values: how a text is checked, parsed and printed.
+//! Forms of option values: how a text is checked, parsed and printed.
 
 use durer_diag::did_you_mean;
 
@@ -11,11 +11,11 @@ pub enum OptionForm {
     Switch,
     /// A whole number in a range, both ends included.
     Whole(u32, u32),
-    /// A number, or several joined by a letter; the name of the value.
+    /// A number, or several joined by a letter; contains the name of the value.
     Value(&'static str),
-    /// A number that passes a test: name of the value, test, and message if it fails.
+    /// A number that passes a test: the name of the value, the test, and the message if it fails.
     Number(&'static str, fn(f32) -> bool, &'static str),
-    /// Two numbers separated by a blank: their names.
+    /// Two numbers separated by a blank; contains their names.
     Two(&'static str, &'static str),
     /// One of several words.
     Words(fn() -> Vec<&'static str>),
@@ -33,7 +33,7 @@ pub struct JobOption {
 }
 
 impl OptionForm {
-    /// Checks the text of a value against the form, as far as the form tells.
+    /// Checks the text of a value against the form, as far as the form determines it.
     pub(crate) fn check(self, text: &str) -> Result<(), String> {
         match self {
             OptionForm::Whole(least, most) => match text.parse::<u32>() {

@@ -21,7 +21,7 @@ pub(crate) use form::unknown_option;
 pub use form::{JobOption, OptionForm};
 use form::{OptionValue, one_of};
 
-/// Maximum samples a pixel with a noise threshold.
+/// Maximum number of samples per pixel with a noise threshold.
 const MAX_FOR_NOISE: u32 = 4096;
 /// Minimum throughput of a ray.
 const MIN_THROUGHPUT: f32 = 1.0 / 256.0;
@@ -297,7 +297,7 @@ impl RenderJob {
         let natural = || Raster::natural_size(camera.and_then(|camera| camera.proportions()), rules.size);
         let (width, height) = self.size.or(render_defaults.size).unwrap_or_else(natural);
         let method = self.resolved_method(usual_method(scene))?;
-        // Blur needs more samples than an edge.
+        // Blur needs more samples than antialiasing.
         let plenty = if camera.is_some_and(|camera| camera.has_aperture()) || method.is_random() { 64 } else { 16 };
         let plenty = render_defaults.samples.unwrap_or(plenty);
         let is = |flag: Option<bool>| flag.unwrap_or(false);
@@ -323,7 +323,7 @@ impl RenderJob {
             }
             None => None,
         };
-        // The scene's crop only applies to the scene's own size.
+        // The scene's crop only applies at the scene's own size.
         let wished = render_defaults.crop.filter(|_| render_defaults.size == Some((width, height)));
         let crop = view.and_then(|view| view.crop.or(wished));
         let shown = view.map_or(&[][..], |view| &view.show);
@@ -417,7 +417,7 @@ impl RenderJob {
         Ok(Sampling::Course2004 { sampler, samples, filter })
     }
 
-    /// Returns the options whose values differ from the scene's defaults, without size and view.
+    /// Returns the options whose values differ from the scene's defaults, excluding size and view.
     /// The inverse of [`RenderJob::resolve`].
     pub fn of(job: &Job, context: &JobContext) -> RenderJob {
         let JobContext { scene, rules, emulates, .. } = *context;

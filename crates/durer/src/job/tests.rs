@@ -65,7 +65,7 @@ fn options_are_set_by_name_and_printed_back() {
     assert_eq!(RenderJob::of(&adaptive, &context(&scene, rules)).spelled(), ["--samples 32", "--adaptive"]);
     let both = RenderJob::default().adaptive(true).noise_threshold(0.5_f32).resolve(&context(&scene, rules), None);
     assert!(both.unwrap_err().contains("remove one of them"));
-    // A job of defaults spells only its number of samples.
+    // For a job with default options, only the number of samples is spelled out.
     let usual = RenderJob::default().resolve(&context(&scene, rules), None).unwrap();
     assert_eq!(RenderJob::of(&usual, &context(&scene, rules)).spelled(), ["--samples 16"]);
 }

@@ -121,7 +121,7 @@ fn model_renders_the_same_in_every_format() {
     assert_eq!(hash(folder.path(), "a.gltf", &up), hash(folder.path(), "a.glb", &up));
     // STL files are z-up by default.
     assert_ne!(hash(folder.path(), "a.stl", &options), obj);
-    // Another view is another picture with another digest.
+    // A different view gives a different picture and digest.
     let front = LoadOptions {
         scene_defaults: SceneDefaults { view: Some(View::Front), ..SceneDefaults::default() },
         ..options.clone()
@@ -232,7 +232,7 @@ fn gltf_errors_name_the_place_and_the_fault() {
         ("\"asset\"", "\"extensionsRequired\": [\"KHR_texture_basisu\"], \"asset\"", "UNSUPPORTED_EXTENSION"),
         ("[0] }]", "[0] }", "INVALID_JSON"),
     ] {
-        // Zeroes without a buffer are bounded too.
+        // The size of an accessor without a buffer, which is all zeros, is limited too.
         let to = if to.is_empty() { "\"normalized\": false, " } else { to };
         let folder = match wanted {
             "too-large: /meshes/0/primitives/0/indices" => {
@@ -351,7 +351,7 @@ fn mtl_pictures_set_their_parameters() {
     assert_eq!(mapping(&m.specular_roughness_texture).channel, Some(Channel::Green));
     assert_eq!(mapping(&m.base_metalness_texture).range, [0.25, 0.75]);
     assert!(m.specular_color_texture.is_some() && m.opacity_texture.is_some() && m.emission_texture.is_some());
-    // A parameter with a texture and without a number uses the texture unscaled.
+    // The texture of a parameter without a number is used unscaled.
     assert_eq!((m.specular_roughness, m.base_metalness, m.coat_weight, m.emission_luminance), (1.0, 1.0, 1.0, 1.0));
     // A bump map's height is relative to the size of the model, here 5.
     assert!(m.bump_texture.is_some() && (m.bump_height - 3.0 * 0.002 * 5.0).abs() < 1e-6, "{}", m.bump_height);

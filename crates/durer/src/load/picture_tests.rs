@@ -56,18 +56,18 @@ fn sixteen_bit_textures_keep_precision_and_opacity() {
 fn memory_is_checked_before_allocation() {
     let large = [b"PF\n400 400\n-1.0\n".to_vec(), vec![0; 400 * 400 * 12]].concat();
     let read = |memory| texture("emissionTexture", "a.pfm", &large, Some(memory)).map(|texture| texture.bytes());
-    // The picture and the texture made of it count together.
+    // The memory limit covers the picture and the texture made from it.
     assert_eq!(read(6_000_000), Ok(400 * 400 * 12));
     let messages = read(3_000_000).unwrap_err();
     assert!(messages.contains("memory"), "{messages}");
 }
 
-/// Returns mean and variance of the pixels of a far wall with thin emissive stripes, seen directly
-/// or in a mirror with 16 samples each.
+/// Returns the mean and variance of the pixels of a distant wall with thin emissive stripes, seen
+/// directly or in a mirror, with 16 samples each.
 fn stripes(minified: &str, mirrored: bool) -> (f64, f64) {
     let picture =
         [b"P6 64 64 255\n".to_vec(), (0..64 * 64).flat_map(|i| [255 * (i / 4 % 2) as u8; 3]).collect()].concat();
-    // The mirror turns the left side to the front.
+    // The mirror shows the left side in front.
     let (wall, mirror) = match mirrored {
         false => ("corner -20 -20 -90 edge0 40 0 0 edge1 0 40 0", ""),
         true => (

@@ -81,7 +81,7 @@ fn missing_mesh_is_reported_once_with_a_similar_name() {
         ["scene/scene.txt:5:25 error: the mesh cannot be read: the file `tir.obj` does not exist (did you \
           mean `tri.obj`? Looked for scene/tir.obj)"]
     );
-    // Thousands of them take little time.
+    // Thousands of meshes take little time.
     let many: String = (0..20_000).map(|i| mesh(&format!("{i}.obj"))).collect();
     assert_eq!(findings(&many).len(), 20);
 }
@@ -166,7 +166,7 @@ fn digest_covers_everything_that_the_picture_depends_on() {
     fs::write(again.path().join("scene/other.obj"), "v 1 2 3\n").unwrap();
     assert_eq!(digest(&again, &LoadOptions { accel: AccelKind::None, ..options.clone() }), first);
     assert_eq!(digest(&again, &LoadOptions { threads: Some(1), ..options.clone() }), first);
-    // It depends on the rules and every file that is read.
+    // The digest depends on the rules and on every file that is read.
     let requested = LoadOptions { dialect: Some(Dialect::F04), ..options.clone() };
     assert_ne!(digest(&again, &LoadOptions { allow_outside: true, ..requested }), first);
     fs::write(again.path().join("scene/tri.obj"), TRIANGLE.replace("v 1 0 0", "v 1.0001 0 0")).unwrap();

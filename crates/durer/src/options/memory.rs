@@ -1,15 +1,15 @@
-//! Memory limits: bytes, or a share of what the machine gives to the process.
+//! Memory limits: bytes, or a percentage of the memory available to the process.
 
 use std::path::{Path, PathBuf};
 use sysinfo::System;
 
-/// A limit of memory. The default is 80 percent of what the process may have.
+/// A memory limit. The default is 80 percent of the memory available to the process.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Memory {
     /// Bytes.
     Bytes(u64),
-    /// Percent of the memory of the machine, of the control groups of the process, or of its
-    /// remaining address space, whichever is least.
+    /// Percentage of the least of: the machine's memory, the limit of the process's control groups,
+    /// and its remaining address space.
     Percent(f64),
 }
 
@@ -52,24 +52,24 @@ impl Memory {
         };
         let mut system = System::new();
         system.refresh_memory();
-        // Without /proc the size is unknown, and asking for control groups would fail.
+        // Without `/proc`, the memory size is unknown, and querying control groups would fail.
         let machine = Some(system.total_memory()).filter(|&bytes| bytes > 0)?;
         let all = [of_groups(), address_space()].into_iter().flatten().fold(machine, u64::min);
         Some((all as f64 * percent / 100.0) as u64)
     }
 }
 
-/// Returns the least memory limit of the control groups that contain this process, as containers
-/// and Slurm set them.
+/// Returns the lowest memory limit of the control groups that contain this process, as set by
+/// containers and Slurm.
 fn of_groups() -> Option<u64> {
     let groups = std::fs::read_to_string("/proc/self/cgroup").ok()?;
     let limit = |file: &PathBuf| std::fs::read_to_string(file).ok()?.trim().parse().ok();
     limit_files(&groups, Path::new("/sys/fs/cgroup")).iter().filter_map(limit).filter(|&bytes| bytes > 0).min()
 }
 
-/// Returns the files that may limit memory, for the text of `/proc/self/cgroup`: those of each
-/// group and of the groups around it. In a container the path may be that of the host, and then
-/// only the root exists.
+/// Returns the files that may limit memory, from the text of `/proc/self/cgroup`: those of each
+/// group and of all enclosing groups. In a container, the path may be the host's; then only the
+/// root exists.
 ///
 /// Source: *Control Group v2* and *Memory Resource Controller*, Linux kernel documentation.
 fn limit_files(groups: &str, root: &Path) -> Vec<PathBuf> {
@@ -88,7 +88,7 @@ fn limit_files(groups: &str, root: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Returns the remaining address space if it is limited (`ulimit -v`).
+/// Returns the remaining address space if it is limited, for example with `ulimit -v`.
 #[cfg(unix)]
 fn address_space() -> Option<u64> {
     let limit = rustix::process::getrlimit(rustix::process::Resource::As).current?;

@@ -40,11 +40,11 @@ pub struct RenderOptions {
     pub view: View,
     /// Memory limit of scene and picture.
     pub memory: Memory,
-    /// Threads; `None`: one for each processor.
+    /// Number of threads; `None`: one per processor.
     pub threads: Option<usize>,
-    /// Width and height of a tile in pixels; `None`: chosen by the picture's size.
+    /// Width and height of a tile in pixels; `None`: based on the picture's size.
     pub tile: Option<u32>,
-    /// Time after which no more samples are taken; `None`: no limit.
+    /// Time after which no more samples are taken; `None`: unlimited.
     pub time_limit: Option<Duration>,
     /// Part of the work.
     pub shard: Shard,
@@ -66,8 +66,8 @@ impl Default for RenderOptions {
 }
 
 impl RenderOptions {
-    /// Sets an option by its name without dashes. `text` is empty for a flag. Options that name
-    /// several things (`assets`, `compat`) add to what was set before.
+    /// Sets an option by its name without dashes. `text` is empty for a flag. Options that can be
+    /// repeated (`assets`, `compat`) add to the previous values.
     ///
     /// # Errors
     ///
@@ -115,18 +115,18 @@ impl RenderOptions {
     }
 }
 
-/// Subject of an option.
+/// Category of an option.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OptionGroup {
     /// Reading and compiling the scene.
     Reading,
-    /// The picture. These options decide every bit of it.
+    /// The picture. These options determine every bit of it.
     Picture,
-    /// Threads, time and shards. These change no bit of a finished picture.
+    /// Threads, time and shards. These do not change any bit of a finished picture.
     Work,
 }
 
-/// Statement of an option.
+/// Description of an option.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct OptionStatement {
@@ -136,13 +136,13 @@ pub struct OptionStatement {
     pub help: String,
     /// Name of the value; `None` for a flag.
     pub value: Option<String>,
-    /// Allowed words, if only some are allowed.
+    /// Allowed words, if the choice is limited.
     pub words: Vec<&'static str>,
-    /// Subject of the option.
+    /// Category of the option.
     pub group: OptionGroup,
 }
 
-/// Returns the statements of every option.
+/// Returns the descriptions of all options.
 pub fn statements() -> Vec<OptionStatement> {
     let rows = |rows: &[rows::Row], group| rows.iter().map(|row| stated(&row.option, group)).collect::<Vec<_>>();
     let mut all = rows(READING, OptionGroup::Reading);
@@ -213,7 +213,7 @@ pub fn integrator_options() -> Vec<(Field, String)> {
     all
 }
 
-/// Joins a statement's text into one line.
+/// Joins the lines of a description into one.
 pub fn one_line(doc: &str) -> String {
     doc.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -18,7 +18,7 @@ pub enum Subject {
     Ray(Box<Tree>),
 }
 
-/// Makes the document of `durer explain --json`: the tree of terms, and the names of the objects,
+/// Creates the document of `durer explain --json`: the tree of terms, and the names of the objects,
 /// materials and lights that it refers to by index.
 pub fn explanation(subject: &Subject, names: &Names) -> Value {
     let (mut objects, mut lights, mut materials) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
@@ -66,8 +66,8 @@ pub fn explanation(subject: &Subject, names: &Names) -> Value {
     json
 }
 
-/// Adds to each term the lines that derive its numbers. `at`: direction and normal of the ray that
-/// it belongs to.
+/// Adds to each term the lines that derive its numbers. `at`: direction of the ray that it belongs
+/// to, and normal.
 fn annotate(node: &TraceNode, json: &mut Value, at: (Vec3, Vec3), names: &Names) {
     let lines = names.origins(node, at.0, at.1);
     if !lines.is_empty() {

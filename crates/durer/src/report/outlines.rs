@@ -6,9 +6,9 @@ use durer_scene::math::{Aabb, Vec3};
 use durer_scene::shape::Shape;
 use serde_json::{Value, json};
 
-/// Maximum number of objects drawn; more would hide each other.
+/// Maximum number of objects drawn; more would obscure each other.
 const MAX_OBJECTS: usize = 400;
-/// Maximum number of triangles drawn of a mesh.
+/// Maximum number of triangles drawn per mesh.
 const MAX_TRIANGLES: usize = 600;
 
 /// Returns polylines that outline the objects, in world space.
@@ -23,10 +23,10 @@ pub fn object_outlines(world: &World) -> impl Iterator<Item = Vec<Vec<Vec3>>> {
     world.objects().iter().take(MAX_OBJECTS).map(move |object| outline(object, &ends))
 }
 
-/// Mark of a light in a drawing of the scene.
+/// Mark of a light in a scene drawing.
 pub struct LightMark {
     /// Position of the light in world space; for a directional light, a point outside the scene in
-    /// the direction from which it shines.
+    /// the direction from which its light comes.
     pub at: Vec3,
     /// True for a light at infinity.
     pub is_far: bool,

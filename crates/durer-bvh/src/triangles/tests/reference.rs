@@ -16,8 +16,8 @@ enum Verdict {
 }
 
 /// Tests the signs of the volumes that the ray spans with each edge. Each coordinate of a corner
-/// may be off by the rounding of its distance from the origin, and a volume by that times the area
-/// of the ray and the other corner.
+/// may be off by its rounding error, which is proportional to its distance from the origin; a
+/// volume may be off by that error times the area spanned by the ray and the other corner.
 fn verdict(corners: [Vec3; 3], ray: &Ray) -> Verdict {
     let (o, d) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
     let [a, b, c] = corners.map(|p| p.as_dvec3() - o);

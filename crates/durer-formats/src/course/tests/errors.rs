@@ -330,7 +330,7 @@ fn a_colour_of_the_web_is_told_at_its_own_place() {
     let messages = findings(text, Dialect::Durer).join("\n");
     assert!(messages.contains("`diffuseColor` needs number 1 of 3, but `#b38033` begins a comment"), "{messages}");
     assert!(messages.contains("0.702 0.502 0.2"), "{messages}");
-    // Any other comment says nothing about the value.
+    // Other comments are not taken for the value.
     let messages = findings(&text.replace("#b38033", "# brown"), Dialect::Durer).join("\n");
     assert!(messages.contains("but found `specularColor`"), "{messages}");
 }

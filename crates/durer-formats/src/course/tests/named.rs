@@ -50,7 +50,7 @@ fn each_use_copies_the_defined_object() {
     ));
     let mut found = Vec::new();
     scene.root.iter().flat_map(|root| &root.objects).for_each(|object| materials(object, &mut found));
-    // An object with a material in its definition keeps it.
+    // A use is equivalent to writing the object out.
     assert_eq!(found, [Some(0), Some(1), Some(2), Some(1), Some(2), Some(2)]);
     // A use equals the object written out.
     let used =

@@ -82,7 +82,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Range of the value here; for an object or array, of its first byte only.
+    /// Range of the value here; for an object or array, only of its first byte.
     fn here(&self) -> Range<usize> {
         let mut walk = Walk { ..*self };
         if matches!(walk.peek(), Some(b'{' | b'[')) {

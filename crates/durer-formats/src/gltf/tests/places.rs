@@ -110,7 +110,7 @@ fn mesh_scaled_to_zero_along_one_axis_is_a_sheet() {
     assert_eq!(flat.positions, [at(0.0, 0.0), at(2.0, 0.0), at(0.0, 1.0), at(0.0, 0.0)]);
     assert_eq!(flat.triangles, [[0, 2, 1], [1, 2, 3]]);
     assert!(flat.flat && flat.normals.is_empty() && flat.triangle_normals.is_empty());
-    // With a rotation, no coordinate is exact.
+    // After a rotation, no coordinate is exact.
     let turn = r#""rotation":[0.1825742,0.3651484,0.5477226,0.7302967],"translation":[1000,2000,3000]"#;
     let turned = sheet(&format!(r#""scale":[1,1,0],{turn}"#));
     assert_eq!(turned.triangles, [[0, 2, 1], [1, 2, 3]]);

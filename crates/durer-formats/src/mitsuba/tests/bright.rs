@@ -84,7 +84,7 @@ fn daylight_illuminance_on_level_ground_matches_mitsuba() {
     }
     let lux = level * 683.0 * 106.856_9;
     assert!((lux / 17_668.0 - 1.0).abs() < 0.02, "{lux}");
-    // By time, against Mitsuba's direction to the sun: x south, y west, z up.
+    // Set by time, compared with Mitsuba's direction to the sun: x south, y west, z up.
     let text = "<emitter type='sun'><float name='latitude' value='48.8'/><float name='longitude' value='2.3'/>\
                 <float name='timezone' value='2'/><integer name='year' value='2024'/><integer name='month' value='6'/>\
                 <integer name='day' value='21'/><float name='hour' value='15'/><float name='minute' value='30'/></emitter>\
@@ -158,7 +158,7 @@ fn volumes_become_density_grids_with_their_transform() {
         assert_eq!(m.transmission_density_box, [[5.0, 0.0, 0.0], edge, [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]]);
         let scattered = m.transmission_scatter / m.transmission_depth;
         assert!((scattered - Vec3::new(2.7, 1.8, 0.9)).abs().max_element() < 1e-5, "{scattered}");
-        // Written beside a scene, it is the same file.
+        // Exported, the file is unchanged.
         let (made, beside) = export_assets(&scene, "kept", &FolderSource::new(&std::env::temp_dir()));
         let Material::Principled(m) = material(&made) else { panic!() };
         assert_eq!(m.transmission_density.as_ref().unwrap().path, "kept/smoke.vol");

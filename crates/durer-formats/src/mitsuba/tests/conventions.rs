@@ -173,8 +173,8 @@ fn textures_of_numbers_become_linear_pictures() {
              <rgb name='color1' value='{other}'/></texture>"
         )
     };
-    // Values of the picture of a material, which are linear. Mitsuba swaps the fields where it
-    // reads numbers.
+    // Values of the picture of a material, which are linear. Mitsuba swaps the fields when it reads
+    // numbers.
     let check = |bsdf: &str, get: &dyn Fn(&PrincipledMaterial) -> Option<&FileName>, [other, one]: [f32; 2]| {
         let wanted = [one, other];
         let scene = clean(&format!("<shape type='sphere'>{bsdf}</shape>"));
@@ -213,7 +213,7 @@ fn textures_of_numbers_become_linear_pictures() {
     let bump =
         format!("<bsdf type='bumpmap'>{}<float name='scale' value='.3'/>{inner}</bsdf>", fields("arbitrary", 0.5, 0.9));
     assert_eq!(check(&bump, &|m| m.bump_texture.as_ref(), [0.5, 0.9]).bump_height, 0.3);
-    // The number of a colour is its luminance.
+    // A colour converted to a number is its luminance.
     let colors = "<texture name='opacity' type='checkerboard'><rgb name='color0' value='0,1,0'/>\
         <rgb name='color1' value='1,0,0'/></texture>";
     check(&format!("<bsdf type='mask'>{colors}{inner}</bsdf>"), &|m| m.opacity_texture.as_ref(), [0.7152, 0.2126]);
@@ -342,7 +342,7 @@ fn picture_colours_are_srgb_unless_raw() {
 
 #[test]
 fn nested_glass_has_its_own_index() {
-    // The index is the ratio across the surface, whatever medium surrounds it.
+    // The index is the ratio across the surface, regardless of the surrounding medium.
     let body = |radius: f32, inside: &str, outside: &str| {
         let index = |name: &str, value: &str| match value.parse::<f32>() {
             Ok(value) => format!("<float name='{name}' value='{value}'/>"),
@@ -482,7 +482,7 @@ fn normal_map_tangents_follow_u() {
         assert_eq!(data.tangents.len(), data.positions.len(), "{shape}");
         for (corners, uvs) in data.triangles.iter().zip(&data.triangle_uvs) {
             for k in 0..3 {
-                // The tangent points to growing u.
+                // The tangent points in the direction of increasing u.
                 let tangent = data.tangents[corners[k] as usize];
                 let [x, y, z, side] = tangent;
                 let along = (0..3).filter(|&l| l != k).map(|l| {

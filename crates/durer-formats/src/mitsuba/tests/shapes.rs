@@ -97,7 +97,7 @@ fn disk_uv_goes_outwards_and_around() {
         let near = (found.x - wanted[0]).abs() < 1e-3 && (1.0 - found.y - wanted[1]).abs() < 3e-3;
         assert!(near, "{place}: {found} and not {wanted:?}");
     }
-    // The tangent points to growing u: outwards.
+    // The tangent points in the direction of increasing u, outwards.
     let outwards = |(p, t): (&Vec3, &[f32; 4])| p.length() == 0.0 || p.dot(Vec3::new(t[0], t[1], t[2])) > 0.9;
     assert!(data.positions.iter().zip(&data.tangents).all(outwards));
     // A disk without a picture stays a disc.

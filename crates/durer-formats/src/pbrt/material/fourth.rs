@@ -187,7 +187,7 @@ impl Reader<'_> {
             }
         }
         m.energy_compensation = Switch::Off;
-        // `eta` is the ratio across the surface, whatever medium surrounds it.
+        // `eta` is the ratio across the surface, regardless of the surrounding medium.
         m.surroundings = Surroundings::Ignored;
         self.surface(&mut m, params, "displacement");
         MaterialDef::Layers(Box::new(m), at)
@@ -214,7 +214,7 @@ impl Reader<'_> {
         if params.get("albedo").is_some_and(|param| param.numbers().iter().any(|x| *x != 0.0)) {
             self.report.once(params.place("albedo"), "a medium inside a coat has no counterpart: the coat is clear");
         }
-        // Light that crosses the coat is attenuated by its thickness even without a medium in it.
+        // Light that crosses the coat is attenuated by its thickness even if it contains no medium.
         let thickness = self.value(params, "thickness", 0.01).max(0.0);
         m.coat_color = m.base_color.map(|base| crossed(thickness, m.coat_ior, base));
         params.known(&["g", "maxdepth", "nsamples", "twosided"]);

@@ -54,8 +54,8 @@ fn matte(base_color: Color) -> PrincipledMaterial {
     PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
 }
 
-/// Lets light scatter below the surface with mean free path `path` and albedo `color`, by a picture
-/// if there is one.
+/// Lets light scatter below the surface with mean free path `path` and albedo `color`, from a
+/// picture if there is one.
 fn below_skin(m: &mut PrincipledMaterial, params: &Params, (color, picture): (Color, Option<FileName>), path: Vec3) {
     m.subsurface_weight = 1.0;
     (m.subsurface_color, m.subsurface_color_texture) = (color.min(Vec3::ONE), picture);

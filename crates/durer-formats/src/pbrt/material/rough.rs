@@ -61,8 +61,8 @@ impl Reader<'_> {
         Rough::new(alphas)
     }
 
-    /// Reads roughness as the geometric mean of both directions: a coat over a matte base is
-    /// isotropic here. See [`Reader::rough`].
+    /// Reads roughness as the geometric mean of both directions: in Dürer, a coat over a matte base
+    /// is isotropic. See [`Reader::rough`].
     pub(super) fn even_rough(&mut self, params: &Params, both: Option<&'static str>, each: bool, usual: f32) -> Rough {
         let rough = self.rough(params, both, each, usual);
         let [u, v] = rough.alphas;

@@ -12,7 +12,8 @@ use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::{Vec3, fp};
 use std::f32::consts::TAU;
 
-/// Index and roughness of the boundary over the base. Both ways together, the base reflects (1 - (1
+/// Index and roughness of the boundary over the base. Including both passages through the boundary,
+/// the base reflects (1 - (1
 /// - cos / 2)^5) of its value at normal incidence, to 2 %.
 const INDEX: f32 = 0.8;
 const ROUGHNESS: f32 = 0.894_427;

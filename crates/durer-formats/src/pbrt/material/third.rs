@@ -74,7 +74,7 @@ impl Reader<'_> {
             }
             "plastic" => {
                 let rough = self.even_rough(params, Some("roughness"), false, 0.1);
-                // Its index is 1.5 outside and 1 inside: it reflects as seen from within.
+                // Its index is 1.5 outside and 1 inside, so it reflects as if seen from within.
                 vec![self.lambert(params, "Kd", 0.25), self.gloss(params, "Ks", (0.25, 1.0 / 1.5), &rough)]
             }
             "uber" => self.uber(params),

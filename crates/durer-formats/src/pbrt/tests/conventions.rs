@@ -177,7 +177,7 @@ fn area_lights_emit_on_pbrt_side() {
     let normals = |y: i32| format!("{down} \"normal N\" [ 0 {y} 0 0 {y} 0 0 {y} 0 ]");
     assert!(lit(&normals(-1), below) && !lit(&normals(1), below));
     assert!(lit(&format!("ReverseOrientation {}", normals(1)), below));
-    // A disk emits along its own z; a mirrored disk emits the other way, as in pbrt.
+    // A disk emits along its own z; a mirrored disk emits in the opposite direction, as in pbrt.
     let disk = |text: &str| lit(&format!("Rotate 90 1 0 0 {text} Shape \"disk\""), below);
     assert!(disk("") && !disk("ReverseOrientation") && !disk("Scale -1 1 1"));
     let patch = "Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0 1 0 0 0 0 1 1 0 1 ]";

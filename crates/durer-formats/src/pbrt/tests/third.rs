@@ -74,7 +74,7 @@ fn first_unambiguous_word_decides_language() {
         &format!("{camera} LightSource \"distant\" \"rgb scale\" [ 1 1 1 ]"),
         &format!("{camera} AreaLightSource \"diffuse\" \"integer nsamples\" 4"),
         &format!("{camera} MakeNamedMedium \"a\" \"string type\" \"heterogeneous\" \"float density\" 1"),
-        // The first such word counts.
+        // The first such word decides.
         &format!("{camera} Material \"matte\" ColorSpace \"srgb\""),
     ] {
         assert!(is_third(text), "{text}");

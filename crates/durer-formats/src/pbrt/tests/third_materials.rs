@@ -77,7 +77,7 @@ fn other_materials_read_their_parameters() {
     let all: Vec3 = mixed.iter().map(|(share, layers)| *share * layers.base_color).sum();
     close(all, Vec3::new(0.3, 0.0, 0.7));
     let disney = only("Material \"disney\" \"rgb color\" [ 0.1 0.2 0.3 ] \"float roughness\" 0.4");
-    // The base's colour is raised by the share that the boundary takes.
+    // The base colour is raised to make up for the share that the boundary reflects.
     let color = Vec3::new(0.1, 0.2, 0.3);
     let more = disney.base_color / color;
     assert!((more - more.x).abs().max_element() < 1e-5 && (1.0..1.2).contains(&more.x), "{more}");
@@ -97,7 +97,7 @@ fn substrate_mean_albedo_follows_its_formula() {
     let passing = 1.0 - boundary.mean(base.specular_roughness);
     let mean = *share * passing * base.base_color;
     assert!((mean / (Vec3::new(0.2, 0.4, 0.8) * 0.96 * 23.0 / 28.0) - Vec3::ONE).abs().max_element() < 5e-3, "{mean}");
-    // By direction, 1 - (1 - cos / 2)^5.
+    // As a function of direction: 1 - (1 - cos / 2)^5.
     for cosine in [0.1, 0.3, 0.5, 0.7, 1.0] {
         let (half, wanted): (f32, f32) = (1.0 - 0.5 * cosine, 28.0 / 23.0);
         let formula = wanted * (1.0 - half * half * half * half * half);
@@ -157,7 +157,7 @@ fn hair_is_read_in_both_languages() {
         let made = hair(&format!("Material \"hair\" \"rgb {word}\" [ 0.5 0.25 0.125 ]"));
         close(made.color.unwrap(), Vec3::new(0.5, 0.25, 0.125));
     }
-    // Absorption has precedence, here in pbrt-v3.
+    // Absorption takes precedence, here in pbrt-v3.
     let made = hair("Material \"matte\" Material \"hair\" \"rgb sigma_a\" [ 1 2 3 ] \"rgb color\" [ 0.5 0.5 0.5 ]");
     assert_eq!((made.absorption, made.color), (Some(Vec3::new(1.0, 2.0, 3.0)), None));
 }

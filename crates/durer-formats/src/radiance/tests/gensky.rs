@@ -35,7 +35,7 @@ fn output_matches_radiance_6_0() {
         ("-ang 30 20 -u", 0.0, &[3.0, 21.79, 4.358]),
         ("6 21 12 -c -B 55", 0.0, &[2.0, 22.51, 3.501]),
         ("6 21 +9 -s", 0.0, &[1.0, 10.77, 22.85, 0.6427, 0.648701, -0.083341, 0.756467]),
-        // With a year, both programs use a more exact formula than without.
+        // With a year, both programs use a more accurate formula.
         ("2 28 12 -y 2011 +s", 6.747e6, &[1.0, 9.316, 20.86, 0.5563, 0.089294, -0.712975, 0.695481]),
         ("9 1 8.25 -i -t 4 -b 20", 0.0, &[4.0, 20.0, 6.981, 1.042, 0.843806, -0.21235, 0.492848]),
         // Too near the zenith for the formula.

@@ -177,7 +177,7 @@ fn points_of_an_emitter_are_centred() {
 
 #[test]
 fn angles_may_have_an_offset() {
-    // As `ies2rad` writes files from 90 to 270 degrees.
+    // As in files written by `ies2rad`, from 90 to 270 degrees.
     let files = folder(&[("b.dat", by_two().as_bytes())]);
     let text = "void brightdata d 7 flatcorr b.dat source.cal src_phi2+20 src_theta -rz -90 0 0 d light l 0 0 3 1 1 1
         l polygon r 0 0 12 -1 -1 0 -1 1 0 1 1 0 1 -1 0";

@@ -191,8 +191,8 @@ fn standard_views_match_rad() {
 
 #[test]
 fn sheet_has_the_given_reflectance_and_transmittance() {
-    // By the formulas of thin sheets at normal incidence: 2 F / (1 + F) of the specularly
-    // transmitted part, F of the rest.
+    // The formulas for thin sheets at normal incidence: 2 F / (1 + F) of the specularly transmitted
+    // part, and F of the remainder.
     for (numbers, [reflected, straight, matte]) in [
         (".05 0 .9 1", [0.05, 0.95 * 0.9, 0.95 * 0.1]),
         (".2 0 .5 .4", [0.2, 0.8 * 0.2, 0.8 * 0.8]),

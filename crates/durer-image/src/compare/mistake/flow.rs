@@ -1,7 +1,7 @@
 //! Detection of subpixel shifts at edges.
 //!
-//! If a picture f is shifted by s, the difference is about -s f'. Least squares over all edges
-//! yield s even without antialiasing: a share s of the edge pixels then changes sides. Source:
+//! If a picture f is shifted by s, the difference is about -s f'. Least squares over all edges give
+//! s even without antialiasing, since a share s of the edge pixels then changes sides. Source:
 //! Lucas and Kanade, *An Iterative Image Registration Technique*, 1981.
 
 use super::sample::{Sample, View};

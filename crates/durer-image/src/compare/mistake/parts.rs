@@ -61,7 +61,7 @@ fn cut_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     let (_, unit) = unit_vectors(samples)?;
     let cut = |s: &Sample| Vec3::from(std::array::from_fn(|c| if s.test[c] == 0.0 { 0.0 } else { s.reference[c] }));
     let rest: f64 = samples.iter().map(|s| f64::from((s.test - cut(s)).length_squared())).sum();
-    // A black pixel may have any cause; single missing components do not.
+    // A black pixel may have any cause; but individual missing components may not.
     let some = |s: &&&Sample| cut(s) != s.reference && s.test != Vec3::ZERO;
     let explained = 1.0 - rest / difference(samples);
     let words = "components of its normals that should be positive are 0: negative values are clamped (take absolute values \
@@ -175,8 +175,8 @@ fn mixed(reference: &View, test: &View, at_edges: &[Sample]) -> f64 {
     difference(&at_edges.iter().filter(is_between).copied().collect::<Vec<_>>()) / difference(at_edges).max(1e-12)
 }
 
-/// Returns true if equal areas lie on both sides of the differing edges. An object so thin that all
-/// its pixels are at edges shows nothing.
+/// Returns true if equal areas lie on both sides of the differing edges. An object that is so thin
+/// that all its pixels are at edges gives no evidence.
 fn has_equal_sides(reference: &View, test: &View, at_edges: &[Sample]) -> bool {
     let differing: Vec<&Sample> = at_edges.iter().filter(seen).collect();
     let sides = |s: &&&Sample| {

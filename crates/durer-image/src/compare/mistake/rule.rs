@@ -81,8 +81,8 @@ impl Rule {
         (0..reference.pixels.len() as isize).map(|i| self.pixel(reference, i % width, i / width)).collect()
     }
 
-    /// Returns true if the rule determines a pixel; it does not where a shift brings in what the
-    /// reference does not show.
+    /// Returns true if the rule determines a pixel; a shift leaves pixels undetermined where the
+    /// reference has no data.
     pub fn knows(&self, picture: &View, x: isize, y: isize) -> bool {
         match *self {
             Rule::Shifted(dx, dy) => {
@@ -101,7 +101,7 @@ impl Rule {
                 let (x, y) = turn.source(reference, x, y);
                 reference.at(x, y)
             }
-            // Pixels that enter at the edge are unknown.
+            // Pixels moved in at the edge are unknown.
             Rule::Shifted(dx, dy) if self.knows(reference, x, y) => reference.at(x - dx, y - dy),
             Rule::Shifted(..) => value,
             Rule::Channels(order) => order.map(|channel| value[channel]).into(),

@@ -68,7 +68,7 @@ fn places_of_pixels() {
 
 #[test]
 fn brightness_and_colour() {
-    finds("factor", "factor 0.5", &scene, &|x, y| scene(x, y) * 0.5);
+    finds("factor", "factor of 0.5", &scene, &|x, y| scene(x, y) * 0.5);
     finds("factor", "brighter by a factor of 1.39", &scene, &|x, y| scene(x, y) * 1.4);
     let half = |v: f32| linear_to_srgb(0.5 * srgb_to_linear(v));
     finds("factor", "light is darker by a factor of 0.5", &scene, &move |x, y| scene(x, y).map(half));
@@ -121,7 +121,7 @@ fn normals_gone_wrong() {
 #[test]
 fn parts_of_a_picture() {
     let within = |x: usize, y: usize| (40..60).contains(&x) && (45..70).contains(&y);
-    finds("darker-parts", "factor 0.3", &scene, &move |x, y| scene(x, y) * if within(x, y) { 0.3 } else { 1.0 });
+    finds("darker-parts", "factor of 0.3", &scene, &move |x, y| scene(x, y) * if within(x, y) { 0.3 } else { 1.0 });
     finds(
         "brighter-parts",
         "the rest is equal",
@@ -184,7 +184,7 @@ fn what_is_no_usual_mistake_is_none() {
     assert!(found.iter().all(|f| f.kind == "noise"), "{found:?}");
 }
 
-/// A nearly black picture can be made from any other by moving and darkening it.
+/// Moving and darkening any picture makes a nearly black one.
 #[test]
 fn a_nearly_uniform_picture_is_not_made_from_the_reference() {
     let dark = |x: usize, y: usize| if x + 2 * y > 240 { Vec3::splat(0.012) } else { Vec3::ZERO };
@@ -195,10 +195,10 @@ fn a_nearly_uniform_picture_is_not_made_from_the_reference() {
     assert!(found.iter().all(|f| f.kind == "black-parts"), "{found:?}");
 }
 
-/// A mistake that leaves a visible part of the picture unexplained is named with that remark.
+/// If a mistake leaves a visible part of the difference unexplained, the message says so.
 #[test]
 fn what_remains_beside_a_mistake_is_stated() {
-    let spot = |x: usize, y: usize| (60..70).contains(&x) && (50..60).contains(&y);
+    let spot = |x: usize, y: usize| (60..80).contains(&x) && (50..70).contains(&y);
     let found = findings(&scene, &move |x, y| 0.5 * scene(x, y) + if spot(x, y) { 0.03 } else { 0.0 });
     assert!(found.len() == 1 && found[0].explained > 0.95, "{found:?}");
     assert!(found[0].words.starts_with("nearly: ") && found[0].words.ends_with("something more is different"));

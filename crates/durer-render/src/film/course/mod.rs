@@ -1,7 +1,7 @@
 //! Films, filters and diagrams of the course's assignments, unchanged.
 //!
-//! They are plain functions of samples and pixels. A job selects them; they do not depend on the
-//! dialect.
+//! They are plain functions of samples and pixels. A job selects them, and they do not depend on
+//! the dialect.
 
 pub mod diagram;
 mod jitter;

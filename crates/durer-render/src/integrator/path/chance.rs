@@ -8,7 +8,7 @@ use durer_scene::math::Color;
 use std::f32::consts::PI;
 
 impl Path<'_> {
-    /// Maximum contribution of one irradiance sample from light that few samples find: emitters
+    /// Maximum contribution of one irradiance sample from light that samples rarely find: emitters
     /// with a picture or partial opacity, solids, and infinite shapes; all emissive surfaces if
     /// something mirrors or refracts and no photons are sent; and the dimmest part of the
     /// environment with light sampling alone. `brightness` weights colours.

@@ -31,7 +31,7 @@ struct LightLiSample {
     candidate_pdf: f32,
 }
 
-/// Step between the random numbers of several candidates, which stratifies them: the R2 sequence.
+/// Step between the random numbers of several candidates, which stratifies them (R2 sequence).
 ///
 /// Source: Martin Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018.
 const R2_STEP: Vec2 = Vec2::new(0.754_877_7, 0.569_840_3);
@@ -167,7 +167,7 @@ impl Path<'_> {
             }
             None => Spectrum::ONE,
         };
-        // A direction can hit both sides of a light, so light samples must reach both sides too.
+        // A direction can hit both sides of a light, so light samples must also reach both sides.
         let hides_backs = self.world.hides_backs() && light.pdf == 0.0;
         if !self.world.has_cutouts() && !self.world.has_interfaces() && !self.world.has_sheets() {
             match self.world.occluded(&ray, tally) {
@@ -177,7 +177,7 @@ impl Path<'_> {
             }
         }
         let mut media = media.clone();
-        // After 64 layers, the light counts as occluded.
+        // After 64 layers, count the light as occluded.
         for _ in 0..64 {
             let Some(hit) = self.world.closest(&ray, tally) else {
                 return (left * pass(&media, &ray, ray.rounded.t_max), sheets);

@@ -3,7 +3,7 @@
 //! A path is a loop over a `PathState`, as in pbrt and Mitsuba. Each bounce runs these stages. None
 //! of them calls another bounce, so a wavefront can run each over an array of states:
 //!
-//! 1. `Path::propagate`: the ray flies to the next vertex, through media and past surfaces that
+//! 1. `Path::propagate`: the ray travels to the next vertex, through media and past surfaces that
 //!    have no effect.
 //! 2. `Path::add_background`, `Path::add_emission`: light at the end of the ray, weighted
 //!    against light sampling at the previous vertex.
@@ -214,8 +214,8 @@ impl<'w> Path<'w> {
         Some(self.world.closest_along(&mut stack.active.ray, tally))
     }
 
-    /// Runs one bounce: flies to the next vertex, adds the light found there, and turns the active
-    /// state into that of the next ray. Returns false when the active path has ended.
+    /// Runs one bounce: traces the ray to the next vertex, adds the light found there, and turns
+    /// the active state into that of the next ray. Returns false when the active path has ended.
     fn bounce<T: TraceListener>(
         &self,
         hit: Option<Hit>,
@@ -266,7 +266,7 @@ impl<'w> Path<'w> {
         }
         let vertex = self.vertex(kind, state);
         let is_broad = kind.is_broad();
-        // With many lights, the chosen one is rarely in the cache: the direction is sampled while
+        // With many lights, the chosen one is rarely in the cache; the direction is sampled while
         // it is fetched.
         let light = if is_broad { self.choose_light(&vertex) } else { None };
         let sample = if vertex.directions == 1 { vertex.sample_bsdf() } else { None };

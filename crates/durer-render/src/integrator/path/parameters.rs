@@ -46,9 +46,9 @@ pub struct PhotonParameters {
     /// Options of path tracing.
     #[serde(flatten)]
     pub transport: PathOptions,
-    /// Number of photons a sample.
+    /// Number of photons per sample.
     pub count: u32,
-    /// Search radius of the first sample, in units of the world.
+    /// Search radius of the first sample, in world units.
     pub radius: Option<f32>,
     /// Removes the bias to second order, with more noise: see [`Photons::corrected`].
     pub corrected: bool,

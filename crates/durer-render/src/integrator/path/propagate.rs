@@ -1,4 +1,4 @@
-//! Flight of a ray to the next vertex: through media, and past surfaces that have no effect.
+//! Propagation of a ray to the next vertex: through media, and past surfaces that have no effect.
 
 use super::Path;
 use super::state::{PathState, SampleContext};
@@ -11,7 +11,7 @@ use durer_scene::spectrum::{Lanes, Spectrum};
 use glam::DVec3;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// End of a ray's flight.
+/// Outcome of propagating a ray.
 pub(super) enum Event {
     /// Roulette or absorption ended the path.
     Absorbed,

@@ -49,7 +49,7 @@ fn by_ways(world: &World, ray: Ray, settings: WhittedOptions, color: ColorMode) 
     })
 }
 
-/// Asserts a radiance within three standard errors plus one part in a thousand.
+/// Asserts that a radiance is right within three standard errors plus one part in a thousand.
 fn assert_light(name: &str, world: &World, ray: Ray, bounces: u32, expected: f64) {
     let (mean, error) = light(world, ray, bounces, 1 << 15);
     assert!((mean - expected).abs() <= 3.0 * error + 0.001 * expected, "{name}: {mean} ± {error}, expected {expected}");
@@ -95,7 +95,7 @@ fn closed_furnace_sums_a_geometric_series() {
     }
 }
 
-/// Distant objects keep their precision, whether only the area light is distant or the floor too.
+/// Distant objects keep their precision, whether only the area light is distant or also the floor.
 #[test]
 fn distant_area_lights_are_as_accurate_as_near_ones() {
     let words = |p: Vec3| format!("{} {} {}", p.x, p.y, p.z);
@@ -301,7 +301,7 @@ fn several_directions_to_an_environment_have_the_mean_of_one() {
                 assert!((a - b).abs() < 4.0 * (va + vb).sqrt(), "{x} {y}: {ways:?}");
             }
         }
-        // The first non-matte vertex follows two directions, all others one.
+        // The first non-matte vertex follows two directions, all others follow one.
         fn follow(node: &TraceNode, directions: u32) -> usize {
             let below = node.terms.iter().map(|term| match &term.what {
                 TermKind::Ray { bounce: Some(bounce), .. } => {

@@ -63,7 +63,7 @@ impl Whitted<'_> {
         // Limits the number of layers.
         for layer in 1.. {
             let Some(hit) = found else { return share };
-            // An opaque material ends the search without a closer look.
+            // An opaque material ends the search early.
             match &self.world.materials()[self.world.material_of(&hit) as usize] {
                 Material::Phong(phong) if phong.transparent == Color::ZERO => break,
                 _ => {}
@@ -113,7 +113,7 @@ impl Direct {
     #[inline(always)]
     pub(super) fn is_dark(&self, phong: &Phong) -> bool {
         let highlight = |(specular, exponent, _)| {
-            // Exponent 0 gives 1. A base above 1, of a normal that is longer, may give infinity.
+            // Exponent 0 gives 1. A base above 1, from a normal longer than 1, may give infinity.
             let shows = |base: f32| base > if specular == Color::ZERO { 1.0 } else { 0.0 };
             self.base.is_some_and(shows) || specular != Color::ZERO && exponent <= 0.0
         };

@@ -116,7 +116,7 @@ impl Queue {
         self.waiting.push(number);
     }
 
-    /// Takes up to [`MAX_BATCH`] of the segments added last; returns their number.
+    /// Removes up to [`MAX_BATCH`] of the most recently added segments; returns their number.
     pub(super) fn take(&mut self, batch: &mut [u32; MAX_BATCH]) -> usize {
         let count = self.waiting.len().min(MAX_BATCH);
         let start = self.waiting.len() - count;

@@ -167,7 +167,7 @@ impl Whitted<'_> {
         queue: &mut Queue,
         tally: &mut T,
     ) {
-        // Below 0 where Schlick's formula meets a normal that is not of length 1.
+        // Schlick's formula can be below 0 if the normal is not of length 1.
         if factor == Color::ZERO {
             return;
         }

@@ -240,7 +240,8 @@ fn coarse_smooth_sphere_casts_no_shadow_on_points_that_face_the_light() {
         let rules = durer_scene::dialect::Rules { epsilon: compat.then_some(1e-4), ..rules.clone() };
         testing::try_read(&text("ball80-smooth.obj", wall), &rules, AccelKind::Bvh, &folder).0.unwrap()
     };
-    // Returns the number of dark points whose normals face the light, and of all such points.
+    // Returns the number of dark points whose normals face the light, and the number of all such
+    // points.
     let dark = |world: &World| {
         let (mut random, mut dark, mut all) = (Random(5), 0, 0);
         let whitted = Whitted { world, settings: ALL, cancel: None };

@@ -1,4 +1,4 @@
-//! Tests of adaptive allocation: sample counts, and no bias.
+//! Tests of adaptive allocation: sample counts, and unbiased results.
 
 use super::*;
 use crate::compile::testing;
@@ -27,7 +27,7 @@ Group { numObjects 2
   MaterialIndex 0 Sphere { center -0.8 0 0 radius 0.9 }
   MaterialIndex 1 Sphere { center -2.2 0.5 3 radius 0.4 } }";
 
-/// Returns a job with BSDF sampling only, which rarely hits the light.
+/// Returns a job that uses BSDF sampling only, which rarely hits the light.
 fn uneven(adaptive: bool, seed: u64) -> Job {
     let IntegratorKind::Path(paths) = IntegratorKind::PATH else { unreachable!("`PATH` is a path tracer") };
     let method = IntegratorKind::Path(PathOptions { direct: Direct::Bsdf, ..paths });
@@ -154,10 +154,10 @@ fn unsuitable_jobs_for_adaptive_sampling_are_rejected() {
 
 #[test]
 fn samples_follow_the_standard_deviation() {
-    // None below the pilot, the rest by the deviation.
+    // No pixel gets fewer than the pilot samples; the remaining ones are distributed by deviation.
     assert_eq!(divided(&[0.0, 1.0, 3.0, 0.0], 64), [16, 56, 168, 16]);
     assert_eq!(divided(&[1.0; 5], 100), [100; 5]);
-    // No pixel needs more, or one takes its maximum.
+    // No pixel needs more, or one gets its maximum.
     assert_eq!(divided(&[0.0; 3], 64), [16; 3]);
     let mut one = [0.0; 1000];
     one[7] = 1e30;

@@ -24,7 +24,7 @@ const fn sub_pixels(jitter: bool, blur: bool) -> SamplingCase {
     (Sampling::Course2012 { jitter, blur }, None, false)
 }
 
-/// Every way of combining samples. One filter is so narrow that often no sample counts.
+/// Every way of combining samples. One filter is so narrow that often no sample has a weight.
 pub const SAMPLINGS: [SamplingCase; 12] = [
     (Sampling::Center, None, false),
     filtered(3, None, false),
@@ -40,7 +40,7 @@ pub const SAMPLINGS: [SamplingCase; 12] = [
     sub_pixels(false, false),
 ];
 
-/// Explains random pixels of a job's picture, equally many for each sampling. Returns the
+/// Explains random pixels of a job's picture, the same number for each sampling. Returns the
 /// differences, pixel by pixel.
 ///
 /// # Errors

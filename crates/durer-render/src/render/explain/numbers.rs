@@ -1,8 +1,8 @@
-//! Numbers as explanations write them.
+//! Formatting of numbers in explanations.
 
 use durer_scene::math::{Color, Vec3};
 
-/// Formats a number with four significant digits; 0 without a sign.
+/// Formats a number with four significant digits; zero has no sign.
 pub fn number(x: f32) -> String {
     if x == 0.0 || !x.is_finite() {
         return if x == 0.0 { "0".into() } else { x.to_string() };

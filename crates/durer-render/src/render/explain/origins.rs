@@ -1,5 +1,5 @@
-//! Derivations of the numbers of a term: the equation of a hit, the matrix of a transformed object,
-//! the texels and cells of a colour, and Snell's and Fresnel's laws.
+//! Derivations of the numbers in a term: the hit equation, the matrix of a transformed object, the
+//! texels and cells of a colour, and Snell's and Fresnel's laws.
 
 use super::numbers::{number, rgb, vector};
 use crate::integrator::TraceNode;
@@ -14,8 +14,8 @@ use durer_scene::shape::Primitive;
 use durer_scene::texture::Texture;
 use glam::DVec3;
 
-/// Returns lines that derive the numbers of a term of a scene and its world. `dir` and `n`:
-/// direction and normal of the ray that the term belongs to.
+/// Returns lines that derive the numbers in a term of a scene and its world. `dir` and `n`:
+/// direction of the ray that the term belongs to, and normal.
 pub fn origins(node: &TraceNode, (scene, world): (&Scene, &World), dir: Vec3, n: Vec3) -> Vec<String> {
     match &node.what {
         TermKind::Ray { ray, hit: Some(hit), .. } => of_hit(ray, hit, scene, world),
@@ -39,14 +39,14 @@ fn of_hit(ray: &RayRecord, hit: &HitRecord, scene: &Scene, world: &World) -> Vec
     lines
 }
 
-/// Returns the equation that a hit of a sphere or a plane solves.
+/// Returns the equation that was solved for a hit on a sphere or a plane.
 fn equation(object: &Object, ray: &RayRecord, t: f32) -> Option<String> {
-    // Only what gives the hit is stated: an official program may have found another.
+    // State only an equation that yields this hit: an official program may have found another.
     let is_it = |root: f64| (root - f64::from(t)).abs() <= 1e-3 * root.abs().max(1e-3);
     let (o, d) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
     match &object.geometry {
         Geometry::Primitive(Primitive::Sphere(sphere)) => {
-            // The record is of the space as written, the geometry about its own centre.
+            // The record is in the space as written; the geometry is relative to its own centre.
             let (off, r) = (o - (sphere.center + object.center).as_dvec3(), f64::from(sphere.radius));
             let (a, b, c) = (d.dot(d), d.dot(off), off.dot(off) - r * r);
             let root = (b * b - a * c).max(0.0).sqrt();
@@ -63,7 +63,7 @@ fn equation(object: &Object, ray: &RayRecord, t: f32) -> Option<String> {
         }
         Geometry::Primitive(Primitive::Plane(plane)) => {
             let n = plane.normal.as_dvec3();
-            // Of a plane the geometry is never moved about a centre.
+            // The geometry of a plane is never recentred.
             let (offset, no, nd) = (f64::from(plane.offset), n.dot(o), n.dot(d));
             is_it((offset - no) / nd).then(|| {
                 format!(
@@ -79,7 +79,7 @@ fn equation(object: &Object, ray: &RayRecord, t: f32) -> Option<String> {
     }
 }
 
-/// Returns the matrix of a moved object.
+/// Returns the matrix of a transformed object.
 fn matrix(object: &Object) -> Option<String> {
     let to_world = object.to_world.as_ref()?;
     let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| to_world.vector(axis));
@@ -91,10 +91,10 @@ fn matrix(object: &Object) -> Option<String> {
     Some(format!("M = {} {} {}; N = norm(M⁻ᵀ n)", row(0), row(1), row(2)))
 }
 
-/// Returns the origin of a surface's colour: the cell or share of a pattern, and texels.
+/// Returns the origin of a surface's colour: the pattern's cell or blend weight, and the texels.
 fn of_color(hit: &HitRecord, scene: &Scene, world: &World) -> Vec<String> {
     let (mut material, mut lines) = (hit.material, Vec::new());
-    // A pattern may consist of patterns.
+    // Patterns can be nested.
     for _ in 0..8 {
         let Some(Material::Solid(solid, to_pattern, _)) = world.materials().get(material as usize) else { break };
         let q = to_pattern.transform_point3(hit.position.as_dvec3());
@@ -190,7 +190,7 @@ fn texels(texture: &Texture, uv: durer_scene::math::Vec2) -> Vec<String> {
     texture.taps(uv).iter().map(line).collect()
 }
 
-/// Derives the direction and the share of refracted light.
+/// Derives the direction of the refracted ray and its share of the light.
 fn of_refraction(here: f64, there: f64, fresnel: Option<f32>, total: bool, dir: Vec3, n: Vec3) -> Vec<String> {
     let (d, n) = (dir.as_dvec3().normalize_or_zero(), n.as_dvec3());
     let cos_i = d.dot(n).abs().min(1.0);
@@ -209,7 +209,7 @@ fn of_refraction(here: f64, there: f64, fresnel: Option<f32>, total: bool, dir: 
     let r0 = ((there - here) / (there + here)).powi(2);
     let c = if here <= there { cos_i } else { cos_t };
     let r = r0 + (1.0 - r0) * (1.0 - c).powi(5);
-    // Some programs have another R0 on the way out.
+    // Some programs use another R0 for rays that leave.
     if let Some(share) = fresnel.filter(|share| !total && (f64::from(*share) - r).abs() < 1e-3) {
         lines.push(format!(
             "Fresnel, by Schlick: R0 = ((n₂ - n₁) / (n₂ + n₁))² = {}, cos = {}; R = R0 + (1 - R0) (1 - cos)⁵ = {}",

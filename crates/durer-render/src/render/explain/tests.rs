@@ -63,7 +63,7 @@ fn brightest_sample_below_glass_is_explained_as_a_caustic() {
     let causes = worst.firefly();
     assert!(causes.len() >= 3 && causes[0].starts_with("sample "), "{causes:?}");
     assert!(causes.iter().any(|sentence| sentence.contains("--integrator photons")), "{causes:?}");
-    // The brightest sample adds no more than the pixel has.
+    // The brightest sample adds at most the pixel's total.
     let (number, most) = worst.brightest().unwrap();
     let light = worst.samples[number].light.as_ref().unwrap();
     assert!(most > 0.0 && light.sum().max_element() > 0.0);

@@ -96,8 +96,8 @@ impl Names<'_> {
         }
     }
 
-    /// Returns lines that derive the numbers of a term. `dir` and `n`: direction and normal of the
-    /// ray that the term belongs to.
+    /// Returns lines that derive the numbers in a term. `dir` and `n`: direction of the ray that
+    /// the term belongs to, and normal.
     pub fn origins(&self, node: &TraceNode, dir: Vec3, n: Vec3) -> Vec<String> {
         origins(node, (self.scene, self.world), dir, n)
     }
@@ -117,8 +117,8 @@ impl Names<'_> {
         String::from_utf8_lossy(bytes.unwrap_or(b"object")).into_owned()
     }
 
-    /// Names an object without a keyword in the file, as in JSON: by its kind, and its name if it
-    /// has one.
+    /// Names an object without a keyword in the file, as in JSON: by its kind and, if it has one,
+    /// its name.
     pub fn unworded(&self, object: u32) -> Option<String> {
         let object = &self.world.objects()[object as usize];
         let kind = match &object.geometry {

@@ -61,7 +61,7 @@ impl Matrix {
         Vec3::new(row(0), row(1), row(2))
     }
 
-    /// A normal's image under the transpose.
+    /// Multiplies a normal by the transposed matrix.
     pub fn across(&self, n: Vec3, vectors: Vectors) -> Vec3 {
         let [x, y, z] = [0, 1, 2].map(|column| {
             let [a, b, c] = [0, 1, 2].map(|row| self.0[column][row] * n[row]);

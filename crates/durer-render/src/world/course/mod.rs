@@ -1,6 +1,6 @@
 //! Hits as in the course's programs of 2012 to 2023: object by object, in single precision,
-//! operation by operation. Pictures of objects that are distant, seen at a grazing angle or as
-//! large as the ground depend on the last bit.
+//! operation by operation. The last bit matters in pictures of objects that are distant, seen at a
+//! grazing angle or as large as the ground.
 //!
 //! Sources: the starter code of the assignments, whose spheres, groups, cameras and octree the
 //! official programs share; pictures of these programs for the rest.
@@ -39,7 +39,7 @@ impl Vectors {
         }
     }
 
-    /// The direction that an octree is walked along: of length 1 in the course's own arithmetic.
+    /// Direction used to traverse an octree; of length 1 in the course's own arithmetic.
     fn walked(self, dir: Vec3) -> Vec3 {
         match self {
             Vectors::Vecmath => self.unit(dir),
@@ -66,12 +66,12 @@ pub struct HitRules {
     pub triangle_matrix: bool,
     /// True if a triangle wins over earlier objects that are hit at the same distance.
     pub tied_triangles: bool,
-    /// True if a plane is also hit at the very start of a ray.
+    /// True if a plane is also hit exactly at the start of a ray.
     pub closed_planes: bool,
-    /// A sphere is hit at the very start of a ray too, as in the starter of 2020. Otherwise it is
-    /// hit at 10000 then, as in the starters before.
+    /// True if a sphere is also hit exactly at the start of a ray, as in the starter code of 2020.
+    /// If false, such a hit is at distance 10000, as in earlier starter code.
     pub closed_spheres: bool,
-    /// The normal of a plane outside of transforms keeps the length that is written.
+    /// True if the normal of a plane outside of transforms keeps its length as written.
     pub raw_normals: bool,
     /// True to traverse meshes by an octree that loses the far half of cells.
     pub octree: bool,
@@ -182,9 +182,9 @@ impl CourseHits {
         local
     }
 
-    /// The normal of a sphere or a plane in world space; `None` for anything else. On a ground of
-    /// radius 1000, or a plane of another length than 1, its rounding decides where mirrored rays
-    /// hit the ground again.
+    /// Normal of a sphere or a plane in world space; `None` for other shapes. For ground spheres of
+    /// radius 1000, or planes whose normal is not of length 1, its rounding decides where mirrored
+    /// rays hit the ground again.
     fn normal(&self, objects: &[Object], ray: &Ray, hit: &Hit) -> Option<Vec3> {
         let (object, vectors) = (&self.objects[hit.object as usize], self.rules.vectors);
         let own = match &objects[hit.object as usize].geometry {
@@ -271,7 +271,7 @@ impl MeshOrder {
 }
 
 impl World {
-    /// The normal at a hit where the official program's rounding of it counts.
+    /// Normal at a hit, if the official program's rounding of it matters.
     pub(super) fn course_normal(&self, ray: &Ray, hit: &Hit) -> Option<Vec3> {
         match self.accel() {
             Accel::Course(hits) => hits.normal(self.objects(), ray, hit),

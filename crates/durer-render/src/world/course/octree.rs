@@ -16,7 +16,7 @@ const MOST: usize = 7;
 /// Deepest level whose cells are divided.
 const LAST_LEVEL: u32 = 8;
 /// Division stops if all cells together hold `PLENTY` triangles plus `TIMES` those of the mesh:
-/// large intersecting triangles would fill the memory.
+/// otherwise, large intersecting triangles would exhaust the memory.
 const PLENTY: usize = 1 << 20;
 const TIMES: usize = 64;
 
@@ -83,8 +83,8 @@ impl Octree {
         }
     }
 
-    /// Offers the triangles of the cells that a ray from `origin` visits, in that order; some more
-    /// than once.
+    /// Passes the triangles in the cells that a ray from `origin` visits to `offer`, in visiting
+    /// order; some of them several times.
     pub fn walk(&self, mut origin: Vec3, mut dir: Vec3, offer: &mut impl FnMut(u32)) {
         // Mirror the axes along which the ray runs backwards, and the children with them.
         let mut mirrored = 0;

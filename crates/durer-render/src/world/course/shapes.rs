@@ -1,4 +1,4 @@
-//! Spheres, planes and triangles in the arithmetic of the course.
+//! Spheres, planes and triangles in the course's arithmetic.
 
 use super::HitRules;
 use durer_scene::math::{Ray, Vec2, Vec3};
@@ -31,7 +31,7 @@ impl Limits {
     }
 
     fn is_nearer(&self, t: f32, ties: bool) -> bool {
-        // The end of the ray is where the programs begin with their nearest hit.
+        // The official programs initialise their nearest hit to the end of the ray.
         let best = self.best.unwrap_or(self.t_max.min(f32::MAX));
         t < best || ties && t == best
     }
@@ -60,7 +60,7 @@ pub(super) fn sphere(sphere: &Sphere, ray: &Ray, limits: Limits, rules: HitRules
         }
         () if near > t_min => near,
         () if later > t_min && near < t_min => later,
-        // One crossing is exactly where the ray starts, or both are NaN.
+        // One crossing is exactly at the start of the ray, or both are NaN.
         () => 10_000.0,
     };
     limits.takes(t, false).then_some(Crossing { t, uv: Vec2::ZERO })

@@ -132,7 +132,7 @@ impl Beams {
                     return None;
                 }
                 let power = area.radiance * (cosine.abs() / (density * pdf * choice));
-                // Offset from its own surface.
+                // Offset the ray from the emitter's own surface.
                 let side = if cosine < 0.0 { -normal } else { normal };
                 let origin = point + f64::from(4.0 * area.error) * side.as_dvec3();
                 Some(Emitted {
@@ -196,7 +196,7 @@ impl Beams {
             if beside <= square * (1.0 + 1e-5) { 1.0 / (PI * square) } else { 0.0 }
         };
         let sum: f32 = self.targets.iter().map(density).sum();
-        // Objects in front of all targets cast shadows too.
+        // Objects in front of all targets also cast shadows.
         let far = 2.0 * self.reach;
         let origin = through.as_dvec3() - f64::from(far) * dir.as_dvec3();
         (Ray64::new(origin, dir, 0.0, f32::INFINITY), sum / self.targets.len() as f32)

@@ -55,7 +55,7 @@ pub struct LightSampler {
     first: Vec<u32>,
     /// Source of each part.
     parts: Vec<u32>,
-    /// Lights of the scene that are not in the tree.
+    /// Lights of the scene outside the tree.
     apart: Vec<InfiniteLight>,
     /// Lights in `apart` with an angular extent.
     suns: Vec<Sun>,
@@ -79,7 +79,7 @@ impl InfiniteLight {
         InfiniteLight { light, way, irradiance: PI * color.max_element().max(0.0) }
     }
 
-    /// Estimates the irradiance on a surface with a normal (zero: any).
+    /// Estimates the irradiance on a surface with normal `n`; zero for any orientation.
     fn brings(&self, n: Vec3) -> f32 {
         if n == Vec3::ZERO || self.way == Vec3::ZERO {
             self.irradiance
@@ -89,8 +89,8 @@ impl InfiniteLight {
     }
 }
 
-/// Estimated irradiances at a point, for choosing among the lights apart, the environment and the
-/// tree.
+/// Estimated irradiances at a point, for choosing among lights outside the tree, the environment
+/// and the tree.
 struct LightWeights {
     choices: f32,
     /// Sum of all estimates.
@@ -151,7 +151,7 @@ impl LightId {
 pub struct Receiver {
     /// World-space position.
     pub point: DVec3,
-    /// Normal on the lit side; zero if light from all sides counts.
+    /// Normal on the lit side; zero if light from all sides is received.
     pub n: Vec3,
     /// Ratio of radius to distance, as seen from the group and from the point, below which a group
     /// of similar emitters is sampled uniformly: each contributes about the same.
@@ -366,9 +366,9 @@ impl LightSampler {
         }
     }
 
-    /// Returns the random numbers with which [`LightSampler::sample`] samples the centre of a
-    /// surface as seen from the point; for a triangle or cylinder, some fixed point. `None` if the
-    /// emitter is not a surface.
+    /// Returns the random numbers for which [`LightSampler::sample`] returns the centre of the
+    /// surface as seen from the shading point; for a triangle or cylinder, some fixed point. `None`
+    /// if the emitter is not a surface.
     pub fn middle(&self, light: LightId) -> Option<Vec2> {
         let source = *self.parts.get(self.first[light.object()? as usize] as usize)? as usize;
         match self.sources.get(source)? {
@@ -425,7 +425,7 @@ impl LightSampler {
 }
 
 /// Surface of one part of an object to sample as a light, and its unit normal in world space;
-/// `None` if only rays that hit it find its light.
+/// `None` if its light is only found by rays that hit it.
 pub fn emitter_of(object: &Object, part: u32) -> Option<(EmitterShape, Vec3)> {
     let place = Placement(object.to_world.as_ref());
     match &object.geometry {
@@ -458,8 +458,8 @@ fn has_empty_inside(world: &World, number: usize) -> bool {
         && !others().any(within)
 }
 
-/// Samples a light of the scene. Its colour is the radiance of a white matte surface that faces it:
-/// irradiance over pi.
+/// Samples a light of the scene. The light's colour is the radiance of a white matte surface that
+/// faces it: irradiance over pi.
 fn of_light(world: &World, light: u32, point: DVec3, choice: f32) -> LightSample {
     let seen = world.illuminate(light as usize, point);
     LightSample {

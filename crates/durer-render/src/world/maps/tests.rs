@@ -62,7 +62,7 @@ const BALL: &str = "Sphere { center 0 0 0 radius 1 }";
 fn every_texture_changes_its_parameter() {
     let grey = |_, _| [100, 150, 200];
     let folder = folder("grey", &[("grey.ppm", 2, &grey)]);
-    // One sphere for each, so that tables are built once.
+    // Use one sphere for each parameter, so that tables are built once.
     let (mut seen, mut materials, mut expectations) = (0, Vec::new(), Vec::new());
     for (number, field) in PrincipledMaterial::FIELDS.iter().enumerate() {
         let Some(stem) = field.name.strip_suffix("_texture") else { continue };
@@ -170,7 +170,7 @@ fn bump_ramp_tilts_the_normals_of_a_wall() {
     // top.
     let (right, up) = (|x, _| [x as u8; 3], |_, y| [255 - y as u8; 3]);
     let folder = folder("ramp", &[("right.ppm", 256, &right), ("up.ppm", 256, &up)]);
-    // The picture once over 2 x 4, rotated and moved.
+    // The picture is mapped once to 2 x 4, rotated and moved.
     let mesh = "v 0 0 0\nv 2 0 0\nv 2 4 0\nv 0 4 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
     std::fs::write(folder.path().join("wall.obj"), mesh).unwrap();
     let object = "Transform { Translate 1 0 0 UniformScale 2 TriangleMesh { obj_file wall.obj } }";
@@ -196,7 +196,7 @@ fn bump_ramp_tilts_the_normals_of_a_sphere() {
     );
     for (latitude, longitude) in [(0.0, 0.3), (0.7, 1.0), (-0.5, 2.0), (0.2, -1.2), (1.2, -2.0)] {
         let (latitude, longitude): (f32, f32) = (latitude, longitude);
-        // Longitude counts from -z over +x.
+        // Longitude is measured from -z towards +x.
         let out = Vec3::new(
             libm::sinf(longitude) * libm::cosf(latitude),
             libm::sinf(latitude),

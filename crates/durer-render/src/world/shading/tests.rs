@@ -11,7 +11,7 @@ fn bent_normals_reflect_outwards_and_change_continuously() {
         let [n, n_geo, wo] = [unit(), unit(), unit()];
         let n_geo = if n_geo.dot(wo) < 0.0 { -n_geo } else { n_geo };
         let z = n_geo.dot(wo);
-        // At grazing view, or with an opposite normal, precision is lost.
+        // At grazing views, or with opposite normals, precision is lost.
         if z < 1e-3 || n.dot(n_geo) < -0.99 {
             continue;
         }
@@ -27,10 +27,10 @@ fn bent_normals_reflect_outwards_and_change_continuously() {
             kept += 1;
         } else {
             bent_ones += 1;
-            // As little as necessary.
+            // The normal is bent no more than necessary.
             assert!(shown(made) < least + 1e-3, "{n} {n_geo} {wo}: {made} shows {}", shown(made));
         }
-        // Neighbouring normals stay close.
+        // Neighbouring normals stay close to each other.
         let beside = (n + 1e-4 * Vec3::new(1.0, -1.0, 0.5)).normalize();
         assert!((bent(beside, n_geo, wo) - made).length() < 0.05, "{n} {n_geo} {wo}");
     }

@@ -1,9 +1,10 @@
 //! Directional albedo of anisotropic surfaces.
 //!
-//! Such an albedo depends on the azimuth of the view, and strongly so near the smoother axis. The
-//! table therefore is not over the azimuth and the two roughnesses, but over the slopes of the
-//! facets relative to the view: their spread along the direction of view, their spread across it,
-//! and the correlation of the two. In these coordinates the albedo is smooth for every anisotropy.
+//! Such an albedo depends on the azimuth of the view, most strongly near the smoother axis.
+//! Therefore, the table's coordinates are not the azimuth and the two roughnesses, but the slopes
+//! of the facets relative to the view: their spread along the direction of view, their spread
+//! across it, and the correlation of the two. In these coordinates the albedo is smooth for every
+//! anisotropy.
 
 use super::{direction, place_among};
 use crate::bsdf::microfacet::{Ggx, SMOOTH};

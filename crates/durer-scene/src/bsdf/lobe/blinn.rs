@@ -35,7 +35,8 @@ impl Scatter for Blinn {
 
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         let half = (wo + wi).normalize_or_zero();
-        // `base` is what the power is of; `spread` is the Jacobian from the sampled vector to `wi`.
+        // `base` is the base of the power; `spread` is the Jacobian from the sampled vector to
+        // `wi`.
         let (base, spread) = match self.phong {
             true => (reflect(-wo, Vec3::Z).dot(wi), 1.0),
             false => (half.z, 4.0 * wo.dot(half)),

@@ -78,8 +78,8 @@ impl<'a> Diffuse<'a> {
         if self.roughness == 0.0 {
             return self.color * (FRAC_1_PI * entering);
         }
-        // For a rough base, apply the boundary only to the isotropic part. Applied to the rest, it
-        // would lose or create energy.
+        // For a rough base, apply the boundary only to the isotropic part. Applied to the
+        // remainder, it would lose or create energy.
         let even = FRAC_1_PI * (1.0 - self.roughness) / (1.0 + C1 * self.roughness);
         self.bare(between, out, into) + self.color * (even * (entering - 1.0))
     }

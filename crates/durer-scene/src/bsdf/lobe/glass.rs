@@ -1,4 +1,4 @@
-//! Lobes of single directions: mirrors, smooth glass, and straight transmission.
+//! Delta lobes: mirrors, smooth glass, and straight transmission.
 
 use super::{LobeKind, LobeSample, NOTHING, Scatter};
 use crate::math::{Vec2, Vec3};

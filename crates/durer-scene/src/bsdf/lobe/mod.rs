@@ -20,7 +20,7 @@ pub struct LobeSample {
     pub value: Spectrum,
 }
 
-/// Value and pdf of a direction that a lobe never scatters to.
+/// Value and pdf for a direction in which a lobe does not scatter.
 const NOTHING: (Spectrum, f32) = (Spectrum::ZERO, 0.0);
 
 /// Interface of every lobe. Directions are local and point away from the surface. `wo` is above it
@@ -54,8 +54,8 @@ pub enum Spread {
     Diffuse,
 }
 
-/// Properties of a lobe that decide how lights are sampled for it. [`Scatter::kind`] states them
-/// for every lobe, so that none is forgotten.
+/// Properties of a lobe that decide how lights are sampled for it. Every lobe must state them, in
+/// [`Scatter::kind`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LobeKind {
     /// Angular spread.
@@ -82,7 +82,7 @@ impl LobeKind {
         LobeKind { spread, transmits: false, is_straight: false, is_fibre: false, eta: None }
     }
 
-    /// Kind of a lobe that scatters light from behind the surface as well, or only that.
+    /// Kind of a lobe that scatters light from behind the surface also or only.
     pub const fn transmitting(self) -> LobeKind {
         LobeKind { transmits: true, ..self }
     }

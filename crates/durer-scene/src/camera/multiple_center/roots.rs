@@ -1,7 +1,7 @@
 //! Roots of a polynomial between 0 and 1, from its Bernstein coefficients.
 //!
-//! A polynomial has at most as many roots in an interval as its coefficients there have sign
-//! changes, and exactly one for one sign change. Halving the interval by de Casteljau's rule
+//! In an interval, a polynomial has at most as many roots as its coefficients have sign changes,
+//! and exactly one if there is one sign change. Halving the interval by de Casteljau's rule
 //! separates the roots; false position then refines each.
 //!
 //! Source: Lane, Riesenfeld, *Bounds on a Polynomial*, BIT 21, 1981; Farin, *Curves and Surfaces
@@ -67,8 +67,8 @@ fn split(c: &Sextic, at: f64) -> (Sextic, Sextic) {
     (left, right)
 }
 
-/// Returns the only root, by false position with the Illinois rule: an end that stays twice counts
-/// half.
+/// Returns the only root, by false position with the Illinois rule: the value at an end that is
+/// kept twice is halved.
 fn close_in(c: &Sextic) -> f64 {
     let value = |at: f64| split(c, at).1[0];
     let ((mut a, mut at_a), (mut b, mut at_b)) = ((0.0, c[0]), (1.0, c[6]));

@@ -38,7 +38,7 @@ fn pictures_cover_the_solid_angles_of_their_fields_of_view() {
     let cap = |degrees: f64| 2.0 * PI * (1.0 - libm::cos((0.5 * degrees).to_radians()));
     let check = |camera: Camera, expected: f64| {
         let found = solid_angle(&camera);
-        // A cell on the rim counts fully or not at all.
+        // A cell on the rim counts either fully or not at all.
         assert!((found / expected - 1.0).abs() < 0.004, "{found} for {expected}: {camera:?}");
     };
     for (projection, angle) in [
@@ -64,7 +64,7 @@ fn pictures_cover_the_solid_angles_of_their_fields_of_view() {
     for layout in [Layout::Cross, Layout::Strip] {
         check(CubeMapCamera { layout, ..CubeMapCamera::default() }.into(), 4.0 * PI);
     }
-    // Six walls around an off-centre eye cover the whole sphere too.
+    // Six walls around an off-centre eye also cover the whole sphere.
     let walls = vec![
         [-1.0, -1.0, -1.0, 1.0, -1.0, -1.0, -1.0, 1.0, -1.0],
         [1.0, -1.0, -1.0, 1.0, -1.0, 1.0, 1.0, 1.0, -1.0],
@@ -165,7 +165,7 @@ fn walls_agree_along_their_common_edge() {
             let (before, after) = (seen(column - 0.5), seen(column + 0.5));
             assert_eq!(before.origin, after.origin);
             close(before.dir, after.dir);
-            // It is also the ray to that edge in world space.
+            // This is also the ray to that edge in world space.
             let x = if column == 200.0 { -1.0 } else { 1.0 };
             let edge = Vec3::new(x, 1.5 * (1.0 - row / 150.0), -1.0);
             close(before.dir, (edge - before.origin).normalize());
@@ -214,7 +214,7 @@ fn closed_path_is_smooth_and_sees_all_sides() {
     // The footprint depends on the path's derivative.
     let slope = |x: f32| camera.footprint(&frame, &at(x), 3.0);
     assert!((slope(1.0) - slope(-1.0)).abs() < 1e-4 * slope(1.0), "{} {}", slope(1.0), slope(-1.0));
-    // A point beside the centre is seen from the front and from the back.
+    // An off-centre point is seen from the front and from the back.
     let mut found = Vec::new();
     camera.project(&frame, Vec3::new(0.5, 0.1, 0.0), Vec2::ZERO, &mut |point| found.push(point));
     assert_eq!(found.len(), 2, "{found:?}");

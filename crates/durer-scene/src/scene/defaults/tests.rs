@@ -1,4 +1,4 @@
-//! Tests that whole models are visible, in every view and for every aspect ratio.
+//! Tests that models are fully visible, in every view and at every aspect ratio.
 
 use super::super::Assets;
 use super::*;

@@ -53,7 +53,7 @@ fn matrix_is_given_by_rows_and_multiplied_on_the_left_if_the_rules_say_so() {
     let point = glam::DVec3::ONE;
     assert_eq!(MatrixOp::product(&ops, MatrixRules::default()).transform_point3(point).to_array(), [80.0, 70.0, 80.0]);
     assert_eq!(MatrixOp::product(&ops, LEFT).transform_point3(point).to_array(), [35.0, 16.0, 17.0]);
-    // Only a `Matrix` is affected.
+    // The quirk only affects `Matrix`.
     let ops = [MatrixOp::Scale(Vec3::splat(10.0)), MatrixOp::Translate(Vec3::X)];
     assert_eq!(MatrixOp::product(&ops, LEFT), MatrixOp::product(&ops, MatrixRules::default()));
 }

@@ -60,8 +60,8 @@ pub(super) fn round([base, top]: [(Vec3, f32); 2]) -> MeshData {
     data
 }
 
-/// Adds the surface between two circles about an axis. It is flat if their centres are equal, and
-/// then faces along the axis; else it faces outwards.
+/// Adds the surface between two circles about an axis. If their centres are equal, it is flat and
+/// faces along the axis; otherwise, it faces outwards.
 pub(super) fn band(data: &mut MeshData, axis: Vec3, circles: [(Vec3, f32); 2]) {
     let axis = axis.normalize_or(Vec3::Y);
     let (x, y) = axis.any_orthonormal_pair();
@@ -96,7 +96,7 @@ pub(super) fn band(data: &mut MeshData, axis: Vec3, circles: [(Vec3, f32); 2]) {
     data.triangle_normals = data.triangles.clone();
 }
 
-/// A sphere with exact normals and texture coordinates: u is 1/2 towards -z, v grows upwards.
+/// A sphere with exact normals and texture coordinates: u is 1/2 towards -z, v increases upwards.
 pub(super) fn ball(center: Vec3, radius: f32) -> MeshData {
     let mut data = MeshData::default();
     let rows = STEPS / 2;

@@ -13,7 +13,7 @@ fn line(shape: &Primitive, random: &mut Random, size: f32) -> Line {
         _ => random.direction(),
     };
     let dir = dir * random.between(0.01, 100.0);
-    // Through the middle, beside it, and from far away.
+    // Through the middle, off to the side, and from far away.
     let through = middle + size * [0.0, 0.8, 1.2][random.below(3)] * random.point();
     let away = [0.0, 3.0, 1000.0][random.below(3)] * size;
     Line { origin: (through - away / dir.length() * dir).as_dvec3(), dir: dir.as_dvec3() }
@@ -114,7 +114,7 @@ fn torus_distinguishes_a_line_along_its_tube_from_a_tangent() {
     near(count([-5.0, 0.0, 0.0], [1.0, 0.0, 0.0]), &[2.5, 3.5, 6.5, 7.5]);
     near(count([2.0, 5.0, 0.0], [0.0, -1.0, 0.0]), &[4.5, 5.5]);
     near(count([0.0, 5.0, 0.0], [0.0, -1.0, 0.0]), &[]);
-    // Beside the inner circle, and just above and below the top.
+    // Just outside the inner circle, and just above and below the top.
     near(count([0.0, 0.5 + 1e-9, -5.0], [0.0, 0.0, 1.0]), &[]);
     assert_eq!(count([0.0, 0.5 - 1e-9, -5.0], [0.0, 0.0, 1.0]).len(), 4);
     assert_eq!(count([1.5 - 1e-9, 0.0, -5.0], [0.0, 0.0, 1.0]).len(), 4);

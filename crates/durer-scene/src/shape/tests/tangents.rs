@@ -79,7 +79,7 @@ fn tangents_match_mikktspace() {
         (0..400).map(|_| 0.3 * Vec2::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0))).collect();
     let even = |x: usize, y: usize| Vec2::new(x as f32, y as f32) + bent[(17 * y + x) % 400];
     assert_eq!(agree(sheet(12, &mut random, even)), 0);
-    // Mirrored at a line: vertices on it have two tangents.
+    // Mirrored at a line, vertices on the line have two tangents.
     assert_eq!(agree(sheet(12, &mut random, |x, y| Vec2::new(x.abs_diff(6) as f32, y as f32))), 13);
     // Rotated by a right angle from one square to the next, such that u grows in all directions.
     let folded = |x: usize, y: usize| even(x, y) * Vec2::new([1.0, -1.0][x % 2], [1.0, 1.0, -1.0][y % 3]);
@@ -110,7 +110,8 @@ fn equal_vertices_share_a_tangent() {
 
 #[test]
 fn hostile_meshes_do_not_overflow_the_stack() {
-    // Recursive implementations overflow the stack here: all triangles share one vertex.
+    // Recursive implementations overflow the stack in this case, because all triangles share one
+    // vertex.
     const COUNT: u32 = 200_000;
     let mut fan = MeshData::default();
     fan.positions.push(Vec3::ZERO);

@@ -18,7 +18,7 @@ use topology::Topology;
 
 /// Size in bytes above which a file is skipped, to keep the check interactive.
 const MAX_BYTES: usize = 64 << 20;
-/// Share of reversed or odd triangles that modelling programs leave behind and that are invisible.
+/// Fraction of reversed or odd triangles that is negligible: modelling programs leave a few.
 const NEGLIGIBLE: f32 = 0.002;
 
 /// A mesh file and the objects that show it.

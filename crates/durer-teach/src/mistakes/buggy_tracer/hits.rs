@@ -57,20 +57,20 @@ impl BuggyTracer<'_> {
         hit.map(|hit| (hit, hit.t))
     }
 
-    /// Returns the ray as an object sees it.
+    /// Returns the ray with which an object is intersected.
     pub(super) fn own_ray(&self, ray: &Ray64, object: u32) -> Ray64 {
         let object = &self.world.objects()[object as usize];
         if self.bugs.pick != HitChoice::MovedDirection || object.to_world.is_none() {
             return *ray;
         }
-        // M^-1 (d, 1) is M^-1 of d less the translation of M.
+        // M^-1 (d, 1) equals M^-1 (d - t, 0), where t is the translation of M.
         let by = object.world_point(-object.center);
         let mut own = *ray;
         own.rounded.dir -= by;
         own
     }
 
-    /// Returns the nearest object's hit, of each mesh the hit of the least key.
+    /// Returns the hit of the nearest object. In each mesh, the hit with the smallest key counts.
     fn of_meshes(&self, ray: &Ray64, key: impl Fn(&Hit) -> u32) -> Option<Hit> {
         let mut best: SmallVec<[Hit; 16]> = SmallVec::new();
         for hit in self.faces(ray) {
@@ -83,7 +83,7 @@ impl BuggyTracer<'_> {
         best.into_iter().min_by(|a, b| a.t.total_cmp(&b.t))
     }
 
-    /// Returns the nearest hit of an object; of a sphere, by wrong roots.
+    /// Returns the nearest hit of an object; spheres use wrong roots.
     fn with_roots(&self, ray: &Ray64, object: u32, roots: Roots) -> Option<Hit> {
         let own = &self.world.objects()[object as usize];
         let Geometry::Primitive(Primitive::Sphere(sphere)) = &own.geometry else {
@@ -104,7 +104,7 @@ impl BuggyTracer<'_> {
         Some(Hit { t, uv: Vec2::ZERO, object, part: 0 })
     }
 
-    /// Iterates over the nearest hit of each object, and all hits of meshes.
+    /// Iterates over the nearest hit of each object, but over all hits of meshes.
     fn faces<'r>(&'r self, ray: &'r Ray64) -> impl Iterator<Item = Hit> + 'r {
         let mut known = SmallVec::<[u32; 16]>::new();
         self.world.all_hits(ray).filter(move |hit| {

@@ -1,4 +1,4 @@
-//! Means over blocks of a picture, with the variance that noise gives them.
+//! Means over blocks of a picture, with their variance from noise.
 
 use super::walker::Walker;
 use crate::mistakes::path_habits::Mean;
@@ -8,15 +8,15 @@ use durer_render::render::sample_places;
 use durer_scene::math::{Color, Vec2, Vec3};
 use rayon::prelude::*;
 
-/// Number of blocks along the larger side, and paths that a picture takes at most.
+/// Number of blocks along the larger side, and maximum number of paths for a picture.
 const BLOCKS: u32 = 20;
 const MOST_PATHS: u32 = 150_000;
-/// Samples a pixel at most.
+/// Maximum number of samples per pixel.
 const MOST_SAMPLES: u32 = 64;
 /// Variance of rounding to eight bits.
 const ROUNDING: f64 = 1.0 / (12.0 * 255.0 * 255.0);
 
-/// Pixels of a picture by block.
+/// Pixels of a picture, grouped into blocks.
 pub struct Blocks {
     /// Pixels of each block.
     pub pixels: Vec<Vec<(u32, u32)>>,
@@ -81,7 +81,8 @@ impl Blocks {
             let count = all.len().max(1) as f32;
             let mean = all.iter().sum::<Color>() / weights.max(1e-6);
             let value = if variant.paths.mean == Mean::Shown { mean } else { exposed(mean) };
-            // The error of the mean, carried through the curve by a step of its size.
+            // Standard error of the mean, propagated through the transfer curve by a finite
+            // difference.
             let spread = all.iter().map(|light| (*light * count / weights.max(1e-6) - mean).length_squared());
             let error = (spread.sum::<f32>() / (count * (count - 1.0).max(1.0))).sqrt();
             let step = Color::splat(error / 3.0_f32.sqrt());
@@ -100,7 +101,7 @@ impl Blocks {
 }
 
 impl Means {
-    /// Gives another picture this one's variance, times a ratio, beside its rounding.
+    /// Returns `other` with this picture's variance times `ratio` added.
     pub fn lend(&self, mut other: Means, ratio: f64) -> Means {
         for (own, other) in self.variance.iter().zip(&mut other.variance) {
             *other += ratio * own;
@@ -108,8 +109,8 @@ impl Means {
         other
     }
 
-    /// Returns the squared difference of each block beyond what noise explains, and true if it is
-    /// significant. `noise`: variances of both pictures.
+    /// Returns the squared difference of each block in excess of noise, and true if it is
+    /// significant. `noise` has the variances of the difference.
     pub fn beyond(&self, other: &Means, noise: &[f64]) -> Vec<(f64, bool)> {
         let pairs = self.mean.iter().zip(&other.mean).zip(noise);
         pairs
@@ -121,8 +122,8 @@ impl Means {
     }
 }
 
-/// Squared difference, in variances, that noise does not reach: three channels, four standard
-/// errors.
+/// Squared difference, as a multiple of the noise variance, above which it is significant: about
+/// 3.5 standard errors.
 const SIGNIFICANT: f64 = 12.0;
-/// Squared difference that is invisible whatever the noise.
+/// Squared difference that is invisible regardless of noise.
 const SEEN: f64 = 3.0 * (1.0 / 255.0) * (1.0 / 255.0);

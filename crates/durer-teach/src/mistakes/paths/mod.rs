@@ -1,8 +1,8 @@
-//! Mistakes of path tracers: a plain tracer that makes them, and the search for the one that made a
-//! picture.
+//! Mistakes of path tracers: a plain tracer that makes them, and a search for the mistake that
+//! explains a picture.
 //!
-//! Pictures of paths have noise, so nothing is compared pixel by pixel: means over blocks are
-//! judged against their own variance.
+//! Path-traced pictures have noise, so pixels are not compared: means over blocks are compared with
+//! their own variance.
 
 mod blocks;
 mod search;

@@ -1,4 +1,4 @@
-//! Finds the mistake of a path tracer that made a picture.
+//! Finds the path tracer mistake that explains a picture.
 
 use super::blocks::{Blocks, Means};
 use super::table::MISTAKES;
@@ -8,17 +8,17 @@ use crate::mistakes::table::{Formulas, Mistake};
 use crate::mistakes::variant::SceneVariant;
 use durer_scene::math::Vec3;
 
-/// Share of the blocks that may differ significantly from the scene's own picture; above it nothing
-/// is progress.
+/// Maximum fraction of blocks that may differ significantly from the scene's own picture. Above
+/// this, nothing is tried.
 const MAX_OFF: f64 = 0.15;
-/// Share of the blocks that must differ for there to be more than noise.
+/// Minimum fraction of differing blocks that is more than noise.
 const LEAST: f64 = 0.02;
-/// Fit of an explanation: share of the squared difference, and of the differing blocks.
+/// Minimum fit of an explanation: fractions of the squared difference and of the differing blocks.
 const EXPLAINED: f64 = 0.95;
 const MATCHED: f64 = 0.9;
-/// Explanations that leave less than this many times the rest of the best one are its rivals.
+/// An explanation is a rival if its residual is at most this many times that of the best one.
 const RIVAL: f64 = 3.0;
-/// Ratio of noise above which one picture has more of it.
+/// Ratio of noise variances above which a picture counts as noisier.
 const NOISIER: f64 = 1.5;
 
 struct Trial {
@@ -42,7 +42,7 @@ fn blocks(question: &DiagnosisInput) -> Blocks {
     Blocks::new(question.job.width, question.job.height, question.job.sampling.samples())
 }
 
-/// Variances of the difference of two pictures.
+/// Returns the variances of the difference of two pictures.
 fn noise(a: &Means, b: &Means) -> Vec<f64> {
     a.variance.iter().zip(&b.variance).map(|(a, b)| a + b).collect()
 }
@@ -110,7 +110,7 @@ fn trials(
     all.into_iter().enumerate().map(trial).collect()
 }
 
-/// Returns the mistakes that explain the picture; none if none does, or too many do.
+/// Returns the mistakes that explain the picture; none if no mistake fits, or too many do.
 fn decided(mut trials: Vec<Trial>, test: &Means) -> Vec<Explanation> {
     trials.sort_by(|a, b| b.explained.total_cmp(&a.explained));
     let passes = |trial: &&Trial| trial.explained >= EXPLAINED && trial.matched >= MATCHED;
@@ -118,7 +118,7 @@ fn decided(mut trials: Vec<Trial>, test: &Means) -> Vec<Explanation> {
     let rest = |trial: &Trial| 1.0 - trial.explained;
     let rivals: Vec<&Trial> =
         trials.iter().filter(passes).filter(|trial| rest(trial) <= RIVAL * rest(best) + 0.005).collect();
-    // Rivals that differ from each other would make the name a guess.
+    // If rivals have different pictures, any name would be a guess.
     let alike = |other: &Trial| {
         let noise: Vec<f64> = noise(&best.made, test);
         best.made.beyond(&other.made, &noise).iter().filter(|block| block.1).count() * 20 <= test.mean.len()
@@ -134,9 +134,10 @@ fn decided(mut trials: Vec<Trial>, test: &Means) -> Vec<Explanation> {
     rivals.iter().map(named).collect()
 }
 
-/// Estimates how many times the variance of the reference's noise a picture has.
+/// Estimates the variance of a picture's noise relative to that of the reference.
 fn noise_ratio(reference: &[Vec3], test: &[Vec3], width: usize) -> f64 {
-    // Second differences along rows vanish for smooth shading; edges are the upper part of them.
+    // Second differences along rows vanish for smooth shading. Drop the upper quarter, which has
+    // the edges.
     let energy = |pixels: &[Vec3]| {
         let mut all: Vec<f32> = pixels
             .chunks(width)

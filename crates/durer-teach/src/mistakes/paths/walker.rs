@@ -1,6 +1,6 @@
-//! A plain path tracer: light samples and scattered directions, weighted by the power heuristic,
-//! with optional mistakes. It shares the library's surfaces, BSDFs and emitters, and has the same
-//! mean as its path tracer for scenes without fog.
+//! A plain path tracer with light and BSDF sampling, weighted by the power heuristic, and with
+//! optional mistakes. It uses the library's surfaces, BSDFs and emitters, and has the same mean as
+//! its path tracer for scenes without fog.
 
 use crate::mistakes::path_habits::{Chosen, Lacks, Paths, Sky, Slant};
 use crate::mistakes::variant::SceneVariant;
@@ -39,7 +39,7 @@ impl Numbers {
     }
 }
 
-/// Maximum survival probability in roulette, and the depth from which there is some.
+/// Maximum survival probability of Russian roulette, and the depth at which it starts.
 const MAX_SURVIVAL: f32 = 0.95;
 const SURE: u32 = 3;
 
@@ -71,7 +71,7 @@ impl<'w> Walker<'w> {
         let (world, lanes) = (self.world, &self.lanes);
         let mut media = Media::around(world, ray.rounded.origin);
         let (mut throughput, mut sum) = (Spectrum::ONE, Spectrum::ZERO);
-        // The last vertex with a density, and that density.
+        // The last vertex whose scattered direction has a pdf, and that pdf.
         let mut last: Option<(Receiver, f32)> = None;
         let mut from_eye = true;
         let (mut depth, mut layers) = (0, 0);
@@ -168,7 +168,7 @@ impl<'w> Walker<'w> {
         weight * self.lanes.light(color)
     }
 
-    /// Returns the light of a sampled light, BSDF and cosine included.
+    /// Returns the contribution of a sampled light, including BSDF and cosine.
     fn direct(&self, at: &SurfaceInteraction, shading: &Shading, to: &Receiver, numbers: &mut Numbers) -> Spectrum {
         let emitters = self.world.emitters();
         let (choice, u) = (numbers.next(), numbers.pair());
@@ -206,7 +206,7 @@ impl<'w> Walker<'w> {
         true
     }
 
-    /// Returns the factor by which a light sample is wrong.
+    /// Returns the error factor of a light sample.
     fn lacking(&self, light: &LightSample, pdf: f32) -> f32 {
         let extended = light.pdf > 0.0 && light.reach.is_finite();
         match self.bugs.lacks {
@@ -258,7 +258,7 @@ impl<'w> Walker<'w> {
         }
     }
 
-    /// Returns a scattered direction, its weight, and its density; 0 for a single direction.
+    /// Returns a scattered direction, its weight, and its pdf; 0 for a delta lobe.
     fn scattered(&self, shading: &Shading, numbers: &mut Numbers) -> Option<(Vec3, Spectrum, f32)> {
         let (choice, mut u) = (numbers.next(), numbers.pair());
         if self.bugs.chosen == Chosen::OneNumber {

@@ -132,7 +132,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "for (i = 0; i < numLights; i++)",
         "only light {}",
         |v, light| {
-            // A single light is alone anyway.
+            // With a single light this changes nothing.
             v.world.edit().lights = v.world.lights().get(light as usize).cloned().into_iter().collect();
         },
     )

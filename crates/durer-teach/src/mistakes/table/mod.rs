@@ -1,5 +1,5 @@
-//! The table of common mistakes, one file a family. Among equal mistakes the first in the table is
-//! named.
+//! The table of common mistakes, one file per family. Among mistakes with equal pictures, the first
+//! in the table is named.
 
 mod bounces;
 mod camera;
@@ -26,7 +26,7 @@ pub struct Mistake {
     pub right: &'static str,
     /// The probable wrong code.
     pub wrong: &'static str,
-    /// Name of the lesson's step about it.
+    /// Name of the lesson step about it.
     pub step: &'static str,
     /// Values to try.
     pub values: Values,
@@ -39,7 +39,7 @@ pub struct Mistake {
 pub enum Values {
     /// No value.
     One,
-    /// These values; the true one may lie between them.
+    /// These values; the true value can be between them.
     Numbers(&'static [f32]),
     /// Exactly these values.
     Only(&'static [f32]),
@@ -53,7 +53,7 @@ impl Values {
         match self {
             Values::One => vec![0.0],
             Values::Numbers(numbers) | Values::Only(numbers) => numbers.to_vec(),
-            // Among very many lights a single one is invisible.
+            // If there are very many lights, a single one is invisible.
             Values::Lights => (0..lights.min(32)).map(|light| light as f32).collect(),
         }
     }

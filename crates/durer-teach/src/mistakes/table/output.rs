@@ -1,5 +1,5 @@
-//! Mistakes in writing light to a file. Flipped and exchanged pixels are found from the pictures
-//! alone.
+//! Mistakes in writing light to a file. Flipped pictures and exchanged channels are found from the
+//! pictures alone.
 
 use super::{Mistake, Values, row};
 use crate::mistakes::bugs::{OutputBug, PictureTurn};

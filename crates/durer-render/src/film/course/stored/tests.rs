@@ -23,7 +23,7 @@ fn part_equals_that_of_the_whole_picture() {
     for filter in FILTERS {
         let whole = samples.reconstruct(filter);
         let (left, top, width, height) = (9, 7, 5, 4);
-        // Only the samples that the part needs.
+        // Only take the samples that the part needs.
         let reach = filter.support();
         let around = StoredSamples::take(width + 2 * reach, height + 2 * reach, 4, |x, y, s| {
             samples.pixel(x + left - reach, y + top - reach)[s as usize]

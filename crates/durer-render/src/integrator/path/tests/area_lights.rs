@@ -76,7 +76,7 @@ fn convex_emitters_do_not_light_their_own_outside() {
         let world = scene(material, "", &format!("MaterialIndex 0 Transform {{ Scale 1.1 0.9 1 {shape} }}"));
         for y in [0.0, 0.11, 0.23] {
             let ray = Ray::new(Vec3::new(0.05, y, 5.0), Vec3::NEG_Z);
-            // Only its emission.
+            // Only the emission is visible.
             for way in by_ways(&world, ray, settings, ColorMode::Rgb).map(|way| way[0]) {
                 assert!((way.0 - 0.5).abs() < 1e-6, "{shape}: {way:?}");
             }

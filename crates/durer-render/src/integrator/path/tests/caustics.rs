@@ -19,8 +19,8 @@ const GLASS: &str = "PrincipledMaterial { transmissionWeight 1 specularRoughness
 
 #[test]
 fn slab_transmits_light_by_fresnel() {
-    // With all inter-reflections, T = (1 - F) / (1 + F) with F = 0.04. Paths find this light only
-    // by way of the floor.
+    // With all inter-reflections, T = (1 - F) / (1 + F) with F = 0.04. Paths only find this light
+    // via the floor.
     let world = scene(
         &format!("{MATTE} {GLASS}"),
         "DirectionalLight { direction 0 -1 0 color 2 2 2 }",
@@ -28,7 +28,7 @@ fn slab_transmits_light_by_fresnel() {
     );
     let below = Ray::new(Vec3::new(2.0, 0.9, 0.0), Vec3::new(-2.0, -0.9, 0.0).normalize());
     let (mean, error) = by_photons(&world, below, (20_000, 0.3), 24);
-    // Some light arrives by way of the surrounding floor.
+    // Some light arrives via the surrounding floor.
     let expected = 0.5 * 2.0 * (1.0 - 0.04) / (1.0 + 0.04) + light(&world, below, 12, 1 << 14).0;
     assert!((mean - expected).abs() < 3.0 * error + 0.003 * expected, "{mean} ± {error}, expected {expected}");
     let (without, _) = light(&world, below, 12, 256);

@@ -53,7 +53,7 @@ fn emissive_meshes_light_their_inside() {
         // The floor sees radiance 3 in all directions.
         let (mean, error) = light(&world, to_origin(), 0, 1 << 12);
         assert!((mean - 1.5).abs() < 3.0 * error + 0.0015, "{name}: {mean} ± {error}");
-        // Light sampling happens too: BSDF sampling alone would have no noise.
+        // Light sampling is used too: BSDF sampling alone would have no noise.
         assert!(error > 1e-3, "{name}: {error}");
     }
 }

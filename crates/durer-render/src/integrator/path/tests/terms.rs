@@ -1,4 +1,4 @@
-//! Tests of path traces: their sums, and the clamping of each term.
+//! Tests of path traces: their sums, and the clamping of individual terms.
 
 use super::*;
 use crate::integrator::{TraceRecorder, Tree};

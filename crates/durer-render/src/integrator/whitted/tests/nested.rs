@@ -81,7 +81,7 @@ fn ice_partly_out_of_water_displaces_it() {
         // Beside the ice there is only water.
         assert_eq!(indices(&objects, [12.0, 6.0, 0.0], 0.5), [1.33, 1.0]);
     }
-    // An infinite sea contains the ice too. There is nothing below it: the ray stays inside.
+    // An infinite sea also contains the ice. There is nothing below it, so the ray stays inside.
     let sea = format!("{ice}MaterialIndex 1 Plane {{ normal 0 1 0 offset 0 }}");
     assert_eq!(indices(&sea, [0.0, 6.0, 0.0], 0.5), [1.31, 1.33]);
 }

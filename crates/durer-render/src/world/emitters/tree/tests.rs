@@ -39,7 +39,7 @@ fn probabilities_match_sampling_and_sum_to_one() {
             let n = if i % 2 == 0 { random.direction() } else { Vec3::ZERO };
             let to = Receiver { point: (12.0 * random.point()).as_dvec3(), n, far: Receiver::FAR_BEYOND };
             let sum: f32 = (0..order.len() as u32).map(|i| tree.probability(&to, i)).sum();
-            // Nothing is chosen if a node's children contribute nothing.
+            // Nothing is chosen if none of a node's children contributes.
             let always = alike && n == Vec3::ZERO;
             assert!(sum < 1.0 + 1e-4 && (!always || sum > 1.0 - 1e-4), "{sum}");
             for _ in 0..50 {
