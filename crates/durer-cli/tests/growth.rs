@@ -99,7 +99,7 @@ fn names_that_double_in_the_scene_language_are_refused() {
 /// instances.
 fn gltf(nodes: usize, primitives: usize, copies: usize) -> String {
     // The buffer contains only three vertices and the instance translations.
-    let zeros = |count: usize| "A".repeat(count.next_multiple_of(3) / 3 * 4);
+    let zeros = |count: usize| "A".repeat(count.div_ceil(3) * 4);
     let bytes = (12 * copies).max(36);
     let primitive = r#"{"attributes":{"POSITION":0},"indices":2}"#;
     let extension = match copies {

@@ -92,7 +92,7 @@ fn what_happens_to_the_files_ends_no_watch() {
                 Box::new(|| {
                     remove(name);
                     place.put(name, &whole);
-                    let none = <std::fs::Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0);
+                    let none = <std::fs::Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o000);
                     std::fs::set_permissions(place.path(name), none).unwrap();
                 }),
             ),

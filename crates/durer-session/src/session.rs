@@ -19,6 +19,9 @@ use durer::world::{Epsilon, Geometry};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// File name and content.
+type NamedBytes = (String, Arc<[u8]>);
+
 /// Clock in milliseconds, with an arbitrary origin.
 pub type Clock = Arc<dyn Fn() -> f64 + Send + Sync>;
 
@@ -200,7 +203,7 @@ impl Session {
             }
             Request::AsText => self.become_text(&mut send)?,
             Request::Pack => {
-                let (names, files) = self.pack()?;
+                let (names, files): (Vec<_>, Vec<_>) = self.pack()?.into_iter().unzip();
                 let sizes = files.iter().map(|bytes| bytes.len() as u32).collect();
                 say((Event::Packed { names, sizes }, files.concat()));
             }
@@ -448,7 +451,7 @@ impl Session {
     }
 
     /// Text and files of the scene, with their names.
-    fn pack(&self) -> Result<(Vec<String>, Vec<Arc<[u8]>>), String> {
+    fn pack(&self) -> Result<Vec<NamedBytes>, String> {
         let document = self.document.as_ref().ok_or("no scene is open")?;
         let own = document.path.with_extension("txt").file_name().unwrap_or_default().to_string_lossy().into_owned();
         let (text, files) = match document.is_model() {
@@ -458,7 +461,7 @@ impl Session {
             }
             false => (document.bytes.clone(), document.options.in_memory.clone()),
         };
-        Ok(std::iter::once((own, text)).chain(files).unzip())
+        Ok(std::iter::once((own, text)).chain(files).collect())
     }
 
     /// Shows a finished picture again with different display settings.

@@ -13,7 +13,7 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
     for number in 0..attack.count {
         let random = |place: u32| attack.random(number, place, 1 << 20) as f64 / f64::from(1 << 20);
         // Distances from 10 to 10^6, and a wall at least four single-precision steps thick.
-        let far = 10_f64.powf(1.0 + 5.0 * random(0)) as f32;
+        let far = durer::math::fp::pow(10.0, 1.0 + 5.0 * random(0) as f32);
         let step = f64::from(far.next_up() - far);
         let wall = (4.0 + (60.0 * random(1)).floor()) * step;
         let half = (1.0 + 3.0 * random(2)).max(20.0 * wall);

@@ -8,9 +8,11 @@ use std::fmt::Write;
 const SPACE: u64 = 900_000;
 const SECONDS: u64 = 20;
 
-/// Generators: file name, and a function from the numbers of levels and of copies per level to
-/// text.
-const KINDS: [(&str, fn(usize, usize) -> String); 6] = [
+/// Function from the numbers of levels and of copies per level to the text of a file.
+type Generator = fn(usize, usize) -> String;
+
+/// File names with their generators.
+const KINDS: [(&str, Generator); 6] = [
     ("variables.xml", |levels, copies| {
         let value = |i: usize| format!("$a{}_", i).repeat(copies);
         let all = (1..=levels).map(|i| format!("<default name=\"a{i}_\" value=\"{}\"/>\n", value(i - 1)));

@@ -212,13 +212,12 @@ fn each_usual_mistake_is_named() {
 }
 
 /// Further mistakes that are common in this course.
-const FURTHER: [(&str, f32); 22] = [
+const FURTHER: [(&str, f32); 21] = [
     ("sphere-normals", 0.0),
     ("sphere-roots", 0.0),
     ("triangle-test", 1.0),
-    ("triangle-test", 2.0),
     ("direction-moved", 0.0),
-    ("rotation-axis", 0.0),
+    ("rotation-axis", 1.0),
     ("translation-negated", 0.0),
     ("scale-inverted", 0.0),
     ("cosine-of-view", 0.0),

@@ -119,7 +119,7 @@ fn weak_hints_choose_among_the_years_that_fit_and_rule_none_out() {
     let hint = |set, weak| Hint { set, why: "of a reason".into(), weak };
     let (shadows, png) = (hint(set::ALL & !set::F12A4, false), hint(set::F16 | set::F23, true));
     let scene = b"PerspectiveCamera { } Materials { Material { shininess 3 } }";
-    let found = guess(scene, 0, &[png.clone()], &|_| false);
+    let found = guess(scene, 0, std::slice::from_ref(&png), &|_| false);
     assert_eq!((found.dialect, found.by_words), (Dialect::F16, Dialect::F12a4));
     assert_eq!(found.fitting, [Dialect::F12a4, Dialect::F12a5, Dialect::F16]);
     // The order of the hints does not matter.

@@ -206,9 +206,10 @@ fn of_refraction(here: f64, there: f64, fresnel: Option<f32>, total: bool, dir: 
         if sin_t > 1.0 { ", more than 1" } else { "" }
     )];
     let cos_t = (1.0 - sin_t * sin_t).max(0.0).sqrt();
-    let r0 = ((there - here) / (there + here)).powi(2);
+    let r0 = ((there - here) / (there + here)) * ((there - here) / (there + here));
     let c = if here <= there { cos_i } else { cos_t };
-    let r = r0 + (1.0 - r0) * (1.0 - c).powi(5);
+    let left = (1.0 - c) * (1.0 - c);
+    let r = r0 + (1.0 - r0) * left * left * (1.0 - c);
     // Some programs use another R0 for rays that leave.
     if let Some(share) = fresnel.filter(|share| !total && (f64::from(*share) - r).abs() < 1e-3) {
         lines.push(format!(

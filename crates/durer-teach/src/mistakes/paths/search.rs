@@ -102,7 +102,7 @@ fn trials(
         let (before, rest) = (own.beyond(test, &noise), made.beyond(test, &noise));
         let sum = |beyond: &[(f64, bool)]| beyond.iter().map(|block| block.0).sum::<f64>();
         let (either, agree) = before.iter().zip(&rest).fold((0, 0), |(either, agree), (before, rest)| {
-            (either + usize::from(before.1 || rest.1), agree + usize::from((before.1 || rest.1) && !rest.1))
+            (either + usize::from(before.1 || rest.1), agree + usize::from(before.1 && !rest.1))
         });
         let explained = 1.0 - sum(&rest) / sum(&before).max(1e-12);
         Trial { mistake, made, explained, matched: f64::from(agree as u32) / f64::from((either as u32).max(1)) }

@@ -151,7 +151,7 @@ impl<'w> Walker<'w> {
         let mut color = self.world.emission(at);
         let emitters = self.world.emitters();
         if color == Color::ZERO && self.bugs.two_sided && self.world.may_emit(at.material) {
-            let mut turned = at.clone();
+            let mut turned = *at;
             turned.surface.n_geo = -turned.surface.n_geo;
             turned.surface.n_shade = -turned.surface.n_shade;
             color = self.world.emission(&turned);
