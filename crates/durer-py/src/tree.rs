@@ -1,6 +1,6 @@
 //! Trees of triangles, and queries on them.
 
-use crate::rays::{Array, RayArrays, JOB, Points, Rays, points};
+use crate::rays::{Array, JOB, Points, RayArrays, Rays, points};
 use crate::work::{Pace, each, install};
 use durer::bvh::{BuildQuality, Instance, InstanceBvh, InstanceHit, TriangleBvh, TriangleHit};
 use durer::math::{Affine, Ray, Ray64, Vec3};

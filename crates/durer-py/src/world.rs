@@ -102,7 +102,7 @@ impl World {
         pairs: Pairs,
     ) -> PyResult<Self> {
         let mut options = options(&pairs)?.load_options();
-        options.given = given.into_iter().map(|(name, bytes)| (name, bytes.into())).collect();
+        options.in_memory = given.into_iter().map(|(name, bytes)| (name, bytes.into())).collect();
         install(py, options.threads, || {
             let (mut files, mut read) = (Files::default(), Diagnostics::default());
             let loaded = match text {
