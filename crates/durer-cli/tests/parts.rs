@@ -46,7 +46,7 @@ fn shards_merge_to_the_bytes_of_one_run() {
         &format!("{SMALL} --shard 7/7 --shard-by samples -o 7.part"),
         &["6 samples per pixel are too few"],
     );
-    place.refused(2, &format!("{SMALL} --shard 4/3 -o 4.part"), &["3/3"]);
+    place.refused(2, &format!("{SMALL} --shard 4/3 -o 4.part"), &["from 1 to 3"]);
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn stopped_work_is_resumed() {
     other("--seed 1", &["c.part", "a different job", "`seed`"]);
     other("--bounces 3", &["a different job", "`settings`"]);
     place.put("scene.txt", SCENE.replace("radius 1", "radius 1.5"));
-    other("", &["c.part", "another scene"]);
+    other("", &["c.part", "a different scene"]);
     place.put("scene.txt", SCENE);
     let bytes = place.bytes("c.part");
     place.put("c.part", &bytes[..bytes.len() - 1]);
