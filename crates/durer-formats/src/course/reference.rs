@@ -1,6 +1,6 @@
 //! Reference of the scene language: each keyword with its contents, its dialects and an example.
 //!
-//! Keywords with parameters come from the descriptions of their statements. The table [`GRAMMAR`]
+//! Keywords with parameters come from the descriptions of their statements. The table `GRAMMAR`
 //! lists the others, which belong to the grammar itself.
 
 use super::write::write_item;
