@@ -50,7 +50,7 @@ fn pictures() -> PathBuf {
 fn picture_name(entry: &Entry) -> String {
     let chapter = entry.chapter.title().to_lowercase();
     // Two keywords can differ only in their context, for example `Noise`.
-    let kind = if entry.doc.contains("instead of the diffuse") { "-color" } else { "" };
+    let kind = if entry.doc.contains("which replace the diffuse") { "-color" } else { "" };
     format!("{chapter}-{}{kind}.png", entry.name().to_lowercase())
 }
 

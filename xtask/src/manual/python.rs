@@ -25,7 +25,7 @@ pub fn words() -> String {
     for entry in entries() {
         let Some(base) = base(entry.chapter) else { continue };
         // A grid contains spheres, and colour noise is part of another material.
-        let nested = entry.name() == "Grid" || entry.doc.contains("instead of the diffuse");
+        let nested = entry.name() == "Grid" || entry.doc.contains("which replace the diffuse");
         if entry.fields.is_empty() || nested {
             continue;
         }

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from .things import Camera, Light, Material, Shape, Thing
 
-__all__ = ["Background", "Box", "CaveCamera", "Checkerboard", "Cone", "CubeMapCamera", "Cylinder", "CylindricalCamera", "DirectionalLight", "Disc", "Ellipsoid", "EquirectangularCamera", "FisheyeCamera", "Fog", "HairMaterial", "HeightField", "Marble", "Mix", "MultipleCenterCamera", "Noise", "Noise", "OmnimaxCamera", "OrthographicCamera", "ParabolicCamera", "PerspectiveCamera", "PhongMaterial", "PhotometricLight", "PinholeCamera", "Plane", "PointLight", "PrincipledMaterial", "ProjectiveCamera", "PushBroomCamera", "Quadric", "Rectangle", "Sphere", "SpotLight", "StereoCamera", "Texture", "ThinLensCamera", "Torus", "Triangle", "TriangleMesh", "TwoSided", "Wood"]
+__all__ = ["Background", "Box", "CaveCamera", "Checkerboard", "Cone", "CubeMapCamera", "Cylinder", "CylindricalCamera", "DirectionalLight", "Disc", "Ellipsoid", "EquirectangularCamera", "FisheyeCamera", "Fog", "HairMaterial", "HeightField", "Marble", "Mix", "MultipleCenterCamera", "Noise", "OmnimaxCamera", "OrthographicCamera", "ParabolicCamera", "PerspectiveCamera", "PhongMaterial", "PhotometricLight", "PinholeCamera", "Plane", "PointLight", "PrincipledMaterial", "ProjectiveCamera", "PushBroomCamera", "Quadric", "Rectangle", "Sphere", "SpotLight", "StereoCamera", "Texture", "ThinLensCamera", "Torus", "Triangle", "TriangleMesh", "TwoSided", "Wood"]
 
 
 class Background(Thing):
@@ -1333,38 +1333,6 @@ class HairMaterial(Material):
             ("azimuthalRoughness", azimuthal_roughness),
             ("scaleTilt", scale_tilt),
             ("ior", ior),
-        ])
-
-
-class Noise(Material):
-    """Two colours in veins distorted by noise, which replace the diffuse colour.
-
-    color1: three numbers; must be given. Colour where the sine is 1.
-
-    color2: three numbers; must be given. Colour where the sine is -1.
-
-    octaves: whole number, at most 32; 0 where it is not given. Number of noise octaves, each with twice the frequency of the previous one.
-
-    frequency: number; 1 where it is not given. Number of veins per 2 pi along x.
-
-    amplitude: number; 1 where it is not given. Strength of the noise that distorts the veins.
-    """
-
-    def __init__(
-        self,
-        *,
-        color1: npt.ArrayLike,
-        color2: npt.ArrayLike,
-        octaves: Optional[Union[int, Material]] = None,
-        frequency: Optional[float] = None,
-        amplitude: Optional[float] = None,
-    ) -> None:
-        super().__init__("Noise", [
-            ("color", color1),
-            ("color", color2),
-            ("octaves", octaves),
-            ("frequency", frequency),
-            ("amplitude", amplitude),
         ])
 
 
