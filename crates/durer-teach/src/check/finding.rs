@@ -1,6 +1,7 @@
 //! Findings and their wording.
 
 use durer_diag::{Diagnostic, Edit, Severity};
+pub(super) use durer_render::render::explain::number;
 use durer_scene::math::Vec3;
 
 /// Maximum number of findings of one kind that are reported one by one.
@@ -52,17 +53,6 @@ pub(super) fn count_more(last: Option<&mut Finding>, more: usize, other: &Findin
     let meets = |edit: &&Edit| diagnostic.fix.iter().any(|own| own.span.start == edit.span.start);
     let others: Vec<Edit> = other.diagnostic.fix.iter().filter(|edit| !meets(edit)).cloned().collect();
     diagnostic.fix.extend(others);
-}
-
-/// Formats a number with four significant digits.
-pub(super) fn number(x: f32) -> String {
-    if x == 0.0 || !x.is_finite() {
-        return if x == 0.0 { "0".into() } else { x.to_string() };
-    }
-    // Printing with an exponent rounds at the fourth digit; parsing gives the nearest such number.
-    let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(f64::from(x));
-    let size = rounded.abs();
-    if (1e-4..1e7).contains(&size) { rounded.to_string() } else { format!("{rounded:e}") }
 }
 
 /// Formats a vector as scene files write it.

@@ -7,6 +7,7 @@ pub fn number(x: f32) -> String {
     if x == 0.0 || !x.is_finite() {
         return if x == 0.0 { "0".into() } else { x.to_string() };
     }
+    // Printing with an exponent rounds at the fourth digit; parsing gives the nearest such number.
     let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(f64::from(x));
     let size = rounded.abs();
     if (1e-4..1e7).contains(&size) { rounded.to_string() } else { format!("{rounded:e}") }
