@@ -169,7 +169,7 @@ pub(super) fn unusable(name: &str, error: &ImageError) -> Diagnostic {
 
 /// Adds a picture to the scene's assets; returns its asset name.
 pub(super) fn asset(scene: &mut Scene, picture: Picture, span: Span) -> FileName {
-    // The same file may have another mapping elsewhere.
+    // The name includes the mapping, because a file can be used with several mappings.
     let mapping = Digest::of(format!("{:?}", picture.mapping).as_bytes()).to_string();
     let path = format!("{}#{}", picture.bytes.path(), &mapping[..12]);
     scene.assets.pictures.entry(path.clone()).or_insert(picture);

@@ -326,10 +326,10 @@ impl Session {
 
     /// Reads and compiles the text. A camera that was moved keeps its position, unless its
     /// statement in the text has changed.
-    fn read(&mut self, anew: bool, send: &mut dyn FnMut(Event)) -> Result<(), String> {
+    fn read(&mut self, is_new: bool, send: &mut dyn FnMut(Event)) -> Result<(), String> {
         let start = (self.clock)();
         let document = self.document.as_mut().ok_or("no scene is open")?;
-        let before = document.compiled.as_ref().filter(|_| !anew);
+        let before = document.compiled.as_ref().filter(|_| !is_new);
         let held = before.map(|compiled| (compiled.written.clone(), compiled.world.camera().clone()));
         let (ok, findings) = document.compile();
         let ms = (self.clock)() - start;

@@ -81,7 +81,7 @@ function fitted([width, height]: [number, number]): [number, number] {
   return [Math.max(1, Math.round(width * scale)), Math.max(1, Math.round(height * scale))];
 }
 
-/** The latest answer to a question, which is asked anew when it or the scene changes. */
+/** Returns the latest answer to a request, which is sent again after it or the scene changes. */
 export function useAnswer<K extends Event["kind"]>(
   session: Session,
   request: Request,

@@ -36,8 +36,8 @@ pub fn after_render(
     RenderReview { compiled, job, statistics, exposure: display.exposure }.look(looks, pictures, is_odd);
 }
 
-/// Reports only black or single-colour pictures made by `durer course`. No year's scenes intend
-/// those.
+/// Reports only black or single-colour pictures made by `durer course`. No scene of
+/// any year intends such a picture.
 pub fn after_course(compiled: &CompiledInput, job: &Job, pictures: &[Layer], statistics: &Statistics) {
     let is_odd = |oddity: &Oddity| matches!(oddity, Oddity::Black | Oddity::OneColor);
     let looks = looks(job, pictures, 1.0);

@@ -40,9 +40,9 @@ struct RenderGuess {
     bounces: Option<u32>,
 }
 
-/// Opens the scene of a pair and finds the options that reproduce the reference: the given ones, or
-/// those that students commonly forget (one sample per pixel, the year's dialect, shadows,
-/// bounces).
+/// Opens the scene of a pair and finds the options that reproduce the reference. Without given
+/// options, tries the ones that students often forget: one sample per pixel, the year's dialect,
+/// shadows, bounces.
 pub fn stage(
     args: &CompareArgs,
     pair: &Pair,

@@ -102,7 +102,7 @@ mod tests {
 
     #[test]
     fn sun_position_agrees_across_time_zones() {
-        // The same moment given by another clock, and by a clock that already shows the next day.
+        // One moment in other time zones, in one of which it is already the next day.
         let [date, next] = [[2024, 2, 28], [2024, 2, 29]];
         let place = [-33.9, 151.2];
         let here = at(place, date, [20.0, 0.0, 0.0], 0.0);
