@@ -67,7 +67,7 @@ fn stopped_work_is_resumed() {
     place.put("scene.txt", SCENE);
     let bytes = place.bytes("c.part");
     place.put("c.part", &bytes[..bytes.len() - 1]);
-    other("", &["c.part", "torn"]);
+    other("", &["c.part", "truncated or damaged"]);
     place.put("c.part", &bytes);
     let output = place.expect_exit(0, &format!("{work} --resume --checkpoint c.part -o p.png --threads 3 --tile 40"));
     assert_eq!(last_line(&output.out), hash);
