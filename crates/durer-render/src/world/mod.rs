@@ -20,7 +20,7 @@ pub use course::{CourseHits, HitRules, Matrix, Vectors};
 use durer_bvh::{Bvh, Grid, PrimitivePacks, TraversalCounter};
 use durer_scene::light::{Illuminate as _, Light, LightLiSample};
 use durer_scene::material::{Pattern, Solid};
-use durer_scene::math::{Aabb, Color, Ray64, Vec2, Vec3};
+use durer_scene::math::{Aabb, Color, Ray, Ray64, Vec2, Vec3};
 use durer_scene::shape::{Shape as _, ShapeHit, Sphere};
 use durer_scene::source::Digest;
 use durer_scene::texture::Texture;
@@ -182,13 +182,20 @@ impl World {
     #[inline]
     pub(crate) fn closest_along<T: TraversalCounter>(&self, ray: &mut Ray64, counter: &mut T) -> Option<Hit> {
         counter.ray();
-        if !durer_bvh::internal::is_sound(&ray.rounded) {
+        if !self.accepts(&ray.rounded) {
             return None;
         }
         let t_max = ray.rounded.t_max;
         let best = self.nearest(ray, counter);
         ray.rounded.t_max = t_max;
         best
+    }
+
+    /// Returns true if a ray is traced. The official programs also trace a ray with NaN, which hits
+    /// spheres at distance 10000.
+    #[inline]
+    fn accepts(&self, ray: &Ray) -> bool {
+        durer_bvh::internal::is_sound(ray) || matches!(self.accel, Accel::Course(_))
     }
 
     fn nearest<T: TraversalCounter>(&self, ray: &mut Ray64, counter: &mut T) -> Option<Hit> {
@@ -274,7 +281,7 @@ impl World {
     pub(crate) fn occluded_along<T: TraversalCounter>(&self, ray: &Ray64, counter: &mut T) -> bool {
         counter.ray();
         let outer = &ray.rounded;
-        if !durer_bvh::internal::is_sound(outer) {
+        if !self.accepts(outer) {
             return false;
         }
         if self.packs.occluded(outer, counter)

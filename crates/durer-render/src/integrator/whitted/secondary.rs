@@ -89,8 +89,9 @@ impl Whitted<'_> {
         let (rules, leaving, dir) = (self.world.shading_rules(), self.sees_back(at), at.ray.dir());
         // Normals on the ray's side.
         let [n, n_geo] = [at.surface.n_shade, at.surface.n_geo].map(|n| if leaving { -n } else { n });
-        // An interpolated normal may point away from the ray; the geometric normal does not.
-        let n = if dir.dot(n) < 0.0 { n } else { n_geo };
+        // An interpolated normal may point away from the ray; the geometric normal does not. A NaN
+        // normal, which only the official programs' arithmetic yields, is passed on.
+        let n = if dir.dot(n) < 0.0 || n.is_nan() { n } else { n_geo };
         // Without `shade_back`, a mirror reflects about the unflipped normal; the direction is the
         // same.
         let mirrored = reflect(dir, n);
