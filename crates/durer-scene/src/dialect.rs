@@ -1,9 +1,8 @@
 //! Dialects of the scene language, as one table of differences.
 //!
-//! A [`Dialect`] is the scene language of a year; its [`Rules`] define the meaning of its words;
-//! its
-//! [`Quirk`]s are the known bugs of that year's official program, active only if the user selects
-//! the dialect.
+//! A [`Dialect`] is the scene language of a year. Its [`Rules`] define the meaning of its words.
+//! Its [`Quirk`]s are the known bugs of that year's official program, and are active only if the
+//! user selects the dialect.
 
 mod quirk;
 
@@ -11,7 +10,8 @@ use quirk::bits;
 pub use quirk::{Quirk, QuirkSet};
 use serde::{Deserialize, Serialize};
 
-/// Scene language of a year. The discriminants are bits of a [`DialectSet`].
+/// Dialect of the scene language: that of one year of the course, or Dürer's own. The discriminants
+/// are bits of a [`DialectSet`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Dialect {
@@ -71,23 +71,23 @@ impl Dialect {
         self.rules().name
     }
 
-    /// Returns the dialect of a name.
+    /// Returns the dialect with a name.
     pub fn from_name(name: &str) -> Option<Dialect> {
         Dialect::ALL.into_iter().find(|d| d.name() == name)
     }
 
-    /// True if a set contains it.
+    /// True if a set contains the dialect.
     pub fn is_in(self, set: DialectSet) -> bool {
         set & self as u8 != 0
     }
 
-    /// Returns its row of the table, with the bugs of the old programs.
+    /// Returns the rules of the dialect, including the bugs of the old program.
     pub fn rules(self) -> &'static Rules {
         &TABLE[(self as u8).trailing_zeros() as usize]
     }
 }
 
-/// Construction of normals for a mesh without normals.
+/// Method by which a dialect computes normals for meshes without normals.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum MeshNormals {
     /// One normal per triangle.
@@ -96,16 +96,16 @@ pub enum MeshNormals {
     SmoothByArea,
     /// Mean over the faces around a vertex, with equal weights.
     SmoothByFace,
-    /// `SmoothByFace`, but a degenerate face makes the normals of its vertices NaN.
+    /// Like `SmoothByFace`, except that a degenerate face makes the normals of its vertices NaN.
     SpoiledByFace,
-    /// `SmoothByArea` for meshes with more vertices than this, else `Flat`.
+    /// `SmoothByArea` for meshes with more vertices than this, otherwise `Flat`.
     SmoothAbove(usize),
     /// Mean, weighted by angle, over the faces around a vertex that meet at less than this many
     /// degrees.
     Crease(f32),
 }
 
-/// Specular highlight of a light.
+/// Formula by which a dialect computes specular highlights of lights.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Highlight {
     /// max(0, N·H)^exponent, only where N·L > 0.
@@ -118,7 +118,8 @@ pub enum Highlight {
     ByKeyword,
 }
 
-/// Attenuation of a light with distance d, from `attenuation a0 a1 a2` or `falloff f`.
+/// Formula by which a dialect attenuates a light with distance d, from `attenuation a0 a1 a2` or
+/// `falloff f`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Falloff {
     /// No attenuation.
@@ -129,7 +130,7 @@ pub enum Falloff {
     Bare(Option<f32>),
 }
 
-/// Reflection and refraction of a surface.
+/// Reflected and refracted rays that a dialect traces from a surface, and their weights.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Secondary {
     /// Direct lighting only.
@@ -146,7 +147,7 @@ pub enum Secondary {
     ByKeyword,
 }
 
-/// Map from a normal to a colour.
+/// Mapping from surface normals to colours in the normal pictures of a dialect.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum NormalsPicture {
     /// |n|, background black.
@@ -155,7 +156,7 @@ pub enum NormalsPicture {
     Half,
 }
 
-/// Map from a depth to a grey.
+/// Mapping from depths to grey values in the depth pictures of a dialect.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum DepthPicture {
     /// (max - t) / (max - min): near is white, background black.
@@ -175,10 +176,10 @@ pub enum PathBase {
     Assets(&'static str),
 }
 
-/// Arithmetic of camera rays and intersections.
+/// Floating-point arithmetic of camera rays and intersections, which decides their rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Arithmetic {
-    /// Dürer's own.
+    /// Dürer's own arithmetic.
     Own,
     /// Single precision, operation by operation as in the programs of Fall 2012.
     Of2012,
@@ -188,7 +189,7 @@ pub enum Arithmetic {
     Of2020,
 }
 
-/// Meaning of the words of a dialect.
+/// Rules of a dialect: its defaults, the meaning of its keywords, and its quirks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Rules {
     /// Name on the command line.
@@ -203,23 +204,23 @@ pub struct Rules {
     pub shadows: bool,
     /// True if a surface seen from behind is shaded with its normal flipped by default.
     pub shade_back: bool,
-    /// Normals of meshes without normals.
+    /// Method for the normals of meshes without normals.
     pub mesh_normals: MeshNormals,
     /// True if normals in mesh files (`vn`) are used.
     pub file_normals: bool,
-    /// Highlights.
+    /// Formula of specular highlights.
     pub highlight: Highlight,
-    /// Attenuation of point lights.
+    /// Formula of the attenuation of point lights.
     pub falloff: Falloff,
-    /// Reflection and refraction.
+    /// Rays for reflection and refraction.
     pub secondary: Secondary,
     /// Minimum `t` of secondary rays; `None` if rays start at an error-bounded offset instead.
     pub epsilon: Option<f32>,
     /// Arithmetic of camera rays and intersections.
     pub arithmetic: Arithmetic,
-    /// Normals as colours.
+    /// Colours of normal pictures.
     pub normals_picture: NormalsPicture,
-    /// Depth as grey.
+    /// Grey values of depth pictures.
     pub depth_picture: DepthPicture,
     /// True if textures and sky pictures are decoded by the sRGB curve, instead of taken as linear.
     pub srgb_textures: bool,
@@ -243,13 +244,13 @@ impl Rules {
         self.compat & compat.bit() != 0
     }
 
-    /// True if the picture must equal an official program's: the rules have an epsilon, and hit
-    /// points are computed from the ray, including its rounding.
+    /// True if the picture must equal that of an official program: the rules have an epsilon, and
+    /// hit points are computed from the ray, including its rounding.
     pub fn is_bit_compatible(&self) -> bool {
         self.epsilon.is_some()
     }
 
-    /// Returns these rules without the old program's bugs, and with good defaults.
+    /// Returns these rules without the old program's bugs, and with Dürer's defaults.
     ///
     /// Used for files if the user did not select a dialect.
     pub fn without_quirks(&self) -> Rules {

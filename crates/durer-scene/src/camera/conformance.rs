@@ -34,7 +34,7 @@ fn value(field: &Field, random: &mut Random) -> Value {
     }
 }
 
-/// Rectangle at some distance from the eye.
+/// Random rectangle at some distance from the eye.
 fn wall(random: &mut Random) -> Vec<f32> {
     let turn = random.rotation().as_mat3();
     let (w, h) = (random.between(0.5, 3.0), random.between(0.5, 3.0));

@@ -59,7 +59,7 @@ fn derivative(piece: &Piece, s: f64) -> DVec3 {
     ((b - a) * (r * r) + (c - b) * (2.0 * r * s) + (d - c) * (s * s)) * 3.0
 }
 
-/// Column: its eye, its axes, and their derivatives with respect to u from 0 to 1.
+/// Column of the picture: its eye, its axes, and their derivatives with respect to u from 0 to 1.
 struct Column {
     eye: DVec3,
     right: DVec3,

@@ -55,12 +55,12 @@ fn plain_matrix() -> Vec<[f32; 4]> {
     vec![[512.0, 0.0, -255.5, 0.0], [0.0, -512.0, -255.5, 0.0], [0.0, 0.0, -1.0, 0.0]]
 }
 
-/// Decomposed matrix.
+/// Projection matrix of the camera, decomposed into eye, rotation and intrinsic matrix.
 struct Parts {
     eye: DVec3,
     /// Rows: the camera's right, down and forward, in world space.
     rotation: DMat3,
-    /// Upper triangular intrinsic matrix, 1 in the last corner.
+    /// Upper triangular intrinsic matrix, with 1 in the lower right corner.
     intrinsic: DMat3,
 }
 
@@ -69,7 +69,7 @@ impl ProjectiveCamera {
         Sheet(DVec2::new(f64::from(self.width), f64::from(self.height)))
     }
 
-    /// Left three columns of the matrix, by rows, and the fourth column.
+    /// Returns the left three columns of the matrix, by rows, and the fourth column.
     fn rows(&self) -> ([DVec3; 3], DVec3) {
         let row = |i: usize| self.matrix[i].map(f64::from);
         let left = [0, 1, 2].map(|i| DVec3::from_slice(&row(i)[..3]));
@@ -131,7 +131,7 @@ impl ProjectiveCamera {
         (factor * point + tangential, jacobian)
     }
 
-    /// Returns the point that distorts to `wanted`, if there is one before the fold.
+    /// Returns the point that the lens distorts to `wanted`, if there is one before the fold.
     fn undistorted(&self, wanted: DVec2) -> Option<DVec2> {
         // The first guess usually converges; otherwise follow the point outwards from the centre.
         let followed = || (1..=16).try_fold(DVec2::ZERO, |point, i| self.solved(point, wanted * (f64::from(i) / 16.0)));
@@ -153,7 +153,7 @@ impl ProjectiveCamera {
         (solved && jacobian.determinant() > 0.0 && self.unfolded(point)).then_some(point)
     }
 
-    /// Returns the point at depth 1 that a sample sees.
+    /// Returns the point at depth 1 that is seen at a sample.
     fn seen(&self, parts: &Parts, sample: &CameraSample) -> Option<DVec2> {
         let sheet = self.sheet();
         if !sheet.contains(sheet.place(sample.pixel.as_dvec2())) {
@@ -182,7 +182,7 @@ impl Projection for ProjectiveCamera {
         }
         let ([a, b, c], _) = self.rows();
         let volume = a.dot(b.cross(c)).abs();
-        // Relative to orthogonal rows of these lengths.
+        // Compare with the volume of orthogonal rows of these lengths.
         let singular = volume <= 1e-9 * a.length() * b.length() * c.length() || !self.pose().center.is_finite();
         match singular {
             true => Err("the left three columns of `matrix` are singular, so the camera has no eye".into()),

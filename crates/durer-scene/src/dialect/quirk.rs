@@ -5,7 +5,7 @@ pub type QuirkSet = u64;
 
 macro_rules! quirks {
     ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal,)+) => {
-        /// A named bug or quirk, of an official program unless stated otherwise. Off unless
+        /// A bug that Dürer can reproduce, of an official program unless stated otherwise. Off unless
         /// selected by its dialect or by name.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]

@@ -15,7 +15,7 @@ pub type Sextic = [f64; 7];
 /// Roots closer to each other than this are reported once.
 const NARROWEST: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Dot product of two cubics with vector coefficients.
+/// Dot product of two vector-valued cubics, in Bernstein form.
 pub fn dot(a: &[DVec3; 4], b: &[DVec3; 4]) -> Sextic {
     const THREE: [f64; 4] = [1.0, 3.0, 3.0, 1.0];
     const SIX: [f64; 7] = [1.0, 6.0, 15.0, 20.0, 15.0, 6.0, 1.0];
