@@ -96,7 +96,7 @@ pub enum MeshNormals {
     SmoothByArea,
     /// Mean over the faces around a vertex, with equal weights.
     SmoothByFace,
-    /// Like `SmoothByFace`, except that a degenerate face makes the normals of its vertices NaN.
+    /// `SmoothByFace`, except that a degenerate face makes the normals of its vertices NaN.
     SpoiledByFace,
     /// `SmoothByArea` for meshes with more vertices than this, otherwise `Flat`.
     SmoothAbove(usize),

@@ -108,9 +108,9 @@ described_list! {
 pub struct CameraSample {
     /// Point of the picture.
     pub point: Vec2,
-    /// Centre of the pixel that the sample contributes to. A filter may reach beyond the pixel and
-    /// beyond its part of the picture (a face of a cube, a wall, an eye): points outside continue
-    /// that part.
+    /// Centre of the pixel that the sample contributes to. A filter can extend beyond the pixel,
+    /// and beyond the part of the picture that contains it (a cube face, a wall, an eye). Points
+    /// outside continue the projection of that part.
     pub pixel: Vec2,
     /// Point of the lens, in [0,1)^2; (0.5, 0.5) is the centre.
     pub lens: Vec2,

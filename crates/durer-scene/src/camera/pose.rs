@@ -49,7 +49,7 @@ pub enum Aim {
 }
 
 impl Aim {
-    /// True if rays are sums in single precision.
+    /// True if a direction is computed as a sum in single precision.
     pub(super) fn is_sum(self) -> bool {
         matches!(self, Aim::Of2012 | Aim::Of2016 | Aim::Of2020)
     }
@@ -78,7 +78,7 @@ impl Aim {
 /// own rules.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CameraRules {
-    /// Rule for the picture's up.
+    /// Rule for the up direction of the picture.
     pub up: UpRule,
     /// Arithmetic of perspective rays.
     pub aim: Aim,

@@ -5,8 +5,8 @@ pub type QuirkSet = u64;
 
 macro_rules! quirks {
     ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal,)+) => {
-        /// A bug that Dürer can reproduce, of an official program unless stated otherwise. Off unless
-        /// selected by its dialect or by name.
+        /// A bug that Dürer can reproduce, of an official program unless stated otherwise. Off
+        /// unless selected by its dialect or by name.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
         pub enum Quirk { $($(#[doc = $doc])+ $variant,)+ }

@@ -32,8 +32,9 @@ impl EmitterShape {
         (EmitterShape::Triangle(place.point(a), edges), place.normal(n))
     }
 
-    /// Body placed in the world. `axes` are the images of x, y and z, in object space. The normal
-    /// is 0, since a body has normals in all directions. `None` if the map leaves no volume.
+    /// Places a body in the world. `axes` are the images of x, y and z, in object space. The
+    /// returned normal is 0, since a body has normals in all directions. `None` if the image has no
+    /// volume.
     pub fn body(place: &Placement, body: Body, center: Vec3, axes: [Vec3; 3]) -> Option<(EmitterShape, Vec3)> {
         let closed = AffineBody::new(body, place.point(center), axes.map(|axis| place.vector(axis)))?;
         Some((EmitterShape::Closed(closed), Vec3::ZERO))

@@ -88,7 +88,7 @@ impl Light {
     }
 }
 
-/// Colour scaled to the luminance of white times `white`. Black stays black.
+/// Scales a colour to the luminance of white times `white`. Black stays black.
 fn as_bright(color: Color, white: f32) -> Color {
     let luminance = color.dot(LUMINANCE);
     if luminance > 0.0 { color * (white / luminance) } else { Color::ZERO }

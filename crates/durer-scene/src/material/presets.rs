@@ -29,7 +29,7 @@ pub fn named(name: &str) -> Option<PrincipledMaterial> {
 /// Name, and the fields that differ from their defaults.
 type Preset = (&'static str, &'static [(&'static str, &'static [f32])]);
 
-/// All presets.
+/// Presets by name.
 #[rustfmt::skip]
 pub const PRESETS: &[Preset] = &[
     ("aluminum-brushed", &[
