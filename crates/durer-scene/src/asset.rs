@@ -12,7 +12,7 @@ use durer_diag::Diagnostics;
 /// `file` is the index of the file in source spans. If a file is invalid, a method pushes a
 /// diagnostic and returns `None`.
 pub trait AssetDecoder: Sync {
-    /// Decodes a mesh. The format follows from the extension of `name`, else from the bytes.
+    /// Decodes a mesh. The format is found by the extension of `name`, or else by the bytes.
     fn mesh(
         &self,
         bytes: &[u8],

@@ -182,7 +182,7 @@ impl Field {
     }
 }
 
-/// Type of scene object with a description of its keywords and fields, declared by [`described!`].
+/// Type of scene object that describes its keywords and fields. [`described!`] implements it.
 pub trait Describe: Default {
     /// Keywords of the object; the writer uses the first.
     const KEYWORDS: &'static [(&'static str, DialectSet)];

@@ -27,11 +27,11 @@ pub enum Dialect {
     F16 = 16,
     /// 2020 to 2023: nodes and components.
     F23 = 32,
-    /// Dürer's own: every word of the other years, with sane rules.
+    /// Dürer's own: every keyword of the other years, with sensible rules.
     Durer = 64,
 }
 
-/// Set of dialects, as bits.
+/// Set of [`Dialect`]s, with one bit for each.
 pub type DialectSet = u8;
 
 /// Sets of dialects, for tables.
@@ -140,9 +140,10 @@ pub enum Secondary {
     Colors,
     /// Reflected ray, weighted by `specularColor`.
     Specular,
-    /// Both rays, weighted by `specularColor` and split by Fresnel if `refractionIndex` is given.
+    /// Both rays, weighted by `specularColor`, and by the Fresnel reflectance if `refractionIndex`
+    /// is set.
     SpecularFresnel,
-    /// Selected by the words that are present: `reflectiveColor`, `transparentColor`,
+    /// Selected by the keywords that are present: `reflectiveColor`, `transparentColor`,
     /// `refractionIndex`.
     ByKeyword,
 }
@@ -165,7 +166,7 @@ pub enum DepthPicture {
     NearBlack,
 }
 
-/// First folder in which to look for a file that a scene names.
+/// First folder in which a dialect looks for the files that a scene refers to.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum PathBase {
     /// The current directory.
@@ -222,7 +223,7 @@ pub struct Rules {
     pub normals_picture: NormalsPicture,
     /// Grey values of depth pictures.
     pub depth_picture: DepthPicture,
-    /// True if textures and sky pictures are decoded by the sRGB curve, instead of taken as linear.
+    /// True if textures and sky pictures are decoded with the sRGB curve; false if they are linear.
     pub srgb_textures: bool,
     /// First folder in which to look for files.
     pub paths: PathBase,

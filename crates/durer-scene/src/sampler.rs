@@ -20,7 +20,7 @@ pub mod testing;
 #[cfg(test)]
 mod tests;
 
-/// Method that distributes the samples of a pixel, selected by `--sampler`.
+/// Method that distributes samples within a pixel, selected by `--sampler`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Sampler {
     /// Owen-scrambled Sobol (0,2)-sequence, scrambled differently in each pixel: the least noise.
@@ -276,7 +276,7 @@ fn independent(hash: u64) -> Vec2 {
     Vec2::new(unit(bits as u32), unit((bits >> 32) as u32))
 }
 
-/// 64 evenly mixed bits of a seed, a pixel, a sample index and a dimension.
+/// Hashes a seed, a pixel, a sample index and a dimension to 64 evenly mixed bits.
 pub fn hash(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> u64 {
     numbered(key(seed, x, y), sample, dimension)
 }
@@ -300,7 +300,7 @@ fn mix(state: u64) -> u64 {
     z ^ z >> 31
 }
 
-/// The upper 24 bits as a number in [0,1): exact, and never 1.
+/// Converts the upper 24 bits to a number in [0,1), which is exact and never 1.
 #[inline(always)]
 fn unit(bits: u32) -> f32 {
     (bits >> 8) as f32 * (f32::EPSILON * 0.5)

@@ -79,7 +79,7 @@ impl std::fmt::Debug for Digest {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SourceError {
-    /// The file is in none of the searched places.
+    /// The file was not found in any of the searched places.
     #[error("the file `{name}` does not exist")] // prose: keep
     Missing {
         /// Requested name.
@@ -205,7 +205,7 @@ pub trait AssetSource: std::fmt::Debug + Sync {
     /// Returns the record of the files that were read so far.
     fn record(&self) -> &ReadRecord;
 
-    /// Number of bytes that may still be read; decompressing a file reduces it.
+    /// Number of bytes that may still be read. Decompressed bytes count too.
     fn budget(&self) -> u64 {
         u64::MAX
     }
@@ -213,8 +213,8 @@ pub trait AssetSource: std::fmt::Debug + Sync {
     /// Subtracts bytes from the budget.
     fn spend(&self, _bytes: u64) {}
 
-    /// Reads a file that the user named, not the scene. It may be anywhere. Adds it to the record
-    /// under its path.
+    /// Reads a file that the user named instead of the scene, so it may be anywhere. Adds it to the
+    /// record under its path.
     ///
     /// # Errors
     ///

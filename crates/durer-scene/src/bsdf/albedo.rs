@@ -279,7 +279,7 @@ pub fn single_means(eta: f32, roughness: f32) -> [f32; 2] {
     })
 }
 
-/// Weight of one sampled facet: of its reflection, or with `all` of its reflection and refraction.
+/// Weight of one sampled facet: its reflection, or its reflection and refraction if `all` is set.
 fn single(ggx: Ggx, wo: Vec3, eta: f32, u: Vec2, all: bool) -> f32 {
     let h = ggx.sample_visible(wo, u);
     let cosine = wo.dot(h).max(0.0);

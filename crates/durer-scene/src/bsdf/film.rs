@@ -168,7 +168,7 @@ fn over(a: Vec2, b: Vec2) -> Vec2 {
     times(a, Vec2::new(b.x, -b.y)) / b.length_squared()
 }
 
-/// Square root in the upper half-plane.
+/// Complex square root in the upper half-plane.
 fn root(a: Vec2) -> Vec2 {
     let length = a.length();
     let real = (0.5 * (length + a.x)).max(0.0).sqrt();

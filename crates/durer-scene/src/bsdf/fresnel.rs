@@ -89,7 +89,7 @@ impl Sheet {
     }
 }
 
-/// Transmittance of the interior at an angle, at which the path through it is longer.
+/// Transmittance of the interior at an oblique angle, where the path through it is longer.
 fn left_of(inside: Spectrum, cosine: f32, eta: f32) -> Spectrum {
     let behind = (1.0 - (1.0 - cosine * cosine).max(0.0) / (eta * eta)).max(0.0).sqrt();
     inside.max(Spectrum::ZERO).map(|left| if left < 1.0 { fp::pow(left, 1.0 / behind.max(1e-3)) } else { 1.0 })
@@ -168,8 +168,8 @@ mod tests {
 
     #[test]
     fn conductor_agrees_with_fresnel_equations() {
-        // Normal incidence: ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2). For k = 0: the dielectric
-        // equations.
+        // At normal incidence, the reflectance is ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2). For k = 0,
+        // the dielectric equations apply.
         for (n, k) in [(0.2, 3.4), (1.5, 0.0), (2.9, 3.1)] {
             let right = ((n - 1.0_f32) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k);
             assert!((conductor(1.0, n, k) - right).abs() < 1e-6);
@@ -181,7 +181,7 @@ mod tests {
 
     #[test]
     fn conductor_colours_agree_for_curve_and_rgb() {
-        // Gold given by three wavelength bands, and by three colours.
+        // Gold, given by three wavelength bands and by three RGB values.
         let curve = |c: [f32; 3]| {
             let rows = [[300.0, c[2]], [489.0, c[2]], [490.0, c[1]], [579.0, c[1]], [580.0, c[0]], [900.0, c[0]]];
             SpectrumSource::Curve(rows.to_vec())

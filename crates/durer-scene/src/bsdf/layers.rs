@@ -122,7 +122,8 @@ fn parts(shares: Spectrum, of: Spectrum) -> Spectrum {
     Spectrum::select(of.cmpgt(Spectrum::splat(1e-6)), shares / of, Spectrum::ONE)
 }
 
-/// View of a surface point with a principled material: direction, lanes and relative index.
+/// View of a surface point for which the lobes of a principled material are built: its direction,
+/// lanes and relative index of refraction.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
     /// RGB lanes or wavelengths in which light is represented.

@@ -59,8 +59,8 @@ impl Cells {
         mean * 4.0 * PI / (self.rows * self.columns) as f64 * f64::from(self.samples)
     }
 
-    /// Compares samples with their pdf. `sample` draws each from three numbers in [0, 1], which
-    /// `seed` selects.
+    /// Compares samples with their pdf. `sample` draws a sample from three numbers in [0, 1];
+    /// `seed` selects the numbers.
     pub fn compare(&self, seed: u64, sample: impl Fn(f32, Vec2) -> Option<Vec3>, pdf: impl Fn(Vec3) -> f32) -> Verdict {
         let all = self.rows * self.columns;
         let mut counts = vec![0.0_f64; all + 1];

@@ -88,7 +88,7 @@ impl Central for CubeMapCamera {
     }
 
     fn image(&self, direction: DVec3, found: &mut dyn FnMut(DVec2)) {
-        // The face whose centre is nearest to the direction.
+        // Find the face whose centre is nearest to the direction.
         let nearest = |best: &'static Face, face: &'static Face| match direction.dot(face.axes[0])
             > direction.dot(best.axes[0])
         {

@@ -62,7 +62,7 @@ impl Eyes {
     }
 }
 
-/// Viewing circle of an eye in omnidirectional stereo. The eye looks along its tangents.
+/// Circle on which an eye moves in omnidirectional stereo. The eye looks along its tangents.
 ///
 /// At the heading a (0 ahead, increasing to the right), the head looks along h = (sin a, 0, cos a),
 /// and an eye at the offset r to the right is at r (cos a, 0, -sin a).

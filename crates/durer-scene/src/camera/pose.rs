@@ -98,9 +98,9 @@ pub struct CameraBasis {
     pub eye: Vec3,
     /// View direction.
     pub forward: Vec3,
-    /// Right in the picture.
+    /// Right direction of the picture.
     pub right: Vec3,
-    /// Up in the picture.
+    /// Up direction of the picture.
     pub up: Vec3,
     /// See [`CameraRules::aim`].
     pub aim: Aim,

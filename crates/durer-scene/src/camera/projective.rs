@@ -76,7 +76,7 @@ impl ProjectiveCamera {
         (left, DVec3::new(row(0)[3], row(1)[3], row(2)[3]))
     }
 
-    /// Returns K, R and the eye: Gram-Schmidt on the rows of M, from the last to the first.
+    /// Computes K, R and the eye by Gram-Schmidt on the rows of M, from the last to the first.
     fn parts(&self) -> Parts {
         let ([a, b, c], last) = self.rows();
         // Depth is positive in front of the camera if M preserves handedness.
@@ -95,7 +95,7 @@ impl ProjectiveCamera {
         Parts { eye, rotation: DMat3::from_cols(right, down, forward).transpose(), intrinsic }
     }
 
-    /// Returns the factor 1 + k1 s + k2 s² + k3 s³ and its derivative by s.
+    /// Returns the factor 1 + k1 s + k2 s² + k3 s³ and its derivative with respect to s.
     fn radial(&self, s: f64) -> (f64, f64) {
         let [k1, k2, k3] = [self.k1, self.k2, self.k3].map(f64::from);
         (1.0 + s * (k1 + s * (k2 + s * k3)), k1 + s * (2.0 * k2 + s * 3.0 * k3))

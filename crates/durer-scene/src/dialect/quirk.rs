@@ -1,6 +1,6 @@
 //! Named bugs of the official programs.
 
-/// Set of quirks, as bits.
+/// Set of [`Quirk`]s, with one bit for each.
 pub type QuirkSet = u64;
 
 macro_rules! quirks {

@@ -18,7 +18,7 @@ pub enum Body {
     Ball,
     /// Frustum from a disc of radius 1 at z = 0 to a disc of this radius, at most 1, at z = 1.
     Frustum(f32),
-    /// Ring: the points within this distance of the circle of radius 1 around z.
+    /// Solid torus: the points within this distance of the circle of radius 1 around z.
     Ring(f32),
 }
 
@@ -101,7 +101,7 @@ impl AffineBody {
         }
     }
 
-    /// Area of the faces of a box that are perpendicular to each axis.
+    /// Area of one face of a box across each axis.
     fn faces(&self) -> [f32; 3] {
         [Vec3::X, Vec3::Y, Vec3::Z].map(|n| 4.0 * self.area_vector(n).length())
     }

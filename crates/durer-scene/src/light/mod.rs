@@ -137,7 +137,7 @@ pub trait Illuminate {
     /// Position, as written; `None` for a light at infinity.
     fn position(&self) -> Option<Vec3>;
 
-    /// Direction in which the light travels or the axis of its beam, as written and of any length;
+    /// Direction in which the light travels, or the axis of its beam, as written and of any length;
     /// `None` for a light that is equally strong in all directions.
     fn direction(&self) -> Option<Vec3>;
 
@@ -149,7 +149,7 @@ pub trait Illuminate {
     /// light at infinity, or with a falloff other than the inverse square.
     fn place(&self) -> Option<(Vec3, Color)>;
 
-    /// Angular radius in degrees, the same from every point.
+    /// Angular radius in degrees, equal from every point; 0 for a light without extent.
     fn spread(&self) -> f32;
 
     /// File with the intensity in each direction.

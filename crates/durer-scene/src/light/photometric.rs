@@ -158,7 +158,7 @@ impl Profile {
         let across = |a: f32, b: f32| (a * a + b * b).sqrt();
         let (vertical, horizontal) = match self.kind {
             ProfileKind::C => (degrees(across(dir.x, dir.y), dir.z), degrees(dir.y, dir.x)),
-            // The luminaire faces z, which is down as mounted. Angles grow towards y and x.
+            // The luminaire faces z, which is down as mounted. Angles increase towards y and x.
             ProfileKind::B => (degrees(dir.x, across(dir.y, dir.z)), degrees(dir.y, dir.z)),
             ProfileKind::A => (degrees(dir.y, across(dir.x, dir.z)), degrees(dir.x, dir.z)),
         };

@@ -26,7 +26,7 @@ pub fn named(name: &str) -> Option<PrincipledMaterial> {
     Some(material)
 }
 
-/// Name, and the fields that differ from their defaults.
+/// Preset of a principled material: its name, and the fields that differ from their defaults.
 type Preset = (&'static str, &'static [(&'static str, &'static [f32])]);
 
 /// Presets by name.

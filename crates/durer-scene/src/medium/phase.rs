@@ -8,7 +8,7 @@ use std::f32::consts::{PI, TAU};
 /// Source: Henyey and Greenstein, *Diffuse radiation in the Galaxy*, 1941.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HenyeyGreenstein {
-    /// Mean cosine between the directions before and after scattering: from -1 (backward) over 0
+    /// Mean cosine between the directions before and after scattering: from -1 (backward) through 0
     /// (isotropic) to 1 (forward).
     pub anisotropy: f32,
 }

@@ -288,7 +288,7 @@ pub struct Group {
 pub struct Object {
     /// Kind of object.
     pub node: Node,
-    /// Number of the current material; `None` before any.
+    /// Number of the current material; `None` before the first one.
     pub material: Option<u32>,
     /// Span of its keyword in the file.
     #[serde(skip)]
@@ -296,7 +296,7 @@ pub struct Object {
 }
 
 impl Object {
-    /// Returns the object under a transform; unchanged for the identity.
+    /// Wraps the object in a transform; returns it unchanged for the identity.
     pub fn placed(self, map: DAffine3) -> Object {
         if map == DAffine3::IDENTITY {
             return self;
@@ -318,7 +318,7 @@ pub enum Node {
     Primitive(Primitive),
     /// A mesh in a file.
     Mesh(TriangleMesh),
-    /// Cells of a box, filled by balls.
+    /// Grid of cells, of which those inside the balls are filled.
     Voxels(VoxelGrid, Vec<Sphere>),
     /// A terrain from a picture.
     HeightField(HeightField),

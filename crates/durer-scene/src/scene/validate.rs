@@ -238,7 +238,7 @@ impl Validator {
     }
 }
 
-/// Formats a short value for a message, with a leading blank; empty for rows.
+/// Formats a short value for a message, with a leading space; empty for rows.
 fn shown(value: &Value) -> String {
     match value {
         Value::Float(x) => format!(" {x}"),

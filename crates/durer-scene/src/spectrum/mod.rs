@@ -31,7 +31,7 @@ use tables::{FIRST, LAST, OBSERVER_AND_DAYLIGHT, STEP};
 /// Radiance, or a factor that scales it, in four lanes.
 pub type Spectrum = glam::Vec4;
 
-/// Representation of colour in light transport, selected by `--color`.
+/// Representation of colour in light transport, RGB or spectral, selected by `--color`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ColorMode {

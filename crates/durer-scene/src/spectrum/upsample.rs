@@ -36,8 +36,8 @@ const SIDE: usize = 24;
 /// Number of grid points along the axis of the largest channel.
 const STRENGTHS: usize = 10;
 
-/// Table of fitted coefficients by the largest channel, its value, and the ratios of the other two
-/// to it.
+/// Table for spectral upsampling: coefficients by the largest channel of a colour, its value, and
+/// the ratios of the other two channels to it.
 struct Table(Vec<[f32; 3]>);
 
 static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
@@ -122,7 +122,7 @@ impl Table {
     }
 }
 
-/// Forward model for fitting the coefficients of a spectrum: its colour under daylight.
+/// Forward model for fitting a smooth spectrum to a colour: the spectrum's colour under daylight.
 struct Fit {
     /// Normalized wavelengths in [0, 1], with their weights for red, green and blue.
     rows: Vec<(f64, [f64; 3])>,

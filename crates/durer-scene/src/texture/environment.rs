@@ -56,7 +56,7 @@ struct Row {
 /// light sampling, for example behind panes at which paths end.
 const LEAST: f32 = 0.05;
 
-/// Number of entries of the cumulative weights per start index.
+/// Number of table entries per start index.
 const STEP: usize = 4;
 
 /// Number of entries that the search compares at once.

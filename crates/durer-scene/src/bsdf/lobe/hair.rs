@@ -18,7 +18,7 @@ use crate::math::{Color, Vec2, Vec3, fp};
 use crate::spectrum::{Lanes, Spectrum};
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
-/// Number of light paths: R, TT, TRT, and all those with more internal reflections.
+/// Number of light paths: R, TT, TRT, and all paths with more internal reflections.
 const WAYS: usize = 4;
 
 /// Index of the last path (all further internal reflections), which spreads light evenly around the

@@ -23,8 +23,8 @@ pub struct LobeSample {
 /// Value and pdf for a direction in which a lobe does not scatter.
 const NOTHING: (Spectrum, f32) = (Spectrum::ZERO, 0.0);
 
-/// Evaluation and sampling of a BSDF lobe. Directions are local and point away from the surface.
-/// `wo` is above it (`wo.z` > 0).
+/// Interface for evaluating and sampling a BSDF lobe. Directions are local and point away from the
+/// surface. `wo` is above it (`wo.z` > 0).
 pub trait Scatter {
     /// Value times |cos| of `wi`, and the pdf per solid angle with which [`Scatter::sample`]
     /// chooses `wi`. Both are 0 for a delta lobe.
@@ -83,12 +83,12 @@ impl LobeKind {
         LobeKind { spread, transmits: false, is_straight: false, is_fibre: false, eta: None }
     }
 
-    /// Kind of a lobe that scatters light from behind the surface, too or exclusively.
+    /// Returns the kind of a lobe that also, or only, scatters light from behind the surface.
     pub const fn transmitting(self) -> LobeKind {
         LobeKind { transmits: true, ..self }
     }
 
-    /// Kind of a transmitting lobe that refracts with the relative index `eta`.
+    /// Returns the kind of a transmitting lobe that refracts with the relative index `eta`.
     pub const fn refracting(self, eta: f32) -> LobeKind {
         LobeKind { transmits: true, eta: Some(eta), ..self }
     }

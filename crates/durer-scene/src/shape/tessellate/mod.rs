@@ -1,6 +1,6 @@
 //! Triangle meshes of shapes. The functions in this file approximate primitives, for
-//! [`Shape::to_mesh`](super::Shape::to_mesh). The submodules tessellate surfaces that no primitive
-//! has.
+//! [`Shape::to_mesh`](super::Shape::to_mesh). The submodules tessellate surfaces that are not
+//! primitives.
 
 pub mod net;
 pub mod revolution;

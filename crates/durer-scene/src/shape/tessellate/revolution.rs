@@ -16,7 +16,7 @@ const ROWS: u32 = 64;
 /// Number of sides of a cylinder or a sector of it.
 const COLUMNS: u32 = 128;
 
-/// Point of the profile, and its tangent there.
+/// Point of the profile of a surface of revolution, and the tangent there.
 type ProfilePoint = (DVec3, DVec3);
 
 /// Tessellates the surface of a profile that rotates about z by an angle in degrees.
@@ -52,7 +52,7 @@ fn turned(degrees: f64, rows: u32, line: impl Fn(f64) -> ProfilePoint) -> MeshDa
     data
 }
 
-/// A sphere between two heights, which must be within it.
+/// A sphere between two heights, which must lie within it.
 pub fn sphere(radius: f64, [low, high]: [f32; 2], degrees: f64) -> MeshData {
     // Angles from the equator.
     let angle = |z: f32| {
