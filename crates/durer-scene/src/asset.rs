@@ -1,4 +1,4 @@
-//! Decoding of the files that a scene names.
+//! Interface for decoding the mesh, photometric, spectrum and density files that a scene refers to.
 
 use crate::dialect::QuirkSet;
 use crate::light::Profile;
@@ -7,12 +7,12 @@ use crate::medium::DensityGrid;
 use crate::shape::MeshData;
 use durer_diag::Diagnostics;
 
-/// Decodes asset files other than images. `durer-formats` implements it for all its formats.
+/// Decoder for a scene's asset files other than images, implemented by `durer-formats`.
 ///
-/// `file` is the index of the file, for spans. On an error a method pushes a diagnostic and returns
-/// `None`.
+/// `file` is the index of the file in source spans. If a file is invalid, a method pushes a
+/// diagnostic and returns `None`.
 pub trait AssetDecoder: Sync {
-    /// Decodes a mesh. The format follows from the extension of `name`, else from the bytes.
+    /// Decodes a mesh. The format is found by the extension of `name`, or else by the bytes.
     fn mesh(
         &self,
         bytes: &[u8],
@@ -25,8 +25,8 @@ pub trait AssetDecoder: Sync {
     /// Decodes a photometric file (IES, EULUMDAT).
     fn profile(&self, bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<Profile>;
 
-    /// Decodes a measured spectrum into ascending rows of wavelength (nm) and value. `column` picks
-    /// one of several by name; `None` is the first.
+    /// Decodes a measured spectrum into ascending rows of wavelength (nm) and value. `column`
+    /// selects one of several spectra by name; `None` selects the first.
     fn spectrum(
         &self,
         bytes: &[u8],
@@ -35,7 +35,7 @@ pub trait AssetDecoder: Sync {
         diagnostics: &mut Diagnostics,
     ) -> Option<Vec<[f32; 2]>>;
 
-    /// Decodes a grid of densities and its bounds, in at most `memory` bytes.
+    /// Decodes a density grid and its bounds, using at most `memory` bytes.
     fn density(
         &self,
         bytes: &[u8],

@@ -9,7 +9,7 @@ use crate::math::Vec3;
 use durer_diag::Span;
 use serde::{Deserialize, Serialize};
 
-/// Type of a field, as the reader sees it.
+/// Type of a field in scene files: a number, a vector, a path, a word or rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A number.
@@ -26,7 +26,7 @@ pub enum Kind {
     Rows(usize),
 }
 
-/// Path of a file that a scene names, with its span.
+/// Path of a file that a scene refers to, with its span in the scene's text.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FileName {
     /// Path as written in the scene.
@@ -36,7 +36,7 @@ pub struct FileName {
     pub span: Span,
 }
 
-/// Value of a field.
+/// Value of a field of a scene object, as read from a scene file or from JSON.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
@@ -66,7 +66,7 @@ impl Value {
     }
 }
 
-/// Constraint on a value, beyond being finite.
+/// Constraint on the value of a field, in addition to being finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Constraint {
     /// No constraint.
@@ -85,7 +85,7 @@ pub enum Constraint {
     UpTo(f32),
     /// Number from 0 to 1.
     Share,
-    /// Integer, at most this.
+    /// Integer that is at most this.
     AtMost(u32),
     /// Integer from 1 to this.
     Numbered(u32),
@@ -96,7 +96,7 @@ pub enum Constraint {
 }
 
 impl Constraint {
-    /// Checks a value: every number must be finite and satisfy this rule.
+    /// Checks a value: every number must be finite and satisfy this constraint.
     ///
     /// # Errors
     ///
@@ -141,12 +141,12 @@ impl Constraint {
     }
 }
 
-/// Field of a description.
+/// Description of one field of a scene object: its name, type, constraint and keywords.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
     /// Name in code and JSON.
     pub name: &'static str,
-    /// Type.
+    /// Type of the value.
     pub kind: Kind,
     /// True if a scene must set the field.
     pub required: bool,
@@ -182,7 +182,7 @@ impl Field {
     }
 }
 
-/// Type with a description of its fields.
+/// Type of scene object that describes its keywords and fields. [`described!`] implements it.
 pub trait Describe: Default {
     /// Keywords of the object; the writer uses the first.
     const KEYWORDS: &'static [(&'static str, DialectSet)];
@@ -198,11 +198,11 @@ pub trait Describe: Default {
     fn set(&mut self, field: usize, value: Value);
 }
 
-/// Rust type that a field can have.
+/// Rust type that a described field can have, with conversions from and to [`Value`].
 pub trait FieldType: Sized {
-    /// Kind in scene files.
+    /// Type of the field in scene files.
     const KIND: Kind;
-    /// Returns the value; `None` if absent.
+    /// Returns the value; `None` if it is not set.
     fn value(&self) -> Option<Value>;
     /// Converts from a value of this kind.
     fn from_value(value: Value) -> Option<Self>;
@@ -243,7 +243,7 @@ impl<const N: usize> FieldType for Vec<[f32; N]> {
     }
 }
 
-/// Declares an `enum` of words for the value of a field; the first is the default.
+/// Declares an `enum` for a field whose value is one of several words. The first is the default.
 #[macro_export]
 macro_rules! described_words {
     ($(#[doc = $doc:literal])+ $name:ident { $first:ident = $first_word:literal $(, $variant:ident = $word:literal)* }) => {
@@ -280,8 +280,8 @@ impl<T: FieldType> FieldType for Option<T> {
 
 /// Declares a struct together with its description.
 ///
-/// Each field: its doc comment, name, type, default, `required` or `optional`, its rule, and its
-/// spellings by dialect.
+/// Each field is declared with its doc comment, name, type, default, `required` or `optional`,
+/// constraint, and keywords by dialect.
 #[macro_export]
 macro_rules! described {
     (
@@ -360,7 +360,7 @@ macro_rules! described {
     };
 }
 
-/// Words that state if a scene must set a field.
+/// Words in [`described!`] that state if a scene must set a field.
 #[allow(non_upper_case_globals)]
 #[doc(hidden)]
 pub mod presence {
@@ -370,15 +370,15 @@ pub mod presence {
     pub const optional: bool = false;
 }
 
-/// Declares a closed list of described types: an `enum` with one variant each, which delegates to
-/// it.
+/// Declares an `enum` with one variant for each of a list of described types. It delegates to the
+/// type of its variant.
 ///
 /// The path after the colon is the trait that all types implement. The name after `=>` is a macro
 /// that takes the names of the variants and implements the trait for the enum.
 #[macro_export]
 macro_rules! described_list {
     ($(#[doc = $doc:literal])+ $name:ident : $trait:path => $delegate:ident { $($variant:ident($type:ty),)+ }) => {
-        // First, so that the first error names the trait and points at the type.
+        // This check is first, so that the first error names the trait and points at the type.
         const _: fn() = || {
             fn is_described<T: $crate::describe::Describe>() {}
             fn is_one<T: $trait>() {}
@@ -420,9 +420,10 @@ macro_rules! described_list {
 
 pub use {described, described_list, described_words};
 
-/// List of described types, as the reader sees it. [`described_list!`] implements it.
+/// Scene object that has one of several described types, such as any shape or any light.
+/// [`described_list!`] implements it.
 pub trait DescribedList: Sized {
-    /// Returns one of each, with default values.
+    /// Returns one object of each type, with default values.
     fn kinds() -> Vec<Self>;
     /// Keywords of the object.
     fn keywords(&self) -> &'static [(&'static str, DialectSet)];
@@ -435,7 +436,7 @@ pub trait DescribedList: Sized {
     /// Sets a field by index.
     fn set(&mut self, field: usize, value: Value);
 
-    /// True if only Dürer's own dialect has it.
+    /// True if only Dürer's own dialect has the object.
     fn is_ours(&self) -> bool {
         self.keywords().iter().all(|(_, set)| *set == Dialect::Durer as DialectSet)
     }
@@ -445,7 +446,7 @@ pub trait DescribedList: Sized {
         self.keyword(Dialect::Durer)
     }
 
-    /// Returns an object with default values, by a keyword of any dialect.
+    /// Returns an object with default values for a keyword of any dialect.
     fn from_keyword(word: &str) -> Option<Self> {
         Self::kinds().into_iter().find(|kind| kind.keywords().iter().any(|(keyword, _)| *keyword == word))
     }

@@ -1,9 +1,8 @@
 //! Dialects of the scene language, as one table of differences.
 //!
-//! A [`Dialect`] is the scene language of a year; its [`Rules`] define the meaning of its words;
-//! its
-//! [`Quirk`]s are the known bugs of that year's official program, active only if the user selects
-//! the dialect.
+//! A [`Dialect`] is the scene language of a year. Its [`Rules`] define the meaning of its words.
+//! Its [`Quirk`]s are the known bugs of that year's official program, and are active only if the
+//! user selects the dialect.
 
 mod quirk;
 
@@ -11,7 +10,8 @@ use quirk::bits;
 pub use quirk::{Quirk, QuirkSet};
 use serde::{Deserialize, Serialize};
 
-/// Scene language of a year. The discriminants are bits of a [`DialectSet`].
+/// Dialect of the scene language: that of one year of the course, or Dürer's own. The discriminants
+/// are bits of a [`DialectSet`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Dialect {
@@ -27,11 +27,11 @@ pub enum Dialect {
     F16 = 16,
     /// 2020 to 2023: nodes and components.
     F23 = 32,
-    /// Dürer's own: every word of the other years, with sane rules.
+    /// Dürer's own: every keyword of the other years, with sensible rules.
     Durer = 64,
 }
 
-/// Set of dialects, as bits.
+/// Set of [`Dialect`]s, with one bit for each.
 pub type DialectSet = u8;
 
 /// Sets of dialects, for tables.
@@ -71,23 +71,23 @@ impl Dialect {
         self.rules().name
     }
 
-    /// Returns the dialect of a name.
+    /// Returns the dialect with a name.
     pub fn from_name(name: &str) -> Option<Dialect> {
         Dialect::ALL.into_iter().find(|d| d.name() == name)
     }
 
-    /// True if a set contains it.
+    /// True if a set contains the dialect.
     pub fn is_in(self, set: DialectSet) -> bool {
         set & self as u8 != 0
     }
 
-    /// Returns its row of the table, with the bugs of the old programs.
+    /// Returns the rules of the dialect, including the bugs of the old program.
     pub fn rules(self) -> &'static Rules {
         &TABLE[(self as u8).trailing_zeros() as usize]
     }
 }
 
-/// Construction of normals for a mesh without normals.
+/// Method by which a dialect computes normals for meshes without normals.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum MeshNormals {
     /// One normal per triangle.
@@ -96,16 +96,16 @@ pub enum MeshNormals {
     SmoothByArea,
     /// Mean over the faces around a vertex, with equal weights.
     SmoothByFace,
-    /// `SmoothByFace`, but a degenerate face makes the normals of its vertices NaN.
+    /// `SmoothByFace`, except that a degenerate face makes the normals of its vertices NaN.
     SpoiledByFace,
-    /// `SmoothByArea` for meshes with more vertices than this, else `Flat`.
+    /// `SmoothByArea` for meshes with more vertices than this, otherwise `Flat`.
     SmoothAbove(usize),
     /// Mean, weighted by angle, over the faces around a vertex that meet at less than this many
     /// degrees.
     Crease(f32),
 }
 
-/// Specular highlight of a light.
+/// Formula by which a dialect computes specular highlights of lights.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Highlight {
     /// max(0, N·H)^exponent, only where N·L > 0.
@@ -118,7 +118,8 @@ pub enum Highlight {
     ByKeyword,
 }
 
-/// Attenuation of a light with distance d, from `attenuation a0 a1 a2` or `falloff f`.
+/// Formula by which a dialect attenuates a light with distance d, from `attenuation a0 a1 a2` or
+/// `falloff f`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Falloff {
     /// No attenuation.
@@ -129,7 +130,7 @@ pub enum Falloff {
     Bare(Option<f32>),
 }
 
-/// Reflection and refraction of a surface.
+/// Reflected and refracted rays that a dialect traces from a surface, and their weights.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Secondary {
     /// Direct lighting only.
@@ -139,14 +140,15 @@ pub enum Secondary {
     Colors,
     /// Reflected ray, weighted by `specularColor`.
     Specular,
-    /// Both rays, weighted by `specularColor` and split by Fresnel if `refractionIndex` is given.
+    /// Both rays, weighted by `specularColor`, and by the Fresnel reflectance if `refractionIndex`
+    /// is set.
     SpecularFresnel,
-    /// Selected by the words that are present: `reflectiveColor`, `transparentColor`,
+    /// Selected by the keywords that are present: `reflectiveColor`, `transparentColor`,
     /// `refractionIndex`.
     ByKeyword,
 }
 
-/// Map from a normal to a colour.
+/// Mapping from surface normals to colours in the normal pictures of a dialect.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum NormalsPicture {
     /// |n|, background black.
@@ -155,7 +157,7 @@ pub enum NormalsPicture {
     Half,
 }
 
-/// Map from a depth to a grey.
+/// Mapping from depths to grey values in the depth pictures of a dialect.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum DepthPicture {
     /// (max - t) / (max - min): near is white, background black.
@@ -164,7 +166,7 @@ pub enum DepthPicture {
     NearBlack,
 }
 
-/// First folder in which to look for a file that a scene names.
+/// First folder in which a dialect looks for the files that a scene refers to.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum PathBase {
     /// The current directory.
@@ -175,10 +177,10 @@ pub enum PathBase {
     Assets(&'static str),
 }
 
-/// Arithmetic of camera rays and intersections.
+/// Floating-point arithmetic of camera rays and intersections, which decides their rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Arithmetic {
-    /// Dürer's own.
+    /// Dürer's own arithmetic.
     Own,
     /// Single precision, operation by operation as in the programs of Fall 2012.
     Of2012,
@@ -188,7 +190,7 @@ pub enum Arithmetic {
     Of2020,
 }
 
-/// Meaning of the words of a dialect.
+/// Rules of a dialect: its defaults, the meaning of its keywords, and its quirks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Rules {
     /// Name on the command line.
@@ -203,25 +205,25 @@ pub struct Rules {
     pub shadows: bool,
     /// True if a surface seen from behind is shaded with its normal flipped by default.
     pub shade_back: bool,
-    /// Normals of meshes without normals.
+    /// Method for the normals of meshes without normals.
     pub mesh_normals: MeshNormals,
     /// True if normals in mesh files (`vn`) are used.
     pub file_normals: bool,
-    /// Highlights.
+    /// Formula of specular highlights.
     pub highlight: Highlight,
-    /// Attenuation of point lights.
+    /// Formula of the attenuation of point lights.
     pub falloff: Falloff,
-    /// Reflection and refraction.
+    /// Rays for reflection and refraction.
     pub secondary: Secondary,
     /// Minimum `t` of secondary rays; `None` if rays start at an error-bounded offset instead.
     pub epsilon: Option<f32>,
     /// Arithmetic of camera rays and intersections.
     pub arithmetic: Arithmetic,
-    /// Normals as colours.
+    /// Colours of normal pictures.
     pub normals_picture: NormalsPicture,
-    /// Depth as grey.
+    /// Grey values of depth pictures.
     pub depth_picture: DepthPicture,
-    /// True if textures and sky pictures are decoded by the sRGB curve, instead of taken as linear.
+    /// True if textures and sky pictures are decoded with the sRGB curve; false if they are linear.
     pub srgb_textures: bool,
     /// First folder in which to look for files.
     pub paths: PathBase,
@@ -243,13 +245,13 @@ impl Rules {
         self.compat & compat.bit() != 0
     }
 
-    /// True if the picture must equal an official program's: the rules have an epsilon, and hit
-    /// points are computed from the ray, including its rounding.
+    /// True if the picture must equal that of an official program: the rules have an epsilon, and
+    /// hit points are computed from the ray, including its rounding.
     pub fn is_bit_compatible(&self) -> bool {
         self.epsilon.is_some()
     }
 
-    /// Returns these rules without the old program's bugs, and with good defaults.
+    /// Returns these rules without the old program's bugs, and with Dürer's defaults.
     ///
     /// Used for files if the user did not select a dialect.
     pub fn without_quirks(&self) -> Rules {

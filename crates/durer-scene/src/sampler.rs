@@ -20,13 +20,13 @@ pub mod testing;
 #[cfg(test)]
 mod tests;
 
-/// Distribution of the samples in a pixel.
+/// Method that distributes samples within a pixel, selected by `--sampler`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Sampler {
     /// Owen-scrambled Sobol (0,2)-sequence, scrambled differently in each pixel: the least noise.
     #[default]
     Sobol,
-    /// Independent and uniform.
+    /// Independent, uniform random positions.
     Random,
     /// The centres of a regular grid of cells.
     Uniform,
@@ -38,7 +38,7 @@ pub enum Sampler {
 const BELOW_ONE: f32 = 1.0 - f32::EPSILON * 0.5;
 
 impl Sampler {
-    /// The samplers with their names on the command line.
+    /// Samplers with their names on the command line.
     pub const NAMES: [(&'static str, Sampler); 4] = [
         ("sobol", Sampler::Sobol),
         ("random", Sampler::Random),
@@ -46,12 +46,12 @@ impl Sampler {
         ("jittered", Sampler::Jittered),
     ];
 
-    /// Returns the sampler of a name.
+    /// Returns the sampler with a name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::NAMES.iter().find(|(n, _)| *n == name).map(|&(_, sampler)| sampler)
     }
 
-    /// Number of samples that a pixel gets for `samples` requested ones: at least one, and for grid
+    /// Number of samples that a pixel gets if `samples` are requested: at least one, and for grid
     /// samplers the next square (65535^2 at most).
     pub fn round_up(self, samples: u32) -> u32 {
         match self {
@@ -93,20 +93,21 @@ pub const PIXEL_DIMENSION: u32 = 0;
 /// Dimension of positions on the camera's lens. Integrators use the dimensions from 2.
 pub const LENS_DIMENSION: u32 = 1;
 
-/// A sample of a pixel, with the first free dimension. Its random numbers depend on nothing else.
+/// Identifier of a sample of a pixel, from which all its random numbers are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SampleId {
     /// Hash of seed and pixel.
     key: u64,
     /// Index of the sample in its pixel.
     pub sample: u32,
+    /// First dimension that the sample uses.
     first: u32,
 }
 
-/// First dimension for layers that a ray passes; their number is unlimited.
+/// First of the dimensions for layers that a ray passes through. The number of layers is unlimited.
 const LAYER_DIMENSIONS: u32 = 1 << 16;
 
-/// Dimension of wavelengths.
+/// Dimension for the choice of wavelengths.
 const WAVELENGTH_DIMENSION: u32 = 1 << 15;
 
 impl SampleId {
@@ -115,45 +116,45 @@ impl SampleId {
         SampleId { key: key(seed, pixel.0, pixel.1), sample, first: LENS_DIMENSION + 1 }
     }
 
-    /// Another sample of the same pixel.
+    /// Returns the identifier of another sample of the same pixel.
     pub fn of_sample(self, sample: u32) -> Self {
         SampleId { sample, ..self }
     }
 
-    /// The points of one dimension of the pixel, as [`sample_2d`] returns them one by one.
+    /// Returns the points of one dimension of the pixel. They equal those of [`sample_2d`].
     pub fn sequence(&self, dimension: u32) -> Sequence {
         Sequence::of(self.key, dimension)
     }
 
-    /// Moves the sample to other dimensions; `first` is relative to the first that integrators
-    /// use.
+    /// Returns the sample with other dimensions. `first` is relative to the first dimension that
+    /// integrators use.
     pub fn at(self, first: u32) -> Self {
         SampleId { first: LENS_DIMENSION + 1 + first, ..self }
     }
 
-    /// Two numbers in [0,1). Together with those of the pixel's other samples, they are stratified
-    /// in the unit square.
+    /// Returns two numbers in [0,1). Together with those of the pixel's other samples, they are
+    /// stratified in the unit square.
     pub fn pair(&self, dimension: u32) -> Vec2 {
         Sequence::of(self.key, self.first + dimension).point(self.sample)
     }
 
-    /// The pairs of its first `N` dimensions, equal to those of [`SampleId::pair`].
+    /// Returns the pairs of the first `N` dimensions, equal to those of [`SampleId::pair`].
     pub fn pairs<const N: usize>(&self) -> [Vec2; N] {
         run_plain(Pairs::<N>(*self))
     }
 
-    /// Number in [0,1) for the choice of wavelengths.
+    /// Returns a number in [0,1) for the choice of wavelengths.
     pub fn wavelength(&self) -> f32 {
         Sequence::of(self.key, WAVELENGTH_DIMENSION).point(self.sample).x
     }
 
-    /// Number in [0,1) for a layer, after `depth` bounces.
+    /// Returns a number in [0,1) for a layer, after `depth` bounces.
     pub fn layer(&self, depth: u32, layer: u32) -> f32 {
         independent(numbered(self.key, self.sample, LAYER_DIMENSIONS + (depth << 8) + layer)).x
     }
 }
 
-/// Computes several pairs in parallel by SIMD.
+/// SIMD kernel that computes the number pairs of `N` dimensions of a sample.
 struct Pairs<const N: usize>(SampleId);
 
 impl<const N: usize> PlainKernel for Pairs<N> {
@@ -168,10 +169,10 @@ impl<const N: usize> PlainKernel for Pairs<N> {
     }
 }
 
-/// First dimension for media; the number of scattering events is unlimited.
+/// First of the dimensions for media. The number of scattering events is unlimited.
 const MEDIUM_DIMENSIONS: u32 = 1 << 17;
 
-/// Unlimited sequence of numbers in [0,1), for a path segment in a medium.
+/// Random numbers in [0,1), as many as needed, for a path segment in a medium.
 #[derive(Clone, Copy, Debug)]
 pub struct Stream {
     id: SampleId,
@@ -180,16 +181,16 @@ pub struct Stream {
 }
 
 impl SampleId {
-    /// Numbers for a path segment after `depth` bounces; `side` distinguishes segments from the
-    /// same point.
+    /// Returns the numbers for a path segment after `depth` bounces. `side` distinguishes segments
+    /// from the same point.
     pub fn stream(&self, depth: u32, side: u32) -> Stream {
         Stream { id: *self, dimension: MEDIUM_DIMENSIONS + 2 * depth + side, taken: 0 }
     }
 }
 
 impl Stream {
-    /// The next number. The first two are stratified over the samples of a pixel; the others are
-    /// independent.
+    /// Returns the next number. The first two are stratified over the samples of a pixel; the
+    /// others are independent.
     pub fn number(&mut self) -> f32 {
         let SampleId { key, sample, .. } = self.id;
         self.taken += 1;
@@ -200,7 +201,7 @@ impl Stream {
         }
     }
 
-    /// The next two numbers.
+    /// Returns the next two numbers.
     pub fn pair(&mut self) -> Vec2 {
         Vec2::new(self.number(), self.number())
     }
@@ -222,7 +223,7 @@ pub fn sample_2d(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> Vec2
     Sequence::of(key(seed, x, y), dimension).point(sample)
 }
 
-/// Points of one dimension of a pixel. Stores the hashes that they share.
+/// Stratified points for one dimension of a pixel. Stores the hashes that the points share.
 #[derive(Clone, Copy, Debug)]
 pub struct Sequence {
     shuffle: u32,
@@ -236,7 +237,7 @@ impl Sequence {
         Sequence { shuffle: numbered(key, 0, dimension) as u32, scramble: numbered(key, 1, dimension) }
     }
 
-    /// The points of several samples, each in a separate sequence, equal to those of
+    /// Returns the points of several samples, each in a separate sequence, equal to those of
     /// [`Sequence::point`]: first all x, then all y. The loops are written for auto-vectorization.
     #[inline(always)]
     pub fn points<const N: usize>(sequences: &[Sequence; N], samples: &[u32; N]) -> [[f32; N]; 2] {
@@ -254,7 +255,7 @@ impl Sequence {
         points
     }
 
-    /// The point of a sample.
+    /// Returns the point of a sample.
     pub fn point(&self, sample: u32) -> Vec2 {
         let index = nested_uniform_scramble(sample, self.shuffle);
         Vec2::new(
@@ -270,12 +271,12 @@ pub fn random_2d(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> Vec2
 }
 
 fn independent(hash: u64) -> Vec2 {
-    // One step more than the keys of `sample_2d`, so that no hash is used twice.
+    // Mix once more than for the keys of `sample_2d`, so that no hash is used twice.
     let bits = mix(hash);
     Vec2::new(unit(bits as u32), unit((bits >> 32) as u32))
 }
 
-/// 64 evenly mixed bits of a seed, a pixel, a sample index and a dimension.
+/// Hashes a seed, a pixel, a sample index and a dimension to 64 evenly mixed bits.
 pub fn hash(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> u64 {
     numbered(key(seed, x, y), sample, dimension)
 }
@@ -299,7 +300,7 @@ fn mix(state: u64) -> u64 {
     z ^ z >> 31
 }
 
-/// The upper 24 bits as a number in [0,1): exact, and never 1.
+/// Converts the upper 24 bits to a number in [0,1), which is exact and never 1.
 #[inline(always)]
 fn unit(bits: u32) -> f32 {
     (bits >> 8) as f32 * (f32::EPSILON * 0.5)

@@ -1,8 +1,8 @@
 //! Sources of a scene's files: bytes by name, independent of their storage.
 //!
-//! [`AssetSource`] is the trait, [`MemorySource`] a map of names.
+//! [`AssetSource`] is the trait. [`MemorySource`] holds files in memory, and
 //! `durer_formats::folder::FolderSource` reads folders of the file system. Every source has a
-//! [`ReadRecord`] of what was read.
+//! [`ReadRecord`] of the files that were read.
 
 use durer_diag::did_you_mean;
 use serde::{Deserialize, Serialize};
@@ -10,12 +10,12 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A BLAKE3 hash, displayed as 64 hexadecimal digits.
+/// BLAKE3 hash of a file or of scene data, displayed as 64 hexadecimal digits.
 #[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Digest(pub [u8; 32]);
 
 impl Digest {
-    /// Hash of bytes.
+    /// Computes the hash of bytes.
     pub fn of(bytes: &[u8]) -> Self {
         // For less data, threads cost more time than they save.
         match bytes.len() < 1 << 20 {
@@ -24,13 +24,13 @@ impl Digest {
         }
     }
 
-    /// Incremental hasher of numbers.
+    /// Creates an incremental hasher of numbers.
     pub fn hasher() -> Hasher {
         Hasher { hasher: blake3::Hasher::new(), waiting: Vec::with_capacity(Hasher::BLOCK) }
     }
 }
 
-/// Hashes many numbers as little-endian bytes.
+/// Incremental hasher of numbers, as little-endian bytes, which returns a [`Digest`].
 #[derive(Debug)]
 pub struct Hasher {
     hasher: blake3::Hasher,
@@ -75,11 +75,11 @@ impl std::fmt::Debug for Digest {
     }
 }
 
-/// Reason why a file could not be read.
+/// Reason why a file of a scene could not be read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SourceError {
-    /// The file is in none of the searched places.
+    /// The file was not found in any of the searched places.
     #[error("the file `{name}` does not exist")] // prose: keep
     Missing {
         /// Requested name.
@@ -135,7 +135,7 @@ impl SourceError {
     }
 }
 
-/// Version of a file: it changes when the file is saved again or replaced.
+/// Version of a file, which changes when the file is saved again or replaced.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Stamp {
     /// Path of the file.
@@ -149,7 +149,7 @@ pub struct Stamp {
     pub number: u64,
 }
 
-/// Hashes of the files that were read, by their names in the scene.
+/// Record of the files that a source has read: their hashes, by their names in the scene.
 #[derive(Debug, Default)]
 pub struct ReadRecord(Mutex<BTreeMap<String, Digest>>);
 
@@ -174,12 +174,12 @@ impl ReadRecord {
         self.hashes().insert(name.into(), digest);
     }
 
-    /// Hash of the bytes that were read under a name.
+    /// Returns the hash of the bytes that were read under a name.
     pub fn digest_of(&self, name: &str) -> Option<Digest> {
         self.hashes().get(name).copied()
     }
 
-    /// Hash of all names and hashes in the record, and of `more`.
+    /// Computes the hash of all names and hashes in the record, and of `more`.
     pub fn digest(&self, more: &[u8]) -> Digest {
         let mut hasher = blake3::Hasher::new();
         hasher.update(&Digest::of(more).0);
@@ -190,7 +190,7 @@ impl ReadRecord {
     }
 }
 
-/// Reads the files that a scene names.
+/// Source of the files that a scene refers to, such as a folder or memory.
 pub trait AssetSource: std::fmt::Debug + Sync {
     /// Reads a file by its name in the scene, and adds it to the record.
     ///
@@ -199,13 +199,13 @@ pub trait AssetSource: std::fmt::Debug + Sync {
     /// [`SourceError`]: the file does not exist, is not allowed, or cannot be read.
     fn read(&self, name: &str) -> Result<Arc<[u8]>, SourceError>;
 
-    /// Returns true if a file of this name exists and may be read.
+    /// True if a file with this name exists and may be read.
     fn contains(&self, name: &str) -> bool;
 
-    /// Record of what was read so far.
+    /// Returns the record of the files that were read so far.
     fn record(&self) -> &ReadRecord;
 
-    /// Number of bytes that may still be read; decompressing a file reduces it.
+    /// Number of bytes that may still be read. Decompressed bytes count too.
     fn budget(&self) -> u64 {
         u64::MAX
     }
@@ -213,7 +213,7 @@ pub trait AssetSource: std::fmt::Debug + Sync {
     /// Subtracts bytes from the budget.
     fn spend(&self, _bytes: u64) {}
 
-    /// Reads a file named by the user instead of the scene, which may be anywhere. Adds it to the
+    /// Reads a file that the user named instead of the scene, so it may be anywhere. Adds it to the
     /// record under its path.
     ///
     /// # Errors
@@ -223,7 +223,7 @@ pub trait AssetSource: std::fmt::Debug + Sync {
         self.read(&path.to_string_lossy())
     }
 
-    /// Version of a file by its name in the scene; `None` if it is unknown.
+    /// Returns the version of a file by its name in the scene; `None` if it is unknown.
     fn stamp(&self, _name: &str) -> Option<Stamp> {
         None
     }
@@ -234,7 +234,7 @@ pub trait AssetSource: std::fmt::Debug + Sync {
     }
 }
 
-/// Files in memory, by name.
+/// Source of files that are held in memory, by name.
 #[derive(Clone, Debug, Default)]
 pub struct MemorySource {
     files: BTreeMap<String, Arc<[u8]>>,
@@ -242,7 +242,7 @@ pub struct MemorySource {
 }
 
 impl MemorySource {
-    /// Adds a file, or replaces the file of this name.
+    /// Adds a file, or replaces the file with this name.
     pub fn insert(&mut self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) {
         self.files.insert(name.into(), bytes.into());
     }

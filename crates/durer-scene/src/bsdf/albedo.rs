@@ -1,11 +1,11 @@
-//! Directional albedo of rough surfaces, as tables.
+//! Tables of the directional albedo of rough surfaces.
 //!
-//! A single reflection off a rough surface loses the light that would be reflected a second time.
+//! A single-scattering microfacet model loses the light that would be reflected more than once.
 //! Dividing by these tables restores it, so that a lossless surface stays white. Source: Turquin,
 //! *Practical multiple scattering compensation for microfacet models*, 2019.
 //!
-//! [`super::Tables::prepare`] computes the tables of a world's materials with all threads when the
-//! world is compiled. Other tables are computed at first use.
+//! [`super::Tables::prepare`] computes the tables that a world's materials need, on all threads,
+//! when the world is compiled. Other tables are computed on first use.
 
 mod anisotropic;
 
@@ -16,13 +16,13 @@ use crate::spectrum::Spectrum;
 use rayon::prelude::*;
 use std::sync::OnceLock;
 
-/// Number of rows and of columns of a table.
+/// Number of rows and of columns in a table.
 const SIZE: usize = 32;
 
-/// Number of points of each integral.
+/// Number of sample points per integral.
 const POINTS: u32 = 1024;
 
-/// Table of a function of a cosine and a roughness, both in [0, 1].
+/// Table of a function of a cosine and a roughness, both in [0, 1], such as a directional albedo.
 #[derive(Clone, Debug, PartialEq)]
 struct Table(Vec<f32>);
 
@@ -34,7 +34,7 @@ impl Table {
         Table((0..SIZE * SIZE).into_par_iter().map(entry).collect())
     }
 
-    /// Value at a cosine and a roughness, interpolated linearly.
+    /// Returns the value at a cosine and a roughness, interpolated linearly.
     fn at(&self, cosine: f32, roughness: f32) -> f32 {
         let ((i, a), (j, b)) = (place(cosine.max(0.0).sqrt()), place(roughness));
         let row = |j: usize| self.0[j * SIZE + i] * (1.0 - a) + self.0[j * SIZE + i + 1] * a;
@@ -42,12 +42,13 @@ impl Table {
     }
 }
 
-/// Index of the table entry below `x` in [0, 1], and the fraction towards the next entry.
+/// Returns the index of the table entry below `x` in [0, 1], and the fraction towards the next
+/// entry.
 fn place(x: f32) -> (usize, f32) {
     place_among(x, SIZE)
 }
 
-/// Index and fraction as in [`place`], for a table of `size` entries.
+/// Version of [`place`] for a table of `size` entries.
 fn place_among(x: f32, size: usize) -> (usize, f32) {
     let x = x.clamp(0.0, 1.0) * (size - 1) as f32;
     let i = (x as usize).min(size - 2);
@@ -64,8 +65,8 @@ fn mean_by_cosine(value: impl Fn(f32) -> f32) -> f32 {
 
 /// Returns the value of `cell`, computing it with `make` at first use.
 ///
-/// Holds no lock while `make` runs: a rayon thread that waits may steal work that needs this same
-/// value, and would deadlock. Concurrent callers all compute the same value.
+/// Holds no lock while `make` runs. With a lock, a waiting rayon thread could steal work that needs
+/// the same value, and deadlock. Concurrent callers all compute the same value.
 fn once<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
     cell.get().unwrap_or_else(|| {
         let made = make();
@@ -94,7 +95,7 @@ fn isotropic(roughness: f32) -> Ggx {
     Ggx::new(roughness, 0.0).clamped()
 }
 
-/// Directional albedo of single scattering off GGX with perfectly reflecting facets.
+/// Directional albedo of single scattering off a GGX surface with perfectly reflecting facets.
 pub fn ggx(cosine: f32, roughness: f32) -> f32 {
     static TABLE: OnceLock<Table> = OnceLock::new();
     let table = once(&TABLE, || {
@@ -106,15 +107,15 @@ pub fn ggx(cosine: f32, roughness: f32) -> f32 {
     table.at(cosine, roughness)
 }
 
-/// Weight of one sampled facet that reflects all light.
+/// Weight of the reflection off one sampled facet that reflects all light.
 fn mirrored(ggx: Ggx, wo: Vec3, u: Vec2) -> f32 {
     let h = ggx.sample_visible(wo, u);
     let wi = 2.0 * wo.dot(h) * h - wo;
     if wi.z > 0.0 { ggx.masking_shadowing(wo, wi) / ggx.masking(wo) } else { 0.0 }
 }
 
-/// Value of [`ggx`] for a surface that may be anisotropic. `roughness` is only used for an
-/// isotropic one.
+/// Version of [`ggx`] that also accepts anisotropic surfaces. `roughness` is used only if the
+/// surface is isotropic.
 pub fn facets(surface: Ggx, wo: Vec3, roughness: f32) -> f32 {
     static TABLE: OnceLock<anisotropic::Table> = OnceLock::new();
     match surface.is_even() {
@@ -139,18 +140,20 @@ pub fn fuzz(cosine: f32, roughness: f32) -> f32 {
     table.at(cosine, roughness)
 }
 
-/// Boundary between two dielectrics of a given relative index.
+/// Boundary between two dielectrics of a given relative index, with albedo tables that are computed
+/// on first use.
 #[derive(Clone, Debug)]
 pub struct Dielectric {
-    /// Index of refraction inside over that outside.
+    /// Index of refraction inside, relative to the index outside.
     pub ior: f32,
     /// Cosine-weighted mean of the reflectance from outside, for a smooth boundary.
     smooth_mean: f32,
-    /// Tables from outside and from inside: the reflected share, and the share that is not lost.
+    /// Tables for light from outside and from inside: the reflected share, and the share that is
+    /// not lost.
     tables: OnceLock<[[Table; 2]; 2]>,
-    /// Cosine-weighted mean of the reflectance from outside, for each roughness of the tables.
+    /// Cosine-weighted mean of the reflectance from outside, for each roughness in the tables.
     means: OnceLock<Vec<f32>>,
-    /// Share that is not lost, from outside and from inside, for anisotropic roughness.
+    /// Share that is not lost, from outside and from inside, for anisotropic surfaces.
     uneven: OnceLock<[anisotropic::Table; 2]>,
 }
 
@@ -161,13 +164,13 @@ impl PartialEq for Dielectric {
 }
 
 impl Dielectric {
-    /// Boundary of relative index `ior`, without tables yet.
+    /// Creates a boundary of relative index `ior`. Its tables are computed on first use.
     pub fn new(ior: f32) -> Self {
         let smooth_mean = mean_by_cosine(|cosine| fresnel::dielectric(cosine, ior));
         Dielectric { ior, smooth_mean, tables: OnceLock::new(), means: OnceLock::new(), uneven: OnceLock::new() }
     }
 
-    /// Tables of the reflected share and of the share that is not lost, from one side.
+    /// Returns the tables for one side: the reflected share, and the share that is not lost.
     fn tables(&self, inside: bool) -> &[Table; 2] {
         let both = once(&self.tables, || {
             [self.ior, 1.0 / self.ior].map(|eta| {
@@ -188,13 +191,14 @@ impl Dielectric {
         self.tables.get().is_some()
     }
 
-    /// Share of one reflection among the light that is not lost, from inside or from outside.
+    /// Reflected share of the light that single scattering does not lose, from inside or from
+    /// outside.
     pub fn reflected(&self, inside: bool, cosine: f32, roughness: f32) -> f32 {
         let [reflected, all] = self.tables(inside);
         (reflected.at(cosine, roughness) / all.at(cosine, roughness)).min(1.0)
     }
 
-    /// Reflectance from outside; Fresnel's value if the boundary is smooth.
+    /// Reflectance from outside; equal to the Fresnel reflectance if the boundary is smooth.
     pub fn reflectance(&self, cosine: f32, roughness: f32) -> f32 {
         match Ggx::new(roughness, 0.0).is_smooth() {
             true => fresnel::dielectric(cosine, self.ior),
@@ -216,14 +220,15 @@ impl Dielectric {
         means[i] * (1.0 - a) + means[i + 1] * a
     }
 
-    /// Factor for one reflection or refraction that compensates for the lost light.
+    /// Factor for a single reflection or refraction that compensates for the light lost to multiple
+    /// scattering.
     pub fn gain(&self, inside: bool, cosine: f32, roughness: f32) -> f32 {
         1.0 / self.tables(inside)[1].at(cosine, roughness)
     }
 
-    /// Value of [`Dielectric::gain`] for a surface that may be anisotropic. `eta` is the index
-    /// behind the boundary over that before it. It differs from the boundary's own index if another
-    /// medium is around it.
+    /// Version of [`Dielectric::gain`] that also accepts anisotropic surfaces. `eta` is the index
+    /// behind the boundary, relative to the index in front of it. It differs from the boundary's
+    /// own index if another medium surrounds the object.
     pub fn gain_of(&self, inside: bool, eta: f32, surface: Ggx, wo: Vec3, roughness: f32) -> f32 {
         let own = if inside { 1.0 / self.ior } else { self.ior };
         if (eta / own - 1.0).abs() > NEAR {
@@ -239,11 +244,13 @@ impl Dielectric {
     }
 }
 
-/// Largest relative difference of indices that share a table. Dispersion of glass stays below it.
+/// Largest relative difference between indices that share a table. Dispersion of glass stays below
+/// it.
 const NEAR: f32 = 0.05;
 
-/// Mean of `value` over the visible facets of a rough surface, by few points. `value` takes the
-/// cosine at a facet. Used where there are too many kinds of surfaces for tables.
+/// Estimates the mean of `value` over the visible facets of a rough surface from a few points.
+/// `value` takes the cosine at a facet. Used where the surfaces have too many parameters for
+/// tables.
 pub fn over_facets(surface: Ggx, wo: Vec3, value: impl Fn(f32) -> Spectrum) -> Spectrum {
     const FEW: usize = 16;
     let (ggx, cosine) = (surface.clamped(), wo.z);
@@ -258,8 +265,9 @@ pub fn over_facets(surface: Ggx, wo: Vec3, value: impl Fn(f32) -> Spectrum) -> S
     if all > 0.0 { sum / all } else { value(cosine) }
 }
 
-/// Cosine-weighted means over the hemisphere of one reflection off a boundary, and of reflection
-/// and refraction together, by few points. Used where tables are not worth their cost.
+/// Estimates from a few points the cosine-weighted means over the hemisphere of one reflection off
+/// a boundary, and of reflection and refraction together. Used where tables are not worth their
+/// cost.
 pub fn single_means(eta: f32, roughness: f32) -> [f32; 2] {
     const COSINES: usize = 16;
     const FEW: usize = 64;
@@ -271,7 +279,7 @@ pub fn single_means(eta: f32, roughness: f32) -> [f32; 2] {
     })
 }
 
-/// Weight of one sampled facet: its reflection, or with `all` its reflection and refraction.
+/// Weight of one sampled facet: its reflection, or its reflection and refraction if `all` is set.
 fn single(ggx: Ggx, wo: Vec3, eta: f32, u: Vec2, all: bool) -> f32 {
     let h = ggx.sample_visible(wo, u);
     let cosine = wo.dot(h).max(0.0);
@@ -299,8 +307,8 @@ mod tests {
         std::thread::spawn(move || {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
             let cell = OnceLock::new();
-            // Yield as a thread does while it waits for a part of the table: it steals the next
-            // tile.
+            // Yield, as a thread does while it waits for a part of the table. It then steals the
+            // next tile.
             let tile = || *once(&cell, || (rayon::yield_now(), 5).1);
             let _ = sender.send(pool.install(|| rayon::join(tile, tile)));
         });

@@ -1,58 +1,59 @@
-//! Thin films: soap, oil on water, tempered steel. Light reflected at their upper and lower
-//! boundaries interferes.
+//! Thin films, such as soap, oil on water, and the oxide on tempered steel. Light reflected at the
+//! upper boundary interferes with light reflected at the lower one.
 //!
 //! Sources: Airy's sum of all reflections in a film (Born and Wolf, *Principles of Optics*, section
-//! 7.6); its orders one by one for colours: Belcour and Barla, *A Practical Extension to Microfacet
-//! Theory for the Modeling of Varying Iridescence*, SIGGRAPH 2017.
+//! 7.6); the sum by interference orders, used for RGB colours: Belcour and Barla, *A Practical
+//! Extension to Microfacet Theory for the Modeling of Varying Iridescence*, SIGGRAPH 2017.
 
 use super::fresnel;
 use crate::math::{Vec2, fp};
 use crate::spectrum::{Lanes, Spectrum, interference};
 use std::f32::consts::TAU;
 
-/// Film on a base, seen from the medium before it.
+/// Thin film on a dielectric or metal base, with an iridescent reflectance. Indices are relative to
+/// the medium in front of the film.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Film {
     /// Wavelengths of the lanes in nanometres; 0 for RGB lanes.
     nm: Spectrum,
-    /// Index of a dielectric base over that of the medium before the film, or reflectance of a
+    /// Index of a dielectric base relative to the medium in front of the film, or reflectance of a
     /// metal base at normal incidence.
     below: Spectrum,
     metal: bool,
     /// Thickness in nanometres.
     thickness: f32,
-    /// Index of the film over that of the medium before it.
+    /// Index of the film relative to the medium in front of it.
     ior: f32,
     /// Share of the surface that the film covers, from 0 to 1.
     weight: f32,
 }
 
-/// Position of a metal's index between the largest (0) and the smallest (1) that its reflectance
-/// allows. This value suits gold, copper, silver and aluminium.
+/// Position of a metal's index between the largest (0) and the smallest (1) index that its
+/// reflectance allows. This value suits gold, copper, silver and aluminium.
 ///
 /// Source of the formulas: Gulbrandsen, *Artist Friendly Metallic Fresnel*, JCGT 3(4), 2014.
 const METALLIC: f32 = 0.985;
 
-/// Maximum number of interference orders in a sum for colours. Later orders are invisible at eight
-/// bits.
+/// Maximum number of interference orders that are summed for RGB colours. Higher orders are
+/// invisible at eight bits.
 const ORDERS: i32 = 12;
 
 impl Film {
-    /// Film on a dielectric. Indices are relative to the medium before the film. `micrometres` is
-    /// the thickness.
+    /// Creates a film on a dielectric base. Indices are relative to the medium in front of the
+    /// film. `micrometres` is the thickness.
     pub fn on_dielectric(lanes: &Lanes, micrometres: f32, ior: f32, eta: f32, weight: f32) -> Self {
         let below = Spectrum::splat(eta);
         Film { nm: wavelengths(lanes), below, metal: false, thickness: 1_000.0 * micrometres, ior, weight }
     }
 
-    /// Film on a metal, whose reflectance at normal incidence is `reflected`.
+    /// Creates a film on a metal base, whose reflectance at normal incidence is `reflected`.
     pub fn on_metal(lanes: &Lanes, micrometres: f32, ior: f32, reflected: Spectrum) -> Self {
         let below = reflected.clamp(Spectrum::splat(0.01), Spectrum::splat(0.999));
         Film { nm: wavelengths(lanes), below, metal: true, thickness: 1_000.0 * micrometres, ior, weight: 1.0 }
     }
 
-    /// Reflectance for unpolarised light at a cosine from 0 to 1. From inside (an index below 1) it
-    /// equals the reflectance from outside along the same path.
+    /// Reflectance for unpolarised light at a cosine from 0 to 1. For light from inside (an index
+    /// below 1), it equals the reflectance from outside along the same path.
     pub fn reflected(&self, cosine: f32) -> Spectrum {
         if self.metal {
             return self.covered(cosine);
@@ -86,7 +87,7 @@ impl Film {
         ];
         let mut sum = Spectrum::ZERO;
         for lane in 0..4 {
-            // The fourth RGB lane is green again.
+            // In RGB mode, the fourth lane repeats green.
             let below = self.behind(lane, sine2, inside);
             for (first, second) in boundaries.into_iter().zip(below) {
                 sum[lane] += match self.nm.x > 0.0 {
@@ -98,14 +99,14 @@ impl Film {
         (0.5 * sum).clamp(Spectrum::ZERO, Spectrum::ONE)
     }
 
-    /// Reflected amplitudes of the lower boundary, perpendicular and parallel to the plane of
-    /// incidence.
+    /// Complex reflection coefficients of the lower boundary, for light polarised perpendicular and
+    /// parallel to the plane of incidence.
     fn behind(&self, lane: usize, sine2: f32, inside: f32) -> [Vec2; 2] {
         let index = match self.metal {
             true => metal_index(self.below[lane]),
             false => Vec2::new(self.below[lane], 0.0),
         };
-        // The square of the complex cosine behind is 1 - sin^2 / n^2.
+        // The squared complex cosine behind the boundary is 1 - sin^2 / n^2.
         let square = times(index, index);
         let cosine = root(Vec2::X - over(Vec2::new(sine2, 0.0), square));
         let film = self.ior;
@@ -167,7 +168,7 @@ fn over(a: Vec2, b: Vec2) -> Vec2 {
     times(a, Vec2::new(b.x, -b.y)) / b.length_squared()
 }
 
-/// Square root in the upper half-plane.
+/// Complex square root in the upper half-plane.
 fn root(a: Vec2) -> Vec2 {
     let length = a.length();
     let real = (0.5 * (length + a.x)).max(0.0).sqrt();
@@ -201,7 +202,8 @@ mod tests {
 
     #[test]
     fn quarter_wave_film_of_matched_index_reflects_nothing() {
-        // The index is the root of the glass's index; the thickness is a quarter of the wavelength.
+        // The film's index is the square root of the glass's; the thickness is a quarter of the
+        // wavelength.
         let lanes = waves(0.4);
         let nm = lanes.hero().unwrap();
         let ior = 1.52_f32.sqrt();

@@ -2,7 +2,8 @@
 
 use crate::math::Vec3;
 
-/// Orthonormal basis. Directions in it are *local*: z is the cosine to the normal.
+/// Orthonormal basis at a surface point, for BSDFs. Directions in it are *local*: z is the cosine
+/// to the normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Local x axis: the direction of increasing u, if the surface has one.
@@ -14,7 +15,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Arbitrary frame around a unit normal.
+    /// Creates a frame around a unit normal, with an arbitrary tangent.
     ///
     /// Source: Duff and others, *Building an Orthonormal Basis, Revisited*, JCGT 6(1), 2017.
     pub fn around(normal: Vec3) -> Frame {
@@ -28,7 +29,7 @@ impl Frame {
         }
     }
 
-    /// Frame around a unit normal, with its x axis as close to `direction` as possible.
+    /// Creates a frame around a unit normal, with its x axis as close to `direction` as possible.
     pub fn along(normal: Vec3, direction: Vec3) -> Frame {
         match (direction - normal * normal.dot(direction)).try_normalize() {
             Some(tangent) => Frame { tangent, bitangent: normal.cross(tangent), normal },

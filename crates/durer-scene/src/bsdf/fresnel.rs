@@ -1,11 +1,11 @@
-//! Reflectance of smooth boundaries.
+//! Fresnel reflectance of smooth dielectrics, metals and thin sheets.
 
 use crate::math::{Color, Vec3, fp};
 use crate::spectrum::{Spectrum, SpectrumSource, under_daylight};
 
 /// Reflectance of a boundary between two dielectrics for unpolarised light. `cosine` is the cosine
-/// between the light and the normal, from 0 to 1. `eta` is the index behind the boundary over the
-/// index before it.
+/// between the light and the normal, from 0 to 1. `eta` is the index behind the boundary, relative
+/// to the index in front of it.
 ///
 /// Source: Fresnel's equations, as in *Physically Based Rendering*, 4th edition, section 9.3.5.
 pub fn dielectric(cosine: f32, eta: f32) -> f32 {
@@ -25,8 +25,8 @@ fn polarised(cosine: f32, eta: f32) -> [f32; 2] {
     [parallel * parallel, perpendicular * perpendicular]
 }
 
-/// Colours of a metal's reflection at normal incidence and at cosine 1/7, seen from a medium of
-/// index `outside`.
+/// Colours of a metal's reflection at normal incidence and at cosine 1/7, for light that arrives in
+/// a medium of index `outside`.
 pub fn conductor_colors(eta: &SpectrumSource, k: &SpectrumSource, outside: f32) -> [Color; 2] {
     [1.0, 1.0 / 7.0].map(|cosine| match (eta, k) {
         (SpectrumSource::Rgb(n), SpectrumSource::Rgb(k)) => {
@@ -51,21 +51,21 @@ pub fn conductor(cosine: f32, n: f32, k: f32) -> f32 {
     if share.is_finite() { share as f32 } else { 1.0 }
 }
 
-/// Thin sheet of a dielectric, with internal reflections.
+/// Thin dielectric sheet, such as a window pane, with internal reflections between its faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sheet {
-    /// Index of the sheet over that of the medium around it.
+    /// Index of the sheet, relative to the medium around it.
     pub eta: f32,
-    /// Transmittance of the inside at normal incidence, if the sheet has a depth.
+    /// Transmittance of the interior at normal incidence; `None` for a sheet without a depth.
     pub inside: Option<Spectrum>,
 }
 
 impl Sheet {
     /// Reflectance and transmittance at a cosine, including all internal reflections.
     ///
-    /// Without a depth these are 2 F / (1 + F) and the remainder, with unpolarised light at each
-    /// face, as in other renderers. With a depth, light keeps its polarisation and loses more at an
-    /// angle.
+    /// Without a depth these are 2 F / (1 + F) and the remainder, assuming unpolarised light at
+    /// each face, as other renderers do. With a depth, light keeps its polarisation between the
+    /// faces, and more light is absorbed at oblique angles.
     pub fn at(&self, cosine: f32) -> (Spectrum, Spectrum) {
         let Sheet { eta, inside } = *self;
         let Some(inside) = inside else {
@@ -89,7 +89,7 @@ impl Sheet {
     }
 }
 
-/// Transmittance of the inside at an angle, where the path is longer.
+/// Transmittance of the interior at an oblique angle, where the path through it is longer.
 fn left_of(inside: Spectrum, cosine: f32, eta: f32) -> Spectrum {
     let behind = (1.0 - (1.0 - cosine * cosine).max(0.0) / (eta * eta)).max(0.0).sqrt();
     inside.max(Spectrum::ZERO).map(|left| if left < 1.0 { fp::pow(left, 1.0 / behind.max(1e-3)) } else { 1.0 })
@@ -116,19 +116,20 @@ pub fn diffuse(eta: f32) -> f32 {
     .clamp(0.0, 1.0)
 }
 
-/// Relative index of a boundary with reflectance `r0` at normal incidence.
+/// Relative index of a boundary whose reflectance at normal incidence is `r0`.
 pub fn ior_of_reflectance(r0: f32) -> f32 {
     let root = r0.clamp(0.0, 0.98).sqrt();
     (1.0 + root) / (1.0 - root)
 }
 
-/// Schlick's reflectance at 82 degrees (cosine 1/7) for the colour `f0` at normal incidence. There
-/// [`F82`] applies its tint.
+/// Schlick's reflectance at 82 degrees (cosine 1/7) for the colour `f0` at normal incidence.
+/// [`F82`] applies its tint at this angle.
 pub fn schlick_82(f0: Color) -> Color {
     f0 + (Color::ONE - f0) * fp::pow(6.0 / 7.0, 5.0)
 }
 
-/// Reflectance of a metal, given by its colour at normal incidence and a tint at 82 degrees.
+/// Reflectance curve of a metal, defined by its colour at normal incidence and a tint at 82
+/// degrees.
 ///
 /// Source: Kutz, Hasan and Edmondson, *Novel aspects of the Adobe Standard Material*, 2021, section
 /// 2.3; OpenPBR, Metal.
@@ -143,7 +144,7 @@ impl F82 {
     /// Metal that reflects all light at every angle.
     pub const WHITE: F82 = F82 { f0: Spectrum::ONE, dip: Spectrum::ZERO };
 
-    /// Metal with a colour at normal incidence and a tint.
+    /// Creates the curve of a metal with a colour at normal incidence and a tint.
     pub fn new(f0: Spectrum, tint: Spectrum) -> Self {
         const COSINE: f32 = 1.0 / 7.0;
         let rest = 1.0 - COSINE;
@@ -167,8 +168,8 @@ mod tests {
 
     #[test]
     fn conductor_agrees_with_fresnel_equations() {
-        // Normal incidence: ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2). For k = 0: the dielectric
-        // equations.
+        // At normal incidence, the reflectance is ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2). For k = 0,
+        // the dielectric equations apply.
         for (n, k) in [(0.2, 3.4), (1.5, 0.0), (2.9, 3.1)] {
             let right = ((n - 1.0_f32) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k);
             assert!((conductor(1.0, n, k) - right).abs() < 1e-6);
@@ -180,7 +181,7 @@ mod tests {
 
     #[test]
     fn conductor_colours_agree_for_curve_and_rgb() {
-        // Gold given by three wavelength bands, and by three colours.
+        // Gold, given by three wavelength bands and by three RGB values.
         let curve = |c: [f32; 3]| {
             let rows = [[300.0, c[2]], [489.0, c[2]], [490.0, c[1]], [579.0, c[1]], [580.0, c[0]], [900.0, c[0]]];
             SpectrumSource::Curve(rows.to_vec())

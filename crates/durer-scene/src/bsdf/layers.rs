@@ -22,7 +22,7 @@ use crate::math::{Vec3, fp};
 use crate::spectrum::{Curve, Lanes, Spectrum};
 use std::sync::Arc;
 
-/// Data computed once per material.
+/// Albedo tables and measured base spectrum of a principled material, computed once per material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tables {
     /// Boundary of an opaque base.
@@ -36,8 +36,8 @@ pub struct Tables {
 }
 
 impl Tables {
-    /// Tables for a material, with the measured spectrum of its base, if any. `known` caches
-    /// boundaries by index.
+    /// Creates the tables of a material. `measured` is the measured spectrum of its base, if any.
+    /// `known` caches boundaries by index of refraction.
     pub fn new(material: &PrincipledMaterial, measured: Option<Arc<Curve>>, known: &mut Vec<Arc<Dielectric>>) -> Self {
         let mut of = |ior: f32| {
             let found = known.iter().find(|tables| tables.ior == ior).cloned();
@@ -54,10 +54,10 @@ impl Tables {
         }
     }
 
-    /// Computes with all threads the tables that points of the material can use, so that no render
-    /// thread has to.
+    /// Computes, on all threads, the tables that the material can use, so that no render thread has
+    /// to.
     pub fn prepare(&self, m: &PrincipledMaterial) {
-        // A texture multiplies: it keeps 0, but may change any other value.
+        // A texture multiplies the parameter: it keeps 0, but may change any other value.
         let all = |share: f32, picture: &Option<FileName>| share == 1.0 && picture.is_none();
         let metal = all(m.base_metalness, &m.base_metalness_texture) && m.metallic_roughness_texture.is_none();
         let glass = all(m.transmission_weight, &m.transmission_weight_texture);
@@ -117,15 +117,16 @@ fn mix(a: f32, b: f32, share: f32) -> f32 {
     a + share * (b - a)
 }
 
-/// Quotient `shares / of` by lane; 1 where `of` is 0.
+/// Quotient `shares / of`, lane by lane; 1 where `of` is 0.
 fn parts(shares: Spectrum, of: Spectrum) -> Spectrum {
     Spectrum::select(of.cmpgt(Spectrum::splat(1e-6)), shares / of, Spectrum::ONE)
 }
 
-/// View of a point of a principled material.
+/// View of a surface point for which the lobes of a principled material are built: its direction,
+/// lanes and relative index of refraction.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
-    /// Lanes in which light is represented.
+    /// RGB lanes or wavelengths in which light is represented.
     pub lanes: &'a Lanes,
     /// Local direction to the viewer.
     pub wo: Vec3,
@@ -133,11 +134,11 @@ pub struct View<'a> {
     pub normal: Vec3,
     /// True if the point is seen from inside.
     pub inside: bool,
-    /// Index of refraction behind the boundary over that before it.
+    /// Index of refraction behind the boundary, relative to the index in front of it.
     pub eta: f32,
 }
 
-/// Adds the lobes of the material `here`, each scaled by `factor`.
+/// Adds the lobes of a material with the parameters `here` to `bsdf`, each scaled by `factor`.
 pub fn scattering<'a>(bsdf: &mut Bsdf<'a>, factor: f32, here: &Parameters, tables: &'a Tables, view: View) {
     let stack = Stack {
         here,
@@ -152,7 +153,7 @@ pub fn scattering<'a>(bsdf: &mut Bsdf<'a>, factor: f32, here: &Parameters, table
     stack.scattering(bsdf, factor);
 }
 
-/// Layers of one point.
+/// Layers of a principled material at one surface point, from which its lobes are built.
 struct Stack<'a, 't> {
     here: &'a Parameters,
     tables: &'t Tables,
@@ -169,7 +170,8 @@ impl<'t> Stack<'_, 't> {
         if m.fuzz_weight > 0.0 && !view.inside {
             let roughness = m.fuzz_roughness;
             let reflectance = albedo::fuzz(mu, roughness);
-            // At grazing angles, the fibres would reflect more light than arrives.
+            // At grazing angles, the fibres would reflect more light than arrives: limit their
+            // albedo to 1.
             let scale = m.fuzz_weight * (1.0 / reflectance).min(1.0);
             bsdf.push(
                 Fuzz { roughness },
@@ -218,7 +220,7 @@ impl<'t> Stack<'_, 't> {
         }
     }
 
-    /// Adds the light that enters the body, or that a thin sheet scatters to both sides.
+    /// Adds the light that enters the body, or the light that a thin sheet scatters to both sides.
     fn subsurface(&self, bsdf: &mut Bsdf<'t>, weight: Spectrum, boundary: Option<Boundary<'t>>) {
         if weight.max_element() <= 0.0 {
             return;
@@ -287,13 +289,12 @@ impl<'t> Stack<'_, 't> {
         if self.compensates() { albedo::facets(ggx, self.view.wo, roughness) } else { 1.0 }
     }
 
-    /// Factor for the base below a coat: absorption on the way down and up, and internal
-    /// reflection.
+    /// Factor for the base below a coat: absorption on the way in and out, and internal reflection.
     fn coat(&self, mu: f32) -> Spectrum {
         let m = self.here;
         let eta = m.coat_ior;
         let inside = (1.0 - (1.0 - mu * mu) / (eta * eta)).max(0.01).sqrt();
-        // Down at normal incidence, on average; up along the view direction.
+        // On average, light enters at normal incidence. It leaves along the view direction.
         let tint = power(self.view.lanes.reflectance(m.coat_color), 0.5 + 0.5 / inside);
         let roughness = mix(1.0, self.here.specular_roughness, self.here.base_metalness);
         let thrown_back = mix(fresnel::dielectric(mu, eta), fresnel::diffuse(1.0 / eta), roughness);
@@ -331,7 +332,7 @@ impl<'t> Stack<'_, 't> {
             return bsdf.push(Mirror, reflected, reflected.max_element());
         }
         let reflectance = self.facets(ggx, roughness);
-        // Every further reflection is tinted by the metal's colour again.
+        // Each further reflection between facets is tinted by the metal's colour again.
         let again = Spectrum::ONE + self.base * ((1.0 - reflectance) / reflectance);
         let rough = Rough { ggx: ggx.clamped(), facet: Facet::Metal(f82), behind: false };
         bsdf.push(rough, weight * again, (weight * f82.at(mu)).max_element());
@@ -339,7 +340,7 @@ impl<'t> Stack<'_, 't> {
 
     fn glass(&self, bsdf: &mut Bsdf<'t>, roughness: f32, weight: Spectrum) {
         let (m, View { wo, inside, eta, .. }) = (self.here, self.view);
-        // With a depth, the colour belongs to the interior, instead of the surface.
+        // With a depth, the colour applies to the interior instead of the surface.
         let tint = match m.transmission_depth > 0.0 {
             true => Spectrum::ONE,
             false => self.view.lanes.reflectance(m.transmission_color),
@@ -381,7 +382,7 @@ impl<'t> Stack<'_, 't> {
         let (m, wo, mu) = (self.here, self.view.wo, self.view.wo.z);
         let (eta, ggx) = (m.specular_ior, Ggx::new(roughness, m.specular_anisotropy));
         let color = self.view.lanes.reflectance(m.transmission_color);
-        // With a depth, the interior has the colour; without one, the colour tints all transmitted
+        // With a depth, the colour applies to the interior. Without one, it tints all transmitted
         // light.
         let (inside, tint) = if m.transmission_depth > 0.0 { (Some(color), Spectrum::ONE) } else { (None, color) };
         let sheet = Sheet { eta, inside };

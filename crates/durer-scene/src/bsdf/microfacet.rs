@@ -8,19 +8,19 @@ use super::warp;
 use crate::math::{Vec2, Vec3, fp};
 use std::f32::consts::PI;
 
-/// Smallest alpha of a rough surface. Below it along both axes a surface counts as smooth.
+/// Smallest alpha of a rough surface. If both alphas are smaller, the surface counts as smooth.
 pub const SMOOTH: f32 = 1e-3;
 
-/// Distribution of the normals of a rough surface.
+/// GGX distribution of the microfacet normals of a rough surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ggx {
-    /// Alpha along the local x and y axes.
+    /// Roughness parameter alpha along the local x and y axes.
     pub alpha: Vec2,
 }
 
 impl Ggx {
-    /// Distribution for a roughness and an anisotropy, both in [0, 1], as in OpenPBR. Alpha is the
-    /// square of the roughness.
+    /// Creates a distribution from a roughness and an anisotropy, both in [0, 1], as in OpenPBR.
+    /// Alpha is the square of the roughness.
     pub fn new(roughness: f32, anisotropy: f32) -> Self {
         let square = roughness * roughness;
         let rest = 1.0 - anisotropy;
@@ -29,7 +29,7 @@ impl Ggx {
         Ggx { alpha: Vec2::new(ax.min(1.0), rest * ax) }
     }
 
-    /// Roughness, anisotropy and rotation (in turns) for alphas along u and v.
+    /// Returns the roughness, anisotropy and rotation (in turns) for given alphas along u and v.
     pub fn parameters(alpha: [f32; 2]) -> [f32; 3] {
         let [u, v] = alpha.map(|alpha| alpha.clamp(0.0, 1.0));
         let mean = (0.5 * (u * u + v * v)).sqrt();
@@ -47,7 +47,8 @@ impl Ggx {
         self.alpha.max_element() < SMOOTH
     }
 
-    /// Distribution with alphas large enough for a finite density.
+    /// Returns the distribution with its alphas raised to [`SMOOTH`], so that the density is
+    /// finite.
     pub fn clamped(self) -> Self {
         Ggx { alpha: self.alpha.max(Vec2::splat(SMOOTH)) }
     }
@@ -71,12 +72,12 @@ impl Ggx {
         if s.is_finite() { 0.5 * s / ((1.0 + s).sqrt() + 1.0) } else { f32::INFINITY }
     }
 
-    /// Share of the normals visible from a direction.
+    /// Share of the facets that are visible from a direction (Smith's G1).
     pub fn masking(&self, w: Vec3) -> f32 {
         1.0 / (1.0 + self.lambda(w))
     }
 
-    /// Share of the normals visible from both directions, with height correlation.
+    /// Share of the facets that are visible from both directions (height-correlated G2).
     pub fn masking_shadowing(&self, wo: Vec3, wi: Vec3) -> f32 {
         1.0 / (1.0 + self.lambda(wo) + self.lambda(wi))
     }

@@ -22,18 +22,18 @@ pub use layers::Tables;
 pub use lobe::{Lobe, LobeKind, Scatter, Spread};
 use smallvec::SmallVec;
 
-/// Lobe with its weight and its sampling probability.
+/// Lobe of a BSDF with its weight and its sampling probability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeightedLobe<'a> {
-    /// Lobe.
+    /// Scattering lobe.
     pub lobe: Lobe<'a>,
-    /// Factor of its value.
+    /// Factor that scales the lobe's value.
     pub weight: Spectrum,
-    /// Probability of sampling it.
+    /// Probability of sampling this lobe.
     pub probability: f32,
 }
 
-/// Lobes of a surface point for one view direction.
+/// BSDF of a surface point for one view direction, as a weighted sum of lobes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bsdf<'a> {
     lobes: SmallVec<[WeightedLobe<'a>; 4]>,
@@ -41,16 +41,16 @@ pub struct Bsdf<'a> {
     total: f32,
 }
 
-/// Direction sampled from a BSDF.
+/// Incident direction sampled from a BSDF, with its throughput factor and pdf.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BsdfSample {
     /// Local direction to the incident light.
     pub wi: Vec3,
     /// Throughput factor: value · |cos| / pdf.
     pub weight: Spectrum,
-    /// Pdf per solid angle; 0 for a single direction.
+    /// Pdf with respect to solid angle; 0 if a delta lobe was sampled.
     pub pdf: f32,
-    /// Index of the lobe that sampled it.
+    /// Index of the lobe that the direction was sampled from.
     pub lobe: usize,
 }
 
@@ -63,12 +63,12 @@ impl<'a> Bsdf<'a> {
         }
     }
 
-    /// Lobes with their sampling probabilities.
+    /// Returns the lobes with normalised sampling probabilities.
     pub fn lobes(&self) -> impl Iterator<Item = WeightedLobe<'a>> {
         self.lobes.iter().map(|part| WeightedLobe { probability: part.probability / self.total, ..*part })
     }
 
-    /// True if some lobe is not a delta lobe, so that light sampling is useful.
+    /// True if some lobe is not a delta lobe, so that sampling lights is useful.
     pub fn is_broad(&self) -> bool {
         self.lobes.iter().any(|part| !part.lobe.is_delta())
     }
@@ -79,7 +79,7 @@ impl<'a> Bsdf<'a> {
         glossy.map(|part| part.probability).sum::<f32>() >= 0.5 * self.total
     }
 
-    /// True if some lobe is a fibre, which scatters light to all sides.
+    /// True if some lobe is a hair fibre, which scatters light in all directions.
     pub fn is_fibre(&self) -> bool {
         self.lobes.iter().any(|part| part.lobe.kind().is_fibre)
     }
@@ -112,7 +112,7 @@ impl<'a> Bsdf<'a> {
         if density > 0.0 { (value, density / self.total) } else { (value, 0.0) }
     }
 
-    /// Samples a direction by three numbers, uniform in [0, 1]; `None` if the path ends.
+    /// Samples a direction from three numbers, uniform in [0, 1]; `None` if the path ends.
     pub fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<BsdfSample> {
         let mut rest = choice * self.total;
         let last = self.lobes.len().checked_sub(1)?;
@@ -125,7 +125,7 @@ impl<'a> Bsdf<'a> {
             rest -= part.probability;
         }
         let part = &self.lobes[chosen];
-        // The remainder of `choice` is uniform again.
+        // Reuse the remainder of `choice`, which is uniform again.
         let again = (rest / part.probability).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
         let scattered = part.lobe.sample(wo, again, u)?;
         if part.lobe.is_delta() {

@@ -1,5 +1,5 @@
-//! Numerical checks: samples agree with their pdf, and lossless materials are white in a furnace.
-//! Tests run them with few samples, `cargo xtask validate` with many.
+//! Numerical checks that samples agree with their pdf, and that lossless materials are white in a
+//! furnace. Tests run them with few samples, `cargo xtask validate` with many.
 
 use super::lobe::blinn::Blinn;
 use super::lobe::diffuse::{Diffuse, DiffuseTransmission};
@@ -17,7 +17,8 @@ use crate::spectrum::{Lanes, Spectrum};
 use std::f64::consts::{PI, TAU};
 use std::sync::LazyLock;
 
-/// Cells of equal solid angle, and the number of samples sorted into them.
+/// Grid of cells of equal solid angle on the sphere, in which samples are counted to compare them
+/// with a pdf.
 #[derive(Clone, Copy, Debug)]
 pub struct Cells {
     /// Number of bands from pole to pole.
@@ -30,12 +31,12 @@ pub struct Cells {
     pub fine: usize,
 }
 
-/// Result of a comparison of samples with a pdf.
+/// Result of comparing samples with their pdf: a chi-square test and the integral of the pdf.
 #[derive(Clone, Copy, Debug)]
 pub struct Verdict {
-    /// Chi-square as a deviate of the normal distribution.
+    /// Chi-square statistic, converted to a standard normal deviate.
     pub deviate: f64,
-    /// Integral of the pdf over all directions: 1 less the probability of failed samples.
+    /// Integral of the pdf over all directions: 1 minus the probability of failed samples.
     pub density: f64,
 }
 
@@ -58,8 +59,8 @@ impl Cells {
         mean * 4.0 * PI / (self.rows * self.columns) as f64 * f64::from(self.samples)
     }
 
-    /// Compares samples, drawn by three numbers in [0, 1], with their pdf. `seed` selects the
-    /// numbers.
+    /// Compares samples with their pdf. `sample` draws a sample from three numbers in [0, 1];
+    /// `seed` selects the numbers.
     pub fn compare(&self, seed: u64, sample: impl Fn(f32, Vec2) -> Option<Vec3>, pdf: impl Fn(Vec3) -> f32) -> Verdict {
         let all = self.rows * self.columns;
         let mut counts = vec![0.0_f64; all + 1];
@@ -101,7 +102,7 @@ fn deviate(chi2: f64, freedom: f64) -> f64 {
     (third - (1.0 - spread)) / spread.sqrt()
 }
 
-/// One lobe of every kind that is not a delta lobe, with names.
+/// Returns named examples of every kind of lobe that is not a delta lobe.
 pub fn broad() -> Vec<(&'static str, Lobe<'static>)> {
     let rough = |roughness, anisotropy, facet, behind| {
         Lobe::from(Rough { ggx: Ggx::new(roughness, anisotropy).clamped(), facet, behind })
@@ -147,7 +148,7 @@ pub fn broad() -> Vec<(&'static str, Lobe<'static>)> {
     ]
 }
 
-/// Lossless materials, with names.
+/// Returns named examples of lossless materials.
 pub fn lossless() -> Vec<(&'static str, PrincipledMaterial)> {
     let white = || PrincipledMaterial { base_color: Vec3::ONE, ..Default::default() };
     vec![
@@ -173,7 +174,7 @@ pub fn lossless() -> Vec<(&'static str, PrincipledMaterial)> {
     ]
 }
 
-/// Lossless materials with facets, for tests of anisotropy, with names.
+/// Returns named examples of lossless glossy materials, for tests of anisotropy.
 pub fn brushed() -> Vec<(String, PrincipledMaterial)> {
     let white = || PrincipledMaterial { base_color: Vec3::ONE, ..Default::default() };
     let glass = |ior| PrincipledMaterial { transmission_weight: 1.0, specular_ior: ior, ..white() };
@@ -185,7 +186,8 @@ pub fn brushed() -> Vec<(String, PrincipledMaterial)> {
     all
 }
 
-/// Lossless materials with films, with names. The albedo of rough ones is only approximate.
+/// Returns named examples of lossless materials with films. The albedo of rough ones is
+/// approximate.
 pub fn filmed() -> Vec<(&'static str, PrincipledMaterial)> {
     let film = || PrincipledMaterial { base_color: Vec3::ONE, thin_film_weight: 1.0, ..Default::default() };
     let bubble = PrincipledMaterial { specular_ior: 1.0, transmission_weight: 1.0, walls: Walls::Thin, ..film() };
@@ -193,25 +195,25 @@ pub fn filmed() -> Vec<(&'static str, PrincipledMaterial)> {
     vec![("film on a matte base", film()), ("soap film", bubble), ("film on glass", glass)]
 }
 
-/// Furnace: a material in uniform light from all directions.
+/// White furnace: a material lit uniformly from all directions, to measure its albedo.
 pub struct Furnace<'a> {
     material: &'a PrincipledMaterial,
     tables: Tables,
 }
 
 impl<'a> Furnace<'a> {
-    /// Furnace with a material.
+    /// Creates a furnace for a material.
     pub fn new(material: &'a PrincipledMaterial) -> Self {
         Furnace { material, tables: Tables::new(material, None, &mut Vec::new()) }
     }
 
-    /// Albedo at a roughness and a cosine of the view, and its standard error. Light that enters
-    /// glass is measured by its flux, since its radiance grows with the square of the index.
+    /// Returns the albedo for a roughness and a view cosine, and its standard error. Light that
+    /// enters glass is measured as flux, since its radiance grows with the square of the index.
     pub fn gives(&self, roughness: f32, cosine: f32, samples: u32) -> (f64, f64) {
         self.gives_to(FurnaceView { roughness, cosine, ..FurnaceView::default() }, samples)
     }
 
-    /// Albedo for any view, and its standard error.
+    /// Returns the albedo for any view, and its standard error.
     pub fn gives_to(&self, from: FurnaceView, samples: u32) -> (f64, f64) {
         let here = Parameters {
             specular_roughness: from.roughness,
@@ -224,20 +226,21 @@ impl<'a> Furnace<'a> {
     }
 }
 
-/// View of a material in a furnace.
+/// View of a material in a [`Furnace`], and the roughness of the material.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FurnaceView {
     /// Roughness.
     pub roughness: f32,
     /// Anisotropy.
     pub anisotropy: f32,
-    /// Cosine of the view to the normal.
+    /// Cosine between the view direction and the normal.
     pub cosine: f32,
-    /// Azimuth, in turns.
+    /// Azimuth of the view direction, in turns.
     pub turn: f32,
     /// True if seen from inside.
     pub inside: bool,
-    /// Index behind the boundary over that before it; `None` for the material in air.
+    /// Index behind the boundary, relative to the index in front of it; `None` for the material in
+    /// air.
     pub eta: Option<f32>,
 }
 
@@ -254,7 +257,7 @@ fn seen_through<'a>(here: &Parameters, tables: &'a Tables, wo: Vec3, inside: boo
     bsdf
 }
 
-/// Albedo of a BSDF by sampling, and its standard error.
+/// Estimates the albedo of a BSDF by sampling. Returns it with its standard error.
 pub(super) fn reflectance(bsdf: &Bsdf, wo: Vec3, samples: u32) -> (f64, f64) {
     let eta = bsdf.lobes().find_map(|part| part.lobe.kind().eta);
     let denser = eta.map_or(1.0, |eta| eta * eta);
@@ -268,6 +271,7 @@ pub(super) fn reflectance(bsdf: &Bsdf, wo: Vec3, samples: u32) -> (f64, f64) {
     }
     let n = f64::from(samples);
     let mean = sums.0 / n;
-    // The error of the stratified points is smaller than this estimate, or only slightly larger.
+    // The points are stratified, so the true error is smaller than this estimate, or only slightly
+    // larger.
     (mean, ((sums.1 / n - mean * mean).max(0.0) / n).sqrt())
 }

@@ -14,7 +14,8 @@ fn lobe_samples_agree_with_pdf() {
     for (name, lobe) in broad() {
         for (cosine, turn) in [(0.95, 0.1), (0.6, 0.7), (0.25, 0.35)] {
             let verdict = cells.lobe(11, lobe, warp::polar(cosine, turn));
-            // 48 tests at a significance of 0.01 in all, by Šidák: 2.1e-4 each.
+            // The 48 tests have a significance of 0.01 in total: 2.1e-4 each, by Šidák's
+            // correction.
             assert!(verdict.density < 1.005 && verdict.deviate < 3.53, "{name} at {cosine}: {verdict:?}");
         }
     }

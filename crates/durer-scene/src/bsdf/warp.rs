@@ -3,7 +3,7 @@
 use crate::math::{Vec2, Vec3, fp};
 use std::hint::select_unpredictable;
 
-/// Uniform point of the unit disc.
+/// Maps the unit square uniformly to the unit disc.
 ///
 /// Source: Shirley and Chiu, *A Low Distortion Map Between Disk and Square*, Journal of Graphics
 /// Tools 2(3), 1997.
@@ -21,25 +21,25 @@ pub fn disc(u: Vec2) -> Vec2 {
     radius * Vec2::new(cos, sin)
 }
 
-/// Direction of the upper hemisphere with pdf cos / pi.
+/// Direction in the upper hemisphere, with pdf cos / pi.
 pub fn cosine_hemisphere(u: Vec2) -> Vec3 {
     let p = disc(u);
     p.extend((1.0 - p.length_squared()).max(0.0).sqrt())
 }
 
-/// Direction by polar coordinates: the cosine to z, and the azimuth in turns.
+/// Direction with given polar coordinates: the cosine to z, and the azimuth in turns.
 pub fn polar(cosine: f32, turn: f32) -> Vec3 {
     let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
     let (sin, cos) = fp::sin_cos_turn(turn);
     Vec3::new(sine * cos, sine * sin, cosine)
 }
 
-/// Uniform direction of the sphere, with pdf 1 / (4 pi).
+/// Uniform direction on the sphere, with pdf 1 / (4 pi).
 pub fn sphere(u: Vec2) -> Vec3 {
     polar(1.0 - 2.0 * u.x, u.y)
 }
 
-/// Barycentric coordinates of a uniform point of a triangle.
+/// Barycentric coordinates of a uniformly distributed point in a triangle.
 ///
 /// Source: Heitz, *A Low-Distortion Map Between Triangle and Square*, 2019.
 pub fn triangle(u: Vec2) -> Vec3 {

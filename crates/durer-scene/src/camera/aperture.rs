@@ -12,9 +12,9 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 /// Maximum number of blades of a lens.
 pub const MAX_BLADES: u32 = 64;
 
-/// Samples an aperture of radius 1 around 0 uniformly by area: a disc for 0 blades, else a polygon
-/// with its first corner on the right, turned counter-clockwise by `turn` degrees. (0.5, 0.5) maps
-/// to the centre.
+/// Samples an aperture of radius 1 around 0 uniformly by area: a disc for 0 blades, otherwise a
+/// regular polygon with its first corner on the right, turned counter-clockwise by `turn` degrees.
+/// (0.5, 0.5) maps to the centre.
 pub fn sample(lens: Vec2, blades: u32, turn: f32) -> DVec2 {
     let square = 2.0 * lens.as_dvec2() - 1.0;
     if square == DVec2::ZERO {

@@ -2,10 +2,10 @@
 //!
 //! A wall is given by three corners a (lower left), b (lower right) and c (upper left), as seen
 //! from inside. The ray through the fractions (s, t) of its sides runs from the eye to a + s (b -
-//! a) + t (c - a), a frustum whose apex may lie off the wall's axis. Rays through the same point in
-//! space are the same, so two walls that share an edge match there for any eye position. The walls
-//! lie side by side in one picture, at the same scale, on a common baseline. The solid angle of an
-//! area at r from the eye on a wall with normal n is |n·r| / |r|³.
+//! a) + t (c - a), a frustum whose apex may lie off the wall's axis. A point in space is seen along
+//! the same ray on every wall, so two walls that share an edge match there for any eye position.
+//! The walls lie side by side in one picture, at the same scale, on a common baseline. The solid
+//! angle of an area at r from the eye on a wall with normal n is |n·r| / |r|³.
 //!
 //! Source: Cruz-Neira, Sandin, DeFanti, *Surround-Screen Projection-Based Virtual Reality: The
 //! Design and Implementation of the CAVE*, SIGGRAPH 1993; Kooima, *Generalized Perspective
@@ -42,7 +42,7 @@ fn front_wall() -> Vec<[f32; 9]> {
     vec![[-1.0, -1.0, -1.0, 1.0, -1.0, -1.0, -1.0, 1.0, -1.0]]
 }
 
-/// Wall: its lower left corner, its sides, and the position of that corner on the sheet.
+/// Wall of a CAVE: its lower left corner, its sides, and the position of that corner on the sheet.
 #[derive(Clone, Copy)]
 struct Wall {
     corner: DVec3,

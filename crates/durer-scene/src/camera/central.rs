@@ -1,11 +1,11 @@
-//! Cameras whose rays all pass through one eye: maps between the picture and directions.
+//! Cameras whose rays all pass through one eye: mappings between picture points and directions.
 
 use super::{CameraBasis, CameraSample, Pose, Projection};
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
-/// A camera with one eye. Directions are in the camera's space: x to the right, y upwards, z
-/// forwards.
+/// Camera whose rays all pass through one eye, so that it only maps picture points to directions.
+/// Directions are in the camera's space: x to the right, y upwards, z forwards.
 pub trait Central {
     /// See [`Projection::pose`].
     fn stand(&self) -> Pose;
@@ -20,10 +20,11 @@ pub trait Central {
         Ok(())
     }
 
-    /// Returns the direction, of any length, that a pixel sees through a point of the picture.
+    /// Returns the direction, of any length, that is seen at `point` of the picture. `pixel` is the
+    /// centre of the sample's pixel.
     fn direction(&self, point: DVec2, pixel: DVec2) -> Option<DVec3>;
 
-    /// Calls `found` with every point of the picture that sees a unit direction.
+    /// Calls `found` with every point of the picture at which a unit direction is seen.
     fn image(&self, direction: DVec3, found: &mut dyn FnMut(DVec2));
 
     /// Solid angle per unit area of the picture, in steradians.

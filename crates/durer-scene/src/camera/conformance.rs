@@ -9,7 +9,7 @@ use crate::math::random::Random;
 const CAMERAS: usize = 20;
 const POINTS: usize = 5_000;
 
-/// Random value that satisfies a field's rule, of a realistic size.
+/// Random value of a realistic size that satisfies a field's constraint.
 fn value(field: &Field, random: &mut Random) -> Value {
     let mut rows = |count: usize, width: usize| {
         Value::Rows((0..count).map(|_| (0..width).map(|_| random.between(-2.0, 2.0)).collect()).collect())
@@ -25,7 +25,7 @@ fn value(field: &Field, random: &mut Random) -> Value {
         (_, Constraint::UpTo(high)) => Value::Float(high * random.between(0.1, 1.0)),
         (_, Constraint::Positive) => Value::Float(random.between(0.3, 3.0)),
         (_, Constraint::NonNegative) => Value::Float(random.between(0.0, 0.3)),
-        // Twice the distortion of bad lenses.
+        // Up to twice the distortion of bad lenses.
         _ if ["p1", "p2"].contains(&field.name) => Value::Float(random.between(-0.01, 0.01)),
         (kind, rule) => {
             assert_eq!((kind, rule), (Kind::Float, Constraint::Any), "{}", field.name);
@@ -34,7 +34,7 @@ fn value(field: &Field, random: &mut Random) -> Value {
     }
 }
 
-/// Rectangle at some distance from the eye.
+/// Random rectangle at some distance from the eye.
 fn wall(random: &mut Random) -> Vec<f32> {
     let turn = random.rotation().as_mat3();
     let (w, h) = (random.between(0.5, 3.0), random.between(0.5, 3.0));

@@ -18,7 +18,7 @@ use crate::math::{Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
 described_words! {
-    /// Layout of the faces of a cube in a picture.
+    /// Layout of the six faces of a cube map in one picture.
     Layout { Cross = "cross", Strip = "strip" }
 }
 
@@ -36,8 +36,8 @@ described! {
     }
 }
 
-/// Face: the directions of its centre, its right and its up, in camera space; and its column and
-/// row in the cross and in the strip, counted from the lower left corner.
+/// Face of the cube: the directions of its centre, its right and its up, in camera space; and its
+/// column and row in the cross and in the strip, counted from the lower left corner.
 struct Face {
     axes: [DVec3; 3],
     cross: [f64; 2],
@@ -54,7 +54,7 @@ const FACES: [Face; 6] = [
 ];
 
 impl CubeMapCamera {
-    /// Sheet in units of faces.
+    /// Returns the sheet of the picture, measured in faces.
     fn sheet(&self) -> Sheet {
         Sheet(match self.layout {
             Layout::Cross => DVec2::new(4.0, 3.0),
@@ -88,7 +88,7 @@ impl Central for CubeMapCamera {
     }
 
     fn image(&self, direction: DVec3, found: &mut dyn FnMut(DVec2)) {
-        // The face whose centre is nearest to the direction.
+        // Find the face whose centre is nearest to the direction.
         let nearest = |best: &'static Face, face: &'static Face| match direction.dot(face.axes[0])
             > direction.dot(best.axes[0])
         {

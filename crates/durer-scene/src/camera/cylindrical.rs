@@ -1,4 +1,5 @@
-//! Panorama: a picture on a cylinder around the eye. Vertical lines stay straight and vertical.
+//! Cylindrical panorama: a picture on a cylinder around the eye. Vertical lines stay straight and
+//! vertical.
 //!
 //! direction = sin λ right + cos λ forward + h up, where x is the longitude λ and y is the height h
 //! on a cylinder of radius 1. The solid angle of dλ dh is dλ dh / (1 + h²)^(3/2). For one eye of a

@@ -1,7 +1,7 @@
 //! One eye or a stereo pair, and the layout of the pair in one picture.
 //!
-//! Omnidirectional stereo: each eye looks along tangents of the circle on which the eyes turn with
-//! the head. Sources: Ishiguro, Yamamoto, Tsuji, *Omni-Directional Stereo*, PAMI 14(2), 1992;
+//! Omnidirectional stereo: each eye looks along the tangents of the circle on which it moves as the
+//! head turns. Sources: Ishiguro, Yamamoto, Tsuji, *Omni-Directional Stereo*, PAMI 14(2), 1992;
 //! Peleg, Ben-Ezra, Pritch, *Omnistereo: Panoramic Stereo Imaging*, PAMI 23(3), 2001.
 
 use super::sheet::Sheet;
@@ -10,21 +10,21 @@ use crate::math::fp;
 use glam::{DVec2, DVec3};
 
 described_words! {
-    /// Eye to render, or layout of a stereo pair.
+    /// Eye that a stereo camera renders, or layout of both eyes in one picture.
     Eyes { Middle = "middle", Left = "left", Right = "right", SideBySide = "sideBySide", TopBottom = "topBottom" }
 }
 
-/// One eye's picture within the whole picture.
+/// Part of a stereo picture that shows the view of one eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// -1 for the left eye, 1 for the right, 0 for the middle between them.
     pub side: f64,
-    /// Position of the lower left corner of its sheet on the whole sheet.
+    /// Position of the lower left corner of its sheet on the full sheet.
     pub corner: DVec2,
 }
 
 impl Eyes {
-    /// Sheet that holds the pictures of all eyes, each of size `one`.
+    /// Returns the sheet that holds the views of all eyes, each of size `one`.
     pub fn sheet(self, one: DVec2) -> Sheet {
         Sheet(match self {
             Eyes::SideBySide => DVec2::new(2.0 * one.x, one.y),
@@ -33,7 +33,8 @@ impl Eyes {
         })
     }
 
-    /// Views of size `one`: the left eye's is on the left or on top.
+    /// Returns the views of all eyes, each of size `one`. The left eye's view is on the left or on
+    /// top.
     pub fn views(self, one: DVec2) -> impl Iterator<Item = View> {
         let view = |side, x, y| View { side, corner: one * DVec2::new(x, y) };
         let (first, second) = match self {
@@ -55,16 +56,16 @@ impl Eyes {
         Some((view, sheet.place(point) - view.corner))
     }
 
-    /// Returns the point of the whole picture for a position on a view's sheet.
+    /// Returns the point of the full picture for a position on a view's sheet.
     pub fn point(self, one: DVec2, view: View, place: DVec2) -> DVec2 {
         self.sheet(one).point(place + view.corner)
     }
 }
 
-/// Viewing circle: an eye looks along its tangents.
+/// Circle on which an eye moves in omnidirectional stereo. The eye looks along its tangents.
 ///
-/// At the heading a (0 ahead, growing to the right) the head looks along h = (sin a, 0, cos a), and
-/// an eye at the offset r to the right is at r (cos a, 0, -sin a).
+/// At the heading a (0 ahead, increasing to the right), the head looks along h = (sin a, 0, cos a),
+/// and an eye at the offset r to the right is at r (cos a, 0, -sin a).
 #[derive(Clone, Copy, Debug)]
 pub struct EyeCircle {
     /// Signed radius: negative for the left eye.

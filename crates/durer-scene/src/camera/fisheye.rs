@@ -1,13 +1,13 @@
-//! Fisheye: a disc that sees a cone of directions around the axis, up to the whole sphere.
+//! Fisheye camera: the picture is a disc that shows a cone of directions, up to the full sphere.
 //!
-//! A direction at the angle θ from the axis lies at the radius r = f(θ) / f(angle / 2) of the disc,
-//! where
+//! A direction at the angle θ from the axis is shown at the radius r = f(θ) / f(angle / 2) of the
+//! disc, where
 //!
 //! - `equidistant`: f = θ: equal angles are equal lengths along the radius;
 //! - `equisolid`: f = 2 sin(θ/2): equal solid angles are equal areas;
 //! - `stereographic`: f = 2 tan(θ/2): small circles stay circles;
-//! - `orthographic`: f = sin θ: parallel projection of the hemisphere; equal areas of a uniform sky
-//!   light a horizontal surface equally.
+//! - `orthographic`: f = sin θ: parallel projection of the hemisphere; equal areas of the picture
+//!   of a uniform sky illuminate a horizontal surface equally.
 //!
 //! The solid angle per area is sin θ F² / (f f'), with F = f(angle / 2).
 //!
@@ -23,7 +23,7 @@ use crate::math::{Vec2, Vec3, fp};
 use glam::{DVec2, DVec3};
 
 described_words! {
-    /// Mapping from the angle off the axis to the radius in the picture.
+    /// Fisheye mapping from the angle off the axis to the radius in the picture.
     FisheyeProjection {
         Equidistant = "equidistant", Equisolid = "equisolid", Stereographic = "stereographic", Orthographic = "orthographic"
     }
@@ -69,7 +69,7 @@ impl FisheyeProjection {
         }
     }
 
-    /// Returns the direction that a point of the unit disc sees if the rim is at the angle `limit`
+    /// Returns the direction seen at a point of the unit disc, whose rim is at the angle `limit`
     /// from the axis.
     pub fn direction(self, point: DVec2, limit: f64) -> Option<DVec3> {
         let radius = point.length();
@@ -81,12 +81,12 @@ impl FisheyeProjection {
         Some((sin * around).extend(cos))
     }
 
-    /// Returns the point of the unit disc that sees a unit direction.
+    /// Returns the point of the unit disc at which a unit direction is seen.
     pub fn point(self, direction: DVec3, limit: f64) -> Option<DVec2> {
         let across = direction.truncate();
         let (sin, theta) = (across.length(), fp::atan2_f64(across.length(), direction.z));
         let radius = self.radius(theta).0 / self.radius(limit).0;
-        // Any point of the rim sees straight backwards.
+        // Every point of the rim sees straight backwards.
         let around = if sin > 0.0 { across / sin } else { DVec2::X };
         (theta <= limit).then(|| radius * around)
     }

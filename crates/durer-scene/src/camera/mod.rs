@@ -1,5 +1,5 @@
-//! Cameras: map picture points to rays and world-space points back to the picture. One file each;
-//! the list is [`Camera`].
+//! Cameras, which map picture points to rays and world-space points back to the picture. Each
+//! camera has its own file; [`Camera`] lists them all.
 
 mod aperture;
 mod central;
@@ -81,7 +81,7 @@ macro_rules! delegate {
 }
 
 described_list! {
-    /// A camera.
+    /// A camera of any kind, which maps points of the picture to rays.
     Camera: Projection => delegate {
         Perspective(perspective::PerspectiveCamera),
         Orthographic(orthographic::OrthographicCamera),
@@ -101,29 +101,29 @@ described_list! {
     }
 }
 
-/// Sample of a camera: a position in the picture and on the lens.
+/// Input for a camera ray: a position in the picture and on the lens.
 ///
 /// (-1, -1) is the lower left corner of the square that the camera covers, (1, 1) the upper right.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraSample {
     /// Point of the picture.
     pub point: Vec2,
-    /// Centre of the pixel that the sample contributes to. A filter may reach beyond the pixel and
-    /// beyond its part of the picture (a face of a cube, a wall, an eye): points outside continue
-    /// that part.
+    /// Centre of the pixel that the sample contributes to. A filter can extend beyond the pixel,
+    /// and beyond the part of the picture that contains it (a cube face, a wall, an eye). Points
+    /// outside continue the projection of that part.
     pub pixel: Vec2,
     /// Point of the lens, in [0,1)^2; (0.5, 0.5) is the centre.
     pub lens: Vec2,
 }
 
 impl CameraSample {
-    /// Sample at a pixel's centre, through the centre of the lens.
+    /// Creates a sample at a pixel's centre, through the centre of the lens.
     pub fn at(point: Vec2) -> Self {
         CameraSample { point, pixel: point, lens: Vec2::splat(0.5) }
     }
 }
 
-/// `N` camera samples in structure-of-arrays layout.
+/// Packet of `N` camera samples in structure-of-arrays layout, for [`Projection::rays`].
 #[derive(Clone, Copy, Debug)]
 pub struct CameraSamples<const N: usize> {
     /// Points of the picture: all x, then all y.
@@ -148,13 +148,14 @@ impl From<CameraSample> for CameraSamples<1> {
     }
 }
 
-/// Operations of every camera.
+/// Operations that every camera implements: rays, projection and footprints.
 pub trait Projection {
     /// Position and orientation.
     fn pose(&self) -> Pose;
 
-    /// Natural width and height of the picture, in any unit; `None` for any shape. A natural
-    /// picture is centred in the square, and its larger side spans the square.
+    /// Natural width and height of the picture, in any unit; `None` if the picture can have any
+    /// aspect ratio. A natural picture is centred in the square, and its longer side spans the
+    /// square.
     fn proportions(&self) -> Option<Vec2> {
         None
     }
@@ -169,7 +170,8 @@ pub trait Projection {
         false
     }
 
-    /// Checks combinations of fields. The rules in the description check each field alone.
+    /// Checks combinations of fields. The constraints in the description check each field
+    /// separately.
     ///
     /// # Errors
     ///
@@ -194,9 +196,9 @@ pub trait Projection {
         (0..N).for_each(|i| take(i, self.ray(frame, &samples.sample(i))));
     }
 
-    /// Calls `found` with every point of the picture that sees a world-space point through a point
-    /// of the lens: none, one, or several, as for a pair of eyes. Ignores occlusion. If the picture
-    /// may have any shape, points may lie outside the square.
+    /// Calls `found` with every point of the picture at which a world-space point is seen through a
+    /// point of the lens: none, one, or several, as for a pair of eyes. Ignores occlusion. If the
+    /// picture can have any aspect ratio, points may lie outside the square.
     fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2));
 
     /// Area across the ray at distance `t` per unit area of the picture, for a fixed point of the

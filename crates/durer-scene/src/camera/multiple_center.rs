@@ -46,7 +46,7 @@ fn straight() -> Vec<[f32; 6]> {
     vec![[-1.0, 0.0, 0.0, -1.0, 0.0, -1.0], [1.0, 0.0, 0.0, 1.0, 0.0, -1.0]]
 }
 
-/// Cubic piece of a path, as Bézier control points.
+/// Cubic segment of the path of a camera or of its targets, as Bézier control points.
 type Piece = [DVec3; 4];
 
 fn at(piece: &Piece, s: f64) -> DVec3 {
@@ -59,7 +59,8 @@ fn derivative(piece: &Piece, s: f64) -> DVec3 {
     ((b - a) * (r * r) + (c - b) * (2.0 * r * s) + (d - c) * (s * s)) * 3.0
 }
 
-/// Column: its eye, its axes, and their derivatives with respect to u from 0 to 1.
+/// Column of a multiple-centre-of-projection picture: its eye, its axes, and their derivatives with
+/// respect to u from 0 to 1.
 struct Column {
     eye: DVec3,
     right: DVec3,

@@ -1,4 +1,4 @@
-//! Dome picture: a fisheye projector projects it onto the dome, for a viewer at another position.
+//! Dome picture: a fisheye projector projects it onto a dome, for a viewer at another position.
 //!
 //! A point of the picture leaves the projector P in a direction d (an equidistant fisheye along the
 //! dome's pole) and meets the dome, a part of a unit sphere, at D = P + s d. The viewer V sees it
@@ -6,9 +6,9 @@
 //! from V. The dome's pole is the scene's `up`, tilted forwards by `tilt`; the front is at the
 //! bottom of the picture, as in dome masters.
 //!
-//! The solid angle per area of the picture is that of the projector's fisheye, times s² / (D·d) for
-//! the dome's area in it, times (D·e) / v² for that area as seen by the viewer, with e the viewer's
-//! direction and v its distance.
+//! The solid angle per area of the picture is that of the projector's fisheye, times s² / (D·d) to
+//! convert it to area on the dome, times (D·e) / v² to convert that to solid angle at the viewer,
+//! where e is the viewer's direction and v its distance.
 //!
 //! Source: Max, *Computer Graphics Distortion for IMAX and OMNIMAX Projection*, Nicograph '83;
 //! Greene, Heckbert, *Creating Raster Omnimax Images from Multiple Perspective Views Using the
@@ -70,7 +70,8 @@ impl OmnimaxCamera {
         fp::atan2_f64(point.cross(pole).length(), point.dot(pole)) <= 0.5 * f64::from(self.dome).to_radians()
     }
 
-    /// Returns the projector's direction for a point of the picture, and where it meets the dome.
+    /// Returns the direction in which the projector shows a point of the picture, and the point
+    /// where that ray meets the dome.
     fn thrown(&self, point: DVec2) -> Option<(DVec3, DVec3)> {
         let direction = self.axes() * FisheyeProjection::Equidistant.direction(point, self.limit())?;
         let projector = self.projector.as_dvec3();

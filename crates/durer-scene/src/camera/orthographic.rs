@@ -32,7 +32,7 @@ impl Projection for OrthographicCamera {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
 
-    /// Without `near` the ray extends both ways: objects behind `center` are seen at negative `t`.
+    /// Without `near`, the ray extends both ways: objects behind `center` are seen at negative `t`.
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let (point, half) = (sample.point, 0.5 * self.size);
         let x = self.handedness.sign() as f32 * point.x;

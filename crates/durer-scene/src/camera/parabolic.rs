@@ -34,7 +34,7 @@ described! {
     }
 }
 
-/// The picture is that of a stereographic fisheye along the axis, mirrored.
+/// The picture equals that of a stereographic fisheye along the axis, mirrored.
 const PROJECTION: FisheyeProjection = FisheyeProjection::Stereographic;
 const MIRROR: DVec3 = DVec3::new(-1.0, 1.0, 1.0);
 

@@ -27,14 +27,14 @@ described! {
     }
 }
 
-/// Half the width at distance 1 of a field of view in degrees.
+/// Half the width of the view at distance 1, for a field of view in degrees.
 pub(super) fn half_width(angle: f32) -> f64 {
     fp::tan_f64(f64::from(angle).to_radians() / 2.0)
 }
 
 impl PerspectiveCamera {
-    /// Camera at `eye` that looks at `target`, with +y up, or -z up if it looks along y. `angle` is
-    /// the field of view across the picture's larger side, in degrees from 0 to 180.
+    /// Creates a camera at `eye` that looks at `target`, with +y up, or -z up if it looks along y.
+    /// `angle` is the field of view across the picture's larger side, in degrees from 0 to 180.
     pub fn look_at(eye: Vec3, target: Vec3, angle: f32) -> Self {
         let direction = target - eye;
         let along = direction.normalize_or_zero().cross(Vec3::Y).length() < 1e-6;

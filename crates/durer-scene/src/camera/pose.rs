@@ -18,7 +18,7 @@ pub struct Pose {
     pub up: Vec3,
 }
 
-/// Rule that turns the camera's `up` into the picture's up.
+/// Rule by which a dialect turns a camera's `up` into the up direction of the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum UpRule {
     /// Perpendicular to the view direction, unit length.
@@ -30,17 +30,17 @@ pub enum UpRule {
     Skew,
 }
 
-/// Arithmetic of perspective rays.
+/// Arithmetic by which a dialect computes perspective rays, down to the rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Aim {
-    /// Dürer's own.
+    /// Dürer's own arithmetic.
     #[default]
     Own,
-    /// Aim at world-space points on a screen at distance 1, rounded to `f32` there: the program of
-    /// 2004.
+    /// Aim at world-space points on a screen at distance 1, which are rounded to `f32`; from the
+    /// program of 2004.
     ScreenPoint,
-    /// d w + x u + y v in single precision, with axes of any length from the scene: the program of
-    /// 2012.
+    /// Direction d w + x u + y v in single precision, from `direction` and `up` of any length; from
+    /// the program of 2012.
     Of2012,
     /// [`Aim::Of2012`] with the axes of 2016: `up` as written.
     Of2016,
@@ -49,12 +49,12 @@ pub enum Aim {
 }
 
 impl Aim {
-    /// True if rays are sums in single precision.
+    /// True if a direction is computed as a sum in single precision.
     pub(super) fn is_sum(self) -> bool {
         matches!(self, Aim::Of2012 | Aim::Of2016 | Aim::Of2020)
     }
 
-    /// Distance of the screen that spans an angle in degrees.
+    /// Distance at which a screen from -1 to 1 spans an angle in degrees.
     pub(super) fn distance(self, angle: f32) -> f32 {
         let radians = (PI_F64 * f64::from(angle) / 180.0) as f32;
         match self {
@@ -74,17 +74,17 @@ impl Aim {
     }
 }
 
-/// Camera rules of a scene's dialect, resolved when the scene is compiled. The default is Dürer's
-/// own.
+/// Camera rules of a scene's dialect, resolved when the scene is compiled. The defaults are Dürer's
+/// own rules.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CameraRules {
-    /// Rule for the picture's up.
+    /// Rule for the up direction of the picture.
     pub up: UpRule,
     /// Arithmetic of perspective rays.
     pub aim: Aim,
-    /// Places the centres of the first and last column and row on the picture's border.
+    /// True if the centres of the first and last column and row are on the picture's border.
     pub border_pixels: bool,
-    /// Stretches the camera's square over a picture that is not square.
+    /// True if the camera's square is stretched over a picture that is not square.
     pub stretch: bool,
 }
 
@@ -98,9 +98,9 @@ pub struct CameraBasis {
     pub eye: Vec3,
     /// View direction.
     pub forward: Vec3,
-    /// Right in the picture.
+    /// Right direction of the picture.
     pub right: Vec3,
-    /// Up in the picture.
+    /// Up direction of the picture.
     pub up: Vec3,
     /// See [`CameraRules::aim`].
     pub aim: Aim,
@@ -115,7 +115,7 @@ pub(super) fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
     Vec3::new(x, y, z)
 }
 
-/// Normalizes several vectors, given as x, y and z. See [`unit_or`].
+/// Normalizes several vectors, given as arrays of x, y and z. See [`unit_or`].
 #[inline(always)]
 pub(super) fn units_or<const N: usize>([x, y, z]: &[[f32; N]; 3], fallback: Vec3) -> [[f32; N]; 3] {
     let (mut units, mut all_sound) = ([[0.0; N]; 3], true);
@@ -142,19 +142,19 @@ fn is_sound([x, y, z]: [f32; 3]) -> bool {
     (x.is_finite() & y.is_finite() & z.is_finite()) & ((x != 0.0) | (y != 0.0) | (z != 0.0))
 }
 
-/// [`unit_or`] of the program of 2004: multiplies by the reciprocal of the length.
+/// Version of [`unit_or`] for the program of 2004: multiplies by the reciprocal of the length.
 fn scaled_or(v: Vec3, fallback: Vec3) -> Vec3 {
     let unit = v * (1.0 / (v.as_dvec3().length() as f32));
     if unit.is_finite() && unit != Vec3::ZERO { unit } else { unit_or(v, fallback) }
 }
 
 impl CameraBasis {
-    /// Axes of a camera, with the half width that its rays need.
+    /// Computes the axes of a camera, and the half width that its rays need.
     pub fn of(camera: &impl Projection, rules: CameraRules) -> Self {
         CameraBasis { half_width: camera.half_width(), ..CameraBasis::new(camera.pose(), rules) }
     }
 
-    /// Axes of a pose: right = norm(direction x up), up = right x direction.
+    /// Computes the axes of a pose: right = norm(direction x up), up = right x direction.
     pub(super) fn new(pose: Pose, CameraRules { up, aim, .. }: CameraRules) -> Self {
         let screen_point = aim == Aim::ScreenPoint;
         let unit = |v, fallback| if screen_point { scaled_or(v, fallback) } else { aim.unit_or(v, fallback) };
@@ -199,7 +199,7 @@ impl CameraBasis {
         world_ray(origin, self.axes() * dir)
     }
 
-    /// Volume of the unit cube in a camera space with skew axes: 1 if they are orthonormal.
+    /// Volume of the unit cube of camera space, whose axes can be skew: 1 if they are orthonormal.
     pub(super) fn volume(&self) -> f64 {
         self.axes().determinant().abs()
     }

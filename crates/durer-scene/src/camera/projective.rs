@@ -55,12 +55,12 @@ fn plain_matrix() -> Vec<[f32; 4]> {
     vec![[512.0, 0.0, -255.5, 0.0], [0.0, -512.0, -255.5, 0.0], [0.0, 0.0, -1.0, 0.0]]
 }
 
-/// Decomposed matrix.
+/// Projection matrix of the camera, decomposed into eye, rotation and intrinsic matrix.
 struct Parts {
     eye: DVec3,
     /// Rows: the camera's right, down and forward, in world space.
     rotation: DMat3,
-    /// Upper triangular intrinsic matrix, 1 in the last corner.
+    /// Upper triangular intrinsic matrix, with 1 in the lower right corner.
     intrinsic: DMat3,
 }
 
@@ -69,14 +69,14 @@ impl ProjectiveCamera {
         Sheet(DVec2::new(f64::from(self.width), f64::from(self.height)))
     }
 
-    /// Left three columns of the matrix, by rows, and the fourth column.
+    /// Returns the left three columns of the matrix, by rows, and the fourth column.
     fn rows(&self) -> ([DVec3; 3], DVec3) {
         let row = |i: usize| self.matrix[i].map(f64::from);
         let left = [0, 1, 2].map(|i| DVec3::from_slice(&row(i)[..3]));
         (left, DVec3::new(row(0)[3], row(1)[3], row(2)[3]))
     }
 
-    /// Returns K, R and the eye: Gram-Schmidt on the rows of M, from the last to the first.
+    /// Computes K, R and the eye by Gram-Schmidt on the rows of M, from the last to the first.
     fn parts(&self) -> Parts {
         let ([a, b, c], last) = self.rows();
         // Depth is positive in front of the camera if M preserves handedness.
@@ -95,7 +95,7 @@ impl ProjectiveCamera {
         Parts { eye, rotation: DMat3::from_cols(right, down, forward).transpose(), intrinsic }
     }
 
-    /// Returns the factor 1 + k1 s + k2 s² + k3 s³ and its derivative by s.
+    /// Returns the factor 1 + k1 s + k2 s² + k3 s³ and its derivative with respect to s.
     fn radial(&self, s: f64) -> (f64, f64) {
         let [k1, k2, k3] = [self.k1, self.k2, self.k3].map(f64::from);
         (1.0 + s * (k1 + s * (k2 + s * k3)), k1 + s * (2.0 * k2 + s * 3.0 * k3))
@@ -131,7 +131,7 @@ impl ProjectiveCamera {
         (factor * point + tangential, jacobian)
     }
 
-    /// Returns the point that distorts to `wanted`, if there is one before the fold.
+    /// Returns the point that the lens distorts to `wanted`, if there is one before the fold.
     fn undistorted(&self, wanted: DVec2) -> Option<DVec2> {
         // The first guess usually converges; otherwise follow the point outwards from the centre.
         let followed = || (1..=16).try_fold(DVec2::ZERO, |point, i| self.solved(point, wanted * (f64::from(i) / 16.0)));
@@ -153,7 +153,7 @@ impl ProjectiveCamera {
         (solved && jacobian.determinant() > 0.0 && self.unfolded(point)).then_some(point)
     }
 
-    /// Returns the point at depth 1 that a sample sees.
+    /// Returns the point at depth 1 that is seen at a sample.
     fn seen(&self, parts: &Parts, sample: &CameraSample) -> Option<DVec2> {
         let sheet = self.sheet();
         if !sheet.contains(sheet.place(sample.pixel.as_dvec2())) {
@@ -182,7 +182,7 @@ impl Projection for ProjectiveCamera {
         }
         let ([a, b, c], _) = self.rows();
         let volume = a.dot(b.cross(c)).abs();
-        // Relative to orthogonal rows of these lengths.
+        // Compare with the volume of orthogonal rows of these lengths.
         let singular = volume <= 1e-9 * a.length() * b.length() * c.length() || !self.pose().center.is_finite();
         match singular {
             true => Err("the left three columns of `matrix` are singular, so the camera has no eye".into()),

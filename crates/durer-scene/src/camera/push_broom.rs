@@ -84,7 +84,7 @@ impl Projection for PushBroomCamera {
 
     fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
         let (from_start, way) = (frame.turned(world.as_dvec3() - self.start.as_dvec3()), frame.turned(self.way()));
-        // The column whose plane contains the point.
+        // Find the column whose plane contains the point.
         let u = from_start.x / way.x;
         let seen = from_start - u * way;
         let height = seen.y / seen.z / half_width(self.angle);

@@ -1,9 +1,9 @@
-//! Map from pixels to the square that a camera covers.
+//! Mapping from pixels to the square that a camera covers.
 
 use super::CameraRules;
 use crate::math::Vec2;
 
-/// Pixel grid of a picture, and its position in the square from (-1, -1) to (1, 1).
+/// Pixel grid of a picture, and its position in the camera's square from (-1, -1) to (1, 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Raster {
     /// Width, in pixels.
@@ -12,12 +12,12 @@ pub struct Raster {
     pub height: u32,
     border_pixels: bool,
     stretch: bool,
-    /// Half the sides of the camera's natural picture in the square.
+    /// Half the sides of the camera's natural picture in the square; `None` for any aspect ratio.
     natural: Option<Vec2>,
 }
 
 impl Raster {
-    /// Raster of a given size. Its larger side spans the square, unless the rules specify
+    /// Creates the raster of a picture. Its larger side spans the square, unless the rules specify
     /// otherwise.
     ///
     /// If the camera has natural proportions, its picture fits inside, undistorted.
@@ -32,8 +32,8 @@ impl Raster {
     }
 
     /// Default size of a picture: `plain`, or about as many pixels in the camera's proportions. If
-    /// possible, a unit of the proportions is a whole number of pixels, so that faces and walls end
-    /// between pixels.
+    /// possible, one unit of the proportions is a whole number of pixels, so that faces and walls
+    /// end between pixels.
     pub fn natural_size(proportions: Option<Vec2>, plain: (u32, u32)) -> (u32, u32) {
         let Some(sides) = proportions else { return plain };
         let scale = (plain.0 as f32 * plain.1 as f32 / (sides.x * sides.y)).sqrt();
@@ -44,7 +44,8 @@ impl Raster {
         (side(sides.x), side(sides.y))
     }
 
-    /// Number of empty columns and rows because the picture does not have the camera's proportions.
+    /// Number of columns and rows that are empty because the picture does not have the camera's
+    /// proportions.
     pub fn empty(&self) -> (u32, u32) {
         let Some(half) = self.natural else { return (0, 0) };
         let size = Vec2::new(self.width as f32, self.height as f32);
@@ -68,7 +69,7 @@ impl Raster {
         Vec2::new(x, y)
     }
 
-    /// Points of several positions: all x, then all y. See [`Raster::point`].
+    /// Returns the points of several positions: all x, then all y. See [`Raster::point`].
     #[inline(always)]
     pub fn points<const N: usize>(&self, places: [[f32; N]; 2]) -> [[f32; N]; 2] {
         // With pixel centres on the border, the side runs from the first centre to the last, not

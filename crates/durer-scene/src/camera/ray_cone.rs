@@ -3,7 +3,7 @@
 use super::{Camera, CameraBasis, CameraSample, Projection};
 use crate::math::Vec2;
 
-/// Cone around a camera ray that covers an area of the picture.
+/// Cone around a camera ray that covers an area of the picture; its width selects texture detail.
 ///
 /// A single cone, at the picture's centre, is used for the full picture. Source: Amanatides, *Ray
 /// Tracing with Cones*, SIGGRAPH 1984.
@@ -16,7 +16,8 @@ pub struct RayCone {
 }
 
 impl RayCone {
-    /// Cone of an area of a camera's picture; `None` if the centre of the picture sees nothing.
+    /// Creates the cone for an area of a camera's picture; `None` if nothing is seen at the
+    /// picture's centre.
     pub fn new(camera: &Camera, basis: &CameraBasis, area: f32) -> Option<Self> {
         let middle = CameraSample::at(Vec2::ZERO);
         camera.ray(basis, &middle)?;

@@ -3,7 +3,8 @@
 use crate::math::Vec2;
 use glam::DVec2;
 
-/// Natural width and height of a picture. Positions are relative to its lower left corner.
+/// Natural width and height of a camera's picture, in the camera's own unit. Positions are relative
+/// to the lower left corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sheet(pub DVec2);
 

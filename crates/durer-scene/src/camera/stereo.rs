@@ -1,10 +1,10 @@
 //! Two perspective cameras side by side: a stereo pair.
 //!
 //! `offAxis` shears both views so that they share one window at the convergence distance: objects
-//! there appear on the screen, nearer objects in front of it, without vertical parallax.
-//! `toeIn` turns both cameras to one point there, as a toed-in camera rig does; the heights of
-//! their pictures differ towards the corners. `parallel` neither turns nor shears: all objects
-//! appear in front of the screen.
+//! there appear on the screen, nearer objects in front of it, without vertical parallax. `toeIn`
+//! turns both cameras towards a point at that distance, as a toed-in camera rig does; the two
+//! pictures then differ vertically towards the corners. `parallel` neither turns nor shears: all
+//! objects appear in front of the screen.
 //!
 //! Source: Hodges, McAllister, *Stereo and Alternating-Pair Techniques for Display of
 //! Computer-Generated Images*, IEEE CG&A 5(9), 1985; Bourke, *Calculating Stereo Pairs*, 1999.
@@ -18,7 +18,7 @@ use crate::math::{Ray, Vec2, Vec3};
 use glam::{DMat3, DVec2, DVec3};
 
 described_words! {
-    /// Convergence method of two perspective views.
+    /// Method by which the two views of a stereo camera converge.
     StereoMethod { OffAxis = "offAxis", ToeIn = "toeIn", Parallel = "parallel" }
 }
 
@@ -47,7 +47,8 @@ described! {
     }
 }
 
-/// Eye in the space of the midpoint: position, axes as columns, and the shift of its window.
+/// Eye of a stereo camera relative to the midpoint: position, axes as columns, and the shift of its
+/// window.
 struct Eye {
     at: DVec3,
     axes: DMat3,

@@ -1,7 +1,7 @@
-//! Single-precision tangent as called by the official programs of 2016 and 2020.
+//! Single-precision tangent, as the official programs of 2016 and 2020 compute it.
 //!
-//! The result is off by one unit in the last place for one angle in thirty, for example 60 degrees,
-//! which changes all camera rays.
+//! The result is off by one unit in the last place for one angle in thirty, for example 60 degrees.
+//! This changes all camera rays.
 //!
 //! Source: fdlibm, Sun Microsystems 1993, in the single-precision version of glibc before 2.40.
 
@@ -24,7 +24,7 @@ const SERIES: [f32; 13] = [
     2.5907305826e-05,
 ];
 
-/// Pi/4 as the sum of two numbers.
+/// Pi/4 as a sum of two numbers.
 const QUARTER: [f32; 2] = [7.8539812565e-01, 3.7748947079e-08];
 /// Pi/2 in parts: the first 17 bits and the remainder; then the next 17 bits and the remainder
 /// after those.

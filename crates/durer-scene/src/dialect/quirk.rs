@@ -1,12 +1,12 @@
 //! Named bugs of the official programs.
 
-/// Set of quirks, as bits.
+/// Set of [`Quirk`]s, with one bit for each.
 pub type QuirkSet = u64;
 
 macro_rules! quirks {
     ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal,)+) => {
-        /// A named bug or quirk, of an official program unless stated otherwise. Off unless
-        /// selected by its dialect or by name.
+        /// A bug that Dürer can reproduce, of an official program unless stated otherwise. Off
+        /// unless selected by its dialect or by name.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
         pub enum Quirk { $($(#[doc = $doc])+ $variant,)+ }

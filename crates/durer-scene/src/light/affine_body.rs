@@ -1,7 +1,7 @@
 //! Closed emitters: boxes, ellipsoids, cones, cylinders and rings under any affine map.
 //!
 //! Each is the image of a body of fixed size. A point is sampled on that body. The stretch of the
-//! surface by the map then converts its pdf to one per area in world space.
+//! surface under the map then converts the pdf to a pdf per area in world space.
 
 use super::emitter_point::{EmitterPoint, ON_SURFACE, one_minus_cosine};
 use crate::bsdf::{Frame, warp};
@@ -9,7 +9,7 @@ use crate::math::{Aabb, Vec2, Vec3, fp};
 use glam::DVec3;
 use std::f32::consts::{PI, TAU};
 
-/// Body of fixed size.
+/// Closed body of fixed size, whose image under an affine map is an area light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Body {
     /// Cube from -1 to 1.
@@ -18,11 +18,11 @@ pub enum Body {
     Ball,
     /// Frustum from a disc of radius 1 at z = 0 to a disc of this radius, at most 1, at z = 1.
     Frustum(f32),
-    /// Ring: the points within this distance of the circle of radius 1 around z.
+    /// Solid torus: the points within this distance of the circle of radius 1 around z.
     Ring(f32),
 }
 
-/// Image of a body under an affine map.
+/// Area light that is the image of a closed [`Body`] under an affine map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AffineBody {
     center: DVec3,
@@ -30,7 +30,7 @@ pub struct AffineBody {
     body: Body,
 }
 
-/// Number of points of a mean over a surface.
+/// Number of points used for a mean over a surface.
 const POINTS: u16 = 64;
 
 /// Point `i` of a grid over the unit square.
@@ -39,7 +39,8 @@ fn spread(i: u16) -> Vec2 {
 }
 
 impl AffineBody {
-    /// Image of a body. `axes` are the images of x, y and z; `None` if the map leaves no volume.
+    /// Creates the image of a body. `axes` are the images of x, y and z; `None` if the image has no
+    /// volume.
     pub fn new(body: Body, center: DVec3, axes: [Vec3; 3]) -> Option<AffineBody> {
         let closed = AffineBody { center, axes, body };
         let most: f32 = axes.iter().map(|axis| axis.length()).product();
@@ -73,8 +74,8 @@ impl AffineBody {
         Vec3::new(y.cross(z).dot(v), z.cross(x).dot(v), x.cross(y).dot(v)) / self.volume()
     }
 
-    /// Point in body space whose image is `from`. Uses double precision, since the map of a needle
-    /// shrinks one axis and stretches another.
+    /// Point in body space whose image is `from`. Uses double precision, since the map of a
+    /// needle-shaped body shrinks one axis and stretches another.
     fn origin(&self, from: DVec3) -> Vec3 {
         let ([x, y, z], v) = (self.axes.map(|axis| axis.as_dvec3()), from - self.center);
         (DVec3::new(y.cross(z).dot(v), z.cross(x).dot(v), x.cross(y).dot(v)) / x.cross(y).dot(z)).as_vec3()
@@ -100,7 +101,7 @@ impl AffineBody {
         }
     }
 
-    /// Area of a box's face across each axis.
+    /// Area of one face of a box across each axis.
     fn faces(&self) -> [f32; 3] {
         [Vec3::X, Vec3::Y, Vec3::Z].map(|n| 4.0 * self.area_vector(n).length())
     }
@@ -165,7 +166,7 @@ impl AffineBody {
         density * distance * distance / wi.dot(self.area_vector(n).normalize_or_zero()).abs()
     }
 
-    /// Samples a point of the whole surface. Returns the point, its normal and the pdf per area.
+    /// Samples a point of the full surface. Returns the point, its normal and the pdf per area.
     pub fn point(&self, u: Vec2) -> Option<(DVec3, Vec3, f32)> {
         let (point, n, density) = self.place(u, None)?;
         let normal = self.area_vector(n).try_normalize()?;
@@ -330,8 +331,8 @@ fn is_within_ball(p: Vec3) -> bool {
     p.length_squared() <= 1.0 + ON_SURFACE
 }
 
-/// Normal of a ring by two angles in turns, and the length of the circle through that point over
-/// the length of the ring's middle circle.
+/// Normal of a ring at two angles in turns, and the length of the circle through that point
+/// relative to the ring's middle circle.
 fn ring_normal(u: Vec2, minor: f32) -> (Vec3, f32) {
     let ((sin, cos), (up, out)) = (fp::sin_cos_turn(u.x), fp::sin_cos_turn(u.y));
     (Vec3::new(out * cos, out * sin, up), (1.0 + minor * out).abs())

@@ -7,8 +7,8 @@ use crate::math::{Aabb, Vec2, Vec3, fp};
 use glam::{DVec2, DVec3};
 use std::f32::consts::PI;
 
-/// Surface in world space whose points can be sampled. Positions are in double precision, as ray
-/// hits are.
+/// Shape of an area light in world space, on which points can be sampled. Positions are in double
+/// precision, like ray hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EmitterShape {
     /// Corner and two edges.
@@ -24,21 +24,23 @@ pub enum EmitterShape {
 }
 
 impl EmitterShape {
-    /// Triangle with corners in object space, and its unit normal in world space.
+    /// Creates a triangle from corners in object space. Returns it with its unit normal in world
+    /// space.
     pub fn triangle([a, b, c]: [Vec3; 3], place: &Placement) -> (EmitterShape, Vec3) {
         let n = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
         let edges = [place.vector(b - a), place.vector(c - a)];
         (EmitterShape::Triangle(place.point(a), edges), place.normal(n))
     }
 
-    /// Body placed in the world. `axes` are the images of x, y and z, in object space. The normal
-    /// is 0, since a body has normals in all directions. `None` if the map leaves no volume.
+    /// Places a body in the world. `axes` are the images of x, y and z, in object space. The
+    /// returned normal is 0, since a body has normals in all directions. `None` if the image has no
+    /// volume.
     pub fn body(place: &Placement, body: Body, center: Vec3, axes: [Vec3; 3]) -> Option<(EmitterShape, Vec3)> {
         let closed = AffineBody::new(body, place.point(center), axes.map(|axis| place.vector(axis)))?;
         Some((EmitterShape::Closed(closed), Vec3::ZERO))
     }
 
-    /// Cone or cylinder between two points, with a radius at each.
+    /// Creates a cone or cylinder between two points, with a radius at each.
     pub fn frustum(place: &Placement, ends: [Vec3; 2], radii: [f32; 2]) -> Option<(EmitterShape, Vec3)> {
         // The larger disc is the body's base.
         let ([base, top], [large, small]) = match radii[0] >= radii[1] {
@@ -61,7 +63,7 @@ impl EmitterShape {
         }
     }
 
-    /// True if it has normals in all directions.
+    /// True if the shape has normals in all directions.
     pub fn is_round(&self) -> bool {
         matches!(self, EmitterShape::Sphere(..) | EmitterShape::Closed(..))
     }
@@ -168,7 +170,7 @@ impl EmitterShape {
     }
 }
 
-/// Uniform point of the unit disc without its middle, by area.
+/// Maps `u` uniformly by area to the ring between the radii `inner` and 1.
 fn in_ring(u: Vec2, inner: f32) -> Vec2 {
     let d = warp::disc(u);
     // The area of a ring grows with the square of its radius.
@@ -181,14 +183,15 @@ fn offset(to: DVec3, from: DVec3) -> Vec3 {
     (to - from).as_vec3()
 }
 
-/// True if a point lies in or on a sphere, by its squared distance from the centre and the squared
-/// radius. Rounding decides on which side of the surface a point lies; both sides see only the
-/// inside.
+/// True if a point lies in or on a sphere, given its squared distance from the centre and the
+/// squared radius. For a point on the surface, rounding decides the side; from both sides, only the
+/// inside is visible.
 fn is_within(d2: f32, r2: f32) -> bool {
     d2 <= r2 * (1.0 + ON_SURFACE)
 }
 
-/// Cosine of the sphere's normal for a point seen from inside. `to` is the vector to the centre.
+/// Cosine between a direction and the sphere's normal at the point it hits, seen from inside. `to`
+/// is the vector to the centre.
 fn sphere_cosine(to: Vec3, wi: Vec3, distance: f32, radius: f32) -> f32 {
     ((distance * wi - to) / radius).dot(wi).abs().max(1e-6)
 }
@@ -222,11 +225,11 @@ fn cone(to: Vec3, radius: f32, u: Vec2) -> Option<EmitterPoint> {
     Some(EmitterPoint { wi, distance, cosine: half / radius, pdf: 1.0 / (2.0 * PI * all) })
 }
 
-/// Largest edge of a rectangle, as a share of its distance, that is sampled uniformly by area. The
-/// pdf over it then deviates by less than a tenth, and sampling is much faster.
+/// Rectangles whose largest edge is smaller than this share of their distance are sampled uniformly
+/// by area. The pdf then deviates by less than a tenth, and sampling is much faster.
 const SMALL: f32 = 0.1;
 
-/// Rectangle seen from a point, to be sampled uniformly by solid angle.
+/// Rectangular light as seen from a shading point, for uniform sampling by solid angle.
 ///
 /// Source: Ureña, Fajardo and King, *An Area-Preserving Parametrization for Spherical Rectangles*,
 /// EGSR 2013.
@@ -241,8 +244,8 @@ struct Window {
 }
 
 impl Window {
-    /// `None` for a parallelogram without right angles, or one that is seen so small or so flat
-    /// that sampling by area suffices.
+    /// Returns `None` for a parallelogram without right angles, or one that is seen so small or so
+    /// flat that sampling by area suffices.
     fn new(corner: Vec3, e: Vec3, f: Vec3) -> Option<Window> {
         let middle = corner + 0.5 * (e + f);
         if e.length_squared().max(f.length_squared()) < SMALL * SMALL * middle.length_squared() {

@@ -3,7 +3,7 @@
 use crate::math::{Affine, Vec3};
 use glam::DVec3;
 
-/// Placement of an object in the world; `None` is the identity.
+/// Transform of an emitter from object space to world space; `None` is the identity.
 #[derive(Clone, Copy, Debug)]
 pub struct Placement<'a>(pub Option<&'a Affine>);
 
@@ -38,10 +38,10 @@ pub struct EmitterPoint {
     pub pdf: f32,
 }
 
-/// Distance from the surface of a ball, as a share of its radius, within which points lie on it.
+/// Distance from the surface of a ball, relative to its radius, within which points count as on it.
 pub(super) const ON_SURFACE: f32 = 1e-5;
 
-/// Value of 1 - cos of an angle, given the square of its sine, without cancellation.
+/// Computes 1 - cos of an angle from the square of its sine, without cancellation.
 pub(super) fn one_minus_cosine(sine2: f32) -> f32 {
     sine2 / (1.0 + (1.0 - sine2).max(0.0).sqrt())
 }

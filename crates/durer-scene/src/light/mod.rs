@@ -1,4 +1,4 @@
-//! Lights. One file each; the list is [`Light`].
+//! Light sources. Each kind has its own file; [`Light`] lists them all.
 
 mod affine_body;
 pub mod area;
@@ -67,7 +67,7 @@ macro_rules! delegate {
 }
 
 described_list! {
-    /// Light source.
+    /// Light source of any kind, other than an emitting surface.
     Light: Illuminate => delegate {
         Directional(directional::DirectionalLight),
         Point(point::PointLight),
@@ -77,7 +77,7 @@ described_list! {
 }
 
 impl Light {
-    /// Replaces the colour by `change` of it.
+    /// Replaces the colour by the result of `change`.
     pub fn recolor(&mut self, change: impl Fn(Color) -> Color) {
         *self.color_mut() = change(self.color());
     }
@@ -88,7 +88,7 @@ impl Light {
     }
 }
 
-/// Colour scaled to the luminance of white times `white`. Black stays black.
+/// Scales a colour to the luminance of white times `white`. Black stays black.
 fn as_bright(color: Color, white: f32) -> Color {
     let luminance = color.dot(LUMINANCE);
     if luminance > 0.0 { color * (white / luminance) } else { Color::ZERO }
@@ -107,10 +107,10 @@ pub struct LightLiSample {
     pub color: Color,
 }
 
-/// Interface of every light. No method has a default, so the compiler lists the methods that a new
-/// light lacks.
+/// Operations that every light source implements. No method has a default, so the compiler lists
+/// the methods that a new light lacks.
 pub trait Illuminate {
-    /// Light that arrives at a point, without occlusion.
+    /// Light that arrives at a point, ignoring occlusion.
     fn illuminate(&self, point: DVec3) -> LightLiSample;
 
     /// Colour, as written.
@@ -122,10 +122,12 @@ pub trait Illuminate {
     /// File or name of the measured spectrum.
     fn spectrum(&self) -> Option<&FileName>;
 
-    /// Light with its strength in its colour, converted from candela, lumen or lux if written so.
+    /// Light with its strength in its colour, converted from candela, lumens or lux if it has such
+    /// a unit.
     fn in_units(&self) -> Self;
 
-    /// Checks combinations of fields. The constraints in the description check each field alone.
+    /// Checks combinations of fields. The constraints in the description check each field
+    /// separately.
     ///
     /// # Errors
     ///
@@ -135,7 +137,7 @@ pub trait Illuminate {
     /// Position, as written; `None` for a light at infinity.
     fn position(&self) -> Option<Vec3>;
 
-    /// Direction in which the light travels or the axis of its beam, as written and of any length;
+    /// Direction in which the light travels, or the axis of its beam, as written and of any length;
     /// `None` for a light that is equally strong in all directions.
     fn direction(&self) -> Option<Vec3>;
 
@@ -144,17 +146,17 @@ pub trait Illuminate {
     fn cone(&self) -> Option<f32>;
 
     /// Position, and the light that arrives at distance 1 in the strongest direction; `None` for a
-    /// light at infinity, or with another falloff than the inverse square.
+    /// light at infinity, or with a falloff other than the inverse square.
     fn place(&self) -> Option<(Vec3, Color)>;
 
-    /// Angular radius in degrees, the same from every point.
+    /// Angular radius in degrees, equal from every point; 0 for a light without extent.
     fn spread(&self) -> f32;
 
     /// File with the intensity in each direction.
     fn profile(&self) -> Option<&FileName>;
 
-    /// Converts a direction from the light to the coordinates of that file: x points to horizontal
-    /// angle 0, z out of the lower side. Only useful for a light with a file.
+    /// Converts a direction from the light to the coordinates of the profile: x points to
+    /// horizontal angle 0, z out of the lower side. Only useful for a light with a profile.
     fn in_profile(&self, dir: Vec3) -> Vec3;
 }
 

@@ -35,7 +35,7 @@ described! {
 }
 
 impl PhotometricLight {
-    /// Light whose colour includes its own `lumens`, if written.
+    /// Returns the light with its `lumens`, if set, converted to its colour.
     pub fn with_flux(&self, profile: &Profile) -> Self {
         let Some(lumens) = self.lumens else { return self.clone() };
         let flux = profile.flux() as f32;
@@ -45,7 +45,7 @@ impl PhotometricLight {
 }
 
 impl Illuminate for PhotometricLight {
-    /// Light at an intensity of 1 candela in all directions, to be multiplied by the profile.
+    /// Light for an intensity of 1 candela in all directions, to be multiplied by the profile.
     fn illuminate(&self, point: DVec3) -> LightLiSample {
         let offset = (self.position.as_dvec3() - point).as_vec3();
         let distance = offset.length();
@@ -109,7 +109,7 @@ impl Illuminate for PhotometricLight {
     }
 }
 
-/// Intensity of a luminaire in each direction.
+/// Measured intensity of a luminaire in each direction, from an IES or EULUMDAT file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
     /// Meaning of the angles.
@@ -123,7 +123,7 @@ pub struct Profile {
     pub candela: Vec<f32>,
 }
 
-/// Coordinate system of a photometer.
+/// Coordinate system of a photometric measurement: type A, B or C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProfileKind {
     /// C: vertical angles from straight down, horizontal angles about that axis.
@@ -151,19 +151,19 @@ impl Profile {
         self.candela.iter().copied().fold(0.0, f32::max)
     }
 
-    /// Intensity in candela in a direction: x is horizontal angle 0, z is down. Interpolates
-    /// linearly between angles; 0 beyond the vertical angles.
+    /// Intensity in candela in a direction, interpolated linearly between angles; 0 beyond the
+    /// vertical angles. In `dir`, x points to horizontal angle 0 and z points down.
     pub fn at(&self, dir: Vec3) -> f32 {
         let degrees = |y: f32, x: f32| fp::atan2(y, x).to_degrees();
         let across = |a: f32, b: f32| (a * a + b * b).sqrt();
         let (vertical, horizontal) = match self.kind {
             ProfileKind::C => (degrees(across(dir.x, dir.y), dir.z), degrees(dir.y, dir.x)),
-            // The luminaire faces z, which is down as mounted. Angles grow towards y and x.
+            // The luminaire faces z, which is down as mounted. Angles increase towards y and x.
             ProfileKind::B => (degrees(dir.x, across(dir.y, dir.z)), degrees(dir.y, dir.z)),
             ProfileKind::A => (degrees(dir.y, across(dir.x, dir.z)), degrees(dir.x, dir.z)),
         };
         let horizontal = self.folded(horizontal);
-        // A missing half mirrors the written one.
+        // If the file has only one half, mirror it.
         let vertical = if self.vertical[0] >= 0.0 { vertical.abs() } else { vertical };
         let (Some((i, a)), Some((j, b))) = (place(&self.vertical, vertical), place(&self.horizontal, horizontal))
         else {
@@ -199,7 +199,7 @@ impl Profile {
         }
     }
 
-    /// Luminous flux in lumen. Exact for a profile that is linear between the angles, up to the
+    /// Luminous flux in lumens. Exact for a profile that is linear between the angles, up to the
     /// sine factor.
     pub fn flux(&self) -> f64 {
         let (rows, columns) = (720_u32, 360_u32);
@@ -215,8 +215,8 @@ impl Profile {
     }
 }
 
-/// Index of the last angle at or before `wanted`, and the fraction towards the next; `None` outside
-/// the range.
+/// Index of the last angle at or before `wanted`, and the fraction towards the next angle; `None`
+/// outside the range.
 fn place(angles: &[f32], wanted: f32) -> Option<(usize, f32)> {
     const SLACK: f32 = 1e-3;
     let (first, last) = (angles[0], angles[angles.len() - 1]);

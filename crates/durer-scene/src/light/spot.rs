@@ -8,8 +8,8 @@ use glam::DVec3;
 use std::f32::consts::PI;
 
 described_words! {
-    /// Fade between `innerAngle` and `angle`, by the fraction s between their cosines: s^2 as in
-    /// glTF, s^2 (3 - 2 s) as in pbrt-v4, or s^4 as in pbrt-v3.
+    /// Fade of a spot light between `innerAngle` and `angle`, as a function of the fraction s
+    /// between their cosines: s^2 as in glTF, s^2 (3 - 2 s) as in pbrt-v4, or s^4 as in pbrt-v3.
     Fade { Squared = "squared", Smooth = "smooth", Fourth = "fourth" }
 }
 
@@ -46,10 +46,10 @@ impl SpotLight {
         [self.angle, self.inner_angle.min(self.angle)].map(|degrees| fp::sin_cos_degrees(f64::from(degrees)).1 as f32)
     }
 
-    /// Solid angle that would give the same flux at the constant intensity of the axis.
+    /// Solid angle of a uniform cone that has the same flux and the same intensity on the axis.
     fn fills(&self) -> f32 {
         let [outer, inner] = self.cosines();
-        // Means over the fade of s^2, of s^2 (3 - 2 s) and of s^4.
+        // Means of s^2, s^2 (3 - 2 s) and s^4 over the fade.
         let fading = match self.fade {
             Fade::Squared => 1.0 / 3.0,
             Fade::Smooth => 0.5,

@@ -1,4 +1,4 @@
-//! Mix of two materials, constant or by a texture.
+//! Mix of two materials in a constant or textured proportion.
 
 use super::Pattern;
 use crate::describe::{Constraint, FileName, described};

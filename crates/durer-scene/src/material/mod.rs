@@ -1,5 +1,5 @@
-//! Materials: how surfaces scatter light. One file each; the list is [`Solid`] beside
-//! [`PhongMaterial`], [`PrincipledMaterial`] and [`HairMaterial`].
+//! Materials, which describe how surfaces scatter light. Each has its own file: [`PhongMaterial`],
+//! [`PrincipledMaterial`], [`HairMaterial`], and the patterns that [`Solid`] lists.
 
 pub mod checkerboard;
 pub mod hair;
@@ -56,7 +56,7 @@ impl Solid {
     }
 }
 
-/// Interface of every pattern in space.
+/// Pattern in space that decides the shares of the two materials of a [`Solid`].
 pub trait Pattern {
     /// Share of the first material at a point of pattern space, from 0 to 1. For a two-sided
     /// material, it is the share on the front.
@@ -69,7 +69,7 @@ pub trait Pattern {
 /// Maximum number of noise octaves; finer ones are below the precision of `f32`.
 pub const MAX_OCTAVES: u32 = 32;
 
-/// True if a field contains the index of another material.
+/// True if the value of a field is the index of another material.
 pub fn is_material_index(field: &Field) -> bool {
     field.name.starts_with("material")
 }

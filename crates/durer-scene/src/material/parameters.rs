@@ -6,21 +6,23 @@ use crate::math::Vec3;
 
 macro_rules! parameters {
     ($($field:ident: $type:ty,)+) => {
-        /// Parameters of a [`PrincipledMaterial`] that decide the scattering at a point, under the
-        /// same names.
+        /// Parameters of a [`PrincipledMaterial`] at one surface point, after textures. They decide
+        /// the scattering there, and have the same names.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Parameters {
             $(#[doc = concat!("[`PrincipledMaterial::", stringify!($field), "`] at the point.")] pub $field: $type,)+
-            /// Factor on the reflection of an opaque base or a metal, at all angles.
+            /// Factor that scales the reflection of an opaque base or a metal, at all angles.
             pub reflection: f32,
-            /// Factor on the light that enters a scattering interior.
+            /// Factor that scales the light entering a scattering interior.
             pub entering: Vec3,
-            /// True if there is a scattering interior, even if its share is 0 at this point.
+            /// True if the material has a scattering interior, even if its share is 0 at this
+            /// point.
             pub has_body: bool,
         }
 
         impl Parameters {
-            /// Parameters as written, without textures. `base_color` includes `base_weight`.
+            /// Returns the parameters as written, without textures. `base_color` includes
+            /// `base_weight`.
             pub fn of(m: &PrincipledMaterial) -> Self {
                 let has_body = m.has_subsurface();
                 let written = Parameters { $($field: m.$field,)+ reflection: 1.0, entering: Vec3::ONE, has_body };
@@ -105,7 +107,7 @@ impl PrincipledMaterial {
     }
 }
 
-/// Effect of a texture on a parameter.
+/// Function by which a texture changes the parameters of a principled material.
 #[derive(Clone, Copy, Debug)]
 pub enum Change {
     /// Change by one channel of the texture.
@@ -114,12 +116,12 @@ pub enum Change {
     Color(fn(&mut Parameters, Vec3)),
 }
 
-/// Texture field and its effect.
+/// Texture field of a principled material, and its effect on the parameters.
 #[derive(Clone, Copy, Debug)]
 pub struct Textured {
     /// Name of the field.
     pub field: &'static str,
-    /// File of a material's texture.
+    /// Returns the texture file of a material.
     pub picture: fn(&PrincipledMaterial) -> Option<&FileName>,
     /// Effect of the texture.
     pub change: Change,
@@ -127,8 +129,8 @@ pub struct Textured {
 
 macro_rules! textured {
     ($($field:ident $kind:ident $change:expr;)+) => {
-        /// Every texture that changes a parameter. Emission, opacity and normals are handled
-        /// elsewhere.
+        /// Every texture that changes a parameter. Textures of emission, opacity and normals are
+        /// handled elsewhere.
         pub const TEXTURED: &[Textured] =
             &[$(Textured {
                 field: stringify!($field),

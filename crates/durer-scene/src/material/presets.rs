@@ -8,7 +8,7 @@ use super::PrincipledMaterial;
 use crate::describe::{Describe, Value};
 use crate::math::Vec3;
 
-/// Preset of a name; `None` if it is unknown.
+/// Returns the preset with a name; `None` if it is unknown.
 pub fn named(name: &str) -> Option<PrincipledMaterial> {
     let (_, values) = PRESETS.iter().find(|row| row.0 == name)?;
     let mut material = PrincipledMaterial::default();
@@ -26,10 +26,10 @@ pub fn named(name: &str) -> Option<PrincipledMaterial> {
     Some(material)
 }
 
-/// Name, and the fields that differ from their defaults.
+/// Preset of a principled material: its name, and the fields that differ from their defaults.
 type Preset = (&'static str, &'static [(&'static str, &'static [f32])]);
 
-/// List of the presets.
+/// Presets by name.
 #[rustfmt::skip]
 pub const PRESETS: &[Preset] = &[
     ("aluminum-brushed", &[

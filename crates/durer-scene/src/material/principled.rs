@@ -8,22 +8,22 @@ use crate::dialect::set;
 use crate::math::Vec3;
 
 described_words! {
-    /// Surface as a thin sheet or as the boundary of a body.
+    /// Interpretation of a surface as a thin sheet or as the boundary of a solid body.
     Walls { Solid = "solid", Thin = "thin" }
 }
 
 described_words! {
-    /// Treatment of the back of a surface.
+    /// Treatment of the back side of a surface by a principled material.
     Backs { Shown = "shown", Hidden = "hidden", Black = "black" }
 }
 
 described_words! {
-    /// State of an option.
+    /// Switch for an option of a principled material.
     Switch { On = "on", Off = "off" }
 }
 
 described_words! {
-    /// Treatment of the medium around glass.
+    /// Treatment of the medium around glass when light is refracted at it.
     Surroundings { Nested = "nested", Ignored = "ignored" }
 }
 
@@ -246,7 +246,7 @@ impl PrincipledMaterial {
         self.transmission_weight > 0.0 && self.transmission_dispersion_scale > 0.0 && self.walls == Walls::Solid
     }
 
-    /// Index of refraction at a wavelength in nanometres; `None` gives the index for all of them.
+    /// Index of refraction at a wavelength in nanometres, or `specular_ior` for `None`.
     ///
     /// Source: Cauchy's formula through the indices at the lines C, d and F, which define the Abbe
     /// number; OpenPBR.

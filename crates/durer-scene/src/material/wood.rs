@@ -1,7 +1,8 @@
 //! Wood: rings around the y axis. The first material has the share (sin(frequency r + amplitude N)
 //! + 1) / 2, where r is the distance from the axis.
 //!
-//! The course does not define the profile of the rings. [`Wood::conic`] is the official program's.
+//! The course does not define the profile of the rings. [`Wood::conic`] uses that of the official
+//! program.
 
 use super::{MAX_OCTAVES, Pattern};
 use crate::describe::{Constraint, described};

@@ -1,7 +1,7 @@
 //! Real roots of polynomials, in double precision.
 
-/// Roots of a t^2 + 2 b t + c at sign changes, in ascending order: two or none. A double root does
-/// not count.
+/// Roots of a t^2 + 2 b t + c at which the sign changes, in ascending order: two or none. A double
+/// root does not count.
 ///
 /// `a` must not be 0. Computing one root as c / q avoids cancellation. Source: Press et al.,
 /// *Numerical Recipes*, section 5.6.
@@ -38,7 +38,7 @@ pub fn quartic(c: [f64; 5], low: f64, high: f64) -> ([f64; 4], usize) {
     between(&c, &turns[..count], low, high)
 }
 
-/// Sign changes of a polynomial that is monotonic between the given points.
+/// Finds the roots at which a polynomial changes its sign. It must be monotonic between the `cuts`.
 fn between(c: &[f64], cuts: &[f64], low: f64, high: f64) -> ([f64; 4], usize) {
     let mut roots = [0.0; 4];
     let mut count = 0;
@@ -59,7 +59,7 @@ fn value(c: &[f64], t: f64) -> (f64, f64) {
     c.iter().rev().fold((0.0, 0.0), |(value, slope), &c| (value * t + c, slope * t + value))
 }
 
-/// Root between two points of different sign.
+/// Finds the root between two points at which the polynomial has different signs.
 fn refine(c: &[f64], a: (f64, f64), b: (f64, f64)) -> f64 {
     let (mut low, mut high) = if a.1 < 0.0 { (a.0, b.0) } else { (b.0, a.0) };
     let mut t = 0.5 * (low + high);

@@ -3,19 +3,19 @@
 use crate::math::{Aabb, Vec3};
 use crate::source::Digest;
 
-/// Densities of a medium on a grid in a box.
+/// Densities of a participating medium, such as smoke or a cloud, on a regular grid in a box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DensityGrid {
     /// Number of points along x, y and z; at least one each.
     counts: [u32; 3],
-    /// Values, x fastest.
+    /// Density values, with x varying fastest.
     values: Vec<f32>,
     most: f32,
 }
 
 impl DensityGrid {
-    /// Creates a grid from values, x fastest. `None` unless their number is the product of the
-    /// counts and all are finite and not negative.
+    /// Creates a grid from values, with x varying fastest. `None` unless there is one value per
+    /// grid point, and all are finite and not negative.
     pub fn new(counts: [u32; 3], values: Vec<f32>) -> Option<Self> {
         let wanted = counts.iter().try_fold(1_usize, |product, &count| product.checked_mul(count as usize))?;
         if wanted == 0 || wanted != values.len() || values.iter().any(|x| !x.is_finite() || *x < 0.0) {
@@ -30,7 +30,7 @@ impl DensityGrid {
         self.counts
     }
 
-    /// Values, x fastest.
+    /// Density values, with x varying fastest.
     pub fn values(&self) -> &[f32] {
         &self.values
     }
@@ -53,7 +53,8 @@ impl DensityGrid {
         self.values.len() * size_of::<f32>()
     }
 
-    /// Density at a point in the space of the box: trilinear between the centres of the cells.
+    /// Density at a point in the space of the box, interpolated trilinearly between the centres of
+    /// cells.
     pub fn at(&self, bounds: &Aabb, point: Vec3) -> f32 {
         let counts = Vec3::from_array(self.counts.map(|n| n as f32));
         let place = (point - bounds.min) / (bounds.max - bounds.min) * counts - 0.5;

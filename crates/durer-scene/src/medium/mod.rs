@@ -14,10 +14,10 @@ pub use grid::DensityGrid;
 pub use phase::HenyeyGreenstein;
 use std::sync::Arc;
 
-/// Medium inside a body, or around the camera.
+/// Participating medium, such as fog or smoke, inside a body or around the camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Medium {
-    /// Extinction coefficient by colour per unit of length, for density 1.
+    /// Extinction coefficient per unit of length, by colour, for density 1.
     pub extinction: Color,
     /// Scattering albedo.
     pub albedo: Color,
@@ -27,12 +27,12 @@ pub struct Medium {
     pub place: Option<MediumRegion>,
 }
 
-/// Region of a medium.
+/// Region that a bounded medium fills, with its density.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MediumRegion {
     /// Bounds of the medium.
     pub bounds: Aabb,
-    /// Transform from the bounds to world space; `None` for the identity.
+    /// Transform from the space of the bounds to world space; `None` for the identity.
     pub placed: Option<Affine>,
     /// Density grid; `None` for density 1 everywhere.
     pub density: Option<Arc<DensityGrid>>,
@@ -46,25 +46,25 @@ impl MediumRegion {
     }
 }
 
-/// Result of sampling a distance along a segment.
+/// Result of sampling the distance that light travels in a medium before it is scattered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DistanceSample {
-    /// The light passed through the segment; the throughput factor.
+    /// The light passed through the segment, with this throughput factor.
     Passed(Spectrum),
-    /// The light was scattered; the distance and the throughput factor.
+    /// The light was scattered at this distance, with this throughput factor.
     Scattered(f32, Spectrum),
 }
 
-/// A straight segment.
+/// Straight ray segment along which a medium is sampled.
 #[derive(Clone, Copy, Debug)]
 pub struct Segment {
     /// Origin of the distances.
     pub origin: DVec3,
     /// Unit direction.
     pub dir: Vec3,
-    /// Distance of the start.
+    /// Distance from the origin to the start.
     pub from: f32,
-    /// Distance of the end, which may be infinite.
+    /// Distance from the origin to the end, which may be infinite.
     pub to: f32,
 }
 
@@ -78,7 +78,7 @@ impl Segment {
 const MAX_STEPS: u32 = 1 << 16;
 
 impl Medium {
-    /// Returns true if the medium scatters light, instead of only absorbing it.
+    /// True if the medium scatters light, instead of only absorbing it.
     pub fn scatters(&self) -> bool {
         self.albedo.max_element() > 0.0
     }
@@ -133,8 +133,8 @@ impl Medium {
         left
     }
 
-    /// Samples a distance along a segment for light with these weights: it passes or is scattered.
-    /// The returned weight is divided by the probability of the event.
+    /// Samples the distance at which light with these weights is scattered, if it does not pass
+    /// through the segment. The returned weight is divided by the probability of the event.
     pub fn flight(
         &self,
         way: &Segment,
@@ -190,7 +190,7 @@ impl Medium {
     }
 }
 
-/// Distance of the next tentative collision with a medium of constant extinction `most`, or `None`
+/// Distance of the next tentative collision in a medium of constant extinction `most`; `None`
 /// beyond `to`.
 fn collision(at: f32, to: f32, most: f32, numbers: &mut dyn FnMut() -> f32) -> Option<f32> {
     let next = at - fp::ln(1.0 - numbers()) / most;
@@ -204,7 +204,7 @@ fn shares(weights: Spectrum) -> Spectrum {
     if sum > 0.0 { weights / sum } else { Spectrum::splat(0.25) }
 }
 
-/// Transmittance of a distance by Beer's law.
+/// Transmittance over a distance, by Beer's law.
 fn absorbed(extinction: Spectrum, distance: f32) -> Spectrum {
     (-extinction * distance.min(f32::MAX)).map(fp::exp)
 }

@@ -3,12 +3,12 @@
 use crate::math::{Vec2, Vec3, fp};
 use std::f32::consts::{PI, TAU};
 
-/// Henyey-Greenstein phase function.
+/// Henyey-Greenstein phase function, which scatters light in participating media.
 ///
 /// Source: Henyey and Greenstein, *Diffuse radiation in the Galaxy*, 1941.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HenyeyGreenstein {
-    /// Mean cosine between the directions before and after scattering: from -1 (backward) over 0
+    /// Mean cosine between the directions before and after scattering: from -1 (backward) through 0
     /// (isotropic) to 1 (forward).
     pub anisotropy: f32,
 }
@@ -22,7 +22,7 @@ impl HenyeyGreenstein {
         (1.0 - g * g) / (4.0 * PI * below * below.max(0.0).sqrt()).max(1e-12)
     }
 
-    /// Samples the unit direction after scattering by two numbers from 0 to 1.
+    /// Samples the unit direction after scattering, from two numbers in [0, 1].
     pub fn sample(&self, before: Vec3, u: Vec2) -> Vec3 {
         let g = self.anisotropy;
         let cosine = if g.abs() < 1e-3 {

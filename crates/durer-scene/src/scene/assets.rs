@@ -14,8 +14,8 @@ use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Meshes, pictures, light profiles and densities by name. A [`FileName`] of the scene refers to
-/// the asset of that name if it exists, else to a file.
+/// Meshes, pictures, light profiles and densities of a scene in memory, by name. A [`FileName`] of
+/// the scene refers to the asset with that name, or to a file if there is none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Assets {
     /// Meshes.
@@ -28,7 +28,7 @@ pub struct Assets {
     pub densities: BTreeMap<String, (Aabb, Arc<DensityGrid>)>,
 }
 
-/// A picture that a material names.
+/// Image of a texture that materials refer to by name, with its mapping onto surfaces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     /// Location of its bytes.
@@ -38,13 +38,13 @@ pub struct Picture {
 }
 
 described_words! {
-    /// Filter between texels.
+    /// Magnification filter of a texture.
     Texels { Linear = "linear", Nearest = "nearest" }
 }
 
 described_words! {
-    /// Filter for minified pictures: `texels` takes point samples, which average correctly over a
-    /// pixel's samples; `mipmaps` takes a smaller version of the picture, with less noise and
+    /// Minification filter of a texture: `texels` takes point samples, which average correctly over
+    /// a pixel's samples; `mipmaps` takes a smaller version of the picture, with less noise and
     /// slight blur.
     Minified { Texels = "texels", Mipmaps = "mipmaps" }
 }
@@ -85,13 +85,13 @@ described! {
 }
 
 impl NamedTexture {
-    /// Description of a named texture; `None` if its bytes are not in a file.
+    /// Describes a picture as a named texture; `None` if its bytes are not in a file.
     pub fn of(name: &str, picture: &Picture) -> Option<Self> {
         let PictureBytes::File(file) = &picture.bytes else { return None };
         Some(NamedTexture::with_mapping(name, file, picture.mapping))
     }
 
-    /// Description of a picture by name, file and mapping.
+    /// Describes a picture by name, file and mapping.
     pub(super) fn with_mapping(name: &str, file: &str, mapping: Mapping) -> Self {
         let named = |path: &str| FileName { path: path.to_string(), ..FileName::default() };
         let Mapping { wrap: [wrap_u, wrap_v], nearest, mipmaps, second, transform, cutoff, strength, channel, range } =
@@ -112,7 +112,7 @@ impl NamedTexture {
         }
     }
 
-    /// Returns the picture of the description.
+    /// Returns the picture that the texture describes.
     pub fn picture(&self) -> Picture {
         let usual = Mapping::default();
         let mapping = Mapping {
@@ -130,7 +130,7 @@ impl NamedTexture {
     }
 }
 
-/// Location of a picture's bytes.
+/// Location of the bytes of a texture image: a file or memory.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PictureBytes {
     /// File name relative to the scene.
@@ -148,20 +148,20 @@ impl PictureBytes {
 }
 
 impl Assets {
-    /// Returns true if all lists are empty.
+    /// True if all lists are empty.
     pub fn is_empty(&self) -> bool {
         let Assets { meshes, pictures, profiles, densities } = self;
         meshes.is_empty() && pictures.is_empty() && profiles.is_empty() && densities.is_empty()
     }
 
-    /// Returns true if some assets are not in files, so that a scene text cannot name them.
+    /// True if some assets are not in files, so that a scene file cannot refer to them.
     pub fn has_loose(&self) -> bool {
         let loose = |picture: &Picture| matches!(picture.bytes, PictureBytes::Here(..));
         let Assets { meshes, pictures, profiles, densities } = self;
         !(meshes.is_empty() && profiles.is_empty() && densities.is_empty()) || pictures.values().any(loose)
     }
 
-    /// Descriptions of the pictures that are in files.
+    /// Describes the pictures that are in files as named textures.
     pub fn textures(&self) -> impl Iterator<Item = NamedTexture> {
         self.pictures.iter().filter_map(|(name, picture)| NamedTexture::of(name, picture))
     }

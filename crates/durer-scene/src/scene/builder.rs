@@ -1,4 +1,4 @@
-//! Builder of scenes in code, which names objects by handles instead of strings.
+//! Builder for scenes in code, which refers to materials and meshes by handles instead of names.
 
 use super::{Background, Group, Material, MatrixOp, Node, Object, Scene, Spanned};
 use crate::camera::Camera;
@@ -11,20 +11,20 @@ use crate::shape::{MeshData, Primitive, TriangleMesh};
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use std::sync::Arc;
 
-/// A material of a [`SceneBuilder`].
+/// Handle of a material in a [`SceneBuilder`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MaterialId(u32);
 
-/// A mesh of a [`SceneBuilder`]. It can be added to the scene any number of times and is stored
-/// once.
+/// Handle of a mesh in a [`SceneBuilder`]. The mesh can be added to the scene any number of times
+/// and is stored once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MeshId(u32);
 
-/// A primitive or a mesh that can be added to a scene.
+/// Primitive or mesh that can be added to a [`SceneBuilder`].
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Shape {
-    /// A sphere, box, disc and so on.
+    /// A primitive, such as a sphere, a box or a disc.
     Primitive(Primitive),
     /// A mesh of the same builder.
     Mesh(MeshId),
@@ -60,8 +60,8 @@ impl From<HairMaterial> for Material {
     }
 }
 
-/// Builder of a scene. Lengths may have any unit; it is the metre if lights are given in candela or
-/// lumens. y is up.
+/// Builder for a scene in code. Lengths can have any unit, but must be in metres if lights are
+/// given in candela or lumens. y is up.
 ///
 /// ```
 /// use durer_scene::camera::PerspectiveCamera;
@@ -87,7 +87,7 @@ pub struct SceneBuilder {
     meshes: u32,
 }
 
-/// An object of a [`SceneBuilder`], with its material and transforms.
+/// Object in a [`SceneBuilder`], whose material and transforms can be set.
 #[derive(Clone, Debug)]
 pub struct ObjectBuilder {
     node: Node,
@@ -164,8 +164,8 @@ impl SceneBuilder {
         MaterialId(self.scene.materials.len() as u32 - 1)
     }
 
-    /// Stores a mesh: positions, and triangles by three position indices each, counter-clockwise
-    /// seen from outside. It becomes visible when it is added.
+    /// Stores a mesh: positions, and triangles of three position indices each, counter-clockwise
+    /// seen from outside. It is not visible until it is added to the scene.
     pub fn mesh(&mut self, positions: &[impl Into<Vec3> + Copy], triangles: &[[u32; 3]]) -> MeshId {
         let positions = positions.iter().map(|&position| position.into()).collect();
         self.mesh_data(MeshData { positions, triangles: triangles.to_vec(), ..MeshData::default() })
@@ -179,7 +179,7 @@ impl SceneBuilder {
         mesh
     }
 
-    /// Adds a primitive or a mesh; set material and transforms on the result.
+    /// Adds a primitive or a mesh to the scene. Set its material and transforms on the result.
     pub fn add(&mut self, shape: impl Into<Shape>) -> &mut ObjectBuilder {
         let node = match shape.into() {
             Shape::Primitive(primitive) => Node::Primitive(primitive),

@@ -1,4 +1,4 @@
-//! Defaults for models: a camera that shows the whole model, light, a ground, and a material.
+//! Defaults for models: a camera that shows the full model, lights, a ground and a material.
 
 use super::extent::points;
 use super::{Background, Group, Material, Node, Object, Scene, Spanned};
@@ -11,7 +11,7 @@ use durer_diag::Span;
 use glam::{DMat3, DVec3};
 use std::path::PathBuf;
 
-/// An axis of space.
+/// Coordinate axis, such as the up axis of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
     /// The x axis.
@@ -22,7 +22,7 @@ pub enum Axis {
     Z,
 }
 
-/// View of a model without a camera.
+/// Preset view of a model, for models without a camera or to replace their camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum View {
     /// Perspective, from the front, slightly from the right and from above.
@@ -38,7 +38,7 @@ pub enum View {
     Iso,
 }
 
-/// Light for a model without lights.
+/// Preset lighting for models without lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DefaultLighting {
     /// No light and no ground.
@@ -50,23 +50,23 @@ pub enum DefaultLighting {
     Sun,
 }
 
-/// Options for turning a model into a scene.
+/// Options for completing a model to a scene, with a camera, lights, a ground and a material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneDefaults {
-    /// Up axis; `None`: the usual one of the format.
+    /// Up axis; `None` for the usual axis of the format.
     pub up: Option<Axis>,
-    /// View; `None`: the model's own camera, else a three-quarter view.
+    /// View; `None` for the model's own camera, or a three-quarter view if it has none.
     pub view: Option<View>,
-    /// Lighting; `None`: the model's own lights, or else [`DefaultLighting::Soft`].
+    /// Lighting; `None` for the model's own lights, or [`DefaultLighting::Soft`] if it has none.
     pub studio: Option<DefaultLighting>,
-    /// Name of the camera to use; `None`: the first.
+    /// Name of the camera to use; `None` for the first.
     pub camera: Option<String>,
-    /// Name of the glTF material variant to use (KHR_materials_variants); `None`: the default
+    /// Name of the glTF material variant to use (KHR_materials_variants); `None` for the default
     /// materials.
     pub variant: Option<String>,
-    /// Time of the animation in seconds; `None`: without animation.
+    /// Time of the animation in seconds; `None` for no animation.
     pub at: Option<f32>,
-    /// File of Radiance views, of which the last is the camera.
+    /// File of Radiance views; the last of them becomes the camera.
     pub view_file: Option<PathBuf>,
     /// Environment map that lights the model instead of the default lights.
     pub environment: Option<PathBuf>,
@@ -75,15 +75,15 @@ pub struct SceneDefaults {
     /// Degrees by which the camera orbits the model, counter-clockwise as seen from above, at a
     /// distance that shows the full model at all angles; `None` for a single picture.
     pub turned: Option<f32>,
-    /// True to neither add nor replace anything, because the scene is written in another format.
+    /// True to neither add nor replace anything, because the scene is converted to another format.
     pub bare: bool,
-    /// True to use the model's own light only, even if there is none.
+    /// True to use only the model's own light, even if it has none.
     pub own_light: bool,
-    /// Width over height of the picture that the camera should fill; `None`: 1.
+    /// Width over height of the picture that the camera should fill; `None` for 1.
     pub aspect: Option<f32>,
 }
 
-/// Axes of a model as a viewer in front of it sees them.
+/// Right, up and front directions of a model, as seen by a viewer in front of it.
 pub struct Sides {
     /// Direction to the viewer's right.
     pub right: DVec3,
@@ -94,7 +94,7 @@ pub struct Sides {
 }
 
 impl Sides {
-    /// Axes for a model with this up axis.
+    /// Creates the directions for a model with this up axis.
     pub fn new(up: Axis) -> Self {
         let (right, up) = match up {
             Axis::X => (DVec3::NEG_Y, DVec3::X),
@@ -114,7 +114,7 @@ const FILLED: f64 = 0.86;
 
 impl SceneDefaults {
     /// Adds the parts that a scene lacks. `up` is the usual up axis of its format. With `dark`, a
-    /// scene with a camera or emitters but without lights is complete.
+    /// scene without lights is complete if it has a camera or emitters.
     pub fn complete(&self, scene: &mut Scene, up: Axis, dark: bool) {
         let sides = Sides::new(self.up.unwrap_or(up));
         let framed = scene.camera.is_none() || self.view.is_some() || self.turned.is_some();
@@ -140,7 +140,7 @@ impl SceneDefaults {
         }
     }
 
-    /// A centred camera that shows the full scene.
+    /// Creates a centred camera that shows the full scene.
     fn camera(&self, scene: &Scene, sides: &Sides, view: View) -> Camera {
         let &Sides { right, up, front } = sides;
         let (back, above) = match view {
@@ -154,7 +154,7 @@ impl SceneDefaults {
         self.framed(scene, sides, (back, above), view == View::ThreeQuarter)
     }
 
-    /// A camera that shows the full scene from a direction.
+    /// Creates a camera that shows the full scene from a direction.
     fn framed(&self, scene: &Scene, sides: &Sides, (back, above): (DVec3, DVec3), perspective: bool) -> Camera {
         let forward = -back.normalize();
         let across = forward.cross(above).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
@@ -167,7 +167,7 @@ impl SceneDefaults {
         let axis = self.turned.map(|_| axis(scene, sides));
         match axis {
             None => points(scene, &mut add),
-            // The points at all angles of the orbit.
+            // Add the points at all angles of the orbit.
             Some(axis) => points(scene, &mut |p| {
                 (0..PLACES)
                     .for_each(|i| add(axis + turn(sides.up, 360.0 * f64::from(i) / f64::from(PLACES)) * (p - axis)));
@@ -196,7 +196,7 @@ impl SceneDefaults {
         }
         let pose = scene.camera.as_ref().map(crate::camera::Projection::pose);
         let forward = pose.map_or(-sides.front, |pose| pose.direction.as_dvec3().normalize_or(-sides.front));
-        // Horizontal, so that light comes from above even if the camera looks down.
+        // Use the horizontal part, so that light comes from above even if the camera looks down.
         let forward = forward.reject_from(sides.up).try_normalize().unwrap_or(-sides.front);
         let right = forward.cross(sides.up);
         let from = |x: f64, y: f64, z: f64| -(x * right + y * sides.up - z * forward).normalize().as_vec3();
@@ -254,7 +254,7 @@ impl Scene {
     }
 }
 
-/// A point of the axis about which the camera orbits: the centre of the bounds.
+/// Point on the axis about which the camera orbits: the centre of the bounds.
 fn axis(scene: &Scene, sides: &Sides) -> DVec3 {
     let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     points(scene, &mut |p| (least, most) = (least.min(p), most.max(p)));
@@ -303,8 +303,8 @@ fn give_material(scene: &mut Scene) {
     }
 }
 
-/// Extent of the visible points in the camera's axes, from which the closest suitable camera
-/// follows.
+/// Extent of a model's points along the camera axes, from which the closest camera that shows all
+/// of them is computed.
 struct VisibleExtent {
     /// Half the picture's width and height at distance 1.
     slopes: [f64; 2],

@@ -1,10 +1,10 @@
-//! Matrices of a transform, as written.
+//! Matrices of a transform, as written in a scene.
 
 use crate::math::{Vec3, fp};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// One matrix of a transform. Rotations are right-handed, in degrees.
+/// Matrix of a transform, as one operation in a scene file. Rotations are right-handed, in degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum MatrixOp {
     /// Translation.
@@ -25,15 +25,16 @@ pub enum MatrixOp {
     Matrix([f32; 16]),
 }
 
-/// Rules of matrix products, resolved from a scene's dialect. The default is Dürer's own.
+/// Rules by which a dialect multiplies the matrices of a transform. The defaults are Dürer's own
+/// rules.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MatrixRules {
-    /// A `Matrix` is multiplied on the left of everything before it.
+    /// True if a `Matrix` is multiplied on the left of everything before it.
     pub matrix_on_left: bool,
-    /// The product of one transform loses its shear: it is decomposed into translation, rotation
-    /// and scale.
+    /// True if the product of the matrices of one transform loses its shear: it is decomposed into
+    /// translation, rotation and scale.
     pub dropped_shear: bool,
-    /// A transform whose determinant is almost 0 is ignored.
+    /// True if a transform whose determinant is almost 0 is ignored.
     pub dropped_tiny: bool,
 }
 
@@ -50,7 +51,7 @@ impl MatrixOp {
         ("Matrix", MatrixOp::Matrix([1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.])),
     ];
 
-    /// Keywords of the operations.
+    /// Keywords of all operations.
     pub fn words() -> [&'static str; 8] {
         MatrixOp::KINDS.map(|row| row.0)
     }
@@ -69,7 +70,7 @@ impl MatrixOp {
         }
     }
 
-    /// Product of the matrices of one transform.
+    /// Multiplies the matrices of one transform.
     pub fn product(ops: &[MatrixOp], rules: MatrixRules) -> DAffine3 {
         let product = ops.iter().fold(DAffine3::IDENTITY, |product, op| match op {
             MatrixOp::Matrix(_) if rules.matrix_on_left => op.matrix() * product,

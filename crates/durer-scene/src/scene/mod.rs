@@ -144,18 +144,17 @@ impl Background {
         Ok(Some(almanac::way(almanac::sun([latitude, longitude].map(f64::from), &moment))))
     }
 
-    /// Direction to the sun, of any length; `None` if there is none or it is invalid.
+    /// Direction to the sun, of any length; `None` if the background has no sun, or an invalid one.
     pub fn sun(&self) -> Option<Vec3> {
         self.way_to_sun().ok().flatten()
     }
 
-    /// Returns true if the sun is below the horizon, so that neither the sun nor its sky emits
-    /// light.
+    /// True if the sun is below the horizon, so that neither the sun nor its sky emits light.
     pub fn is_night(&self) -> bool {
         self.sun().is_some_and(|way| way.y < 0.0)
     }
 
-    /// The standard sky, if the background has one.
+    /// Returns the CIE standard sky, if the background has one.
     pub fn cie_sky(&self) -> Option<CieSky> {
         let (zenith, ground) = (self.zenith_luminance.unwrap_or(10_000.0), self.ground_reflectance.unwrap_or(0.2));
         self.cie_sky.map(|number| CieSky::new(number, self.sun().unwrap_or(Vec3::Y), zenith, ground))
@@ -167,7 +166,7 @@ impl Background {
     }
 }
 
-/// Settings that a file requests for its picture; options override them.
+/// Render settings that a scene file requests for its picture; command-line options override them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RenderDefaults {
     /// Width and height in pixels.
@@ -187,7 +186,7 @@ impl RenderDefaults {
     }
 }
 
-/// A complete scene.
+/// Complete scene description: camera, background, lights, materials and objects.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
     /// The camera.
@@ -203,7 +202,7 @@ pub struct Scene {
     pub materials: Vec<Spanned<Material>>,
     /// The objects.
     pub root: Option<Group>,
-    /// Assets in memory.
+    /// Assets in memory, instead of in files.
     #[serde(skip_serializing_if = "Assets::is_empty", skip_deserializing)]
     pub assets: Assets,
     /// Settings that the file requests for its picture.
@@ -224,14 +223,14 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Adds a mesh in memory under a unique `name`, and returns a node that shows it.
+    /// Adds a mesh in memory under a unique `name`, and returns a node that uses it.
     pub fn add_mesh(&mut self, name: &str, data: Arc<MeshData>, span: Span) -> Node {
         self.assets.meshes.insert(name.to_string(), data);
         Node::Mesh(TriangleMesh { obj_file: FileName { path: name.to_string(), span } })
     }
 
-    /// Returns true if the scene has lights or materials that only a path tracer can render:
-    /// principled or hair materials, fog, an environment, a sun or a sky.
+    /// True if the scene has lights or materials that only a path tracer can render: principled or
+    /// hair materials, fog, an environment, a sun or a sky.
     pub fn is_physical(&self) -> bool {
         let layered = |m: &Spanned<Material>| matches!(m.value, Material::Principled(_) | Material::Hair(_));
         let background = &self.background;
@@ -244,7 +243,7 @@ impl Scene {
 }
 
 impl Scene {
-    /// Returns true if a surface, an environment map or the sun emits light.
+    /// True if a surface, an environment map or the sun emits light.
     pub fn emits_light(&self) -> bool {
         let emits = |material: &Spanned<Material>| match &material.value {
             Material::Principled(layers) => layers.emission_luminance > 0.0,
@@ -254,7 +253,7 @@ impl Scene {
     }
 }
 
-/// A value and its position in a file.
+/// Value in a scene and its position in the scene file, for diagnostics.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spanned<T> {
     /// The value.
@@ -264,32 +263,32 @@ pub struct Spanned<T> {
     pub span: Span,
 }
 
-/// A material.
+/// Material of a scene, of any kind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Material {
-    /// Diffuse colour, highlight, mirror, glass; noise may replace the diffuse colour.
+    /// Diffuse colour, highlight, mirror, glass; noise can replace the diffuse colour.
     Phong(Box<PhongMaterial>, Option<ColorNoise>),
-    /// Layers, as in OpenPBR.
+    /// Principled material with layers, as in OpenPBR.
     Principled(Box<PrincipledMaterial>),
-    /// Fibres.
+    /// Fibres of hair or fur.
     Hair(HairMaterial),
     /// Two earlier materials mixed by a pattern, and the transform from world to pattern space.
     Solid(Solid, Vec<MatrixOp>),
 }
 
-/// A list of objects.
+/// Group of objects in a scene; the root of the scene is such a group.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Group {
     /// Objects in file order.
     pub objects: Vec<Object>,
 }
 
-/// An object and the material that was current at its position in the file.
+/// Object of a scene, with the material that was current at its position in the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Object {
     /// Kind of object.
     pub node: Node,
-    /// Number of the current material; `None` before any.
+    /// Number of the current material; `None` before the first one.
     pub material: Option<u32>,
     /// Span of its keyword in the file.
     #[serde(skip)]
@@ -297,7 +296,7 @@ pub struct Object {
 }
 
 impl Object {
-    /// Returns the object under a transform; unchanged for the identity.
+    /// Wraps the object in a transform; returns it unchanged for the identity.
     pub fn placed(self, map: DAffine3) -> Object {
         if map == DAffine3::IDENTITY {
             return self;
@@ -308,7 +307,7 @@ impl Object {
     }
 }
 
-/// Kinds of objects.
+/// Kind of an object in a scene: a group, a transform, a shape, a mesh or a solid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Node {
     /// Group of objects.
@@ -319,7 +318,7 @@ pub enum Node {
     Primitive(Primitive),
     /// A mesh in a file.
     Mesh(TriangleMesh),
-    /// Cells of a box, filled by balls.
+    /// Grid of cells, of which those inside the balls are filled.
     Voxels(VoxelGrid, Vec<Sphere>),
     /// A terrain from a picture.
     HeightField(HeightField),
@@ -327,7 +326,8 @@ pub enum Node {
     Solid(Operation, Vec<Object>),
 }
 
-/// Operation that combines closed objects. A group counts as the union of its objects.
+/// Boolean operation that combines closed objects into a solid. A group counts as the union of its
+/// objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Operation {
     /// Union of the parts. Unless it is nested in another operation, the surfaces inside other
@@ -344,7 +344,7 @@ pub enum Operation {
 }
 
 impl Operation {
-    /// The operations with their keywords.
+    /// Operations with their keywords.
     pub const ALL: [(&str, Operation); 5] = [
         ("Union", Operation::Union),
         ("Merge", Operation::Merge),
@@ -367,7 +367,7 @@ impl Operation {
         }
     }
 
-    /// Returns the operation of a keyword.
+    /// Returns the operation with a keyword.
     pub fn from_keyword(word: &str) -> Option<Operation> {
         Operation::ALL.iter().find(|row| row.0 == word).map(|row| row.1)
     }

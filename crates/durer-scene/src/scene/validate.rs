@@ -1,4 +1,4 @@
-//! Validation of a scene: every field against its rule, and the fields of an object together.
+//! Validation of a scene: every field against its constraint, and combinations of fields.
 //!
 //! Readers check their input and report errors with spans. This check is for scenes built in code,
 //! and for formats whose readers do not check values.
@@ -18,13 +18,15 @@ use durer_diag::{Diagnostic, Diagnostics, Span};
 /// three levels in a scene.
 pub const MAX_NESTING: usize = 640;
 
-/// Maximum nesting of materials made of other materials, and maximum number of leaves of one.
+/// Maximum nesting of materials made of other materials, and maximum number of leaves of one
+/// material.
 const MAX_MATERIAL_NESTING: u32 = 64;
 const MAX_MATERIAL_PARTS: u64 = 4096;
 
 impl Scene {
-    /// Checks all values: each field against its rule, that numbers are finite, combinations of
-    /// fields, numbers of materials, and nesting. Reports errors only. The compiler calls it first.
+    /// Checks all values: each field against its constraint, that numbers are finite, combinations
+    /// of fields, numbers of materials, and nesting. Reports errors only. The compiler calls it
+    /// first.
     ///
     /// An object read from a file may have a material number that does not exist. Readers warn, and
     /// the object is rendered in plain grey, as in the course's programs.
@@ -32,7 +34,7 @@ impl Scene {
         self.validate_as(0)
     }
 
-    /// Checks as [`Scene::validate`], but accepts values that official programs render if
+    /// Version of [`Scene::validate`] that accepts values that official programs render, if
     /// [`Quirk::AnyValues`] is set.
     pub fn validate_as(&self, compat: QuirkSet) -> Diagnostics {
         let any = compat & Quirk::AnyValues.bit() != 0;
@@ -94,7 +96,7 @@ impl Fog {
     }
 }
 
-/// Collector of errors.
+/// Checks the values of a scene and collects the errors, for [`Scene::validate`].
 struct Validator {
     diagnostics: Diagnostics,
     /// Number of materials of the scene.
@@ -185,7 +187,7 @@ impl Validator {
     fn object(&mut self, object: &Object, level: usize) {
         let span = object.span;
         if level > MAX_NESTING {
-            return self.error(format!("objects are nested deeper than {MAX_NESTING}"), span);
+            return self.error(format!("objects are nested more than {MAX_NESTING} levels deep"), span);
         }
         if let Some(index) = object.material
             && index as usize >= self.materials
@@ -236,7 +238,7 @@ impl Validator {
     }
 }
 
-/// Formats a short value for a message, with a leading blank; empty for rows.
+/// Formats a short value for a message, with a leading space; empty for rows.
 fn shown(value: &Value) -> String {
     match value {
         Value::Float(x) => format!(" {x}"),

@@ -2,7 +2,8 @@
 
 use crate::math::Vec2;
 
-/// An interval of a line, with the numbers of the faces where the line enters and leaves.
+/// Interval of a line inside a convex solid, with the numbers of the faces where the line enters
+/// and leaves.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chord {
     enter: (f64, f32),
@@ -10,7 +11,7 @@ pub(super) struct Chord {
 }
 
 impl Chord {
-    /// The whole line.
+    /// The full line.
     pub(super) const LINE: Chord = Chord { enter: (f64::NEG_INFINITY, 0.0), leave: (f64::INFINITY, 0.0) };
 
     /// Clips to an interval whose ends have these faces.
@@ -50,7 +51,7 @@ impl Chord {
         self
     }
 
-    /// Both ends, unless the interval is empty.
+    /// Returns both ends, unless the interval is empty.
     #[inline(always)]
     pub(super) fn ends(self) -> Option<(f64, f64)> {
         (self.enter.0 < self.leave.0).then_some((self.enter.0, self.leave.0))

@@ -32,7 +32,7 @@ impl Cone {
         [f64::from(self.base_radius), f64::from(self.top_radius)]
     }
 
-    /// Derivative of the radius by the height.
+    /// Derivative of the radius with respect to the height.
     fn growth(&self, axis: &Axis) -> f64 {
         let [base, top] = self.radii();
         (top - base) / axis.height

@@ -22,7 +22,7 @@ described! {
     }
 }
 
-/// Axis of a solid of revolution, along which heights are measured.
+/// Axis of a solid of revolution (cylinder or cone), along which heights are measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Axis {
     /// Start of the axis, where the height is 0.
@@ -44,7 +44,7 @@ impl Axis {
         Axis { base, dir: along.normalize_or(DVec3::Y), height: along.length() }
     }
 
-    /// Splits a vector into its component along the axis and the rest.
+    /// Splits a vector into its component along the axis and the remainder.
     pub(super) fn split(&self, v: DVec3) -> (f64, DVec3) {
         let along = v.dot(self.dir);
         (along, v - along * self.dir)
@@ -62,7 +62,7 @@ impl Axis {
         gamma(4) * (self.base.abs().max_element() + self.height + radius) as f32
     }
 
-    /// Bounds of discs at both ends.
+    /// Bounds of discs with these radii at both ends.
     pub(super) fn bounds(&self, [base_radius, top_radius]: [f64; 2]) -> Aabb {
         let reach = disc_reach(self.dir);
         let top = self.base + self.height * self.dir;

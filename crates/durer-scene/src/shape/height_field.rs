@@ -1,4 +1,4 @@
-//! Height field: a picture as a terrain, in a closed mesh.
+//! Height field: a terrain whose heights are the pixels of a picture, as a closed mesh.
 
 use super::MeshData;
 use super::mesh_data::Triangles;
@@ -29,7 +29,7 @@ impl HeightField {
     /// Maximum number of pixels.
     pub const MAX_PIXELS: usize = 1 << 24;
 
-    /// Checks the fields together.
+    /// Checks combinations of fields.
     ///
     /// # Errors
     ///
@@ -64,8 +64,8 @@ fn share(i: usize, count: usize) -> f32 {
     i as f32 / (count - 1) as f32
 }
 
-/// A terrain with walls down from its border and a floor: a closed mesh whose triangles are
-/// computed on demand.
+/// Closed mesh of a height field: a terrain with walls down from its border, and a floor. Its
+/// triangles are computed on demand.
 ///
 /// The vertices are those of the terrain, one on the floor below each border vertex, and the centre
 /// of the floor. The triangles are those of the terrain, then two wall triangles per step along the
@@ -142,15 +142,15 @@ impl Terrain {
         }
     }
 
-    /// Texture coordinates at a vertex: from 0 to 1 over the picture; walls continue those above
-    /// them.
+    /// Texture coordinates at a vertex: from 0 to 1 over the picture. The walls have those of the
+    /// border above them.
     pub fn uv(&self, vertex: u32) -> Vec2 {
         let [columns, rows] = self.sides();
         let Some(vertex) = self.crossing_at(vertex) else { return Vec2::splat(0.5) };
         Vec2::new(share(vertex % columns, columns), 1.0 - share(vertex / columns, rows))
     }
 
-    /// Returns the mesh as lists.
+    /// Converts the terrain to lists of vertices and triangles.
     pub fn to_data(&self) -> MeshData {
         let triangles: Vec<[u32; 3]> = (0..self.len()).map(|i| self.triangle(i)).collect();
         let vertices = 0..self.vertices() as u32;
@@ -187,7 +187,7 @@ impl Triangles for Terrain {
     fn triangle(&self, number: usize) -> [u32; 3] {
         let (crossings, around) = (self.grid.heights().len(), self.around());
         let Some(other) = number.checked_sub(self.grid.triangle_count()) else { return self.grid.triangle(number) };
-        // A step along the border, and the vertices below its ends.
+        // Find the step along the border, and the vertices below its ends.
         let step = if other < 2 * around { other / 2 } else { other - 2 * around };
         let ends = [step, (step + 1) % around];
         let ([p, q], [below_p, below_q]) = (ends.map(|i| self.border(i)), ends.map(|i| (crossings + i) as u32));

@@ -21,7 +21,8 @@ described! {
     }
 }
 
-/// A mesh ready for intersection: every triangle has its corners, and normals if it is smooth.
+/// Triangle mesh that is ready for rendering, from mesh data or a height field, with computed
+/// normals.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     form: Form,
@@ -30,7 +31,7 @@ pub struct Mesh {
     center: Vec3,
 }
 
-/// Storage of the triangles.
+/// Storage of the triangles of a mesh: lists, or a terrain that computes them.
 #[derive(Clone, Debug)]
 enum Form {
     /// Lists, shared with the scene description unless they were changed.
@@ -84,12 +85,12 @@ impl Mesh {
         self
     }
 
-    /// Returns true if no triangle has vertex normals.
+    /// True if no triangle has vertex normals.
     pub fn is_flat(&self) -> bool {
         (0..self.len() as u32).all(|part| self.corner_normals(part).is_none())
     }
 
-    /// Vertex normals, and three indices for each triangle; both may be empty.
+    /// Returns the vertex normals, and three indices for each triangle; both may be empty.
     pub fn normals(&self) -> (&[Vec3], Cow<'_, [[u32; 3]]>) {
         match (&self.made, &self.form) {
             (Some(made), Form::Lists(data)) => (&made.values, made.listed(&**data)),
@@ -108,8 +109,8 @@ impl Mesh {
         Mesh { center: self.center, ..mesh }
     }
 
-    /// Returns the mesh with the other half of every triangle's parallelogram added; the normals
-    /// are extrapolated.
+    /// Returns the mesh with every triangle extended to a parallelogram by a second triangle; the
+    /// normals are extrapolated.
     pub fn parallelograms(&self) -> Mesh {
         let mut data = self.to_data().into_owned();
         let (normals, triangle_normals) = self.normals();
@@ -165,7 +166,7 @@ impl Mesh {
         Digest::of(format!("{of_form} {} {:?}", own.digest(), self.center).as_bytes())
     }
 
-    /// The mesh as lists, whose normals may differ from [`Mesh::normals`].
+    /// Returns the mesh as lists, whose normals may differ from [`Mesh::normals`].
     pub fn to_data(&self) -> Cow<'_, MeshData> {
         match &self.form {
             Form::Lists(data) => Cow::Borrowed(data),
@@ -186,14 +187,14 @@ impl Mesh {
         self.lists().map_or(&[], |data| &data.colors)
     }
 
-    /// The texture coordinates if they are equal at all corners.
+    /// Returns the texture coordinates if they are equal at all corners.
     pub fn only_uv(&self) -> Option<Vec2> {
         let uvs = &self.lists()?.uvs;
         let first = *uvs.first()?;
         uvs.iter().all(|uv| (*uv - first).abs().max_element() < 1e-6).then_some(first)
     }
 
-    /// Returns true if the mesh is a height field.
+    /// True if the mesh is a height field.
     pub fn is_terrain(&self) -> bool {
         matches!(self.form, Form::Terrain(_))
     }
@@ -218,7 +219,7 @@ impl Mesh {
         }
     }
 
-    /// Returns true if the mesh has no triangle.
+    /// True if the mesh has no triangle.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -233,9 +234,9 @@ impl Mesh {
         own + made.map_or(0, Normals::bytes)
     }
 
-    /// An edge with an odd number of adjacent triangles; `None` if there is none, which means that
-    /// every line crosses the mesh an even number of times. Corners at equal positions are
-    /// identified.
+    /// Returns an edge with an odd number of adjacent triangles; `None` if there is none, so that
+    /// every line crosses the mesh an even number of times. Corners at equal positions count as
+    /// one.
     pub fn open_edge(&self) -> Option<[Vec3; 2]> {
         // A height field with walls and floor is closed.
         self.lists()?;
@@ -253,7 +254,7 @@ impl Mesh {
         edges.chunk_by(|a, b| a.0 == b.0).find(|same| same.len() % 2 == 1).map(|same| same[0].1)
     }
 
-    /// The corners of a triangle.
+    /// Returns the corners of a triangle.
     #[inline]
     pub fn corners(&self, part: u32) -> [Vec3; 3] {
         match &self.form {
@@ -269,12 +270,12 @@ impl Mesh {
         Some((1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c)
     }
 
-    /// Returns true if triangles may have vertex normals.
+    /// True if triangles may have vertex normals.
     pub fn has_normals(&self) -> bool {
         self.made.is_some() || self.lists().is_some_and(|data| !data.normals.is_empty())
     }
 
-    /// The normals at a triangle's corners, if it has any.
+    /// Returns the normals at a triangle's corners, if it has any.
     #[inline]
     pub fn corner_normals(&self, part: u32) -> Option<[Vec3; 3]> {
         match (&self.made, &self.form) {
@@ -285,7 +286,7 @@ impl Mesh {
         }
     }
 
-    /// The texture coordinates at a triangle's corners, if it has any.
+    /// Returns the texture coordinates at a triangle's corners, if it has any.
     #[inline]
     fn corner_uvs(&self, part: u32) -> Option<[Vec2; 3]> {
         match &self.form {
@@ -309,7 +310,7 @@ impl Mesh {
         Some(barycentric.x * a + barycentric.y * b + barycentric.z * c)
     }
 
-    /// Directions in which u and v grow at a point of a triangle: from the file's tangents, else
+    /// Directions of increasing u and v at a point of a triangle: from the file's tangents, or else
     /// from the triangle's texture coordinates.
     pub fn tangents(&self, part: u32, barycentric: Vec3, normal: Vec3, second: bool) -> Option<[Vec3; 2]> {
         let tangents = self.lists().and_then(|data| attribute(&data.triangles, &data.tangents, part));
@@ -323,7 +324,7 @@ impl Mesh {
         self.derivatives(part, second)
     }
 
-    /// Partial derivatives of the position by u and v on a triangle.
+    /// Partial derivatives of the position with respect to u and v on a triangle.
     pub fn derivatives(&self, part: u32, second: bool) -> Option<[Vec3; 2]> {
         let [a, b, c] = match second {
             true => self.lists().and_then(|data| attribute(&data.triangles, &data.second_uvs, part))?,
@@ -337,7 +338,7 @@ impl Mesh {
         (u.is_finite() && v.is_finite() && u != Vec3::ZERO && v != Vec3::ZERO).then_some([u, v])
     }
 
-    /// Surface of a triangle at a crossing.
+    /// Computes the surface of a triangle at a crossing.
     #[inline]
     pub fn surface(&self, part: u32, crossing: &ShapeHit) -> Surface {
         // Load everything that may miss the cache before starting any computation that depends on

@@ -3,15 +3,15 @@
 use crate::math::{Vec2, Vec3};
 use crate::source::Digest;
 
-/// Index of a missing attribute.
+/// Index that stands for a missing attribute.
 pub const NO_INDEX: u32 = u32::MAX;
 
-/// Key of a position: equal for corners at the same position, and for zeros of either sign.
+/// Key of a position: equal for corners at the same position, where zeros of both signs are equal.
 pub fn place_key(p: Vec3) -> [u32; 3] {
     (p + 0.0).to_array().map(f32::to_bits)
 }
 
-/// Mesh data as written in a file, with polygons cut into triangles.
+/// Triangle mesh as read from a file or built in code: lists of vertex attributes and indices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshData {
     /// Positions of the vertices.
@@ -27,25 +27,25 @@ pub struct MeshData {
     pub triangle_uvs: Vec<[u32; 3]>,
     /// Three normal indices for each triangle, or [`NO_INDEX`]; empty if no triangle has any.
     pub triangle_normals: Vec<[u32; 3]>,
-    /// Three original vertices for each triangle after [`MeshData::loosen`]; else empty.
+    /// Three original vertices for each triangle after [`MeshData::loosen`]; otherwise empty.
     pub vertices: Vec<[u32; 3]>,
     /// Linear red, green, blue and opacity by position index; empty if no vertex has a colour.
     pub colors: Vec<[f32; 4]>,
     /// Second texture coordinates by position index; may be empty.
     pub second_uvs: Vec<Vec2>,
-    /// Tangents by position index: the direction in which u grows, and the sign of the bitangent
+    /// Tangents by position index: the direction of increasing u, and the sign of the bitangent
     /// relative to the cross product of normal and tangent; may be empty.
     pub tangents: Vec<[f32; 4]>,
     /// True if triangles without normals are flat, regardless of the rule for missing normals.
     pub flat: bool,
 }
 
-/// Indexed triangles, independent of their storage.
+/// Access to the indexed triangles of a mesh, independent of their storage.
 pub trait Triangles: Sync {
     /// Number of triangles.
     fn len(&self) -> usize;
 
-    /// Returns true if the list is empty.
+    /// True if the mesh has no triangles.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -67,13 +67,13 @@ pub trait Triangles: Sync {
         [self.position(a), self.position(b), self.position(c)]
     }
 
-    /// Number of leading triangles that [`Triangles::ordered_around`] finds without lists.
+    /// Number of leading triangles whose corners [`Triangles::ordered_around`] finds without lists.
     fn ordered(&self) -> usize {
         0
     }
 
-    /// Offers the corners of those triangles at a vertex in order: corner k of triangle i as 3 i +
-    /// k.
+    /// Offers the corners at a vertex of those leading triangles, in order: corner k of triangle i
+    /// as 3 i + k.
     fn ordered_around(&self, _vertex: u32, _offer: impl FnMut(u32)) {}
 }
 
@@ -100,8 +100,8 @@ impl Triangles for MeshData {
 }
 
 impl MeshData {
-    /// Winds each triangle to face the side of its normals. With `reversed` the normals are negated
-    /// first, and triangles without normals are flipped. Marks the mesh flat.
+    /// Winds each triangle to face the side of its normals. With `reversed`, the normals are
+    /// negated first, and triangles without normals are flipped. Marks the mesh as flat.
     pub fn oriented(mut self, reversed: bool) -> MeshData {
         if reversed {
             self.normals.iter_mut().for_each(|n| *n = -*n);
@@ -125,7 +125,7 @@ impl MeshData {
         self
     }
 
-    /// Checks the lists against each other.
+    /// Checks that the lists are consistent.
     ///
     /// # Errors
     ///
@@ -200,7 +200,7 @@ impl MeshData {
         hasher.finish()
     }
 
-    /// Gives every corner the normal of its position index; returns false if there are fewer
+    /// Assigns to every corner the normal with its position index; returns false if there are fewer
     /// normals than positions.
     pub fn give_normals_by_vertex(&mut self) -> bool {
         let enough = self.normals.len() >= self.positions.len();
@@ -227,8 +227,8 @@ impl MeshData {
     }
 }
 
-/// The triangle of all points whose barycentric coordinates in a triangle are at least -0.00001:
-/// the triangle enlarged about its centroid by three times that.
+/// Returns the triangle of all points whose barycentric coordinates are at least -0.00001: the
+/// original triangle enlarged about its centroid by three times that.
 pub fn loosened([a, b, c]: [Vec3; 3]) -> [Vec3; 3] {
     const SLACK: f64 = 1e-5;
     let corners = [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()];

@@ -1,4 +1,4 @@
-//! Shapes that a ray can hit. One file each; the list is [`Primitive`].
+//! Shapes that a ray can hit. Each has its own file; [`Primitive`] lists them all.
 
 mod chord;
 pub mod cone;
@@ -113,7 +113,7 @@ macro_rules! delegate {
 }
 
 described_list! {
-    /// A shape defined in the scene file itself.
+    /// A geometric primitive that the scene file itself defines, such as a sphere or a box.
     Primitive: Shape => delegate {
         Sphere(sphere::Sphere),
         Plane(plane::Plane),
@@ -132,15 +132,15 @@ described_list! {
 /// Edit of a scene file that swaps the front and the back of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flip {
-    /// Swap any two of its corners, such as these.
+    /// Swap any two corners, such as these.
     Corners([&'static str; 2]),
-    /// Swap its two edges.
+    /// Swap the two edges.
     Edges([&'static str; 2]),
     /// Negate these fields, of which the first is the normal.
     Negate(&'static [&'static str]),
 }
 
-/// Hit of a ray with a shape.
+/// Intersection of a ray with a shape, from which [`Shape::surface`] computes the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeHit {
     /// Ray parameter.
@@ -150,7 +150,8 @@ pub struct ShapeHit {
     pub uv: Vec2,
 }
 
-/// Surface of a shape at a crossing, in object space.
+/// Point where a ray crosses the surface of a shape, with its normals and error bounds, in object
+/// space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// The point, rounded to single precision.
@@ -159,7 +160,7 @@ pub struct Surface {
     pub rest: Vec3,
     /// Bound on the absolute error of the point, by axis.
     pub error: Vec3,
-    /// Bound on the curvature in object space: 1 / the least radius. Zero if flat.
+    /// Bound on the curvature in object space: 1 over the smallest radius. Zero if flat.
     pub curvature: f32,
     /// Unit normal of the true surface.
     pub n_geo: Vec3,
@@ -217,7 +218,7 @@ impl Surface {
         }
     }
 
-    /// Flat surface at a point in space, accurate to a few roundings.
+    /// Creates a flat surface at a point in space, accurate to a few roundings.
     pub fn around(point: DVec3, normal: Vec3) -> Self {
         let floor = gamma(4) * point.abs().max_element() as f32;
         Surface::new(point, normal.as_dvec3(), floor.max(f32::MIN_POSITIVE), Vec2::ZERO)
@@ -245,25 +246,26 @@ impl Surface {
 /// about 10 degrees, since the start moves by two errors along the normal.
 const INSET: f32 = 16.0;
 
-/// Clamps a coordinate on a face from 0 to `end` to [`INSET`] errors off both ends.
+/// Clamps a coordinate on a face from 0 to `end`, so that it is [`INSET`] errors away from both
+/// ends.
 fn inset(x: f64, end: f64, error: f32) -> f64 {
     let margin = f64::from(INSET * error).min(0.25 * end);
     x.clamp(margin, end - margin)
 }
 
-/// Points relative to a centre, if `f32` represents them exactly.
+/// Returns points relative to a centre, if `f32` represents them exactly.
 fn exactly<const N: usize>(points: [Vec3; N], center: Vec3) -> Option<[Vec3; N]> {
     let exact = |p: &Vec3| (*p - center).as_dvec3() == p.as_dvec3() - center.as_dvec3();
     points.iter().all(exact).then(|| points.map(|p| p - center))
 }
 
-/// Operations of every shape. A method has a default only if the default is correct for every
-/// shape, and overrides are merely faster.
+/// Operations that every shape implements. A method has a default only if the default is correct
+/// for every shape, and overrides are merely faster.
 pub trait Shape {
     /// Bounds in object space; `None` for an infinite shape.
     fn bounds(&self) -> Option<Aabb>;
 
-    /// Returns true if the shape may intersect a box that overlaps its bounds.
+    /// True if the shape may intersect a box that overlaps its bounds.
     fn overlaps(&self, _cell: &Aabb) -> bool {
         true
     }
@@ -275,7 +277,7 @@ pub trait Shape {
     /// not count, so that entries and exits alternate along the line.
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2));
 
-    /// Crossing with the least `t` inside the ray's open interval.
+    /// Returns the crossing with the smallest `t` inside the ray's open interval.
     fn intersect(&self, ray: &Ray) -> Option<ShapeHit> {
         let line = ray.line();
         let mut first: Option<ShapeHit> = None;
@@ -301,56 +303,58 @@ pub trait Shape {
         self.crossings(line, offer);
     }
 
-    /// Surface at a crossing; `point` is on it up to rounding.
+    /// Computes the surface at a crossing; `point` is on it up to rounding.
     fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface;
 
-    /// Returns true if a point is inside; `None` for shapes that are surfaces only.
+    /// True if a point is inside; `None` for shapes that are surfaces only.
     fn inside(&self, point: DVec3) -> Option<bool>;
 
-    /// Returns true if a line is inside the shape at t = -infinity; `false` for every bounded
-    /// shape.
+    /// True if a line is inside the shape at t = -infinity; `false` for every bounded shape.
     fn starts_inside(&self, line: &Line) -> bool;
 
-    /// The shape translated to the origin, and the translation; `None` if it has no position, or if
-    /// `f32` cannot represent the result exactly.
+    /// Returns the shape translated to the origin, and the translation; `None` if it has no
+    /// position, or if `f32` cannot represent the result exactly.
     fn centered(&self) -> Option<(Self, Vec3)>
     where
         Self: Sized;
 
-    /// Checks combinations of fields. The constraints in the description check each field alone.
+    /// Checks combinations of fields. The constraints in the description check each field
+    /// separately.
     ///
     /// # Errors
     ///
     /// A message that names the fields.
     fn validate(&self) -> Result<(), String>;
 
-    /// Edit that flips a flat shape; `None` for shapes that are not flat.
+    /// Returns the edit that flips a flat shape; `None` for shapes that are not flat.
     fn flip(&self) -> Option<Flip>;
 
-    /// The shape itself if it is an infinite plane, which divides space into two half spaces.
+    /// Returns the shape itself if it is an infinite plane, which divides space into two half
+    /// spaces.
     fn plane(&self) -> Option<&Plane>;
 
-    /// Flat convex faces, each by its corners in order, in object space. Empty for shapes that are
-    /// infinite or have a curved face or edge.
+    /// Returns the flat convex faces, each by its corners in order, in object space. Empty for
+    /// shapes that are infinite or have a curved face or edge.
     fn polygons(&self) -> Vec<Vec<Vec3>>;
 
-    /// Surface to sample as a light, in world space, and its outward unit normal; the normal is
-    /// zero if it varies. `None`: only rays that hit the shape find its light, which is noisy.
+    /// Returns the surface to sample as a light, in world space, and its outward unit normal; the
+    /// normal is zero if it varies. With `None`, only rays that hit the shape by chance find its
+    /// light, which is noisy.
     fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)>;
 
     /// Direction of the texture coordinate u at a point, in object space, of any length; the
     /// direction of anisotropic highlights. `None`: horizontal and perpendicular to the normal.
     fn tangent(&self, point: Vec3) -> Option<Vec3>;
 
-    /// Triangles that approximate the shape, in object space. `None` for an infinite shape.
+    /// Returns triangles that approximate the shape, in object space; `None` for an infinite shape.
     fn to_mesh(&self) -> Option<MeshData>;
 
-    /// Polylines that depict the shape in a drawing, in object space. An infinite shape draws its
-    /// part near `around`. `None`: draw the box of its bounds.
+    /// Returns polylines that depict the shape in a drawing, in object space. An infinite shape
+    /// draws its part near `around`. With `None`, the box of its bounds is drawn.
     fn outline(&self, around: &Aabb) -> Option<Vec<Vec<Vec3>>>;
 }
 
-/// Fraction of a turn of the angle of (x, y) about an axis, in [0, 1], measured from -x.
+/// Angle of (x, y) about an axis as a fraction of a full turn, in [0, 1], measured from -x.
 fn turn(x: f64, y: f64) -> f32 {
     (fp::atan2(y as f32, x as f32) / std::f32::consts::TAU + 0.5).clamp(0.0, 1.0)
 }

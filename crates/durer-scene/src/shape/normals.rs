@@ -1,4 +1,4 @@
-//! Computed normals at the corners of a mesh without normals.
+//! Normals computed at the corners of triangles, for meshes without normals.
 
 use super::height_field::Terrain;
 use super::mesh_data::{MeshData, NO_INDEX, Triangles};
@@ -9,23 +9,23 @@ use rayon::prelude::*;
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// Maximum number of faces of a vertex that are compared with each other.
+/// Maximum number of faces at a vertex that are compared with each other.
 const MANY: usize = 64;
 /// Minimum number of vertices per thread.
 const AT_ONCE: usize = 256;
 /// Number of vertices processed in parallel; processing all at once would need too much memory.
 const PER_TASK: usize = 64 * AT_ONCE;
 
-/// Normals at the corners of triangles.
+/// Computed normals of a mesh, one at each corner of its triangles.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Normals {
     /// Normals, not necessarily of unit length; may be empty.
     pub values: Vec<Vec3>,
-    /// Map from corners to normals.
+    /// Mapping from corners to normals.
     pub corners: Corners,
 }
 
-/// Map from the corners of triangles to normals.
+/// Mapping from the corners of a mesh's triangles to normals.
 #[derive(Clone, Debug)]
 pub(super) enum Corners {
     /// Three indices per triangle, or [`NO_INDEX`]; empty if no triangle has any.
@@ -79,8 +79,8 @@ impl Normals {
     }
 }
 
-/// Normals of all triangles, computed by a rule for triangles without normals, or for all unless
-/// `file_normals` is set; `None` if the mesh needs only its own normals.
+/// Computes normals for triangles without normals, or for all triangles unless `file_normals` is
+/// set. Returns the normals of all triangles; `None` if the mesh needs only its own normals.
 pub(super) fn made(data: &MeshData, rule: MeshNormals, file_normals: bool) -> Option<Normals> {
     let own: (&[Vec3], &[[u32; 3]]) = match file_normals {
         true => (&data.normals, &data.triangle_normals),
@@ -104,13 +104,13 @@ pub(super) fn made(data: &MeshData, rule: MeshNormals, file_normals: bool) -> Op
     Some(made)
 }
 
-/// Normals of a terrain. Each vertex has few normals, because few triangles meet there or all lie
-/// in one plane.
+/// Computes the normals of a terrain. Each vertex has few normals, because few triangles meet there
+/// or all lie in one plane.
 pub(super) fn of_terrain(terrain: &Terrain, rule: MeshNormals) -> Option<Normals> {
     by_rule(terrain, &[], rule, true)
 }
 
-/// Normals that a rule computes for all triangles; `None` if they are flat. If `vertices` is not
+/// Computes normals for all triangles by a rule; `None` if they are flat. If `vertices` is not
 /// empty, triangles that share its entries are smooth along common edges. With `by_vertex`, creases
 /// are stored by vertex.
 fn by_rule(mesh: &impl Triangles, vertices: &[[u32; 3]], rule: MeshNormals, by_vertex: bool) -> Option<Normals> {
@@ -163,7 +163,7 @@ fn spoiled(mesh: &impl Triangles, vertices: &[[u32; 3]]) -> Normals {
     normals
 }
 
-/// True if some vertex belongs to two triangles.
+/// True if any vertex belongs to two triangles.
 fn shares_vertices(mesh: &impl Triangles) -> bool {
     let mut seen = vec![false; mesh.vertices()];
     let mut is_second = |vertex: u32| std::mem::replace(&mut seen[vertex as usize], true);
@@ -247,8 +247,8 @@ fn creased(mesh: &impl Triangles, degrees: f32, by_vertex: bool) -> Normals {
     Normals { values, corners: of_corners }
 }
 
-/// Corners at each vertex, as one flat list, of triangles that [`Triangles::ordered`] does not
-/// cover: corner k of triangle i is 3 i + k.
+/// Corners at each vertex of a mesh, as one flat list, for computing normals: corner k of triangle
+/// i is 3 i + k. Omits the triangles that [`Triangles::ordered`] covers.
 struct VertexCorners {
     /// Start of each vertex's corners, then the end of the last.
     starts: Vec<u32>,

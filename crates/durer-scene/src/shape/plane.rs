@@ -52,7 +52,8 @@ impl Shape for Plane {
     #[inline(always)]
     fn surface(&self, p: DVec3, _crossing: &ShapeHit) -> Surface {
         let n = self.normal.as_dvec3();
-        // Projected back onto the plane: the error is the rounding of the coordinates.
+        // Project the point back onto the plane, so that its error is the rounding of the
+        // coordinates.
         let on = p - n * ((n.dot(p) - f64::from(self.offset)) / n.dot(n));
         let position = on.as_vec3();
         let normal = n.normalize_or(DVec3::Y).as_vec3();
@@ -103,7 +104,7 @@ impl Shape for Plane {
         None
     }
 
-    /// A grid around the projection of the centre of `around` onto the plane.
+    /// Draws a grid around the projection of the centre of `around` onto the plane.
     fn outline(&self, around: &Aabb) -> Option<Vec<Vec<Vec3>>> {
         let n = self.normal.normalize_or(Vec3::Y);
         let (u, v) = n.any_orthonormal_pair();

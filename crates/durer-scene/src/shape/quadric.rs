@@ -23,7 +23,7 @@ described! {
 }
 
 impl Quadric {
-    /// The symmetric matrix M of p·M p + g·p + j.
+    /// Symmetric matrix M of p·M p + g·p + j.
     fn matrix(&self) -> DMat3 {
         let ([a, b, c], [d, e, f]) = (self.squares.as_dvec3().to_array(), (0.5 * self.products.as_dvec3()).to_array());
         DMat3::from_cols(DVec3::new(a, d, e), DVec3::new(d, b, f), DVec3::new(e, f, c))
@@ -37,8 +37,8 @@ impl Quadric {
         2.0 * (self.matrix() * p) + self.linear.as_dvec3()
     }
 
-    /// The polynomial a t^2 + 2 b t + c along a line, measured from its point nearest to the
-    /// origin, and the `t` of that point.
+    /// Returns the polynomial a t^2 + 2 b t + c along a line, measured from its point nearest to
+    /// the origin, and the `t` of that point.
     fn along(&self, line: &Line) -> (f64, [f64; 3]) {
         let shift = line.nearest(DVec3::ZERO);
         let (o, d) = (line.at(shift), line.dir);
@@ -75,7 +75,7 @@ impl Shape for Quadric {
     }
 
     fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
-        // Newton steps along the gradient lead back onto the surface.
+        // Move back onto the surface by Newton steps along the gradient.
         let mut p = point;
         let mut gradient = self.gradient(p);
         for _ in 0..3 {

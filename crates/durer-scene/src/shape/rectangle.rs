@@ -25,7 +25,7 @@ impl Rectangle {
         [self.edge0.as_dvec3(), self.edge1.as_dvec3()]
     }
 
-    /// Ray parameter of the plane; infinite or NaN for a parallel line.
+    /// Ray parameter where a line meets the plane; infinite or NaN for a parallel line.
     fn plane_at(&self, line: &Line) -> f64 {
         let [e, f] = self.edges();
         let n = e.cross(f);

@@ -21,8 +21,8 @@ impl Sphere {
     /// Solves |origin + t dir - center|^2 = radius^2 in double precision.
     ///
     /// The discriminant is computed from the point of the ray nearest to the centre, which keeps it
-    /// exact for small, far spheres. Source: Haines, Günther, Akenine-Möller, *Ray Tracing Gems*
-    /// (2019), chapter 7.
+    /// accurate for small, distant spheres. Source: Haines, Günther, Akenine-Möller, *Ray Tracing
+    /// Gems* (2019), chapter 7.
     fn roots(&self, line: &Line) -> Option<[f64; 2]> {
         let o = line.origin - self.center.as_dvec3();
         let d = line.dir;
@@ -49,8 +49,8 @@ impl Shape for Sphere {
         Some(Aabb { min: self.center - self.radius - pad, max: self.center + self.radius + pad })
     }
 
-    /// Returns true if the box's bounding sphere intersects this sphere. This is the course's test,
-    /// which has false positives.
+    /// True if the box's bounding sphere intersects this sphere. This is the course's test, which
+    /// has false positives.
     fn overlaps(&self, cell: &Aabb) -> bool {
         let reach = self.radius + 0.5 * cell.size().length();
         (cell.center() - self.center).length() <= reach * (1.0 + gamma(8))
@@ -122,7 +122,7 @@ impl Shape for Sphere {
     fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
         let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| place.vector(self.radius * axis));
         let radius = axes[0].length();
-        // A transform may make it an ellipsoid, which cannot be sampled.
+        // A transform can make it an ellipsoid, which is sampled as an affine body.
         let round = axes.iter().all(|axis| (axis.length() - radius).abs() < 1e-5 * radius)
             && axes[0].dot(axes[1]).abs() + axes[1].dot(axes[2]).abs() + axes[2].dot(axes[0]).abs()
                 < 1e-5 * radius * radius;

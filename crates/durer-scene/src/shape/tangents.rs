@@ -13,8 +13,8 @@ use std::collections::HashMap;
 
 impl MeshData {
     /// Computes tangents for vertices with normals and texture coordinates. A vertex whose corners
-    /// have different tangents is split: returns the originals of the vertices appended at the end.
-    /// Does nothing if a corner lacks either attribute.
+    /// have different tangents is split. Returns the original of each vertex that is appended at
+    /// the end. Does nothing if a corner lacks either attribute.
     pub fn make_tangents(&mut self) -> Vec<u32> {
         let complete = |list: &[[u32; 3]]| {
             list.len() == self.triangles.len() && list.iter().flatten().all(|&index| index != NO_INDEX)
@@ -26,7 +26,8 @@ impl MeshData {
         self.split(&tangents)
     }
 
-    /// Gives each vertex the tangent of its corners, and appends a copy for each further tangent.
+    /// Assigns to each vertex the tangent of its corners, and appends a copy of the vertex for each
+    /// further tangent.
     fn split(&mut self, tangents: &[[f32; 4]]) -> Vec<u32> {
         self.tangents = vec![[0.0; 4]; self.positions.len()];
         let mut taken = vec![false; self.positions.len()];
@@ -56,12 +57,13 @@ impl MeshData {
     }
 }
 
-/// The corners of all triangles: corner 3 t + k is the k-th of triangle t.
+/// Corners of all triangles of a mesh, for computing tangents: corner 3 t + k is the k-th of
+/// triangle t.
 struct Corners {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
-    /// Direction of growing u on each triangle, of length 1 or 0; true if the texture coordinates
-    /// have the triangle's orientation.
+    /// Direction of increasing u on each triangle, of length 1 or 0; true if the texture
+    /// coordinates have the triangle's orientation.
     triangles: Vec<(Vec3, bool)>,
     /// Equal numbers for corners that agree in all attributes.
     vertices: Vec<u32>,
@@ -89,19 +91,20 @@ impl Corners {
         Corners { positions, normals, triangles, vertices }
     }
 
-    /// Returns true if the triangle and its texture coordinates have an area.
+    /// True if the triangle and its texture coordinates have an area.
     fn counts(&self, triangle: usize) -> bool {
         self.triangles[triangle].0 != Vec3::ZERO
     }
 
-    /// Pairs of corners that share a tangent, found at common edges of triangles.
+    /// Finds pairs of corners that share a tangent, at common edges of triangles.
     fn pairs(&self) -> Vec<[u32; 2]> {
         let mut edges: Vec<([u32; 2], bool, [u32; 2])> = (0..self.positions.len())
             .filter(|corner| self.counts(corner / 3))
             .map(|corner| {
                 let next = corner - corner % 3 + (corner + 1) % 3;
                 let (a, b) = (self.vertices[corner], self.vertices[next]);
-                // The corners in the order of their vertices, whatever the triangle's direction.
+                // The corners in the order of their vertices, regardless of the triangle's
+                // direction.
                 match a <= b {
                     true => ([a, b], true, [corner as u32, next as u32]),
                     false => ([b, a], false, [next as u32, corner as u32]),
@@ -158,7 +161,7 @@ impl Corners {
     }
 }
 
-/// Unit direction of growing u on a triangle, zero if undefined; true if u and v have the
+/// Unit direction of increasing u on a triangle, zero if undefined; true if u and v have the
 /// orientation of its corners.
 fn growth([p, q, r]: &[Vec3; 3], [a, b, c]: &[Vec2; 3]) -> (Vec3, bool) {
     let (along, across) = (*b - *a, *c - *a);
@@ -168,7 +171,8 @@ fn growth([p, q, r]: &[Vec3; 3], [a, b, c]: &[Vec2; 3]) -> (Vec3, bool) {
     (if solid { u.normalize_or_zero() } else { Vec3::ZERO }, area > 0.0)
 }
 
-/// Union-find structure over corners: each refers to one of its group, the root to itself.
+/// Union-find structure that groups corners with a shared tangent. Each corner refers to another
+/// one in its group, the root to itself.
 struct Groups(Vec<u32>);
 
 impl Groups {

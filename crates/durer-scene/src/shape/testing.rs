@@ -121,19 +121,19 @@ pub fn distance(shape: &Primitive, p: DVec3) -> f64 {
     faces(shape, p).into_iter().fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Returns true for a point on a quadric that is so far from the origin that rounding dominates the
+/// True for a point on a quadric that is so far from the origin that rounding dominates the
 /// polynomial's terms.
 pub fn too_far(shape: &Primitive, p: DVec3, reach: f64) -> bool {
     matches!(shape, Primitive::Quadric(_)) && p.length() > 20.0 * reach
 }
 
-/// Returns true if more than one face is within `reach` of a point.
+/// True if more than one face is within `reach` of a point.
 pub fn near_edge(shape: &Primitive, p: DVec3, reach: f64) -> bool {
     let all = faces(shape, p);
     all.iter().filter(|f| f.abs() < reach).count() > 1
 }
 
-/// A ray from outside, its hit on the shape, and the surface there.
+/// Returns a ray from outside and its hit on the shape.
 pub fn surface_point(shape: &Primitive, random: &mut Random, size: f32, distance: f32) -> Option<(Ray, ShapeHit)> {
     let middle = shape.bounds().map_or(distance * random.direction(), |b| b.center());
     let target = middle + size * random.point();

@@ -21,7 +21,7 @@ described! {
 }
 
 impl Triangle {
-    /// The corners in order.
+    /// Returns the corners in order.
     pub fn corners(&self) -> [Vec3; 3] {
         [self.vertex0, self.vertex1, self.vertex2]
     }
@@ -48,8 +48,8 @@ impl Shape for Triangle {
         found.into_iter().for_each(|crossing| offer(f64::from(crossing.t), crossing.uv));
     }
 
-    /// Moves by a multiple of a power of two above its size, so that neighbours mostly move by the
-    /// same vector and still share edges.
+    /// Moves the triangle by a multiple of a power of two above its size, so that neighbours mostly
+    /// move by the same vector and still share edges.
     fn centered(&self) -> Option<(Self, Vec3)> {
         let corners = self.corners();
         let size = Aabb::around(corners).size().max_element().max(f32::MIN_POSITIVE);
@@ -104,8 +104,8 @@ impl Shape for Triangle {
     }
 }
 
-/// Point with barycentric coordinates (1 - u - v, u, v), a bound on its error, and all three
-/// coordinates. The point keeps away from the edges: see [`inset`].
+/// Returns the point with barycentric coordinates (1 - u - v, u, v), a bound on its error, and all
+/// three coordinates. The point keeps away from the edges: see [`inset`].
 ///
 /// Source of the bound: *Physically Based Rendering*, 4th edition, section 6.8.3.
 #[inline(always)]
@@ -124,8 +124,8 @@ fn weighted([a, b, c]: [Vec3; 3], weights: Vec3) -> (Vec3, Vec3) {
     (wa + ub + vc, gamma(7) * (wa.abs() + ub.abs() + vc.abs()))
 }
 
-/// Barycentric coordinates of a point at least [`INSET`] errors away from all edges; `None` if the
-/// given point is.
+/// Returns the barycentric coordinates of a point at least [`INSET`] errors away from all edges;
+/// `None` if the given point already is.
 #[inline(always)]
 fn inset([a, b, c]: [Vec3; 3], barycentric: Vec3, error: Vec3) -> Option<Vec3> {
     // The distance from an edge is the barycentric coordinate times twice the area over the edge's
@@ -148,8 +148,8 @@ pub fn face_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
     (b - a).cross(c - a).normalize_or(DVec3::Y).as_vec3()
 }
 
-/// Surface of a triangle at a crossing, without texture coordinates and colour. A zero shading
-/// normal is replaced by the geometric one.
+/// Computes the surface of a triangle at a crossing, without texture coordinates and colour. A zero
+/// shading normal is replaced by the geometric one.
 #[inline(always)]
 pub fn triangle_surface(corners: [Vec3; 3], normals: Option<[Vec3; 3]>, uv: Vec2) -> Surface {
     let (position, error, barycentric) = interpolate(corners, uv);
@@ -183,8 +183,8 @@ fn mixed([a, b, c]: [Vec3; 3], barycentric: Vec3) -> Vec3 {
     barycentric.x * a + barycentric.y * b + barycentric.z * c
 }
 
-/// For each corner, the offset from a point of the triangle up to the corner's tangent plane, zero
-/// if the point is above that plane; then the same for the other side.
+/// Returns, for each corner, the offset from a point of the triangle up to the corner's tangent
+/// plane, which is zero if the point is above that plane; then the same for the other side.
 ///
 /// The barycentric mean of the offsets leads to the curved surface that the normals imply. A shadow
 /// ray that starts there does not hit the flat neighbours, which would darken whole triangles of a

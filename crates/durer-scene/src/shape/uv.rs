@@ -3,7 +3,7 @@
 use super::turn;
 use crate::math::{Vec2, Vec3, fp};
 
-/// Texture coordinates of a point on a surface.
+/// Texture coordinates of a surface point, or the data to compute them from when they are needed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Uv {
     /// The shape has no texture coordinates.
@@ -11,9 +11,9 @@ pub enum Uv {
     None,
     /// Already computed.
     At(Vec2),
-    /// Angle of a point in a plane, from -x, and the coordinate along the axis.
+    /// Angle of a point in a plane, measured from -x, and the coordinate along the axis.
     Turned(Vec2, f32),
-    /// Longitude from -z over +x, and latitude from the south pole up, of a unit vector.
+    /// Longitude from -z over +x, and latitude from the south pole upwards, of a unit vector.
     Globe(Vec3),
     /// Coordinates along two axes of a plane, from its unit normal and the point.
     Sheet(Vec3, Vec3),

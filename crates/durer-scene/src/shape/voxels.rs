@@ -20,7 +20,7 @@ described! {
 }
 
 impl VoxelGrid {
-    /// Checks the fields together.
+    /// Checks combinations of fields.
     ///
     /// # Errors
     ///

@@ -17,7 +17,7 @@ pub fn planck(nm: f32, kelvin: f32) -> f32 {
     if value.is_finite() { value } else { 0.0 }
 }
 
-/// Radiance of a black body relative to that at 560 nm; 0 if it is too small for a ratio.
+/// Radiance of a black body relative to its radiance at 560 nm; 0 if it is too small for a ratio.
 pub fn planck_ratio(nm: f32, kelvin: f32) -> f32 {
     let ratio = planck(nm, kelvin) / planck(560.0, kelvin);
     if ratio.is_finite() { ratio } else { 0.0 }

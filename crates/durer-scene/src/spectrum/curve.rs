@@ -3,7 +3,7 @@
 use super::{Lanes, OBSERVER, Spectrum, integral};
 use crate::math::Color;
 
-/// Measured reflectance of a surface, or emission of a light, by wavelength.
+/// Measured spectrum, by wavelength: the reflectance of a surface or the emission of a light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     /// Ascending wavelengths in nanometres, and values.
@@ -14,15 +14,15 @@ pub struct Curve {
 
 impl Curve {
     /// Creates a reflectance from rows of ascending wavelength. Its colour is that under daylight.
-    /// `None` without rows.
+    /// `None` if there are no rows.
     pub fn reflectance(rows: Vec<[f32; 2]>) -> Option<Self> {
         rows.first()?;
         let color = seen(&rows, |[_, _, _, light]| f64::from(OBSERVER.daylight) * light);
         Some(Curve { rows, color })
     }
 
-    /// Creates the emission of a light of any strength, scaled to luminance 1. `None` without
-    /// visible light, or if the visible part is so small that scaling overflows `f32`.
+    /// Creates the emission of a light of any strength, scaled to luminance 1. `None` if there is
+    /// no visible light, or if the visible part is so small that scaling overflows `f32`.
     pub fn light(mut rows: Vec<[f32; 2]>) -> Option<Self> {
         let bright = integral(|nm, [_, y, _, _]| y * f64::from(at(&rows, nm))) as f32;
         rows.iter_mut().for_each(|row| row[1] /= bright);
@@ -49,7 +49,7 @@ impl Lanes {
         let Lanes::Waves(waves) = self else { return color.extend(color.y) };
         let known = curve.color.cmpgt(Color::splat(1e-6));
         let ratio = Color::select(known, color / curve.color, Color::ZERO);
-        // A channel that the curve lacks takes the largest factor of the others.
+        // Use the largest factor of the others for a channel that the curve lacks.
         let ratio = Color::select(known, ratio, Color::splat(ratio.max_element()));
         // Keep rounding from tinting grey.
         let even = ratio.max_element() - ratio.min_element() <= 1e-5 * ratio.max_element();
@@ -68,7 +68,7 @@ fn at(rows: &[[f32; 2]], nm: f32) -> f32 {
     }
 }
 
-/// Colour of the curve times a light, as seen by the standard observer.
+/// Colour of a curve times a light, for the standard observer.
 fn seen(rows: &[[f32; 2]], light: impl Fn([f64; 4]) -> f64) -> Color {
     let channel = |[a, b, c]: [f32; 3]| {
         let [a, b, c] = [a, b, c].map(f64::from);

@@ -13,8 +13,8 @@ const A_KELVIN: f32 = 2_848.0 * (C2 / 1.435e7);
 /// Names of illuminants, for messages. A name such as `2700K` is a black body.
 pub const NAMES: &str = "A, D50, D55, D65, D75, E, F2, F7, F11";
 
-/// Spectrum of an illuminant, scaled to luminance 1: A (incandescent bulb), D and temperature
-/// (daylight), E (equal energy), F (fluorescent), or a black body from 1000K to 20000K.
+/// Returns the spectrum of an illuminant, scaled to luminance 1: A (incandescent bulb), D and
+/// temperature (daylight), E (equal energy), F (fluorescent), or a black body from 1000K to 20000K.
 pub fn illuminant(name: &str) -> Option<Curve> {
     let rows = match name {
         "A" => formula(|nm| planck_ratio(nm, A_KELVIN)),

@@ -1,4 +1,4 @@
-//! Colour of interfering light, by path difference.
+//! Colour of interfering light, as a function of the path difference.
 
 use super::tables::{FIRST, LAST};
 use super::{OBSERVER, integral};
@@ -6,7 +6,7 @@ use crate::math::{Vec2, fp};
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
-/// Step of the table in nanometres.
+/// Step between the entries of the table, in nanometres.
 const STEP: f32 = 5.0;
 
 /// Number of entries. Beyond 16 micrometres the colours vanish.
@@ -16,8 +16,8 @@ const ENTRIES: usize = 3_200;
 /// blue and a path difference `s` in nanometres: 1 for no difference, near 0 for large ones.
 ///
 /// Source of this sum by orders: Belcour and Barla, *A Practical Extension to Microfacet Theory for
-/// the Modeling of Varying Iridescence*, SIGGRAPH 2017. They fit the observer by Gaussians; this is
-/// a table.
+/// the Modeling of Varying Iridescence*, SIGGRAPH 2017. They fit Gaussians to the observer; this
+/// function uses a table.
 pub fn interference(shift: f32) -> [Vec2; 3] {
     static TABLE: LazyLock<Vec<[Vec2; 3]>> = LazyLock::new(|| (0..ENTRIES).map(|i| mean(STEP * i as f32)).collect());
     let place = shift.max(0.0) / STEP;

@@ -1,6 +1,6 @@
-//! Spectra in light transport: four lanes at once.
+//! Spectra in light transport, represented by four lanes.
 //!
-//! Along a path the lanes are red, green, blue and green again (so the fourth adds no new value),
+//! Along a path, the lanes are red, green, blue and green again (so the fourth adds no new value),
 //! or the radiance at four wavelengths. [`Lanes::reflectance`] and [`Lanes::light`] convert colours
 //! to lanes, and [`Lanes::color`] converts back.
 //!
@@ -28,10 +28,10 @@ use space::SRGB_FROM_XYZ;
 use std::sync::LazyLock;
 use tables::{FIRST, LAST, OBSERVER_AND_DAYLIGHT, STEP};
 
-/// Radiance, or a factor of it, in four lanes.
+/// Radiance, or a factor that scales it, in four lanes.
 pub type Spectrum = glam::Vec4;
 
-/// Representation of colour in light transport.
+/// Representation of colour in light transport, RGB or spectral, selected by `--color`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ColorMode {
@@ -70,7 +70,7 @@ impl FieldType for ColorMode {
     }
 }
 
-/// Meaning of the four lanes of a path.
+/// Meaning of the four lanes of a [`Spectrum`] along a path: RGB, or four wavelengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Lanes {
@@ -81,7 +81,7 @@ pub enum Lanes {
     Waves(Waves),
 }
 
-/// Four wavelengths, and the tabulated values there.
+/// Four wavelengths of a path, with the tabulated spectra at these wavelengths.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Waves {
     /// Wavelengths in nanometres. The first is the hero wavelength.
@@ -89,7 +89,7 @@ pub struct Waves {
     /// Spectrum of the light with colour 1 1 1: D65.
     #[serde(skip)]
     white: Spectrum,
-    /// Weights of red, green and blue at each wavelength, over 4 times its sampling pdf.
+    /// Weights of red, green and blue at each wavelength, divided by 4 times its sampling pdf.
     observer: [Spectrum; 3],
 }
 
@@ -156,7 +156,7 @@ impl Lanes {
         }
     }
 
-    /// Returns true if the lanes are red, green and blue.
+    /// True if the lanes are red, green and blue.
     pub fn is_rgb(&self) -> bool {
         matches!(self, Lanes::Rgb)
     }
@@ -176,7 +176,8 @@ impl Waves {
         &self.observer
     }
 
-    /// Samples four wavelengths in proportion to the eye's sensitivity, from equidistant numbers.
+    /// Samples four wavelengths in proportion to the eye's sensitivity. The four numbers are
+    /// equidistant.
     fn new(u: f32) -> Self {
         let nm = Spectrum::from_array([0.0, 0.25, 0.5, 0.75].map(|step| wavelength((u + step).fract())));
         let at = |column: usize| nm.map(|nm| observer_and_daylight(nm)[column]);
@@ -212,7 +213,7 @@ pub fn observer_and_daylight(nm: f32) -> [f32; 4] {
     std::array::from_fn(|c| a[c] + (b[c] - a[c]) * (place - i as f32))
 }
 
-/// Conversion from the observer's values to colours, such that daylight is white.
+/// Conversion from XYZ of the CIE standard observer to linear sRGB, such that daylight is white.
 struct Observer {
     /// From x, y, z to red, green and blue.
     to_rgb: [[f32; 3]; 3],

@@ -1,4 +1,4 @@
-//! Spectra from files and their colours, for surfaces under daylight (D65), for lights, and for
+//! Spectra from files, and their colours as surfaces under daylight (D65), as lights, and as
 //! coefficients.
 
 use super::black_body::planck_ratio;
@@ -7,7 +7,7 @@ use super::space::SRGB_FROM_XYZ;
 use crate::math::{Color, Vec3};
 use glam::DVec3;
 
-/// Colour or spectrum.
+/// Colour or spectrum that a scene file gives for a material or a light.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SpectrumSource {
     /// Linear sRGB colour.
@@ -67,8 +67,8 @@ impl SpectrumSource {
         }
     }
 
-    /// Value at a wavelength in nanometres. A colour is blue below 490 nm, green up to 580 nm, and
-    /// red above.
+    /// Value at a wavelength in nanometres. A colour counts as blue below 490 nm, green up to 580
+    /// nm, and red above.
     pub fn at(&self, nm: f32) -> f32 {
         match self {
             SpectrumSource::Rgb(c) | SpectrumSource::Illuminant(c) => match nm {

@@ -16,7 +16,7 @@ pub const SRGB_FROM_XYZ: DMat3 = DMat3::from_cols_array(&[
     1.057_225_2,
 ]);
 
-/// RGB colour space.
+/// RGB colour space of a scene file, with its conversion to linear sRGB.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RgbSpace {
     to_srgb: DMat3,
@@ -28,7 +28,7 @@ impl Default for RgbSpace {
     }
 }
 
-/// Names of the spaces, with the chromaticities of red, green, blue and white.
+/// Names of the colour spaces, with the chromaticities of red, green, blue and white.
 const SPACES: [(&str, [[f64; 2]; 4]); 4] = [
     ("srgb", [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]]),
     ("dci-p3", [[0.68, 0.32], [0.265, 0.69], [0.15, 0.06], [0.3127, 0.329]]),

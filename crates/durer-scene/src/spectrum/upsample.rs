@@ -12,7 +12,7 @@ use super::{OBSERVER, Spectrum};
 use crate::math::Color;
 use std::sync::LazyLock;
 
-/// Spectrum in [0, 1], by its three coefficients.
+/// Smooth spectrum with values in [0, 1], given by the three coefficients of a sigmoid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Smooth([f32; 3]);
 
@@ -36,13 +36,14 @@ const SIDE: usize = 24;
 /// Number of grid points along the axis of the largest channel.
 const STRENGTHS: usize = 10;
 
-/// Coefficients by the largest channel, its value, and the ratios of the other two to it.
+/// Table for spectral upsampling: coefficients by the largest channel of a colour, its value, and
+/// the ratios of the other two channels to it.
 struct Table(Vec<[f32; 3]>);
 
 static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
 
 /// Reflectance spectrum of a colour in [0, 1]. A colour darker than 0.5 uses the scaled spectrum of
-/// a brighter colour with its hue.
+/// a brighter colour with the same hue.
 pub(super) fn share(color: Color, nm: Spectrum) -> Spectrum {
     let scale = (2.0 * color.max_element()).clamp(1e-12, 1.0);
     scale * TABLE.find(color / scale).at(nm)
@@ -121,7 +122,7 @@ impl Table {
     }
 }
 
-/// Forward model of the fit: the colour of a spectrum under daylight.
+/// Forward model for fitting a smooth spectrum to a colour: the spectrum's colour under daylight.
 struct Fit {
     /// Normalized wavelengths in [0, 1], with their weights for red, green and blue.
     rows: Vec<(f64, [f64; 3])>,
@@ -152,7 +153,8 @@ impl Fit {
         Fit { rows: rows.collect() }
     }
 
-    /// Colour of a spectrum, and its derivatives by the three coefficients.
+    /// Returns the colour of a spectrum, and its derivatives with respect to the three
+    /// coefficients.
     fn color(&self, [a, b, c]: [f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
         let (mut color, mut change) = ([0.0; 3], [[0.0; 3]; 3]);
         for &(place, rgb) in &self.rows {

@@ -7,7 +7,8 @@
 
 use crate::math::{Vec3, fp};
 
-/// Moment in the Gregorian calendar, in local time.
+/// Date and time in the Gregorian calendar, in local time, for which the sun's position is
+/// computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     /// Year, month and day.
@@ -19,7 +20,7 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// Returns true if the date exists.
+    /// True if the date exists.
     pub fn exists(&self) -> bool {
         let [year, month, day] = self.date;
         (1..=12).contains(&month) && (1..=days_of(year, month)).contains(&day)
@@ -45,8 +46,8 @@ fn days_of(year: i32, month: i32) -> i32 {
     }
 }
 
-/// Altitude above the horizon and azimuth from north through east, in degrees, at a place given in
-/// degrees north and east.
+/// Returns the sun's altitude above the horizon and its azimuth from north through east, in
+/// degrees, at a place given in degrees north and east.
 pub fn sun([latitude, longitude]: [f64; 2], moment: &Moment) -> [f64; 2] {
     let n = moment.days();
     let sin = |degrees: f64| fp::sin_cos_degrees(degrees).0;
@@ -66,7 +67,7 @@ pub fn sun([latitude, longitude]: [f64; 2], moment: &Moment) -> [f64; 2] {
     [degrees(up, (north * north + east * east).sqrt()), degrees(east, north).rem_euclid(360.0)]
 }
 
-/// Unit vector by an altitude and an azimuth in degrees: y is up, -z north, x east.
+/// Unit vector for an altitude and an azimuth in degrees: y is up, -z north, x east.
 pub fn way([altitude, azimuth]: [f64; 2]) -> Vec3 {
     let ((sin, cos), (s, c)) = (fp::sin_cos_degrees(altitude), fp::sin_cos_degrees(azimuth));
     Vec3::new((cos * s) as f32, sin as f32, (-cos * c) as f32)

@@ -30,7 +30,8 @@ const TYPES: [[f32; 5]; 15] = [
 /// horizon.
 pub const OVERCAST: u32 = 16;
 
-/// CIE standard sky, which is white.
+/// CIE standard sky: the luminance of an overcast, partly cloudy or clear sky by direction. It is
+/// white.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CieSky {
     /// Coefficients of types 1 to 15; `None` for type 16.
@@ -55,7 +56,7 @@ impl CieSky {
         CieSky { ground: ground_reflectance * sky.illuminance() / PI, ..sky }
     }
 
-    /// Returns true if skies of this type depend on the position of the sun.
+    /// True if skies of this type depend on the position of the sun.
     pub fn wants_sun(number: u32) -> bool {
         TYPES.get((number as usize).wrapping_sub(1)).is_some_and(|numbers| numbers[2] != 0.0)
     }

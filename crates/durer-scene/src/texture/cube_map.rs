@@ -3,7 +3,7 @@
 use super::Texture;
 use crate::math::{Color, Vec2, Vec3};
 
-/// Environment at infinity, as the six faces of a cube.
+/// Environment at infinity, given by images on the six faces of a cube.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CubeMap {
     /// Images in the order of [`CubeMap::FACES`].

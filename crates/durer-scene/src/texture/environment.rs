@@ -11,7 +11,7 @@ use glam::Vec4;
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-/// Position of a direction in the map, in texels.
+/// Position of a direction in an environment map, in texels.
 #[derive(Clone, Copy, Debug)]
 pub struct TexelPosition {
     x: f32,
@@ -20,8 +20,8 @@ pub struct TexelPosition {
     sine: f32,
 }
 
-/// Environment map. Its centre is in direction -z and its upper edge at +y, as in
-/// `EquirectangularCamera`.
+/// Environment map, which lights the scene from infinity and is importance-sampled. Its centre is
+/// in direction -z and its upper edge at +y, as in `EquirectangularCamera`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Environment {
     width: usize,
@@ -43,6 +43,7 @@ pub struct Environment {
     column_hints: Arc<[u32]>,
 }
 
+/// Sampling weights of a row of an environment map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Row {
     /// Sum of the weights of the row's texels.
@@ -55,13 +56,13 @@ struct Row {
 /// light sampling, for example behind panes at which paths end.
 const LEAST: f32 = 0.05;
 
-/// Number of entries per start index.
+/// Number of table entries per start index.
 const STEP: usize = 4;
 
 /// Number of entries that the search compares at once.
 const AHEAD: usize = 8;
 
-/// For each step of the fraction from 0 to 1, the index of the entry that reaches it.
+/// Returns, for each step of the fraction from 0 to 1, the index of the entry that reaches it.
 fn hints(sums: &[f32]) -> impl Iterator<Item = u32> {
     let steps = sums.len().div_ceil(STEP);
     let mut i = 0;
@@ -218,14 +219,14 @@ impl Environment {
         (self.light(&place), self.density(&place))
     }
 
-    /// Samples a direction by two numbers in [0, 1). Returns it with its radiance and its pdf per
+    /// Samples a direction from two numbers in [0, 1). Returns it with its radiance and its pdf per
     /// solid angle.
     pub fn sample(&self, u: Vec2) -> Option<(Vec3, Color, f32)> {
         let (dir, place, pdf) = self.direction(u)?;
         Some((dir, self.light(&place), pdf))
     }
 
-    /// Samples a direction by two numbers in [0, 1). Returns it with its position in the map and
+    /// Samples a direction from two numbers in [0, 1). Returns it with its position in the map and
     /// its pdf per solid angle.
     pub fn direction(&self, u: Vec2) -> Option<(Vec3, TexelPosition, f32)> {
         let steps = self.width.div_ceil(STEP);

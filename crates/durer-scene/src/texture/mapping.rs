@@ -7,14 +7,14 @@ use crate::math::{Vec2, fp};
 use serde::{Deserialize, Serialize};
 
 described_words! {
-    /// Wrap mode beyond the border of a texture: repeated, repeated with every other copy mirrored,
+    /// Wrap mode of a texture beyond its border: repeated, repeated with every other copy mirrored,
     /// or clamped to the border texels.
     Wrap { Repeat = "repeat", Mirror = "mirror", Clamp = "clamp" }
 }
 
 described_words! {
-    /// Channel of a texel to read as a number; `angle` is the direction of the vector in red and
-    /// green (where 1/2 is 0), in turns.
+    /// Channel of a texel that is read as a number; `angle` is the direction of the vector in red
+    /// and green (where 1/2 is 0), in turns.
     Channel { Red = "r", Green = "g", Blue = "b", Alpha = "a", Angle = "angle" }
 }
 
@@ -36,7 +36,7 @@ impl Channel {
     }
 }
 
-/// Mapping of a texture onto a surface.
+/// Mapping of a texture onto a surface: wrap modes, filters, coordinate transform and value range.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mapping {
     /// Wrap mode horizontally and vertically.
@@ -52,11 +52,11 @@ pub struct Mapping {
     pub transform: [[f32; 3]; 2],
     /// Alpha cutoff: opacity is 1 at or above it, 0 below; with `None`, opacity is alpha.
     pub cutoff: Option<f32>,
-    /// Factor of the slopes in a normal map; 1 keeps the stored slopes.
+    /// Factor that scales the slopes in a normal map; 1 keeps the stored slopes.
     pub strength: f32,
-    /// Channel to read as a number; `None`: red, or alpha for opacity if there is an alpha channel.
+    /// Channel to read as a number; `None` for red, or for alpha in opacity textures with alpha.
     pub channel: Option<Channel>,
-    /// Parameter values for 0 and 1 in the texture.
+    /// Parameter values that 0 and 1 in the texture stand for.
     pub range: [f32; 2],
 }
 
@@ -101,8 +101,8 @@ impl Mapping {
         [r, g, b, alpha]
     }
 
-    /// Directions of increasing texture coordinates, from those of the surface coordinates, with v
-    /// up in both.
+    /// Converts directions of increasing surface coordinates to directions of increasing texture
+    /// coordinates, with v up in both.
     pub fn directions<V>(&self, [u, v]: [V; 2]) -> [V; 2]
     where
         V: Copy + std::ops::Mul<f32, Output = V> + std::ops::Add<Output = V>,

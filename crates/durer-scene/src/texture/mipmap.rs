@@ -15,7 +15,7 @@ impl Texture {
         Texture { levels, ..self }
     }
 
-    /// Returns true if the texture has mipmap levels.
+    /// True if the texture has mipmap levels.
     pub fn has_levels(&self) -> bool {
         !self.levels.is_empty()
     }

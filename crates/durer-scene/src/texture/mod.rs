@@ -18,7 +18,7 @@ pub use sky::Sky;
 use std::sync::Arc;
 pub use taps::Tap;
 
-/// Decoded image, looked up by the course's rules or by a [`Mapping`].
+/// Decoded image that is mapped onto surfaces, by the course's rules or by a [`Mapping`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     width: u32,
@@ -31,7 +31,7 @@ pub struct Texture {
     levels: Arc<[Texture]>,
 }
 
-/// Texels in red, green and blue, top row first.
+/// Texels of a texture in red, green and blue, top row first.
 #[derive(Clone, Debug, PartialEq)]
 enum Texels {
     /// 8 bits per channel, and the decoded value of each of the 256 codes.
@@ -40,6 +40,7 @@ enum Texels {
     Float(Arc<[Color]>),
 }
 
+/// Opacity of each texel of a texture, top row first.
 #[derive(Clone, Debug, PartialEq)]
 enum Opacity {
     /// Opacity in units of 1/255.
@@ -96,7 +97,7 @@ impl Texture {
         }
     }
 
-    /// Returns true if some texel is not opaque.
+    /// True if some texel is not opaque.
     pub fn has_alpha(&self) -> bool {
         self.alpha.is_some()
     }
@@ -128,7 +129,7 @@ impl Texture {
         Texture { alpha: is_given.then(|| Opacity::Float(alpha.into())), ..self }
     }
 
-    /// Returns true if all texels are equal.
+    /// True if all texels are equal.
     pub fn is_flat(&self) -> bool {
         match &self.texels {
             Texels::Eight(texels, _) => texels.iter().all(|texel| *texel == texels[0]),
@@ -147,8 +148,8 @@ impl Texture {
     }
 
     /// Colour and opacity at (u, v), with v up, by a mapping. Bilinear filtering uses linear
-    /// values. `width` is the width of the sample, in texels of the full size. With mipmap levels,
-    /// interpolates between the two levels whose texels are about that wide.
+    /// values. `width` is the width of the sample, in texels of the full-size image. With mipmap
+    /// levels, interpolates between the two levels whose texels are about that wide.
     pub fn texel(&self, mapping: &Mapping, uv: Vec2, width: f32) -> [f32; 4] {
         let place = mapping.place(uv);
         if width <= 1.0 || width.is_nan() || self.levels.is_empty() {
@@ -173,7 +174,7 @@ impl Texture {
         length * area.sqrt()
     }
 
-    /// Gradient of the red channel in u and v.
+    /// Gradient of the red channel with respect to u and v.
     pub fn slope(&self, mapping: &Mapping, uv: Vec2) -> Vec2 {
         let place = mapping.place(uv);
         // Step by one texel. A smaller step would only show the texel grid.
@@ -213,7 +214,7 @@ impl Texture {
         })
     }
 
-    /// Colour at (u, v), with v up: by the mapping if there is one, else bilinear without a
+    /// Colour at (u, v), with v up: by the mapping if there is one, otherwise bilinear without a
     /// half-texel shift and clamped at the border.
     pub fn at(&self, uv: Vec2) -> Color {
         if let Some(mapping) = &self.mapping {

@@ -14,7 +14,7 @@ const SUN_OUTSIDE: f32 = 128_000.0;
 /// Angular radius of the sun in degrees.
 pub const SUN_RADIUS: f32 = 0.2665;
 
-/// Clear sky.
+/// Clear sky and sun for a position of the sun and a turbidity of the air.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sky {
     /// Unit vector to the sun.
@@ -25,7 +25,7 @@ pub struct Sky {
     zenith: Vec3,
     /// Perez's five coefficients for luminance, x and y.
     perez: [[f32; 5]; 3],
-    /// Perez's function at the zenith.
+    /// Value of Perez's function at the zenith.
     there: Vec3,
     /// Radiance from below the horizon.
     ground: Color,
@@ -102,9 +102,10 @@ impl Sky {
         linear(bright.max(0.0), x, y)
     }
 
-    /// Illuminance by the sun, in lux, on a surface that faces it, by colour.
+    /// Illuminance from the sun, in lux by colour channel, on a surface that faces it.
     ///
-    /// Attenuated by Rayleigh scattering and aerosols, at the wavelengths of red, green and blue.
+    /// The light is attenuated by Rayleigh scattering and aerosols, at the wavelengths of red,
+    /// green and blue.
     pub fn sun(&self) -> Color {
         let degrees = angle(self.sun.y).to_degrees();
         // Relative air mass, after Kasten and Young, 1989.

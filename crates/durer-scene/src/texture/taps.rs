@@ -1,9 +1,9 @@
-//! Texels used by a texture lookup, for explanations.
+//! Texels that a texture lookup uses, for explanations.
 
 use super::{Texels, Texture};
 use crate::math::{Color, Vec2};
 
-/// One texel of a lookup.
+/// Texel that a texture lookup uses, with its weight, for explanations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tap {
     /// Column and row, from the upper left corner.

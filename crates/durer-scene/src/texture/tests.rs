@@ -79,8 +79,8 @@ const LETTERS: [[&str; 5]; 6] = [
 ];
 
 /// Faces seen from the centre of the cube. The course's images of a church match at their edges
-/// this way. Its programs mirror `back`, which more than half of the pixels in their renderings of
-/// the rabbit in the church show.
+/// this way. Its programs mirror `back`, as more than half of the pixels in their renderings of the
+/// rabbit in the church show.
 #[test]
 fn faces_are_upright_and_the_course_mirrors_two() {
     let face = |rows: &[&str; 5]| {

@@ -1,32 +1,34 @@
 //! Directional albedo of anisotropic surfaces.
 //!
-//! Such an albedo depends on the azimuth of the view, most strongly near the smoother axis.
-//! Therefore, the table's coordinates are not the azimuth and the two roughnesses, but the slopes
-//! of the facets relative to the view: their spread along the direction of view, their spread
-//! across it, and the correlation of the two. In these coordinates the albedo is smooth for every
-//! anisotropy.
+//! The albedo of an anisotropic surface depends on the azimuth of the view, most strongly near the
+//! smoother axis. Therefore, the table is not indexed by the azimuth and two roughnesses, but by
+//! the slopes of the facets relative to the view: their spread along the view direction, their
+//! spread across it, and the correlation of the two. In these coordinates the albedo is smooth for
+//! every anisotropy.
 
 use super::{direction, place_among};
 use crate::bsdf::microfacet::{Ggx, SMOOTH};
 use crate::math::{Vec2, Vec3, fp};
 use rayon::prelude::*;
 
-/// Number of entries along the cosine, the spread along the view, the spread across it, and the
-/// correlation.
+/// Number of table entries along the cosine, the spread along the view, the spread across it, and
+/// the correlation.
 const SIZES: [usize; 4] = [16, 16, 10, 5];
 
-/// Number of points of an integral around the normal and towards it. The error is at most 0.1 %.
+/// Number of integration points around the normal and towards it. The error is at most 0.1 %.
 const EXACT: [usize; 2] = [32, 24];
 
-/// Number of points, as in [`EXACT`], of an integral for a single shading point.
+/// Number of integration points, as in [`EXACT`], for a single shading point.
 const QUICK: [usize; 2] = [16, 16];
 
-/// Table of a function of the facet distribution and the view direction.
+/// Four-dimensional table of a function of the GGX distribution and the view direction, such as the
+/// directional albedo of anisotropic surfaces.
 #[derive(Clone, Debug)]
 pub(super) struct Table(Vec<f32>);
 
 impl Table {
-    /// Table of the mean of `value` over the visible facets, which `value` samples by two numbers.
+    /// Tabulates the mean of `value` over the visible facets. `value` samples a facet from two
+    /// numbers.
     pub fn new(value: impl Fn(Ggx, Vec3, Vec2) -> f32 + Sync) -> Self {
         let entry = |mut i: usize| {
             let at = SIZES.map(|size| {
@@ -40,7 +42,7 @@ impl Table {
         Table((0..SIZES.iter().product()).into_par_iter().map(entry).collect())
     }
 
-    /// Value for a surface and a direction, interpolated cubically.
+    /// Returns the value for a surface and a view direction, interpolated cubically.
     pub fn at(&self, ggx: Ggx, wo: Vec3) -> f32 {
         let axes = axes(ggx.clamped(), wo);
         let parts: [(usize, [f32; 4]); 4] = std::array::from_fn(|axis| cubic(axes[axis], SIZES[axis]));
@@ -64,8 +66,8 @@ pub(super) fn quick(value: impl Fn(Vec2) -> f32) -> f32 {
     integral(QUICK, value)
 }
 
-/// Mean over the unit square of a function that is periodic in x. Points are denser as y nears 1,
-/// where the facets lie along the direction of view.
+/// Mean over the unit square of a function that is periodic in x. Points are denser near y = 1,
+/// where the facets lie along the view direction.
 fn integral([around, towards]: [usize; 2], value: impl Fn(Vec2) -> f32) -> f32 {
     let mut sum = 0.0;
     for j in 0..towards {
@@ -105,7 +107,7 @@ fn seen([cosine, along, beside, correlation]: [f32; 4]) -> (Ggx, Vec3) {
 fn cubic(x: f32, size: usize) -> (usize, [f32; 4]) {
     let (i, f) = place_among(x, size);
     let first = i.saturating_sub(1).min(size - 4);
-    // Measure from the first of the four.
+    // Position relative to the first of the four entries.
     let t = f + (i - first) as f32;
     let [a, b, c] = [t - 1.0, t - 2.0, t - 3.0];
     (first, [-a * b * c / 6.0, t * b * c / 2.0, -t * a * c / 2.0, t * a * b / 6.0])
@@ -118,7 +120,7 @@ mod tests {
     use crate::math::random::Random;
 
     #[test]
-    fn axes_invert_seen() {
+    fn axes_round_trip() {
         let mut random = Random(21);
         for _ in 0..200 {
             let at: [f32; 4] = std::array::from_fn(|_| random.between(0.2, 0.95));

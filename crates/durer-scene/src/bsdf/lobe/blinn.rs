@@ -1,4 +1,4 @@
-//! Highlights of the course as lobes.
+//! Blinn and Phong highlights, as in the course.
 
 use super::{LobeKind, LobeSample, NOTHING, Scatter};
 use crate::bsdf::warp;
@@ -6,17 +6,18 @@ use crate::math::{Vec2, Vec3, fp, reflect};
 use crate::spectrum::Spectrum;
 use std::f32::consts::FRAC_1_PI;
 
-/// Highlight: color · base^exponent / pi, where the base is N·H (Blinn) or R·L (Phong).
+/// Blinn or Phong highlight of value color · base^exponent / pi, where the base is N·H (Blinn) or
+/// R·L (Phong).
 ///
 /// The course's formula has no cosine factor and would reflect more light than arrives. This lobe
-/// has one.
+/// adds the factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blinn {
-    /// Strength.
+    /// Strength of the highlight, by lane.
     pub color: Spectrum,
-    /// Sharpness.
+    /// Exponent; a higher value gives a smaller and sharper highlight.
     pub exponent: f32,
-    /// True if the base is R·L.
+    /// True if the base is R·L (Phong), false if it is N·H (Blinn).
     pub phong: bool,
 }
 

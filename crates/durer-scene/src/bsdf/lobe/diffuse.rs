@@ -1,7 +1,7 @@
-//! Diffuse surfaces: energy-preserving Oren-Nayar.
+//! Diffuse surfaces: the energy-preserving Oren-Nayar model.
 //!
 //! Source: Portsmouth, Kutz and Hill, *EON: A practical energy-preserving rough diffuse BRDF*, JCGT
-//! 14(1), 2025: Fujii's version of the model of Oren and Nayar, and a term for multiple scattering.
+//! 14(1), 2025: Fujii's version of the Oren-Nayar model, with a term for multiple scattering.
 
 use super::{LobeKind, LobeSample, NOTHING, Scatter};
 use crate::bsdf::albedo::Dielectric;
@@ -10,34 +10,35 @@ use crate::math::{Vec2, Vec3, fp};
 use crate::spectrum::Spectrum;
 use std::f32::consts::{FRAC_1_PI, PI};
 
-/// Diffuse surface. Its value is reciprocal, apart from `boundary`.
+/// Diffuse reflection lobe, optionally below a dielectric boundary. It is reciprocal, apart from
+/// `boundary`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Diffuse<'a> {
     /// Albedo, by lane.
     pub color: Spectrum,
     /// Roughness, from 0 (Lambert) to 1.
     pub roughness: f32,
-    /// Boundary that light passes on its way in. The weight of the lobe accounts for its way out.
+    /// Boundary that light crosses on its way in. The weight of the lobe accounts for the way out.
     pub boundary: Option<Boundary<'a>>,
-    /// Local shading normal of the lobe. It is z unless the shading normal was bent to keep mirrors
+    /// Local shading normal of the lobe. It is z unless the frame's normal was bent to keep mirrors
     /// from reflecting below the surface. Diffuse lobes need no bent normal.
     pub normal: Vec3,
 }
 
-/// Dielectric boundary on a diffuse surface.
+/// Dielectric boundary above a diffuse base, such as the glossy surface of plastic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Boundary<'a> {
-    /// Index and albedo tables.
+    /// Index of refraction and albedo tables.
     pub dielectric: &'a Dielectric,
     /// Roughness of the boundary.
     pub roughness: f32,
-    /// Factor of its reflection, from 0 to 1.
+    /// Factor that scales its reflection, from 0 to 1.
     pub reflection: f32,
 }
 
 impl Boundary<'_> {
-    /// Transmittance for light from a direction above, over the cosine-weighted mean transmittance
-    /// of the hemisphere.
+    /// Transmittance for light from one direction above, divided by the cosine-weighted mean
+    /// transmittance over the hemisphere.
     ///
     /// With the weight 1 - E(wo) of the diffuse base, this scales the bare base by (1 - E(wo)) (1 -
     /// E(wi)) / (1 - E mean). The result is reciprocal, and conserves energy together with the
@@ -56,7 +57,7 @@ const C1: f32 = 0.5 - 2.0 / (3.0 * PI);
 const C2: f32 = 2.0 / 3.0 - 28.0 / (15.0 * PI);
 
 impl<'a> Diffuse<'a> {
-    /// Lambert's diffuse lobe of a colour, without a boundary.
+    /// Creates a Lambertian lobe of a colour, without a boundary.
     pub fn lambert(color: Spectrum) -> Self {
         Diffuse { color, roughness: 0.0, boundary: None, normal: Vec3::Z }
     }
@@ -78,13 +79,13 @@ impl<'a> Diffuse<'a> {
         if self.roughness == 0.0 {
             return self.color * (FRAC_1_PI * entering);
         }
-        // For a rough base, apply the boundary only to the isotropic part. Applied to the
-        // remainder, it would lose or create energy.
+        // For a rough base, apply the boundary only to the isotropic part of the value. Applied to
+        // the remainder, it would lose or create energy.
         let even = FRAC_1_PI * (1.0 - self.roughness) / (1.0 + C1 * self.roughness);
         self.bare(between, out, into) + self.color * (even * (entering - 1.0))
     }
 
-    /// Value as in [`Diffuse::value`], without a boundary.
+    /// Version of [`Diffuse::value`] without the boundary.
     fn bare(&self, between: f32, out: f32, into: f32) -> Spectrum {
         if self.roughness == 0.0 {
             return self.color * FRAC_1_PI;
@@ -128,7 +129,7 @@ impl Scatter for Diffuse<'_> {
     }
 }
 
-/// Light that leaves on the other side with equal radiance in all directions.
+/// Diffuse transmission lobe: light leaves on the other side with equal radiance in all directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiffuseTransmission {
     /// Transmitted share of light, by lane.

@@ -11,7 +11,8 @@ use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 use std::f32::consts::PI;
 
-/// Fuzz of white fibres. Its directional albedo is [`crate::bsdf::albedo::fuzz`].
+/// Lobe for a layer of white fibres that stand up from a surface. Its directional albedo is
+/// [`crate::bsdf::albedo::fuzz`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fuzz {
     /// Roughness, from 0 (a thin bright rim) to 1.

@@ -1,26 +1,27 @@
-//! Delta lobes: mirrors, smooth glass, and straight transmission.
+//! Delta lobes: mirror, smooth refraction and straight transmission.
 
 use super::{LobeKind, LobeSample, NOTHING, Scatter};
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
-/// Perfect mirror. Its reflectance is the weight of the lobe.
+/// Perfect mirror lobe. The lobe's weight is its reflectance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mirror;
 
-/// Refraction by a smooth boundary. Its transmittance is the weight of the lobe.
+/// Lobe for refraction by a smooth boundary. The lobe's weight is its transmittance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refraction {
-    /// Index of refraction behind the boundary over that before it.
+    /// Index of refraction behind the boundary, relative to the index in front of it.
     pub eta: f32,
 }
 
-/// Transmission that keeps the direction, as if there were no surface.
+/// Lobe for transmission that keeps the direction, as if there were no surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Through;
 
-/// Refracted direction of `w` at a boundary with normal `h`, both on the same side; `None` for
-/// total internal reflection. `eta` is the index behind over that before.
+/// Returns the refracted direction of `w` at a boundary with normal `h`; `None` for total internal
+/// reflection. Both `w` and `h` point to the same side. `eta` is the index behind the boundary,
+/// relative to the index in front of it.
 pub fn refracted(w: Vec3, h: Vec3, eta: f32) -> Option<Vec3> {
     let cosine = w.dot(h);
     let sine2 = (1.0 - cosine * cosine).max(0.0) / (eta * eta);

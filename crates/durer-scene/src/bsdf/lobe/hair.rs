@@ -1,4 +1,4 @@
-//! Fibre seen from outside: hair and fur.
+//! Hair and fur: fibres seen from outside.
 //!
 //! Light is reflected by the fibre (R), passes through it (TT), or passes through after one or more
 //! internal reflections (TRT and higher). The roughness of the cuticle scales spreads it along the
@@ -18,36 +18,39 @@ use crate::math::{Color, Vec2, Vec3, fp};
 use crate::spectrum::{Lanes, Spectrum};
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
-/// Number of light paths: R, TT, TRT, and all those with more internal reflections.
+/// Number of light paths: R, TT, TRT, and all paths with more internal reflections.
 const WAYS: usize = 4;
 
-/// Index of the last path, which spreads evenly around the fibre.
+/// Index of the last path (all further internal reflections), which spreads light evenly around the
+/// fibre.
 const MORE: usize = WAYS - 1;
 
-/// Data shared by all points of a fibre.
+/// Hair fibre of one material, with its pigment and roughness; shared by all points of the fibre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fibre {
     pigment: Pigment,
-    /// Index of refraction inside over that outside.
+    /// Index of refraction inside, relative to the index outside.
     eta: f32,
-    /// Sine and cosine of the angles by which the scales tilt the first paths.
+    /// Sine and cosine of the angles by which the cuticle scales tilt the first three paths.
     tilts: [Vec2; MORE],
-    /// Variance of each path along the fibre.
+    /// Longitudinal variance of each path.
     variances: [f32; WAYS],
+    /// Azimuthal distribution of each path except the last.
     spread: Logistic,
 }
 
-/// Absorption inside the fibre.
+/// Pigment of a hair fibre, given by its absorption or by the colour of the hair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Pigment {
     /// Absorption coefficient per radius.
     Absorption(Color),
-    /// Colour of many fibres together, and the divisor of its logarithm.
+    /// Colour of many fibres together, and the divisor that turns the colour's logarithm into the
+    /// square root of the absorption.
     Color(Color, f32),
 }
 
 impl Fibre {
-    /// Fibre of a material.
+    /// Creates the fibre of a hair material.
     pub fn new(m: &HairMaterial) -> Self {
         // The scales tilt R back by twice their angle, TT forward by their angle, and TRT forward
         // by four times their angle.
@@ -80,12 +83,12 @@ impl Fibre {
     pub fn color(&self) -> Color {
         match self.pigment {
             Pigment::Color(color, _) => color,
-            // Assumes a roughness of 0.
+            // Assumes an azimuthal roughness of 0.
             Pigment::Absorption(absorption) => absorption.map(|sigma| fp::exp(-5.969 * sigma.sqrt())),
         }
     }
 
-    /// Hair lobe for light in the given lanes.
+    /// Returns the hair lobe for light in the given lanes.
     pub fn seen(&self, lanes: &Lanes) -> Hair<'_> {
         let absorption = match self.pigment {
             Pigment::Absorption(absorption) => lanes.coefficient(absorption),
@@ -97,7 +100,7 @@ impl Fibre {
         Hair { fibre: self, absorption }
     }
 
-    /// Longitudinal sine and cosine of the view direction, tilted by the scales for a path.
+    /// Longitudinal sine and cosine of the view direction, after the scale tilt for a path.
     fn turned(&self, way: usize, out: &Direction) -> Vec2 {
         let Some(tilt) = self.tilts.get(way) else { return out.along };
         let sine = out.along.x * tilt.y + out.along.y * tilt.x;
@@ -105,7 +108,7 @@ impl Fibre {
     }
 }
 
-/// Lobe at a point of a fibre.
+/// Scattering lobe of a hair fibre, with its absorption in the current lanes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hair<'a> {
     fibre: &'a Fibre,
@@ -113,9 +116,9 @@ pub struct Hair<'a> {
     absorption: Spectrum,
 }
 
-/// Direction in coordinates of a fibre.
+/// Direction in the coordinates of a hair fibre: longitudinal and azimuthal angle.
 struct Direction {
-    /// Sine and cosine of the angle to the plane across the fibre.
+    /// Sine and cosine of the angle to the plane perpendicular to the fibre.
     along: Vec2,
     /// Angle around the fibre, from the y axis to the z axis.
     around: f32,
@@ -128,18 +131,18 @@ impl Direction {
     }
 }
 
-/// Shares of light among the paths.
+/// Shares of light among the paths through a hair fibre, for one view direction.
 struct PathLobes {
     shares: [Spectrum; WAYS],
     /// Sampling weight of each path, and their sum.
     chances: [f32; WAYS],
     total: f32,
-    /// Angles to the normal around the fibre, outside and inside.
+    /// Azimuthal angles to the normal, outside and inside the fibre.
     angles: [f32; 2],
 }
 
 impl PathLobes {
-    /// Angle by which a path turns light around the fibre.
+    /// Angle by which a path deflects light around the fibre.
     fn turn(&self, way: usize) -> f32 {
         let way = way as f32;
         2.0 * way * self.angles[1] - 2.0 * self.angles[0] + way * PI
@@ -151,8 +154,8 @@ impl Hair<'_> {
         let eta = self.fibre.eta;
         let (sine, cosine) = (out.along.x, out.along.y.max(1e-6));
         let outside = out.around - FRAC_PI_2;
-        // Effective index of a section across the fibre. The sine outside is -cos of the angle from
-        // y.
+        // Effective index of a cross-section of the fibre. The sine outside is -cos of the angle
+        // from y.
         let across = (eta * eta - sine * sine).max(1e-12).sqrt() / cosine;
         let sine_inside = (-wo.y / cosine / across).clamp(-1.0, 1.0);
         let cosine_inside = (1.0 - sine_inside * sine_inside).sqrt();
@@ -204,7 +207,7 @@ impl Scatter for Hair<'_> {
             rest -= ways.chances[way];
             way += 1;
         }
-        // The remainder of `choice` is uniform again.
+        // Reuse the remainder of `choice`, which is uniform again.
         let again = (rest / ways.chances[way]).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
         let (turned, variance) = (self.fibre.turned(way, &out), self.fibre.variances[way]);
         // Sample the angle to the mirror direction on a sphere.
@@ -253,7 +256,8 @@ fn bessel(x: f32) -> f32 {
     if t < 1.0 { sum(&NEAR, t * t) * fp::exp(-x) } else { sum(&FAR, 1.0 / t) / x.sqrt() }
 }
 
-/// Logistic distribution on [-pi, pi]: close to a normal distribution, and cheap to sample.
+/// Logistic distribution truncated to [-pi, pi], for the azimuthal scattering of hair. It is close
+/// to a normal distribution, and cheap to sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Logistic {
     scale: f32,

@@ -1,4 +1,4 @@
-//! Lobes: the parts of a BSDF. One file each; the list is [`Lobe`].
+//! Lobes, the parts of a BSDF. Each lobe has its own file; [`Lobe`] lists them all.
 
 pub mod blinn;
 pub mod diffuse;
@@ -11,7 +11,7 @@ pub mod rough_glass;
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
-/// Direction sampled from a lobe.
+/// Direction sampled from a single lobe, returned by [`Scatter::sample`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LobeSample {
     /// Local direction to the incident light.
@@ -23,8 +23,8 @@ pub struct LobeSample {
 /// Value and pdf for a direction in which a lobe does not scatter.
 const NOTHING: (Spectrum, f32) = (Spectrum::ZERO, 0.0);
 
-/// Interface of every lobe. Directions are local and point away from the surface. `wo` is above it
-/// (`wo.z` > 0).
+/// Interface for evaluating and sampling a BSDF lobe. Directions are local and point away from the
+/// surface. `wo` is above it (`wo.z` > 0).
 pub trait Scatter {
     /// Value times |cos| of `wi`, and the pdf per solid angle with which [`Scatter::sample`]
     /// chooses `wi`. Both are 0 for a delta lobe.
@@ -33,7 +33,7 @@ pub trait Scatter {
     /// Samples a direction. `choice` and `u` are uniform in [0, 1]. `None` if the sample fails.
     fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<LobeSample>;
 
-    /// Properties that a path tracer needs beyond the values.
+    /// Returns the properties that decide how a path tracer samples lights for the lobe.
     fn kind(&self) -> LobeKind;
 
     /// True if the lobe scatters into single directions only.
@@ -43,19 +43,19 @@ pub trait Scatter {
     }
 }
 
-/// Angular spread of a lobe.
+/// Angular spread of a BSDF lobe, which decides how lights are sampled for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spread {
     /// Single directions: a perfect mirror, clear glass.
     Delta,
-    /// Mostly a narrow cone, which light samples would rarely hit.
+    /// A narrow cone for the most part, which light samples rarely hit.
     Glossy,
     /// Every direction, with equal or nearly equal value.
     Diffuse,
 }
 
-/// Properties of a lobe that decide how lights are sampled for it. Every lobe must state them, in
-/// [`Scatter::kind`].
+/// Properties of a BSDF lobe that decide how lights are sampled for it. Every lobe returns them
+/// from [`Scatter::kind`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LobeKind {
     /// Angular spread.
@@ -66,7 +66,8 @@ pub struct LobeKind {
     pub is_straight: bool,
     /// True for a fibre, which scatters light from any side to any side.
     pub is_fibre: bool,
-    /// Index of refraction behind the surface over that before it; `None` without refraction.
+    /// Index of refraction behind the surface, relative to the index in front of it; `None` without
+    /// refraction.
     pub eta: Option<f32>,
 }
 
@@ -82,12 +83,12 @@ impl LobeKind {
         LobeKind { spread, transmits: false, is_straight: false, is_fibre: false, eta: None }
     }
 
-    /// Kind of a lobe that scatters light from behind the surface also or only.
+    /// Returns the kind of a lobe that also, or only, scatters light from behind the surface.
     pub const fn transmitting(self) -> LobeKind {
         LobeKind { transmits: true, ..self }
     }
 
-    /// Kind of a transmitting lobe that refracts with the relative index `eta`.
+    /// Returns the kind of a transmitting lobe that refracts with the relative index `eta`.
     pub const fn refracting(self, eta: f32) -> LobeKind {
         LobeKind { transmits: true, eta: Some(eta), ..self }
     }
@@ -95,7 +96,7 @@ impl LobeKind {
 
 macro_rules! lobes {
     ($($(#[doc = $doc:literal])+ $name:ident($type:ty),)+) => {
-        /// One lobe of a BSDF.
+        /// Scattering lobe of a BSDF, of any type.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum Lobe<'a> { $($(#[doc = $doc])+ $name($type),)+ }
 
@@ -118,7 +119,7 @@ macro_rules! lobes {
         }
 
         impl Lobe<'_> {
-            /// Name for explanations.
+            /// Name of the lobe's type, for explanations.
             pub fn name(&self) -> &'static str {
                 match self { $(Lobe::$name(_) => stringify!($name),)+ }
             }
@@ -127,13 +128,13 @@ macro_rules! lobes {
 }
 
 lobes! {
-    /// Diffuse: energy-preserving Oren-Nayar, or Lambert at roughness 0.
+    /// Diffuse reflection: energy-preserving Oren-Nayar, or Lambert at roughness 0.
     Diffuse(diffuse::Diffuse<'a>),
     /// Diffuse transmission.
     DiffuseTransmission(diffuse::DiffuseTransmission),
-    /// Highlight of the course.
+    /// Blinn or Phong highlight, as in the course.
     Blinn(blinn::Blinn),
-    /// Rough mirror: metal, a coat, the surface of plastic.
+    /// Rough reflection: metal, a coat, the surface of plastic.
     Rough(rough::Rough),
     /// Rough glass.
     RoughGlass(rough_glass::RoughGlass),
@@ -141,9 +142,9 @@ lobes! {
     Mirror(glass::Mirror),
     /// Perfect refraction.
     Refraction(glass::Refraction),
-    /// Transmission that keeps the direction.
+    /// Transmission that keeps the direction, as if there were no surface.
     Through(glass::Through),
-    /// Fuzz of fibres, as on velvet.
+    /// Fuzz of short fibres, as on velvet.
     Fuzz(fuzz::Fuzz),
     /// Single fibre of hair.
     Hair(hair::Hair<'a>),

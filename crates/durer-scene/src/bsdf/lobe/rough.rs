@@ -1,4 +1,5 @@
-//! Rough mirrors: GGX with the reflectance of a metal or a dielectric.
+//! Rough reflection: GGX facets with the reflectance of a metal, a dielectric, a thin sheet or a
+//! film.
 
 use super::{LobeKind, LobeSample, NOTHING, Scatter};
 use crate::bsdf::film::Film;
@@ -7,16 +8,16 @@ use crate::bsdf::microfacet::Ggx;
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
-/// Reflectance model of each facet.
+/// Reflectance model of the microfacets of a [`Rough`] lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Facet {
     /// Metal.
     Metal(F82),
-    /// Dielectric boundary: the index behind over that before.
+    /// Dielectric boundary, with the index behind it relative to the index in front of it.
     Dielectric(f32),
-    /// Reflection of a thin dielectric sheet.
+    /// Reflection by a thin dielectric sheet.
     Sheet(Sheet),
-    /// Transmission of a thin dielectric sheet.
+    /// Transmission through a thin dielectric sheet.
     BehindSheet(Sheet),
     /// Base with a thin film.
     Film(Film),
@@ -35,20 +36,20 @@ impl Facet {
     }
 }
 
-/// Rough mirror.
+/// Lobe for reflection by a rough surface, or transmission through a thin rough sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rough {
-    /// Distribution of normals.
+    /// Distribution of the facet normals.
     pub ggx: Ggx,
     /// Reflectance model of the facets.
     pub facet: Facet,
-    /// True if light leaves behind the surface, mirrored to the other side: transmission by a thin
-    /// sheet of rough glass.
+    /// True if light leaves on the other side, as the mirror image of the reflection: transmission
+    /// through a thin sheet of rough glass.
     pub behind: bool,
 }
 
 impl Rough {
-    /// Mirror image above the surface of a direction behind it.
+    /// Mirrors a direction behind the surface to the front, if the lobe transmits.
     fn above(&self, wi: Vec3) -> Vec3 {
         if self.behind { Vec3::new(wi.x, wi.y, -wi.z) } else { wi }
     }
@@ -66,7 +67,7 @@ impl Scatter for Rough {
         let density = self.ggx.density(h) / (4.0 * wo.z);
         let (hidden_o, hidden_i) = (self.ggx.lambda(wo), self.ggx.lambda(wi));
         let value = density / (1.0 + hidden_o + hidden_i) * self.facet.at(wo.dot(h).clamp(0.0, 1.0));
-        // Pdf of visible normals without its factor wo·h, divided by 4 wo·h.
+        // Pdf of the visible normals over 4 wo·h. The factor wo·h cancels.
         (value, density / (1.0 + hidden_o))
     }
 

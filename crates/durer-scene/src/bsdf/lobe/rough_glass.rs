@@ -1,4 +1,4 @@
-//! Rough glass: each facet reflects and refracts by Fresnel's equations.
+//! Rough glass: each facet reflects and refracts according to Fresnel's equations.
 //!
 //! Source: Walter and others, *Microfacet Models for Refraction through Rough Surfaces*, EGSR 2007.
 
@@ -9,12 +9,12 @@ use crate::bsdf::microfacet::Ggx;
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
-/// Rough boundary between two dielectrics.
+/// Lobe for reflection and refraction by a rough boundary between two dielectrics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoughGlass {
-    /// Distribution of normals.
+    /// Distribution of the facet normals.
     pub ggx: Ggx,
-    /// Index of refraction behind the boundary over that before it.
+    /// Index of refraction behind the boundary, relative to the index in front of it.
     pub eta: f32,
     /// Tint of reflected light.
     pub reflected: Spectrum,
@@ -22,8 +22,8 @@ pub struct RoughGlass {
     pub transmitted: Spectrum,
 }
 
-/// Facet normal that scatters `wo` to `wi`, and the Jacobian of the solid angle; `None` if no facet
-/// does.
+/// Returns the normal of the facets that scatter `wo` to `wi`, and the Jacobian of the solid angle;
+/// `None` if no facet does.
 fn facet(wo: Vec3, wi: Vec3, eta: f32) -> Option<(Vec3, f32)> {
     let passes = wi.z < 0.0;
     let eta = if passes { eta } else { 1.0 };

@@ -1,7 +1,7 @@
 //! Roots of a polynomial between 0 and 1, from its Bernstein coefficients.
 //!
 //! In an interval, a polynomial has at most as many roots as its coefficients have sign changes,
-//! and exactly one if there is one sign change. Halving the interval by de Casteljau's rule
+//! and exactly one if there is one sign change. Halving the interval by de Casteljau's algorithm
 //! separates the roots; false position then refines each.
 //!
 //! Source: Lane, Riesenfeld, *Bounds on a Polynomial*, BIT 21, 1981; Farin, *Curves and Surfaces
@@ -9,13 +9,13 @@
 
 use glam::DVec3;
 
-/// Coefficients of a polynomial of degree 6.
+/// Polynomial of degree 6, by its Bernstein coefficients.
 pub type Sextic = [f64; 7];
 
 /// Roots closer to each other than this are reported once.
 const NARROWEST: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Dot product of two cubics with vector coefficients.
+/// Dot product of two vector-valued cubics, in Bernstein form.
 pub fn dot(a: &[DVec3; 4], b: &[DVec3; 4]) -> Sextic {
     const THREE: [f64; 4] = [1.0, 3.0, 3.0, 1.0];
     const SIX: [f64; 7] = [1.0, 6.0, 15.0, 20.0, 15.0, 6.0, 1.0];
@@ -100,7 +100,7 @@ mod tests {
             let degree = c.len();
             let mut next = vec![0.0; degree + 1];
             for (i, value) in c.iter().enumerate() {
-                // Raising the degree: (1 - s) -root + s (1 - root).
+                // Raise the degree by multiplying with (1 - s) (-root) + s (1 - root).
                 next[i] += value * -root * (degree - i) as f64 / degree as f64;
                 next[i + 1] += value * (1.0 - root) * (i + 1) as f64 / degree as f64;
             }

@@ -120,7 +120,7 @@ fn transforms_must_be_finite_and_nesting_bounded() {
         (1..levels).fold(innermost, |inner, _| moved(MatrixOp::UniformScale(1.0), inner))
     };
     assert_eq!(messages(&with_node(nested(MAX_NESTING))), [""; 0]);
-    assert_eq!(messages(&with_node(nested(MAX_NESTING + 1))), ["objects are nested deeper than 640"]);
+    assert_eq!(messages(&with_node(nested(MAX_NESTING + 1))), ["objects are nested more than 640 levels deep"]);
     for op in [MatrixOp::XRotate(f32::NAN), MatrixOp::Translate(Vec3::INFINITY), MatrixOp::Rotate(Vec3::NAN, 0.0)] {
         let found = messages(&with_node(moved(op, Node::Group(Group::default()))));
         assert_eq!(found, ["the numbers of a transform must be finite"], "{op:?}");

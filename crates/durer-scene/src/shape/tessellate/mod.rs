@@ -1,5 +1,6 @@
 //! Triangle meshes of shapes. The functions in this file approximate primitives, for
-//! [`Shape::to_mesh`](super::Shape::to_mesh); the modules tessellate surfaces without a primitive.
+//! [`Shape::to_mesh`](super::Shape::to_mesh). The submodules tessellate surfaces that are not
+//! primitives.
 
 pub mod net;
 pub mod revolution;
@@ -9,7 +10,7 @@ pub mod tube;
 use super::MeshData;
 use crate::math::{Vec2, Vec3, fp};
 
-/// Segments around a sphere; half as many from pole to pole.
+/// Number of segments around a sphere; half as many from pole to pole.
 const STEPS: u32 = 96;
 
 /// A single flat triangle.

@@ -6,10 +6,10 @@ use crate::math::{Vec2, Vec3};
 use crate::shape::MeshData;
 use glam::{DVec3, DVec4};
 
-/// Segments along each side of a NURBS surface.
+/// Number of segments along each side of a NURBS surface.
 const STEPS: u32 = 48;
 
-/// Segments along each side of a patch that is not flat.
+/// Number of segments along each side of a patch that is not flat.
 const PATCH: u32 = 8;
 
 /// Adds the triangles between the points of a grid.
@@ -21,8 +21,8 @@ fn grid(data: &mut MeshData, [columns, rows]: [u32; 2]) {
     data.triangle_uvs.clone_from(&data.triangles);
 }
 
-/// A height field over the unit square, row by row; it has `columns` times `rows` heights, both at
-/// least 2.
+/// Tessellates a height field over the unit square, given row by row. It has `columns` times `rows`
+/// heights, both at least 2.
 pub fn heights([columns, rows]: [u32; 2], heights: impl IntoIterator<Item = f32>) -> MeshData {
     let mut data = MeshData::default();
     for (k, height) in (0_u32..).zip(heights) {
@@ -34,7 +34,7 @@ pub fn heights([columns, rows]: [u32; 2], heights: impl IntoIterator<Item = f32>
     data
 }
 
-/// The corners of bilinear patches.
+/// Bilinear patches to tessellate, given by their corners.
 #[derive(Clone, Debug, Default)]
 pub struct Patches {
     /// Positions.
@@ -84,7 +84,7 @@ pub fn bilinear(patches: &Patches) -> MeshData {
     data
 }
 
-/// Knots of one side of a NURBS surface, and the visible parameter interval.
+/// Knots of one side of a NURBS surface, and the parameter interval to tessellate.
 #[derive(Clone, Copy, Debug)]
 pub struct NurbsSide<'a> {
     /// Ascending knots; their number is that of the control points plus the order.
@@ -97,7 +97,8 @@ pub struct NurbsSide<'a> {
     pub to: f64,
 }
 
-/// A NURBS surface of control points with positive weights, row by row, `columns` in a row.
+/// Tessellates a NURBS surface of control points with positive weights, row by row, `columns` in a
+/// row.
 pub fn nurbs(points: &[DVec4], columns: u32, sides: &[NurbsSide; 2]) -> MeshData {
     let side = STEPS + 1;
     let mut data = MeshData::default();
@@ -113,8 +114,8 @@ pub fn nurbs(points: &[DVec4], columns: u32, sides: &[NurbsSide; 2]) -> MeshData
     data
 }
 
-/// Index of the first control point with influence at a parameter, the weights of it and the
-/// following ones, and their derivatives.
+/// Returns the index of the first control point with influence at a parameter, the weights of it
+/// and the following ones, and their derivatives.
 fn weights(knots: &NurbsSide, t: f64) -> (usize, Vec<f64>, Vec<f64>) {
     let (all, degree) = (knots.knots, knots.order - 1);
     let last = all.len() - knots.order - 1;
@@ -139,7 +140,7 @@ fn weights(knots: &NurbsSide, t: f64) -> (usize, Vec<f64>, Vec<f64>) {
     (span - degree, values, slopes)
 }
 
-/// A point of the surface and the cross product of its tangents.
+/// Returns a point of the surface and the cross product of its tangents.
 fn place(points: &[DVec4], columns: u32, sides: &[NurbsSide; 2], at: [f64; 2]) -> (DVec3, DVec3) {
     let t = |side: usize| sides[side].from + at[side] * (sides[side].to - sides[side].from);
     let (first_u, us, us_slope) = weights(&sides[0], t(0));

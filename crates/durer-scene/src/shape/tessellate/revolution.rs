@@ -1,7 +1,7 @@
-//! Triangle meshes with smooth normals of surfaces of revolution about z, or of sectors of them by
-//! an angle in degrees.
+//! Triangle meshes, with smooth normals, of surfaces of revolution about z, or of sectors of them
+//! by an angle in degrees.
 //!
-//! u grows with the angle, v along the profile. The outside is du x dv, with the orientation of
+//! u increases with the angle, v along the profile. The outside is du x dv, with the orientation of
 //! *Physically Based Rendering*, 3rd edition, chapter 3.
 
 use crate::math::{Vec2, Vec3, fp};
@@ -9,17 +9,17 @@ use crate::shape::MeshData;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Segments of a full turn, and along a curved profile.
+/// Number of segments of a full turn, and along a curved profile.
 const SIDES: f64 = 128.0;
 const ROWS: u32 = 64;
 
-/// Sides of a cylinder or a sector of it.
+/// Number of sides of a cylinder or a sector of it.
 const COLUMNS: u32 = 128;
 
-/// A point of the profile and its tangent.
+/// Point of the profile of a surface of revolution, and the tangent there.
 type ProfilePoint = (DVec3, DVec3);
 
-/// Surface of a profile that rotates about z by an angle in degrees.
+/// Tessellates the surface of a profile that rotates about z by an angle in degrees.
 fn turned(degrees: f64, rows: u32, line: impl Fn(f64) -> ProfilePoint) -> MeshData {
     let mut data = MeshData::default();
     let columns = (SIDES * degrees / 360.0).ceil().max(4.0) as u32;
@@ -52,7 +52,7 @@ fn turned(degrees: f64, rows: u32, line: impl Fn(f64) -> ProfilePoint) -> MeshDa
     data
 }
 
-/// A sphere between two heights, which must be within it.
+/// A sphere between two heights, which must lie within it.
 pub fn sphere(radius: f64, [low, high]: [f32; 2], degrees: f64) -> MeshData {
     // Angles from the equator.
     let angle = |z: f32| {
@@ -70,7 +70,7 @@ pub fn sphere(radius: f64, [low, high]: [f32; 2], degrees: f64) -> MeshData {
     turned(degrees, rows, line)
 }
 
-/// A ring at a height, facing z; v grows inwards.
+/// A ring at a height, facing z; v increases inwards.
 pub fn ring([inner, outer]: [f64; 2], height: f64, degrees: f64) -> MeshData {
     let line = |v: f64| (DVec3::new(outer + v * (inner - outer), 0.0, height), DVec3::NEG_X);
     turned(degrees, 1, line)
@@ -86,7 +86,7 @@ pub fn cone(radius: f64, height: f64, degrees: f64) -> MeshData {
 
 /// A paraboloid between two heights of at least 0, with a radius at the upper one.
 pub fn paraboloid(radius: f64, [low, high]: [f64; 2], degrees: f64) -> MeshData {
-    // Even steps of the radius, not of z: the curvature is highest near the apex.
+    // Use even steps of the radius instead of z, since the curvature is highest near the apex.
     let across = |z: f64| radius * (z / high).sqrt();
     let (from, to) = (across(low), across(high));
     let point = |r: f64| {

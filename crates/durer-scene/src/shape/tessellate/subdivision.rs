@@ -9,13 +9,14 @@ use crate::shape::MeshData;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// A mesh at some level of subdivision.
+/// Triangle mesh at one level of Loop subdivision.
 struct Net {
     points: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
 }
 
-/// Neighbours of a point in order; true if they form a closed ring.
+/// Neighbours of a point of the mesh, in order around it; `closed` is false for a point on a
+/// border.
 struct Ring {
     around: Vec<u32>,
     closed: bool,
@@ -43,7 +44,7 @@ fn beta(count: usize) -> f64 {
 }
 
 impl Net {
-    /// Ring of each point; `None` where more than two sheets meet.
+    /// Returns the ring of each point; `None` where more than two sheets meet.
     fn rings(&self) -> Vec<Option<Ring>> {
         let mut sides: Vec<Vec<[u32; 2]>> = vec![Vec::new(); self.points.len()];
         for &[a, b, c] in &self.faces {
@@ -54,7 +55,7 @@ impl Net {
         sides.iter().map(|sides| ring(sides)).collect()
     }
 
-    /// The next level, with four triangles for each.
+    /// Returns the mesh of the next level, with four triangles for each triangle.
     fn finer(&self) -> Net {
         let rings = self.rings();
         let even = |i: usize| {

@@ -15,10 +15,10 @@ const CAP: u32 = 4;
 const STEPS: [f64; 2] = [2.0, 64.0];
 const MAX_STEPS: usize = 1 << 15;
 
-/// A cubic Bézier segment: four control points, with the curve's width in w.
+/// Cubic Bézier segment of a curve: four control points, with the curve's width in w.
 pub type Piece = [DVec4; 4];
 
-/// A sample of a curve with the data to sweep a cross section through it.
+/// Sample of a curve, with the data for sweeping a cross-section through it.
 pub struct CurvePoint {
     /// The point.
     pub point: DVec3,
@@ -36,7 +36,7 @@ pub struct CurvePoint {
     pub part: f64,
 }
 
-/// Bézier segment for four control points of a uniform cubic B-spline.
+/// Converts four control points of a uniform cubic B-spline to a Bézier segment.
 pub fn of_spline(p: &[DVec4; 4]) -> Piece {
     [
         (p[0] + 4.0 * p[1] + p[2]) / 6.0,
@@ -46,7 +46,7 @@ pub fn of_spline(p: &[DVec4; 4]) -> Piece {
     ]
 }
 
-/// A straight segment.
+/// Creates a straight segment.
 pub fn straight([a, b]: [DVec4; 2]) -> Piece {
     [a, a.lerp(b, 1.0 / 3.0), a.lerp(b, 2.0 / 3.0), b]
 }
@@ -76,7 +76,7 @@ pub fn places(pieces: &[Piece], all_pieces: usize) -> Vec<CurvePoint> {
     all
 }
 
-/// Adds a hemisphere at either end.
+/// Adds a hemisphere at each end.
 pub fn rounded(mut places: Vec<CurvePoint>) -> Vec<CurvePoint> {
     let cap = |end: &CurvePoint, side: f64, step: u32| {
         let (sin, cos) = fp::sin_cos_degrees(f64::from(90 * step) / f64::from(CAP));
@@ -91,8 +91,8 @@ pub fn rounded(mut places: Vec<CurvePoint>) -> Vec<CurvePoint> {
     places
 }
 
-/// Adds a tube through sample points, with fewer sides if there are `many` tubes: u grows along it,
-/// v around it.
+/// Adds a tube through sample points, with fewer sides if there are `many` tubes. u increases along
+/// it, v around it.
 pub fn add_tube(data: &mut MeshData, places: &[CurvePoint], many: bool) {
     let Some(first) = places.first() else { return };
     let sides = SIDES[usize::from(many)];
@@ -134,8 +134,8 @@ fn add_strip(data: &mut MeshData, begin: u32, rows: usize, count: u32) {
     triangle_normals.extend(&triangles[first..]);
 }
 
-/// A ribbon through sample points that turns from normal to normal; there is one normal more than
-/// segments. u grows along it, v across it.
+/// Tessellates a ribbon through sample points that turns from normal to normal. There is one normal
+/// more than segments. u increases along it, v across it.
 pub fn ribbon(places: &[CurvePoint], normals: &[DVec3]) -> MeshData {
     let mut data = MeshData::default();
     for place in places {
@@ -170,7 +170,7 @@ pub fn raised([a, b, c]: [DVec3; 3]) -> [DVec3; 4] {
     [a, a.lerp(b, 2.0 / 3.0), c.lerp(b, 2.0 / 3.0), c]
 }
 
-/// Segments of a curve whose width grows linearly from one end to the other.
+/// Creates the segments of a curve whose width changes linearly from one end to the other.
 pub fn widened(pieces: &[[DVec3; 4]], [first, last]: [f64; 2]) -> Vec<Piece> {
     let width = |i: usize, k: u32| first + (i as f64 + f64::from(k) / 3.0) / pieces.len() as f64 * (last - first);
     let wide = |(i, piece): (usize, &[DVec3; 4])| [0, 1, 2, 3].map(|k| piece[k as usize].extend(width(i, k)));

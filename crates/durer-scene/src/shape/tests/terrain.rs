@@ -48,7 +48,6 @@ fn terrain_equals_its_mesh_as_lists() {
     }
 }
 
-/// The corners around each vertex are found in order.
 #[test]
 fn corners_around_a_vertex_are_found_in_order() {
     let terrain = field(Vec3::ZERO, 5, 4, &mut Random(4));
