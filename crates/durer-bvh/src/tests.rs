@@ -10,7 +10,7 @@ fn cube(center: Vec3, half: f32) -> Aabb {
     Aabb { min: center - half, max: center + half }
 }
 
-/// Collections of boxes, each with a name for messages.
+/// Returns sets of difficult boxes, each with a name for messages.
 fn collections() -> Vec<(&'static str, Vec<Aabb>)> {
     let mut random = Random(1);
     let mut some = |count: usize, half: &dyn Fn(usize) -> f32, place: f32| -> Vec<Aabb> {
@@ -211,7 +211,8 @@ fn grid_cells_are_visited_in_order_and_only_up_to_the_hit() {
     assert_eq!(visited(Ray::new(Vec3::splat(3.0), Vec3::X), f32::INFINITY), [[0; 3]; 0]);
 }
 
-/// Such rays are frequent, for example with orthographic cameras, voxels, and a sun overhead.
+/// Directions with zero components are frequent, for example with orthographic cameras, voxels, or
+/// a sun overhead.
 #[test]
 fn rays_with_zero_components_are_fast() {
     let is_fast = |origin, dir| TraversalRay::new(&Ray::new(origin, dir), 3.0).is_some();

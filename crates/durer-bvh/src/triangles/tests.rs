@@ -13,7 +13,7 @@ mod reference;
 
 pub type Mesh = (Vec<Vec3>, Vec<[u32; 3]>);
 
-/// A torus whose neighbouring triangles share corners bit for bit.
+/// A torus whose neighbouring triangles have corners with the same bits.
 pub fn torus(columns: u32, rows: u32) -> Mesh {
     let turn = |i: u32, count: u32| crate::math::fp::sin_cos_degrees(360.0 * f64::from(i) / f64::from(count));
     let mut mesh: Mesh = Default::default();
@@ -29,7 +29,7 @@ pub fn torus(columns: u32, rows: u32) -> Mesh {
     mesh
 }
 
-/// A cube of six times `cuts`^2 squares. Rays along axes lie in its faces and edges.
+/// A cube with `cuts`^2 squares per face. Rays along axes can lie in its faces and edges.
 fn cube(cuts: u32) -> Mesh {
     let mut mesh: Mesh = Default::default();
     for face in 0..6 {
@@ -61,7 +61,7 @@ pub fn soup(random: &mut Random, count: u32, size: f32) -> Mesh {
     (vertices, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
 }
 
-/// Small triangles and long ones across all of them, some of which are split.
+/// Small triangles, and long ones through all of them, some of which the build splits.
 pub fn bars(random: &mut Random, small: u32, long: usize) -> Mesh {
     let (mut vertices, mut triangles) = soup(random, small, 0.05);
     for i in 0..long {
@@ -239,7 +239,7 @@ fn refitted_tree_finds_what_brute_force_finds() {
     }
 }
 
-/// If sums of coordinates overflow, the result of a hit is still a valid triangle.
+/// If sums of coordinates overflow, hits still have valid triangle numbers.
 #[test]
 fn largest_offsets_lead_to_triangles() {
     let mut random = Random(5);
@@ -255,8 +255,8 @@ fn largest_offsets_lead_to_triangles() {
     }
 }
 
-/// A bundle of neighbouring rays, through a pinhole or parallel: towards corners, edges, and faces,
-/// often across octants, some with special values.
+/// A bundle of neighbouring rays, parallel or through one point, towards corners, edges, and faces.
+/// It often spans several octants, and some rays have special values.
 fn bundle(mesh: &Mesh, random: &mut Random, scale: f32, offset: Vec3) -> Vec<Ray> {
     let middle = ray(mesh, random, scale, offset);
     let count = 1 + random.below(150);

@@ -6,8 +6,8 @@ use crate::math::random::Random;
 
 type Triangles = Vec<[Vec3; 3]>;
 
-/// A grid over [0, 1]^2 that the map of its corners closes: neighbours get the same corner, bit for
-/// bit.
+/// A surface of `columns` by `rows` squares. `point` maps grid points to corners, so neighbouring
+/// triangles share corners with the same bits.
 fn sheet(columns: usize, rows: usize, point: impl Fn(usize, usize) -> Vec3) -> Triangles {
     let mut triangles = Vec::new();
     for i in 0..columns {
@@ -68,7 +68,7 @@ fn closed_mesh_has_even_crossings_from_outside_and_odd_from_inside() {
         for distance in [0.0, 10.0, 1e3, 1e4, 1e5] {
             // Whole numbers keep the mesh closed, since shared corners are rounded alike.
             let offset = (distance * random.direction()).round();
-            // Far away, the rounded corners dent a convex mesh.
+            // Far away, a convex mesh is no longer convex after rounding of its corners.
             let convex = convex && distance <= 10.0;
             let moved: Triangles = mesh.iter().map(|corners| corners.map(|p| p + offset)).collect();
             for round in 0..1_500 {

@@ -3,7 +3,8 @@
 use super::*;
 use crate::{BuildError, Facing};
 
-/// Crossings with their sides, by the normal in double precision.
+/// Hits found without a tree, with their sides by the normal in double precision; `None` if
+/// edge-on.
 fn with_sides(mesh: &Mesh, ray: &Ray) -> Vec<(TriangleHit, Option<Facing>)> {
     let side = |hit: &TriangleHit| {
         let [a, b, c] = mesh.1[hit.triangle as usize].map(|i| mesh.0[i as usize].as_dvec3());
@@ -47,7 +48,7 @@ fn sides_and_filters_match_brute_force() {
     assert!(hits > 1_000, "{hits}");
 }
 
-/// A ray crosses fronts and backs of a closed mesh in turn, even through edges and vertices.
+/// A ray hits the front and back sides of a closed mesh alternately, even at edges and vertices.
 #[test]
 fn sides_of_a_closed_mesh_alternate() {
     let mut random = Random(22);
