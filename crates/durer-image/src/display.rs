@@ -56,7 +56,7 @@ pub enum Tone {
 }
 
 impl Tone {
-    /// All operators with their names on the command line.
+    /// Pairs of name, as on the command line, and operator.
     pub const ALL: [(&'static str, Tone); 5] = [
         ("none", Tone::None),
         ("reinhard", Tone::Reinhard),

@@ -62,7 +62,7 @@ static READ_ONLY: &[Format] = &[
     ktx2::FORMAT,
 ];
 
-/// Depth of a channel.
+/// Kind of values that a file format stores for each channel: 8-bit integers or floating point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
     /// Values from 0 to 255, after the [`Transfer`] function.

@@ -1,4 +1,4 @@
-//! Fields of cameras and materials, for sliders.
+//! Fields of cameras and materials, which a page shows as sliders.
 
 use crate::protocol::FieldState;
 use durer::describe::{Constraint, DescribedList, Field, Value};
@@ -10,7 +10,7 @@ pub(crate) fn field_states(list: &impl DescribedList) -> Vec<FieldState> {
     list.fields().iter().enumerate().map(|(i, field)| state(field, list.get(i))).collect()
 }
 
-/// Sets the numbers of a field, which is given by its keyword in the scene language.
+/// Sets the numbers of the field with the keyword `word` in the scene language.
 pub(crate) fn set_numbers(list: &mut impl DescribedList, word: &str, numbers: &[f32]) -> Result<(), String> {
     let fields = list.fields();
     let at = fields.iter().position(|field| spelled(field) == word).ok_or_else(|| format!("no field `{word}`"))?;

@@ -1,5 +1,5 @@
-//! Memory of a session over many edits. The test runs in its own process, since allocations of
-//! other tests would be counted.
+//! Tests that the memory of a session does not grow over many edits. The test is alone in its
+//! process, since allocations of other tests would be counted too.
 
 mod page;
 

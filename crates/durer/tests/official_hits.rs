@@ -1,5 +1,5 @@
-//! Arithmetic of the course's programs since 2012: their rays, their hits, and Dürer's behaviour
-//! without their quirks.
+//! Tests that rays and hits are computed like the course's programs since 2012 do, and without
+//! their quirks otherwise.
 
 #![allow(clippy::disallowed_methods, reason = "the official programs call the platform's tangent")]
 

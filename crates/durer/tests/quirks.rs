@@ -1,4 +1,4 @@
-//! Quirks of the course's programs, one test each: behaviour with the quirk, and without it.
+//! Tests of the quirks of the course's programs, one test per quirk, with the quirk and without it.
 
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::{Dialect, Quirk};
@@ -8,7 +8,7 @@ use durer::world::World;
 use durer::{LoadOptions, load_text};
 use std::path::Path;
 
-/// Compiles a world in a dialect, with its quirks or without; files are in `folder`.
+/// Compiles a world in a dialect, with its quirks if `official`. Files are read from `folder`.
 fn world_in(folder: &Path, text: &str, dialect: Dialect, official: bool) -> World {
     let compat = if official { Vec::new() } else { off(dialect.rules()) };
     world_with(folder, text, dialect, compat, official)

@@ -1,5 +1,5 @@
-//! Tests of every scene in the repository: it is read without diagnostics, rendered identically
-//! with every accelerator, and listed in the README and the pictures.
+//! Tests of every scene in the repository: it is read without diagnostics, gives the same picture
+//! with every acceleration structure, and is listed in the README and the gallery.
 
 use durer::compile::AccelKind;
 use durer::diag::{Diagnostics, Files};

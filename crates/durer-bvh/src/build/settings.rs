@@ -18,7 +18,7 @@ pub enum BuildQuality {
 }
 
 impl BuildQuality {
-    /// All qualities with their names, for options and scene files.
+    /// Pairs of name and quality, for every quality.
     pub const NAMES: [(&'static str, BuildQuality); 3] =
         [("fast", BuildQuality::Fast), ("balanced", BuildQuality::Balanced), ("best", BuildQuality::Best)];
 }

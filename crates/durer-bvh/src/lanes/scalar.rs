@@ -11,6 +11,7 @@ use std::array::from_fn;
 #[derive(Clone, Copy)]
 pub struct Scalar;
 
+/// Eight `f32` in an array.
 type F = [f32; WIDTH];
 
 /// Eight `f64` in an array.

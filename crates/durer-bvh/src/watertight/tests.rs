@@ -4,6 +4,7 @@
 use super::*;
 use crate::math::random::Random;
 
+/// The triangles of a mesh, by their corners.
 type Triangles = Vec<[Vec3; 3]>;
 
 /// A surface of `columns` by `rows` squares. `point` maps grid points to corners, so neighbouring

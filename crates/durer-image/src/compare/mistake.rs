@@ -118,8 +118,8 @@ struct Fit {
     left: f64,
     /// Remaining squared difference, relative to the picture's variance.
     contrast: f64,
-    /// Of the pixels in which the reproduction or the reference visibly differs from the picture,
-    /// the share that is reproduced correctly up to rounding.
+    /// Share of correctly reproduced pixels (up to rounding), among those in which the reproduction
+    /// or the reference visibly differs from the picture.
     matched: f64,
 }
 

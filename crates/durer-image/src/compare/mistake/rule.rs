@@ -13,7 +13,7 @@ pub struct Turn {
     pub rows_back: bool,
 }
 
-/// All rotations and reflections other than the identity.
+/// The seven rotations and reflections other than the identity.
 pub const TURNS: [Turn; 7] = [
     turn(false, true, false),
     turn(false, false, true),
@@ -53,7 +53,7 @@ pub enum Rule {
     Grey,
     /// Flags for the channels in which black and white are exchanged.
     Inverted([bool; 3]),
-    /// All channels inverted, except in black pixels.
+    /// Inverts every channel, except in black pixels.
     ThingsInverted,
     CurveOnceMore,
     CurveOnceLess,

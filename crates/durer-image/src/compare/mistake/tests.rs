@@ -7,6 +7,7 @@ use durer_bvh::math::fp;
 
 const SIDE: usize = 96;
 
+/// Function that returns the colour of the pixel in a column and row.
 type Paint = dyn Fn(usize, usize) -> Vec3;
 
 /// A picture with values in 255ths, as in files.
