@@ -343,7 +343,7 @@ mod tests {
             let mut axis = || random.point().as_dvec3();
             let matrix = DMat3::from_cols(axis(), axis(), axis());
             let forward = DAffine3 { matrix3: matrix, translation: 2.0 * axis() };
-            // Nearly flat maps lose digits.
+            // Reject nearly singular maps, which lose digits.
             if let Some(map) = Affine::new(forward).filter(|_| matrix.determinant().abs() > 0.05) {
                 return map;
             }
@@ -392,7 +392,8 @@ mod tests {
         let mut random = Random(10);
         let mesh = torus(16, 8);
         let bvh = Arc::new(TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Balanced));
-        // Sums of a few powers of two: translating there and back restores them exactly.
+        // Coordinates that are sums of a few powers of two, so that translating there and back
+        // restores points exactly.
         let far = DVec3::new(4_194_304.25, -262_144.5, 2_097_152.0);
         let to_world = Affine::new(DAffine3::from_translation(far)).unwrap();
         let scene = InstanceBvh::new(vec![Instance::new(bvh.clone(), to_world)]);

@@ -116,6 +116,7 @@ pub(super) fn number(address: u32) -> usize {
     address as usize / UNITS
 }
 
+/// Code of a leaf with `count` items from item `first` on; see [`WideNode::children`].
 pub(super) fn leaf(first: usize, count: usize) -> u32 {
     debug_assert!((1..=LEAF_SIZE).contains(&count) && first < MAX_ITEMS);
     LEAF | ((count - 1) as u32) << COUNT_SHIFT | first as u32

@@ -159,7 +159,7 @@ fn grids_contain_everything_or_are_refused() {
     for counts in [[0, 1, 1], [1, 0, 5], [u32::MAX, u32::MAX, u32::MAX], [1 << 13, 1 << 13, 2]] {
         assert!(Grid::build(unit, counts, &[unit], |_, _| true).is_none(), "{counts:?}");
     }
-    // Large primitives in many cells: refused before memory is allocated.
+    // Large primitives that overlap many cells are rejected before memory is allocated.
     assert!(Grid::build(unit, [256, 256, 256], &vec![unit; 1000], |_, _| true).is_none());
     let one = Grid::build(unit, [1, 1, 1], &[unit], |_, _| true).unwrap();
     assert_eq!(one.occupancy([0, 0, 0]), 1);
@@ -255,7 +255,8 @@ fn distant_ray_is_offered_few_boxes_and_every_hit() {
                 found[item] = true;
                 t_max
             });
-            // Boxes that the line hits, or misses by no more than rounding.
+            // Every box that the line hits, even if enlarged by the rounding error, must be
+            // offered.
             let slip = 2.0 * f32::EPSILON * distance;
             for (i, b) in boxes.iter().enumerate() {
                 let near = Aabb { min: b.min - slip, max: b.max + slip };

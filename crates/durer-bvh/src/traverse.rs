@@ -107,7 +107,7 @@ impl TraversalRay {
         // Treat a component as zero if it has no inverse or moves the ray by much less than the
         // padding.
         let still = dir.abs().cmplt(Vec3::splat(1e-30));
-        // The reach may be so small that the padding vanishes.
+        // Add the smallest normal number, since for a tiny reach, the padding underflows.
         let outward = Vec3::splat(PADDING * reach + f32::MIN_POSITIVE).copysign(dir);
         let planes = Planes {
             inverse: Vec3::select(still, Vec3::INFINITY.copysign(dir), 1.0 / dir).to_array(),
@@ -238,7 +238,7 @@ enum Target {
 
 impl<L: Lanes> NodeHits<'_, L> {
     /// Returns the next child, with its slot in the bits of [`PLACE`]. For fast closest-hit rays,
-    /// the result is the full [tag](WideNode::child_tags).
+    /// the last eight bits of the result are the full [tag](WideNode::child_tags).
     ///
     /// The next child is the one that the ray enters first. Any-hit rays visit the `likely` child
     /// instead, which is known sooner. So do rays that are not fast, since their distances cannot

@@ -2,7 +2,7 @@
 //!
 //! On a smooth surface, the irradiance, which is the light divided by the albedo, is smooth too.
 //! The filter averages it over pixels with similar normals, positions, and albedos, more strongly
-//! where the variance is higher. Denoised pictures look better, but are biased.
+//! where the variance is higher. Denoised pictures are estimates, and they are biased.
 //!
 //! Source: Dammertz and others, *Edge-Avoiding À-Trous Wavelet Transform for fast Global
 //! Illumination Filtering*, HPG 2010. The weights by variance are the spatial half of Schied and

@@ -72,7 +72,7 @@ pub struct Image8 {
 pub enum LayerKind {
     /// Light. In 8-bit formats, tone mapping and the transfer function are applied.
     Color,
-    /// Data such as normals, depths, and masks. Written without tone mapping and sRGB curve.
+    /// Data such as normals, depths, and masks. Written without tone mapping or the sRGB curve.
     Data,
 }
 

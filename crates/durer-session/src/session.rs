@@ -96,7 +96,7 @@ impl Session {
         !self.paused && self.viewer.is_urgent()
     }
 
-    /// Handles a request without rendering.
+    /// Answers a request. Pictures are rendered later, by [`Session::step`].
     pub(crate) fn handle(&mut self, request: Request, say: &mut dyn FnMut(Message)) {
         if let Err(why) = self.answer(request, say) {
             say((Event::Refused { why }, Vec::new()));

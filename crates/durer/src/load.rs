@@ -26,8 +26,8 @@ use std::sync::Arc;
 pub struct LoadOptions {
     /// Dialect, including the bugs of its program. `None`: detected, without bugs.
     pub dialect: Option<Dialect>,
-    /// True to behave like the command line of the course: applies the bugs of a detected dialect
-    /// too, and also looks for files in and below the current directory.
+    /// True to behave like the command line of the course: also applies the bugs of a detected
+    /// dialect, and also looks for files below the current directory.
     pub course: bool,
     /// Additional hints for detecting the dialect.
     pub hints: Vec<Hint>,
@@ -191,7 +191,7 @@ pub fn load_text(
         diagnostics.extend(portability(&bytes, file, dialect, diagnostics));
     }
     if let (None, Some(guess)) = (&scene, &guess) {
-        // An error in one dialect may be valid in another one.
+        // A construct that is an error in this dialect may be valid in another one.
         diagnostics.push(guess.note());
     }
     scene.map(|scene| LoadedScene { scene, rules, dialect, guess, source, memory })

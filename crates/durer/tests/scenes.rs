@@ -94,7 +94,7 @@ fn scenes_are_identical_for_all_thread_counts_and_accelerators() {
         assert!(picture.iter().any(|p| *p != picture[0]), "{name} has only one colour");
         for (accel, threads) in [(AccelKind::Bvh, 2), (AccelKind::Grid(None), 1), (AccelKind::Grid(None), 2)] {
             let other = pixels(&name, accel, threads);
-            // Keep whole pictures out of the message.
+            // Avoid printing pictures in the message.
             assert!(bits(&other) == bits(&picture), "{name}: {accel:?} on {threads} threads differs");
         }
     }

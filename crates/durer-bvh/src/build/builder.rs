@@ -64,6 +64,8 @@ impl Bin {
         Bin { min: self.min.min(other.min), max: self.max.max(other.max), count: self.count + other.count }
     }
 
+    /// Cost by the surface area heuristic: the scaled area of the box times the number of
+    /// references.
     #[inline]
     pub fn cost(&self, scale: f32) -> f32 {
         half_area(self.min, self.max, scale) * self.count as f32

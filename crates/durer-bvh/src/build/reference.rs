@@ -41,6 +41,7 @@ pub fn lane(tag: u32, number: u32) -> f32 {
     f32::from_bits(number | tag << 28)
 }
 
+/// Decodes the number from a value of [`lane`].
 pub fn lane_number(lane: f32) -> u32 {
     lane.to_bits() & !(3 << 28)
 }

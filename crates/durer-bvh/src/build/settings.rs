@@ -74,6 +74,7 @@ impl BuildSettings {
         BuildSettings { whole: 1, leaf_size: 1, ..of_triangles }
     }
 
+    /// Settings for meshes whose leaves hold up to eight triangles, which are tested at once.
     pub fn triangles(quality: BuildQuality) -> BuildSettings {
         // All triangles of a leaf are tested at once.
         let leaf_cost = |count| 1.2 + 0.05 * count as f32;

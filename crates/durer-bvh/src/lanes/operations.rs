@@ -112,8 +112,8 @@ pub(crate) trait Lanes: Numbers {
 /// Number of lanes of [`Wide`].
 pub const WIDE: usize = 2 * WIDTH;
 
-/// Operations on vectors of sixteen lanes, for ray packets. Implemented by one AVX-512 vector or two
-/// vectors of eight lanes.
+/// Operations on vectors of sixteen lanes, for ray packets, implemented with one AVX-512 vector or
+/// two vectors of eight lanes.
 pub(crate) trait Wide: Numbers {
     fn load(self, from: &[f32; WIDE]) -> Self::Floats;
     fn store(self, a: Self::Floats) -> [f32; WIDE];

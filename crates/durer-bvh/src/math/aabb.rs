@@ -61,7 +61,8 @@ impl Aabb {
     }
 
     /// Returns true if the box is far from the origin for its size, so that single precision is
-    /// coarse in it: the largest coordinate of the centre exceeds 256 times the longest edge.
+    /// coarse in it: the largest absolute coordinate of the centre exceeds 256 times the longest
+    /// edge.
     #[inline]
     pub fn is_far(self) -> bool {
         self.center().abs().max_element() > 256.0 * self.size().max_element()

@@ -76,8 +76,8 @@ impl Side {
         if primitive < (1 << 31) - 1 { Side(2 * primitive + 1 + u32::from(inside)) } else { Side::ANY }
     }
 
-    /// Returns true if the ray starts inside the primitive; `None` if it does not start on this
-    /// primitive.
+    /// Returns true if the ray starts inside the primitive; `None` if it starts on a different
+    /// primitive or an unknown one.
     #[inline]
     pub fn inside(self, primitive: u32) -> Option<bool> {
         (self != Side::ANY && (self.0 - 1) / 2 == primitive).then_some(self.0.is_multiple_of(2))

@@ -178,8 +178,8 @@ mod tests {
             let around = DVec3::new(p.x, p.z, 0.0).length() - 0.7;
             let exact = (DVec3::new(around, p.y, 0.0).length() - 0.3).abs();
             let near = tree.nearest_point(p.as_vec3(), f64::INFINITY).unwrap();
-            // The mesh lies inside the torus by the sagitta of its edges: 1 - cos(pi / 100) of 0.3,
-            // and 1 - cos(pi / 200) of 1.
+            // The mesh is inside the torus, by at most the sagittas of its edges: 0.3 (1 - cos(pi /
+            // 100)) and 1 - cos(pi / 200).
             assert!((near.distance - exact).abs() < 3e-4, "{p}: {} {exact}", near.distance);
             assert!((near.point.distance(p) - near.distance).abs() < 1e-6);
         }

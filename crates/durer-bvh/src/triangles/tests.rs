@@ -11,6 +11,7 @@ mod heights;
 mod queries;
 mod reference;
 
+/// A mesh for tests: vertices, and the vertex indices of triangles.
 pub type Mesh = (Vec<Vec3>, Vec<[u32; 3]>);
 
 /// A torus whose neighbouring triangles have corners with the same bits.
@@ -191,7 +192,7 @@ fn closed_mesh_has_even_crossings_from_outside_and_odd_from_inside() {
     let shapes = [(torus(60, 30), Vec3::new(0.7, 0.0, 0.0)), (cube(8), Vec3::ZERO)];
     for distance in [0.0, 1e3, 1e6] {
         for (mesh, inside) in &shapes {
-            // Whole numbers keep the mesh closed, since shared corners are rounded alike.
+            // The mesh stays closed, since shared corners are rounded in the same way.
             let offset = (distance * random.direction()).round();
             let scale = if distance > 1e5 { 64.0 } else { 1.0 };
             let mesh = scaled(mesh, scale, offset);
@@ -221,7 +222,7 @@ fn refitted_tree_finds_what_brute_force_finds() {
         for round in 1..6 {
             let bent = |v: &Vec3| *v + 0.1 * round as f32 * Vec3::new(v.y, v.z * v.x, -v.x) + Vec3::Y * round as f32;
             let mut moved: Mesh = (mesh.0.iter().map(bent).collect(), mesh.1.clone());
-            // Now and then, some vertices are not finite, and return later.
+            // In some rounds, some vertices are not finite. They become finite again later.
             match round {
                 2 => moved.0[50..250].fill(Vec3::NAN),
                 4 => moved.0[..100].fill(Vec3::new(0.0, f32::INFINITY, 1.0)),
@@ -306,13 +307,14 @@ fn batches_answer_like_single_rays() {
                 }
                 let (mut hits, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
                 for tree in &trees {
-                    // Also in parts: after incoherent rays, some rays skip the coherence test.
+                    // Also pass the rays in parts, since after incoherent rays, some rays skip the
+                    // coherence test.
                     let part = [64, usize::MAX][round % 2];
                     rays.chunks(part).zip(hits.chunks_mut(part)).for_each(|(rays, to)| tree.closest_batch(rays, to));
                     rays.chunks(part)
                         .zip(occluded.chunks_mut(part))
                         .for_each(|(rays, to)| tree.occluded_batch(rays, to));
-                    // Streams, as in a large tree.
+                    // Also trace the rays as a stream, as in a large tree.
                     let (numbers, mut streamed) = ((0..rays.len() as u32).collect::<Vec<_>>(), hits.clone());
                     tree.stream::<Nearest>(&rays, &numbers, |i, hit| streamed[i] = hit);
                     tree.stream::<Any>(&rays, &numbers, |i, any| assert_eq!(any, occluded[i], "{name}"));

@@ -10,7 +10,7 @@ fn with_sides(mesh: &Mesh, ray: &Ray) -> Vec<(TriangleHit, Option<Facing>)> {
         let [a, b, c] = mesh.1[hit.triangle as usize].map(|i| mesh.0[i as usize].as_dvec3());
         let (normal, dir) = ((b - a).cross(c - a), ray.dir.as_dvec3());
         let cosine = normal.dot(dir) / (normal.length() * dir.length());
-        // Edge-on, double precision cannot decide.
+        // If the triangle is nearly edge-on, double precision cannot decide.
         (cosine.abs() > 1e-6).then_some(if cosine < 0.0 { Facing::Front } else { Facing::Back })
     };
     brute_force(mesh, ray).into_iter().map(|hit| (hit, side(&hit))).collect()
@@ -71,8 +71,8 @@ fn sides_of_a_closed_mesh_alternate() {
             });
             sides.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             sides.dedup();
-            // The ray enters and leaves the mesh in turn. The order of crossings at nearly the same
-            // place, as at an edge, is unknown.
+            // The ray alternately enters and leaves the mesh. The order of crossings that nearly
+            // coincide, for example at an edge, is not determined.
             let mut depth = 0;
             for (i, side) in sides.iter().enumerate() {
                 depth += if side.2 == sides_in { 1 } else { -1 };
