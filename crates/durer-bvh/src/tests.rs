@@ -255,8 +255,8 @@ fn distant_ray_is_offered_few_boxes_and_every_hit() {
                 found[item] = true;
                 t_max
             });
-            // Every box that the line hits, even if enlarged by the rounding error, must be
-            // offered.
+            // Every box must be offered that the line hits after enlarging it by the rounding
+            // error.
             let slip = 2.0 * f32::EPSILON * distance;
             for (i, b) in boxes.iter().enumerate() {
                 let near = Aabb { min: b.min - slip, max: b.max + slip };

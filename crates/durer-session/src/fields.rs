@@ -18,7 +18,7 @@ pub(crate) fn set_numbers(list: &mut impl DescribedList, word: &str, numbers: &[
         (Some(Value::Vec3(_)), &[x, y, z]) => Value::Vec3(Vec3::new(x, y, z)),
         (Some(Value::Int(_)), &[x]) if x >= 0.0 => Value::Int(x as u32),
         (Some(Value::Float(_)) | None, &[x]) => Value::Float(x),
-        _ => return Err(format!("`{word}` has another form")),
+        _ => return Err(format!("`{word}` takes a different number or type of values")),
     };
     fields[at].rule.validate(&value).map_err(|wrong| format!("`{word}` {wrong}"))?;
     list.set(at, value);

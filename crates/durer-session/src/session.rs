@@ -185,7 +185,7 @@ impl Session {
             }
             Request::Epsilon { epsilon } => {
                 if epsilon.is_some_and(|epsilon| !(0.0..=1e6).contains(&epsilon)) {
-                    return Err("epsilon is a number from 0".into());
+                    return Err("epsilon must be a number from 0 to 1000000".into());
                 }
                 self.epsilon = epsilon;
                 self.read(false, &mut send)?;
@@ -196,7 +196,7 @@ impl Session {
             }
             Request::Material { number, name, values } => {
                 let document = self.document.as_mut().filter(|document| document.is_model());
-                let document = document.ok_or("materials of a text are changed in the text")?;
+                let document = document.ok_or("this scene has a text: edit its materials there")?;
                 document.change(|scene| model::set_material(scene, number, &name, &values))?;
                 self.restart();
                 let contents = Some(self.contents()?);
