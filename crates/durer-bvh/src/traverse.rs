@@ -216,8 +216,8 @@ pub(super) fn traverse<L: Lanes, V: Visitor, const FAST: bool>(
     }
 }
 
-/// Result of testing a ray against the children of a node: a mask of the hit children, and
-/// distances.
+/// Result of testing a ray against the children of a node: a mask of the hit children, and their
+/// entry distances.
 pub(super) struct NodeHits<'a, L: Lanes> {
     pub node: &'a WideNode,
     child_tags: &'a [u8; WIDTH],

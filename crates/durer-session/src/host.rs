@@ -4,7 +4,7 @@ use crate::protocol::{Answer, Ask, Event, Request};
 use crate::session::{Clock, Session, Start};
 use std::collections::BTreeMap;
 
-/// Maximum number of sessions; each holds a scene in memory.
+/// Maximum number of sessions. It is limited because each holds a scene in memory.
 const MAX_SESSIONS: usize = 64;
 
 /// The sessions of one connection from a page: passes messages to them and shares the time between

@@ -93,7 +93,8 @@ impl<'a> Stack<'a> {
 
     /// # Safety
     ///
-    /// `count` entries must have been written to [`Stack::top`], at most eight.
+    /// `count` must be at most eight, and that many entries must have been written to
+    /// [`Stack::top`].
     #[cfg(any(target_arch = "x86_64", all(target_arch = "wasm32", target_feature = "simd128")))]
     #[inline(always)]
     pub(super) unsafe fn grow(&mut self, count: u32) {

@@ -1,4 +1,5 @@
-//! JPEG: 8 bits per channel, for photographs and textures. Read only, since it is lossy.
+//! JPEG: 8 bits per channel, for photographs and textures. Writing is not supported, since the
+//! format is lossy.
 
 use super::{Depth, Format, Head, ImageError, codec};
 use ::image::ImageFormat;
