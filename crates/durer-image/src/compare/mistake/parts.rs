@@ -139,8 +139,8 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
         at_edges.iter().map(steps).sum()
     };
     let (own, others) = (roughness(test), roughness(reference));
-    // If edges are sampled differently, about as many pixels become brighter as darker. If an edge
-    // has moved, the numbers can differ.
+    // If edges are sampled differently, brighter and darker pixels roughly balance. If an edge has
+    // moved, they may not.
     let (sum, all) = at_edges.iter().fold((0.0, 0.0), |(sum, all), s| {
         let by = (s.test - s.reference).element_sum();
         (sum + by, all + by.abs())
