@@ -26,8 +26,8 @@ impl Ball {
 /// Closest ball that a ray hits, and its `t`.
 fn closest(bvh: &Bvh, balls: &[Ball], ray: &Ray, stats: &mut TraversalStats) -> Option<(usize, f32)> {
     let mut best = None;
-    // The tree passes positions of primitives that the ray may hit, roughly from near to far. The
-    // closure returns the new end of the ray.
+    // The tree calls the closure with the position of each primitive that the ray may hit, roughly
+    // from near to far. The closure returns the new end of the ray.
     bvh.traverse(ray, stats, |place, t_max, _| {
         let ball = bvh.primitive_indices()[place] as usize;
         match balls[ball].intersect(&Ray { t_max, ..*ray }) {
@@ -54,7 +54,7 @@ pub(crate) fn main() {
     println!("ball {ball} at {t}, after {} nodes", stats.nodes);
     assert_eq!(ball, 43);
 
-    // Primitives that have moved a little need no new tree.
+    // After primitives have moved a little, refitting the tree is enough.
     balls[43].center.x += 0.5;
     bvh.refit(&bounds(&balls));
     let (ball, t) = closest(&bvh, &balls, &ray, &mut stats).expect("another lies behind it");

@@ -9,7 +9,7 @@ use std::sync::Arc;
 const SOLID: u32 = 1;
 const GHOST: u32 = 2;
 
-/// A rotated place on a circle. Any invertible affine map is allowed.
+/// Places a mesh on a circle, rotated by `angle` (radians). Any invertible affine map would do.
 fn place(angle: f64) -> Affine {
     let turn = DQuat::from_rotation_y(angle);
     Affine::new(DAffine3::from_rotation_translation(turn, turn * DVec3::new(3.0, 0.0, 0.0)))
@@ -35,7 +35,7 @@ pub(crate) fn main() {
     println!("instance {}, triangle {}, normal {}", hit.instance, hit.triangle, scene.normal(&hit));
     assert_eq!(hit.instance, 0);
 
-    // The wheel turns by one place. The last instance, which only some rays see, is now ahead.
+    // The wheel turns by 30 degrees. The last instance, which only some rays see, is now ahead.
     scene.update((0..12).map(|i| (i, place(f64::from(i + 1).to_radians() * 30.0))));
     assert_eq!(scene.closest_masked(&ray, GHOST).map(|hit| hit.instance), Some(11));
     assert_eq!(scene.closest_masked(&ray, SOLID), None);

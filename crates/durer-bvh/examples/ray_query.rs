@@ -3,7 +3,7 @@
 use durer_bvh::math::{Ray, Vec3};
 use durer_bvh::{BuildError, BuildQuality, Facing, TriangleBvh};
 
-/// Hills over the square from -1 to 1, as lists of coordinates and indices.
+/// Creates a mesh of hills over the square from -1 to 1, as flat lists of coordinates and indices.
 fn hills(cells: u32) -> (Vec<f32>, Vec<u32>) {
     let (mut positions, mut indices) = (Vec::new(), Vec::new());
     for i in 0..=cells {
@@ -47,7 +47,7 @@ pub(crate) fn main() -> Result<(), BuildError> {
     println!("{} of {} rays hit, none farther than {deepest}", hits.iter().flatten().count(), rays.len());
     assert!(hits.iter().all(Option::is_some));
 
-    // From below, only backs are visible.
+    // From below, only back faces are visible.
     let up = Ray::new(Vec3::new(0.05, 0.03, -2.0), Vec3::Z);
     assert!(bvh.occluded(&up));
     assert!(!bvh.occluded_where(&up, |_, facing| facing == Facing::Front));

@@ -1,4 +1,4 @@
-//! A tree over the boxes of primitives that only the caller knows.
+//! A BVH over bounding boxes. The caller stores and intersects the primitives.
 
 use super::build::{self, BuildSettings};
 use super::lanes::{Available, Kernel, Lanes};
@@ -10,7 +10,8 @@ use crate::math::{Aabb, Ray};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// A bounding volume hierarchy of eight-wide nodes over numbered primitives.
+/// A bounding volume hierarchy with eight children per node, over the boxes of the caller's
+/// primitives.
 #[derive(Clone, Debug)]
 pub struct Bvh {
     pub(super) nodes: Vec<WideNode>,
@@ -21,10 +22,11 @@ pub struct Bvh {
 }
 
 impl Bvh {
-    /// Builds a tree over the boxes of primitives 0, 1, 2, ...; empty boxes are left out. Takes
-    /// fewer than 2^28 primitives, in at most 2^26 nodes.
+    /// Builds a tree over primitives 0, 1, 2, ..., given by their boxes. Primitives with empty
+    /// boxes are left out. There must be fewer than 2^28 primitives, and the tree at most 2^26
+    /// nodes.
     ///
-    /// The result depends on the boxes alone, not on the number of threads.
+    /// The tree depends only on the boxes, not on the number of threads.
     pub fn build(boxes: &[Aabb]) -> Self {
         let tree = build::build(build::references(boxes), &BuildSettings::THINGS);
         Bvh { nodes: tree.nodes, order: tree.order, bounds: tree.bounds, level: Available::chosen() }
@@ -99,8 +101,8 @@ impl Bvh {
         }
     }
 
-    /// Traverses leaf by leaf; see [`Bvh::traverse`]. `leaf` is a trait object, so that the
-    /// traversal is compiled once, here, and not for each caller.
+    /// Calls `leaf` for each leaf that the ray may hit; see [`Bvh::traverse`]. `leaf` is a trait
+    /// object, so that the traversal is compiled only once and not for each caller.
     fn walk_leaves(&self, ray: &Ray, leaf: Leaf) {
         self.level.run(Walk { bvh: self, ray, visitor: LeafVisitor { nodes: &self.nodes, counter: (), leaf } });
     }
@@ -122,8 +124,8 @@ impl Bvh {
     }
 
     /// Traverses the tree as [`Bvh::traverse`] does, and returns the boxes of the visited nodes and
-    /// leaves in visiting order. Meant for drawing: it also traverses the whole tree to find the
-    /// boxes.
+    /// leaves in visiting order. Meant for drawing and slow, since it lists all boxes of the tree
+    /// first.
     pub fn visits(&self, ray: &Ray, mut test: impl FnMut(usize, f32) -> f32) -> Vec<TreeBox> {
         let boxes: BTreeMap<u32, TreeBox> = shown::boxes(&self.nodes).collect();
         let mut codes = Vec::new();
@@ -137,6 +139,7 @@ impl Bvh {
 /// `t_max`.
 type Leaf<'a> = &'a mut dyn FnMut(Range<usize>, f32) -> f32;
 
+/// Traversal of a [`Bvh`] by one ray, as a kernel that runs at the chosen SIMD level.
 struct Walk<'a, V> {
     bvh: &'a Bvh,
     ray: &'a Ray,
@@ -160,6 +163,7 @@ impl<V: Visitor> Kernel for Walk<'_, V> {
     }
 }
 
+/// Visitor that passes each leaf to a callback and counts the visited nodes.
 struct LeafVisitor<'a, T> {
     nodes: &'a [WideNode],
     counter: T,
@@ -180,9 +184,8 @@ impl<T: TraversalCounter> Visitor for LeafVisitor<'_, T> {
     fn fetch<L: Lanes>(&self, lanes: L, hits: &NodeHits<L>, _: u32) {
         let mut rest = hits.mask;
         while rest != 0 {
-            // For a leaf this is not the address of a node; the prefetch is then useless but
-            // harmless.
-            // On 32-bit targets the product may wrap around.
+            // A leaf's code does not give the address of a node, but prefetching it is harmless. On
+            // 32-bit targets the product may wrap around.
             let child = hits.child(rest.trailing_zeros());
             rest &= rest - 1;
             let offset = ((child & !LEAF) as usize).wrapping_mul(node::UNIT);
@@ -198,7 +201,7 @@ impl<T: TraversalCounter> Visitor for LeafVisitor<'_, T> {
     }
 }
 
-/// Visitor that records the codes of visited nodes and leaves.
+/// Visitor that records the codes of visited nodes and leaves, for [`Bvh::visits`].
 struct Recorder<'a> {
     codes: &'a mut Vec<u32>,
     counter: (),

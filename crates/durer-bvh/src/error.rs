@@ -1,8 +1,9 @@
-//! Errors of building and loading trees.
+//! Errors from building, refitting, and loading trees.
 
 use std::fmt;
 
-/// Error of building a tree or refitting it.
+/// Error from building or refitting a [`TriangleBvh`](super::TriangleBvh) or building a
+/// [`HeightGrid`](super::HeightGrid).
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum BuildError {
@@ -27,8 +28,8 @@ pub enum BuildError {
         /// Length of the list.
         len: usize,
     },
-    /// There are fewer than two lines in a direction, or the number of heights differs from the
-    /// number of crossings.
+    /// A height grid has fewer than two lines along an axis, or the number of heights is not the
+    /// number of grid points.
     NoGrid {
         /// Number of lines along z.
         columns: usize,
@@ -79,13 +80,14 @@ impl fmt::Display for BuildError {
 
 impl std::error::Error for BuildError {}
 
-/// Error of loading a saved tree.
+/// Error from loading a tree that was saved with
+/// [`TriangleBvh::to_bytes`](super::TriangleBvh::to_bytes).
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LoadError {
     /// The data does not begin with the header of a saved tree.
     NotATree,
-    /// This version does not read the format of the data.
+    /// The data has a format version that this version of the crate does not support.
     Version(u32),
     /// The length of the data differs from the length in the header.
     Length {
@@ -96,7 +98,7 @@ pub enum LoadError {
     },
     /// The checksum is wrong: the data is damaged.
     Damaged,
-    /// The data is not a tree made by this crate; states the reason.
+    /// The contents are not a valid tree; states the reason.
     Invalid(&'static str),
 }
 

@@ -1,5 +1,4 @@
-//! A uniform grid: space divided into equal cells, each with a list of the primitives that overlap
-//! it.
+//! A uniform grid, which divides space into equal cells and lists the primitives in each cell.
 //!
 //! Source: Amanatides and Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics
 //! 1987.
@@ -8,14 +7,14 @@ use super::TraversalCounter;
 use super::traverse::is_sound;
 use crate::math::{Aabb, Ray, Vec3};
 
-/// Padding of boxes against the rounding of rays, in cells.
+/// Enlargement of primitive boxes that compensates for rounding along rays, in cells.
 const PAD: f32 = 1e-2;
 
-/// Padding for pictures of the cells, in cells: just enough to include primitives that touch a
-/// cell.
+/// Enlargement of primitive boxes in a grid that is drawn, in cells. Just enough to include
+/// primitives that touch a cell.
 const PICTURE_PAD: f32 = 1e-3;
 
-/// A uniform grid over numbered primitives.
+/// A uniform grid over the caller's primitives, an alternative to a [`Bvh`](super::Bvh) for rays.
 #[derive(Clone, Debug)]
 pub struct Grid {
     bounds: Aabb,
@@ -35,8 +34,8 @@ impl Grid {
     /// Maximum number of entries in the lists of all cells.
     const MAX_ENTRIES: u64 = 1 << 28;
 
-    /// Suitable numbers of cells along x, y, and z for a box with `primitive_count` primitives:
-    /// about two cells per primitive, nearly cubic.
+    /// Suitable numbers of cells along x, y, and z for `primitive_count` primitives in a box: about
+    /// two nearly cubic cells per primitive.
     pub fn suitable(bounds: Aabb, primitive_count: usize) -> [u32; 3] {
         let size = bounds.size();
         let longest = size.max_element().max(f32::MIN_POSITIVE);
@@ -46,11 +45,12 @@ impl Grid {
         (size * cells_per_length).to_array().map(|n| (n as u32).clamp(1, 256))
     }
 
-    /// Sorts the boxes of primitives 0, 1, 2, ... into the cells of `bounds`. A primitive belongs
-    /// to a cell if its box overlaps the slightly enlarged cell and `overlaps` returns true for
-    /// both.
+    /// Divides `bounds` into cells and lists primitives 0, 1, 2, ... in the cells that they
+    /// overlap. A primitive is in a cell if its box overlaps the slightly enlarged cell and
+    /// `overlaps` returns true for its number and that cell.
     ///
-    /// Returns `None` for zero cells, more than [`Grid::MAX_CELLS`], or too many entries.
+    /// Returns `None` if there are no cells, more cells than [`Grid::MAX_CELLS`], or too many
+    /// entries.
     pub fn build(
         bounds: Aabb,
         counts: [u32; 3],
@@ -60,8 +60,8 @@ impl Grid {
         Self::build_padded(bounds, counts, PAD, boxes, overlaps)
     }
 
-    /// Builds a grid of the same cells for a picture of them, with primitives only in the cells
-    /// that they touch. Rays may miss primitives in it.
+    /// Builds a grid with equal cells for drawing, in which primitives are listed only in the cells
+    /// that they touch. Not for rays, which may miss primitives in it.
     pub fn for_picture(&self, boxes: &[Aabb], overlaps: impl Fn(usize, Aabb) -> bool) -> Option<Self> {
         Self::build_padded(self.bounds, self.counts, PICTURE_PAD, boxes, overlaps)
     }
@@ -77,7 +77,8 @@ impl Grid {
         if cells == 0 || cells > Grid::MAX_CELLS {
             return None;
         }
-        // Thicken a flat box, so that every cell has a volume, and pad all boxes against rounding.
+        // Enlarge the bounds, so that the cells of a flat box have a volume and rounding does no
+        // harm.
         let pad = (1e-5 * bounds.size().max_element()).max(1e-5 * bounds.center().abs().max_element()).max(1e-30);
         let bounds = Aabb { min: bounds.min - pad, max: bounds.max + pad };
         let mut grid = Grid {
@@ -154,7 +155,7 @@ impl Grid {
         std::array::from_fn(|axis| (at[axis] as u32).min(self.counts[axis] - 1))
     }
 
-    /// Minimum and maximum cell that a box overlaps.
+    /// Ranges of cells that a box overlaps: the lowest and the highest cell, both included.
     fn range(&self, b: &Aabb) -> ([u32; 3], [u32; 3]) {
         let pad = self.pad * self.cell_size();
         (self.cell_of(b.min - pad), self.cell_of(b.max + pad))
@@ -185,8 +186,9 @@ impl Grid {
         }
     }
 
-    /// Calls `test` for the primitives of every cell that the ray crosses before `t_max`, cell by
-    /// cell; see [`super::Bvh::traverse`]. A primitive in several cells is tested several times.
+    /// Calls `test` for the primitives in every cell that the ray crosses before `t_max`, in the
+    /// order of the cells; see [`super::Bvh::traverse`]. A primitive in several cells is tested
+    /// several times.
     #[inline]
     pub fn traverse<T: TraversalCounter>(
         &self,
@@ -204,11 +206,11 @@ impl Grid {
         }
     }
 
-    /// Calls `offer` with the primitives of each cell on the ray. Returns false, without any call,
+    /// Calls `offer` with the primitives of each cell on the ray. Returns false without calling it
     /// if all primitives should be tested instead. `offer` is a trait object, so that the traversal
-    /// is compiled once, here, and not for each caller.
+    /// is compiled only once and not for each caller.
     fn offer_cells(&self, ray: &Ray, offer: &mut dyn FnMut(&[u32], f32) -> f32) -> bool {
-        // Far away, rounding moves rays by more than the padding of the cells: so also visit
+        // Far from the grid, rounding moves a ray by more than the padding, so also visit
         // neighbouring cells.
         let reach = [self.bounds.min, self.bounds.max].map(|c| (ray.origin - c).abs().max(c.abs()).max_element());
         let cut = |axis: &usize| self.counts[*axis] > 1;
@@ -222,7 +224,7 @@ impl Grid {
     }
 
     /// Calls `offer` for all cells within distance `slip` of a ray, layer by layer across the ray's
-    /// main axis. Returns false, without any call, if testing all primitives is less work.
+    /// main axis. Returns false without calling it if testing all primitives is less work.
     fn walk_wide(&self, ray: &Ray, slip: f64, offer: &mut dyn FnMut(&[u32], f32) -> f32) -> bool {
         let (line, size, min) = (ray.line(), self.cell_size().as_dvec3(), self.bounds.min.as_dvec3());
         let main = line.dir.abs().max_position();
@@ -276,8 +278,8 @@ impl Grid {
         }
         let mut cell = self.cell_of(ray.at(enter));
         let size = self.cell_size();
-        // `t` of the next cell wall along each axis, always computed from the wall's number, so
-        // that errors do not accumulate.
+        // `t` of the next cell wall along each axis, computed from the index of the wall, so that
+        // rounding errors do not accumulate.
         let wall_t = |cell: [u32; 3], axis: usize| {
             if ray.dir[axis] == 0.0 {
                 return f32::INFINITY;

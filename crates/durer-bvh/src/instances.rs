@@ -1,10 +1,10 @@
-//! Instances of triangle trees.
+//! Instances of triangle trees, and a tree over them.
 
 use super::{Bvh, Facing, TraversalCounter, TriangleBvh, TriangleHit};
 use crate::math::{Aabb, Affine, Ray, Ray64, Vec2, Vec3, triangle_normal};
 use std::sync::Arc;
 
-/// A triangle tree placed in the scene.
+/// A mesh, as a triangle tree, placed in world space by an affine map; part of an [`InstanceBvh`].
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Instance {
@@ -13,12 +13,12 @@ pub struct Instance {
     /// Map from object space to world space. Any invertible map is allowed, including shear and
     /// reflection.
     pub to_world: Affine,
-    /// Bits that describe the instance: a masked ray sees instances that share a bit with its mask.
+    /// Visibility mask: a query with a mask finds only instances whose masks share a bit with it.
     pub mask: u32,
 }
 
 impl Instance {
-    /// Creates an instance that rays of every mask see.
+    /// Creates an instance that is visible to rays with any mask other than 0.
     pub fn new(bvh: Arc<TriangleBvh>, to_world: Affine) -> Self {
         Instance { bvh, to_world, mask: u32::MAX }
     }
@@ -36,7 +36,8 @@ impl Instance {
     }
 }
 
-/// Intersection of a ray with an instance.
+/// Intersection of a ray with a triangle of an instance, returned by the queries of
+/// [`InstanceBvh`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InstanceHit {
     /// Position along the ray, in units of the length of its direction.
@@ -54,18 +55,19 @@ impl InstanceHit {
         InstanceHit { t, uv, instance, triangle }
     }
 
-    /// Sort key of hits.
+    /// Sort key of hits along a ray.
     fn key(&self) -> (f32, u32, u32) {
         (self.t, self.instance, self.triangle)
     }
 }
 
-/// A tree over instances. Each triangle tree is in memory once, however many instances share it.
+/// A two-level BVH over instances of meshes, which can move. Instances share the triangle trees, so
+/// each is in memory only once.
 ///
-/// A ray is transformed into the space of an instance in double precision and rounded once; its
-/// origin may be double precision ([`Ray64`]). There it is traced as in a [`TriangleBvh`], so it
-/// crosses exactly one of the triangles around an edge. Of hits at the same `t`, the one with the
-/// least instance number, and then with the least triangle number, is the closest.
+/// A ray is transformed into object space in double precision and rounded once. Its origin can be
+/// in double precision ([`Ray64`]). In object space it is traced as in a [`TriangleBvh`], so it
+/// crosses exactly one of the triangles at an edge. If several hits have the same `t`, the one with
+/// the lowest instance number is the closest, then the one with the lowest triangle number.
 ///
 /// ```
 /// use durer_bvh::glam::{DAffine3, DVec3};
@@ -94,7 +96,7 @@ pub struct InstanceBvh {
 }
 
 impl InstanceBvh {
-    /// Builds a tree over instances 0, 1, 2, ...; fewer than 2^28.
+    /// Builds a tree over fewer than 2^28 instances, numbered by their position in the list.
     pub fn new(instances: Vec<Instance>) -> Self {
         let bvh = Self::build(&instances);
         InstanceBvh { instances, bvh }
@@ -104,8 +106,8 @@ impl InstanceBvh {
         Bvh::build(&instances.iter().map(Instance::bounds).collect::<Vec<_>>())
     }
 
-    /// Moves some instances, given by number. Rebuilds the tree over instances, which takes much
-    /// less time than building the triangle trees. The result is the same as that of
+    /// Moves some instances, given by number, and rebuilds the tree over instances, which takes
+    /// much less time than building the triangle trees. The result equals that of
     /// [`InstanceBvh::new`].
     ///
     /// # Panics
@@ -160,7 +162,7 @@ impl InstanceBvh {
         })
     }
 
-    /// Closest of the hits that `closest` finds in each instance.
+    /// Calls `closest` for each instance that the ray may hit, and returns the closest of the hits.
     #[inline]
     fn nearest<T: TraversalCounter>(
         &self,
@@ -175,7 +177,7 @@ impl InstanceBvh {
                 let hit = InstanceHit::new(number, hit);
                 if best.is_none_or(|best| hit.key() < best.key()) {
                     best = Some(hit);
-                    // An instance with a lesser number may have a hit at the same `t`.
+                    // An instance with a lower number may have a hit at the same `t`.
                     t_max = hit.t.next_up();
                 }
             }
@@ -284,20 +286,20 @@ impl InstanceBvh {
         rays.iter().enumerate().for_each(|(i, ray)| take(i, &self.all_hits(ray)));
     }
 
-    /// Corners of the hit triangle in world space; `None` if it does not exist.
+    /// Corners of the hit triangle in world space; `None` if there is no such instance or triangle.
     pub fn corners(&self, hit: &InstanceHit) -> Option<[Vec3; 3]> {
         let Instance { bvh, to_world, .. } = self.instances.get(hit.instance as usize)?;
         Some(bvh.corners(hit.triangle)?.map(|corner| to_world.point(corner)))
     }
 
-    /// Unit normal of the hit triangle in world space: (b - a) x (c - a) of its corners in world
-    /// space. Zero if the triangle has no area.
+    /// Unit normal of the hit triangle in world space: (b - a) x (c - a), normalised, for its
+    /// corners a, b, c in world space. Zero if the triangle has no area.
     pub fn normal(&self, hit: &InstanceHit) -> Vec3 {
         self.corners(hit).map_or(Vec3::ZERO, triangle_normal)
     }
 
-    /// Calls `ask` for instances with the ray in object space, roughly from near to far. `ask`
-    /// returns the new `t_max`.
+    /// Calls `ask` with the number and tree of each instance that the ray may hit and the ray in
+    /// object space, roughly from near to far. `ask` returns the new `t_max`.
     #[inline]
     fn traverse<T: TraversalCounter>(
         &self,
@@ -316,7 +318,7 @@ impl InstanceBvh {
         });
     }
 
-    /// Size in bytes; trees that several instances share count once.
+    /// Size in bytes. A tree that several instances share is counted once.
     pub fn memory_usage(&self) -> usize {
         let mut trees: Vec<&Arc<TriangleBvh>> = self.instances.iter().map(|instance| &instance.bvh).collect();
         trees.sort_by_key(|tree| Arc::as_ptr(tree));
@@ -335,13 +337,13 @@ mod tests {
     use crate::triangles::tests::{bits, brute_force, ray, soup, torus};
     use glam::{DAffine3, DMat3, DVec3};
 
-    /// A map that rotates, shears, stretches, and mirrors.
+    /// Returns a random map that rotates, shears, stretches, and possibly mirrors.
     fn map(random: &mut Random) -> Affine {
         loop {
             let mut axis = || random.point().as_dvec3();
             let matrix = DMat3::from_cols(axis(), axis(), axis());
             let forward = DAffine3 { matrix3: matrix, translation: 2.0 * axis() };
-            // Nearly flat maps lose digits.
+            // Reject nearly singular maps, which lose digits.
             if let Some(map) = Affine::new(forward).filter(|_| matrix.determinant().abs() > 0.05) {
                 return map;
             }
@@ -390,7 +392,8 @@ mod tests {
         let mut random = Random(10);
         let mesh = torus(16, 8);
         let bvh = Arc::new(TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Balanced));
-        // Sums of a few powers of two: translating there and back restores them exactly.
+        // Coordinates that are sums of a few powers of two, so that translating there and back
+        // restores points exactly.
         let far = DVec3::new(4_194_304.25, -262_144.5, 2_097_152.0);
         let to_world = Affine::new(DAffine3::from_translation(far)).unwrap();
         let scene = InstanceBvh::new(vec![Instance::new(bvh.clone(), to_world)]);

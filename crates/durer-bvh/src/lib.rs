@@ -1,9 +1,9 @@
 //! Ray queries on triangles and boxes: bounding volume hierarchies, and a uniform grid.
 //!
-//! [`Bvh`] and [`Grid`] store only the bounding boxes and numbers of primitives; the caller's
-//! closure intersects the primitives. A structure may offer a primitive that the ray misses, but
-//! never skips one that the ray hits, so all of them find the same hit. [`TriangleBvh`] stores the
-//! triangles too.
+//! [`Bvh`] and [`Grid`] store only the bounding boxes and numbers of primitives. A closure of the
+//! caller intersects the primitives. It may be called for a primitive that the ray misses, but no
+//! primitive that the ray hits is skipped, so both structures find the same hit. [`TriangleBvh`]
+//! stores the triangles too.
 #![doc = include_str!("../README.md")]
 
 mod boxes;
@@ -32,7 +32,8 @@ pub use packs::{PackHit, PrimitivePacks};
 pub use shown::TreeBox;
 pub use triangles::{Facing, HeightGrid, NearestPoint, TriangleBvh, TriangleHit};
 
-/// Counter of the work of rays. `()` counts nothing, at no cost.
+/// Counter of rays, visited nodes, and primitive tests, passed to queries. `()` counts nothing, at
+/// no cost.
 pub trait TraversalCounter {
     /// True if nodes and tests are counted. If false, the trees use a code path without counters.
     const COUNTS_WORK: bool;
@@ -59,7 +60,7 @@ impl<T: TraversalCounter> TraversalCounter for &mut T {
     }
 }
 
-/// Counter of rays only.
+/// A [`TraversalCounter`] that counts only rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RayCount(pub u64);
 
@@ -71,7 +72,7 @@ impl TraversalCounter for RayCount {
     }
 }
 
-/// Numbers of rays traced, nodes visited, and primitives tested.
+/// A [`TraversalCounter`] that counts rays, visited nodes or cells, and primitive tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TraversalStats {
     /// Rays traced.
@@ -94,7 +95,7 @@ impl TraversalCounter for TraversalStats {
     }
 }
 
-/// Items for the other crates of the workspace. Any version may change them.
+/// Items for the other crates of the workspace. They can change in any version.
 #[doc(hidden)]
 pub mod internal {
     pub use crate::lanes::{PlainKernel, bring_near, room, run_plain};

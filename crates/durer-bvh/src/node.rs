@@ -1,4 +1,4 @@
-//! Nodes with eight children.
+//! Tree nodes with eight children, and their encoding.
 
 use crate::math::Aabb;
 
@@ -8,28 +8,29 @@ pub const WIDTH: usize = 8;
 /// Maximum depth of a leaf; bounds the stack of a traversal.
 pub(super) const MAX_DEPTH: usize = 160;
 
-/// Boxes of up to eight children, side by side. Unused slots have empty boxes, which no ray hits.
+/// Node of a BVH with the boxes of up to eight children, stored by plane for SIMD box tests. Unused
+/// slots have empty boxes, which no ray hits.
 ///
-/// Children are sorted along one axis, so that a ray sees them roughly from near to far, or from
-/// far to near.
+/// Children are sorted along one axis, so that their order is roughly from near to far, or from far
+/// to near, for any ray.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct WideNode {
     /// Lower and upper planes of the boxes, by axis.
     pub planes: [[[f32; WIDTH]; 2]; 3],
-    /// [`node_offset`] of an inner child; or, for a leaf, [`LEAF`], the item count minus one
-    /// shifted by [`COUNT_SHIFT`], and the first item.
+    /// Codes of the children. The code of an inner node is its [`node_offset`]. The code of a leaf
+    /// combines [`LEAF`], the item count minus one shifted by [`COUNT_SHIFT`], and the first item.
     pub children: [u32; WIDTH],
-    /// One bit for each octant of directions, numbered by
-    /// [`TraversalRay::negative`](super::traverse::TraversalRay::negative): set if rays take the
-    /// children from last to first. The first entry is for closest-hit rays, the second for any-hit
-    /// rays.
+    /// One bit per octant of directions, numbered by
+    /// [`TraversalRay::negative`](super::traverse::TraversalRay::negative). It is set if rays visit
+    /// the children from last to first. The first entry is for closest-hit rays, the second for
+    /// any-hit rays.
     pub from_last: [u32; 2],
     /// Offset of the first inner child, if any. The other inner children follow it in any order.
     pub first: u32,
-    /// Tag of each child: its slot in the bits of [`PLACE`], and [`IS_LEAF`] or, in the bits of
-    /// [`BEHIND`], its distance from the first inner child. Eight bits are few enough to replace
-    /// the last bits of an entry distance.
+    /// Tag of each child. The bits of [`PLACE`] hold its slot. A leaf has the bit [`IS_LEAF`]. For
+    /// an inner node, the bits of [`BEHIND`] hold its distance from the first inner child. A tag
+    /// has only eight bits, so that it can replace the last bits of an entry distance.
     pub child_tags: [u8; WIDTH],
 }
 
@@ -102,8 +103,8 @@ pub(super) const UNITS: usize = size_of::<WideNode>() / UNIT;
 pub(super) const MAX_NODES: usize = LEAF as usize / UNITS;
 const _: () = assert!(UNITS.is_power_of_two() && MAX_NODES <= 1 << (32 - UNITS.trailing_zeros()));
 
-/// Offset of a node from the first, in units of [`UNIT`] bytes. Addresses then need no arithmetic,
-/// for which every ray would wait at every node.
+/// Offset of a node from the first node, in units of [`UNIT`] bytes. Its address then needs no
+/// arithmetic, which would delay every ray at every node.
 pub(super) fn node_offset(number: usize) -> u32 {
     assert!(number < MAX_NODES, "a tree has at most 2^26 nodes");
     (number * UNITS) as u32
@@ -115,6 +116,7 @@ pub(super) fn number(address: u32) -> usize {
     address as usize / UNITS
 }
 
+/// Code of a leaf with `count` items from item `first` on; see [`WideNode::children`].
 pub(super) fn leaf(first: usize, count: usize) -> u32 {
     debug_assert!((1..=LEAF_SIZE).contains(&count) && first < MAX_ITEMS);
     LEAF | ((count - 1) as u32) << COUNT_SHIFT | first as u32
@@ -126,8 +128,8 @@ pub(super) fn items(leaf: u32) -> (usize, usize) {
     ((leaf & FIRST_MASK) as usize, ((leaf & !LEAF) >> COUNT_SHIFT) as usize + 1)
 }
 
-/// Refits boxes to primitives that have moved; `leaf_bounds` returns the box of a leaf's
-/// primitives.
+/// Refits all boxes of a tree after primitives have moved. `leaf_bounds` returns the box of a
+/// leaf's primitives.
 pub(super) fn refit(nodes: &mut [WideNode], leaf_bounds: impl Fn(u32) -> Aabb) {
     // Children come after their parents, so the boxes below a node are final when it is reached.
     for parent in (0..nodes.len()).rev() {
@@ -150,8 +152,8 @@ pub(super) fn bounds(nodes: &[WideNode]) -> Aabb {
     nodes.first().map_or(Aabb::EMPTY, |root| root.children().fold(Aabb::EMPTY, |b, c| b.union(c.1)))
 }
 
-/// Expected cost of a random ray through the bounds by the surface area heuristic, in node tests; a
-/// leaf costs as much as a node.
+/// Expected cost of a random ray through the bounds by the surface area heuristic, in node tests. A
+/// leaf is assumed to cost as much as a node.
 pub(super) fn cost(nodes: &[WideNode], bounds: Aabb) -> f64 {
     let root = f64::from(bounds.half_area());
     let children = nodes.iter().flat_map(|node| node.children());

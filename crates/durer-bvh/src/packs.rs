@@ -1,15 +1,16 @@
-//! Simple shapes, tested eight at a time.
+//! Planes, spheres, discs, rectangles, and boxes, tested eight at a time without a tree.
 //!
-//! For scenes with only a few primitives, where a tree would cost more than it saves, and for
-//! planes, which have no bounding box. Each primitive is computed as in a test of it alone, in
-//! double precision and in the same order, so hits have the same bits.
+//! Used for scenes with only a few primitives, where a tree would cost more than it saves, and for
+//! planes, which have no bounding box. Each lane computes what a test of one primitive would
+//! compute, in double precision and in the same order, so hits have the same bits.
 
 use super::TraversalCounter;
 use super::lanes::{Available, Kernel, Lanes, WIDTH, numbers_of};
 use crate::math::{Doubles, Ray, Triple, Vec3};
 use glam::DVec3;
 
-/// Planes, spheres, discs, rectangles, and boxes, numbered by the caller.
+/// A list of planes, spheres, discs, rectangles, and boxes for ray queries without a tree, packed
+/// for SIMD. The caller numbers the primitives.
 #[derive(Clone, Debug)]
 pub struct PrimitivePacks {
     planes: Vec<Pack<PLANE>>,
@@ -22,7 +23,7 @@ pub struct PrimitivePacks {
     level: Available,
 }
 
-/// Intersection of a ray with a primitive.
+/// Closest intersection of a ray with a primitive of [`PrimitivePacks`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PackHit {
     /// Position along the ray.
@@ -31,8 +32,8 @@ pub struct PackHit {
     pub number: u32,
 }
 
-/// Eight primitives of a kind, each described by `N` numbers. The numbers of unused lanes are NaN,
-/// so that nothing is hit there.
+/// Up to eight primitives of one kind for the SIMD lanes, each described by `N` numbers. In unused
+/// lanes these are NaN, which no ray hits.
 #[derive(Clone, Copy, Debug)]
 struct Pack<const N: usize> {
     of: [[f64; WIDTH]; N],
@@ -134,8 +135,8 @@ impl PrimitivePacks {
         self.count == 0
     }
 
-    /// Closest hit in the ray's interval; of several at the same `t`, the one with the least
-    /// number. The ray must be finite and have a direction.
+    /// Closest hit in the ray's interval. If several hits have the same `t`, the one with the
+    /// lowest number is returned. The ray must be finite and have a direction.
     #[inline]
     pub fn closest<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> Option<PackHit> {
         if self.is_empty() {
@@ -166,7 +167,7 @@ impl PrimitivePacks {
     }
 }
 
-/// Adds a primitive in the first free lane.
+/// Adds a primitive in the first free lane of the last pack, or in a new pack.
 fn push<const N: usize>(packs: &mut Vec<Pack<N>>, number: u32, of: [f64; N]) {
     let nothing = Pack { of: [[f64::NAN; WIDTH]; N], numbers: [u32::MAX; WIDTH] };
     let mut pack = packs.pop_if(|pack| pack.indices().end < WIDTH).unwrap_or(nothing);
@@ -176,7 +177,7 @@ fn push<const N: usize>(packs: &mut Vec<Pack<N>>, number: u32, of: [f64; N]) {
     packs.push(pack);
 }
 
-/// Eight rays side by side.
+/// Origins, directions, and intervals of eight rays, one per lane.
 struct Rays<L: Lanes> {
     origin: [L::Doubles; 3],
     dir: [L::Doubles; 3],
@@ -197,13 +198,14 @@ impl<L: Lanes> Rays<L> {
     }
 }
 
-/// Primitives of a kind, each described by `N` numbers.
+/// Intersection test of one kind of primitive, which is described by `N` numbers. Implemented by
+/// [`Planes`], [`Spheres`], [`Discs`], [`Rectangles`], and [`Boxes`].
 trait Form<const N: usize> {
     /// First hits in the rays' intervals: a mask of lanes, and `t`.
     fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, of: &[L::Doubles; N]) -> (u32, L::Floats);
 }
 
-/// Planes normal · p = offset.
+/// Ray test of planes, normal · p = offset.
 struct Planes;
 const PLANE: usize = 4;
 
@@ -217,7 +219,7 @@ impl Form<PLANE> for Planes {
     }
 }
 
-/// Spheres |p - center|^2 = square.
+/// Ray test of spheres, |p - center|^2 = square.
 struct Spheres;
 const SPHERE: usize = 4;
 
@@ -244,7 +246,7 @@ impl Form<SPHERE> for Spheres {
     }
 }
 
-/// Discs normal · (p - center) = 0, with a distance from the centre between the radii.
+/// Ray test of discs, normal · (p - center) = 0 with |p - center| between the radii.
 struct Discs;
 const DISC: usize = 8;
 
@@ -261,7 +263,7 @@ impl Form<DISC> for Discs {
     }
 }
 
-/// Parallelograms corner + u e + v f, with u and v in [0, 1].
+/// Ray test of parallelograms, corner + u e + v f with u and v in [0, 1].
 struct Rectangles;
 const RECTANGLE: usize = 13;
 
@@ -286,8 +288,8 @@ impl Form<RECTANGLE> for Rectangles {
     }
 }
 
-/// Boxes between two corners, as the intersection of three slabs. Source: Kay and Kajiya, *Ray
-/// Tracing Complex Scenes*, SIGGRAPH 1986.
+/// Ray test of boxes between two corners, as the intersection of three slabs. Source: Kay and
+/// Kajiya, *Ray Tracing Complex Scenes*, SIGGRAPH 1986.
 struct Boxes;
 const BOX: usize = 6;
 
@@ -312,7 +314,8 @@ impl Form<BOX> for Boxes {
     }
 }
 
-/// First of two values of `t` that lies in the interval.
+/// Mask of the lanes in which `near` or `far` lies in the ray's interval, and the first `t` that
+/// does.
 #[inline(always)]
 fn first<L: Lanes>(lanes: L, rays: &Rays<L>, [near, far]: [L::Doubles; 2]) -> (u32, L::Floats) {
     let (near, far) = (lanes.singles(near), lanes.singles(far));
@@ -320,7 +323,8 @@ fn first<L: Lanes>(lanes: L, rays: &Rays<L>, [near, far]: [L::Doubles; 2]) -> (u
     (in_near | rays.contain(lanes, far), lanes.select(in_near, near, far))
 }
 
-/// A query of one ray. `ANY`: any hit suffices.
+/// Query of one ray against all packs, eight primitives at a time. If `ANY`, it stops at any hit;
+/// otherwise it finds the closest.
 struct Query<'a, const ANY: bool> {
     packs: &'a PrimitivePacks,
     ray: &'a Ray,
@@ -369,7 +373,7 @@ impl<const ANY: bool> Kernel for Query<'_, ANY> {
     }
 }
 
-/// A query of eight rays side by side.
+/// Query of eight rays at a time against all packs, one primitive at a time.
 struct BatchQuery<'a> {
     packs: &'a PrimitivePacks,
     rays: [&'a Ray; WIDTH],
@@ -418,7 +422,7 @@ impl Kernel for BatchQuery<'_> {
     }
 }
 
-/// Mask of the rays that are finite and have a direction, from origins and directions.
+/// Mask of the rays that are finite and have a direction. `numbers` holds origins and directions.
 #[inline(always)]
 fn sound<L: Lanes>(lanes: L, numbers: [L::Floats; 6]) -> u32 {
     let (zero, infinity) = (lanes.splat(0.0), lanes.splat(f32::INFINITY));
@@ -433,7 +437,7 @@ fn sound<L: Lanes>(lanes: L, numbers: [L::Floats; 6]) -> u32 {
     all
 }
 
-/// Updates the best hits of the rays in mask `met` with a hit of primitive `number`.
+/// Updates the best hits of the rays in the mask `hits` with a hit at `t` of primitive `number`.
 #[inline(always)]
 fn nearer(t: [f32; WIDTH], mut hits: u32, number: u32, best: &mut [PackHit; WIDTH]) {
     while hits != 0 {
@@ -445,7 +449,7 @@ fn nearer(t: [f32; WIDTH], mut hits: u32, number: u32, best: &mut [PackHit; WIDT
     }
 }
 
-/// Best of a hit and the hits of the lanes in mask `met`.
+/// Closest of the hit `best` and the hits of the lanes in the mask `hits`.
 #[inline(always)]
 fn nearest(t: [f32; WIDTH], mut hits: u32, numbers: &[u32; WIDTH], mut best: PackHit) -> PackHit {
     while hits != 0 {

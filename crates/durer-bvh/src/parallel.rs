@@ -1,4 +1,5 @@
-//! Parallel work with the feature `rayon`, sequential work without it. Results are the same.
+//! Loops that run in parallel with the feature `rayon`, and sequentially without it, with equal
+//! results.
 
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
@@ -11,8 +12,8 @@ pub fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> 
     (a(), b())
 }
 
-/// Runs `work` on a thread of the pool. From outside the pool, each parallel step would be handed
-/// over and waited for.
+/// Runs `work` on a thread of the pool. From a thread outside the pool, each parallel step would
+/// have to be passed to the pool and awaited.
 pub fn on_pool<A: Send>(work: impl FnOnce() -> A + Send) -> A {
     #[cfg(feature = "rayon")]
     return rayon::scope(|_| work());
@@ -20,7 +21,7 @@ pub fn on_pool<A: Send>(work: impl FnOnce() -> A + Send) -> A {
     work()
 }
 
-/// Appends `of(0)`, `of(1)`, `of(2)`, ..., at least `together` items per task.
+/// Appends `of(0)`, ..., `of(count - 1)` to a list, with at least `together` items per task.
 pub fn extend<T: Send>(to: &mut Vec<T>, count: usize, together: usize, of: impl Fn(usize) -> T + Sync + Send) {
     #[cfg(feature = "rayon")]
     to.par_extend((0..count).into_par_iter().with_min_len(together).map(of));
@@ -31,7 +32,7 @@ pub fn extend<T: Send>(to: &mut Vec<T>, count: usize, together: usize, of: impl 
     }
 }
 
-/// Parallel `map` in order.
+/// Maps all items in parallel and keeps their order.
 pub fn map<T: Sync, R: Send>(all: &[T], of: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
     #[cfg(feature = "rayon")]
     return all.par_iter().map(of).collect();
@@ -39,7 +40,7 @@ pub fn map<T: Sync, R: Send>(all: &[T], of: impl Fn(&T) -> R + Sync + Send) -> V
     all.iter().map(of).collect()
 }
 
-/// Parallel `filter_map` in order; at least `together` items per task.
+/// Runs `filter_map` in parallel and keeps the order, with at least `together` items per task.
 pub fn filter_map<T: Sync, R: Send>(all: &[T], together: usize, of: impl Fn(&T) -> Option<R> + Sync + Send) -> Vec<R> {
     #[cfg(feature = "rayon")]
     return all.par_iter().with_min_len(together).filter_map(of).collect();
@@ -50,7 +51,7 @@ pub fn filter_map<T: Sync, R: Send>(all: &[T], together: usize, of: impl Fn(&T) 
     }
 }
 
-/// Returns true if `is_so` holds for any item; at least `together` items per task.
+/// Returns true if `is_so` is true for any item, with at least `together` items per task.
 pub fn any<T: Sync>(all: &[T], together: usize, is_so: impl Fn(&T) -> bool + Sync + Send) -> bool {
     #[cfg(feature = "rayon")]
     return all.par_iter().with_min_len(together).any(is_so);
@@ -61,7 +62,7 @@ pub fn any<T: Sync>(all: &[T], together: usize, is_so: impl Fn(&T) -> bool + Syn
     }
 }
 
-/// Calls `work` for each item.
+/// Calls `work` for each item, in parallel.
 pub fn for_each<T: Send>(all: Vec<T>, work: impl Fn(T) + Sync + Send) {
     #[cfg(feature = "rayon")]
     all.into_par_iter().for_each(work);

@@ -1,11 +1,11 @@
-//! Boxes of a tree, for drawing.
+//! Bounding boxes of all nodes and leaves of a tree, for drawing.
 
 use super::node::{self, LEAF, WideNode};
 use crate::math::Aabb;
 use std::collections::VecDeque;
 use std::ops::Range;
 
-/// Box of a node or leaf.
+/// Bounding box of a node or leaf of a [`Bvh`](super::Bvh), with its depth, for drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TreeBox {
     /// Bounding box of its subtree.

@@ -10,7 +10,7 @@ fn cube(center: Vec3, half: f32) -> Aabb {
     Aabb { min: center - half, max: center + half }
 }
 
-/// Collections of boxes, each with a name for messages.
+/// Returns sets of difficult boxes, each with a name for messages.
 fn collections() -> Vec<(&'static str, Vec<Aabb>)> {
     let mut random = Random(1);
     let mut some = |count: usize, half: &dyn Fn(usize) -> f32, place: f32| -> Vec<Aabb> {
@@ -159,7 +159,7 @@ fn grids_contain_everything_or_are_refused() {
     for counts in [[0, 1, 1], [1, 0, 5], [u32::MAX, u32::MAX, u32::MAX], [1 << 13, 1 << 13, 2]] {
         assert!(Grid::build(unit, counts, &[unit], |_, _| true).is_none(), "{counts:?}");
     }
-    // Large primitives in many cells: refused before memory is allocated.
+    // Large primitives that overlap many cells are rejected before memory is allocated.
     assert!(Grid::build(unit, [256, 256, 256], &vec![unit; 1000], |_, _| true).is_none());
     let one = Grid::build(unit, [1, 1, 1], &[unit], |_, _| true).unwrap();
     assert_eq!(one.occupancy([0, 0, 0]), 1);
@@ -211,7 +211,8 @@ fn grid_cells_are_visited_in_order_and_only_up_to_the_hit() {
     assert_eq!(visited(Ray::new(Vec3::splat(3.0), Vec3::X), f32::INFINITY), [[0; 3]; 0]);
 }
 
-/// Such rays are frequent, for example with orthographic cameras, voxels, and a sun overhead.
+/// Directions with zero components are frequent, for example with orthographic cameras, voxels, or
+/// a sun overhead.
 #[test]
 fn rays_with_zero_components_are_fast() {
     let is_fast = |origin, dir| TraversalRay::new(&Ray::new(origin, dir), 3.0).is_some();
@@ -254,7 +255,8 @@ fn distant_ray_is_offered_few_boxes_and_every_hit() {
                 found[item] = true;
                 t_max
             });
-            // Boxes that the line hits, or misses by no more than rounding.
+            // Every box must be offered that the line hits after enlarging it by the rounding
+            // error.
             let slip = 2.0 * f32::EPSILON * distance;
             for (i, b) in boxes.iter().enumerate() {
                 let near = Aabb { min: b.min - slip, max: b.max + slip };

@@ -1,10 +1,10 @@
-//! Traversal of the tree by a ray: nearest boxes first or, for any-hit rays, in the order that is
-//! likely to find a hit soon.
+//! Traversal of a tree by a ray. Closest-hit rays visit the nearest boxes first. Any-hit rays visit
+//! children in an order that is likely to find a hit soon.
 //!
-//! The next child is the one that the ray enters first, or, for any-hit rays, the first in the
-//! order of the node. The others are pushed in the order of the node with a single store, so that
-//! no branch depends on their number. A child beyond the nearest hit is dropped when it is popped:
-//! that branch is mostly predicted, so the traversal continues before the hit distance is known.
+//! The next child is the one that the ray enters first or, for any-hit rays, the first in the order
+//! of the node. The others are pushed in the order of the node with a single store, so no branch
+//! depends on their number. A child beyond the nearest hit is dropped when it is popped. That
+//! branch is usually predicted, so the traversal continues before the hit distance is known.
 //!
 //! Source: Fuetterer, Lojewski, Pfreundt, Ebert, *Efficient Ray Tracing Kernels for Modern CPU
 //! Architectures*, JCGT 4(4), 2015.
@@ -16,12 +16,12 @@ use crate::math::{Ray, Vec3};
 use glam::{Vec3A, Vec3Swizzles, Vec4};
 use std::ops::Range;
 
-/// A ray prepared for box tests. The tests are conservative: rounding never loses a box that the
-/// exact ray hits.
+/// A ray prepared for the box tests of a tree traversal. The tests are conservative: despite
+/// rounding, no box that the exact ray hits is missed.
 ///
 /// The sign of the direction selects the near and far plane of each slab. Each plane is moved
-/// outwards by several roundings of the largest distance that occurs, which also covers the
-/// rounding of the triangle test.
+/// outwards by several rounding errors of the largest coordinate, which also covers the rounding
+/// errors of the triangle test.
 #[derive(Clone, Copy)]
 pub(super) struct TraversalRay {
     planes: Planes,
@@ -34,7 +34,7 @@ pub(super) struct TraversalRay {
     pub moderate: bool,
 }
 
-/// Coefficients of the distances to planes, by axis.
+/// Coefficients of a ray for computing the distances to the planes of boxes, by axis.
 #[derive(Clone, Copy)]
 struct Planes {
     inverse: [f32; 3],
@@ -44,32 +44,33 @@ struct Planes {
 
 /// Distance by which box planes are moved outwards, relative to the largest coordinate.
 ///
-/// Rounding takes less than 2.5 epsilon of it on either side: half an epsilon each for the padded
-/// origin, the inverse, their product, and the distance, and less for what follows. So the computed
-/// interval of a box that the ray hits extends beyond the true one by more than 5 epsilon on either
-/// side: it begins before it ends, even if the box is flat, and before anything in the box.
+/// Rounding consumes less than 2.5 epsilon of it on either side: half an epsilon each for the
+/// padded origin, the inverse, their product, and the distance, and less for the remaining steps.
+/// So for a box that the ray hits, the computed interval extends beyond the exact one by more than
+/// 5 epsilon on either side. It is not empty even if the box is flat, and it begins before any hit
+/// in the box.
 pub(super) const PADDING: f32 = 8.0 * f32::EPSILON;
 
-/// Range in which squares neither overflow nor vanish.
+/// Range of magnitudes whose squares neither overflow nor underflow.
 pub(super) const FAST_RANGE: Range<f32> = 1e-15..1e15;
 
-/// Least length of the longest component of a fast ray's direction. The other components may then
-/// be arbitrarily small: box tests clamp them to the start of [`FAST_RANGE`], so products of
-/// inverses and coordinates do not overflow. Within a tree, clamping moves a ray by at most 10^-9
-/// of the reach, a thousandth of the padding.
+/// Minimum absolute value of the largest direction component of a fast ray. The other components
+/// can then be arbitrarily small: box tests clamp them to the start of [`FAST_RANGE`], so products
+/// of inverses and coordinates do not overflow. Within a tree, clamping moves a ray by at most
+/// 10^-9 of the reach, a thousandth of the padding.
 pub(super) const MIN_MAIN_COMPONENT: f32 = 1e-6;
 
 impl TraversalRay {
     /// Prepares a fast ray for a tree whose coordinates are at most `most`; `None` if the ray is
-    /// not fast. The values of a fast ray stay in the range of `f32` (zeros beside a
-    /// [`MIN_MAIN_COMPONENT`] component are allowed), and its interval begins at its origin or
-    /// later, so box tests can use a short form.
+    /// not fast. Box tests of a fast ray never leave the range of `f32`, and its interval begins at
+    /// its origin or later, so the tests are shorter. Components of the direction can be zero if
+    /// another one is at least [`MIN_MAIN_COMPONENT`].
     #[inline(always)]
     pub fn new(ray: &Ray, most: f32) -> Option<Self> {
         let (origin, dir) = (Vec3A::from(ray.origin), Vec3A::from(ray.dir));
-        // The size of the coordinates matters too, since a ray that was transformed into object
-        // space is off by their rounding. Each lane holds the sum of all, so that a NaN anywhere
-        // reaches every lane.
+        // The padding also depends on the coordinates of the origin, since a ray that was
+        // transformed into object space has their rounding error. Each lane holds the sum of all
+        // coordinates, so that any NaN reaches every lane.
         let from = origin.abs();
         let reach = (from + from.yzx()) + (from.zxy() + most);
         let size = dir.abs();
@@ -91,7 +92,7 @@ impl TraversalRay {
         Some(TraversalRay { planes, negative: dir.is_negative_bitmask(), t_min, scale: 1.0, moderate: true })
     }
 
-    /// Prepares any ray; `None` if it cannot hit anything.
+    /// Prepares a ray that is not fast; `None` if it cannot hit anything.
     #[cold]
     pub fn robust(ray: &Ray, most: f32) -> Option<Self> {
         if !is_sound(ray) {
@@ -99,14 +100,14 @@ impl TraversalRay {
         }
         let reach = (ray.origin.abs().max_element() + most).min(f32::MAX);
         let length = ray.dir.abs();
-        // Divide the direction by a power of two, so that distances within the bounds are not
-        // extreme.
+        // Divide the direction by a power of two, so that distances within the bounds neither
+        // overflow nor underflow.
         let scale = f32::from_bits(length.max_element().to_bits() & 0x7f80_0000).max(f32::MIN_POSITIVE);
         let dir = ray.dir / scale;
         // Treat a component as zero if it has no inverse or moves the ray by much less than the
         // padding.
         let still = dir.abs().cmplt(Vec3::splat(1e-30));
-        // The reach may be so small that the padding vanishes.
+        // Add the smallest normal number, since for a tiny reach, the padding underflows.
         let outward = Vec3::splat(PADDING * reach + f32::MIN_POSITIVE).copysign(dir);
         let planes = Planes {
             inverse: Vec3::select(still, Vec3::INFINITY.copysign(dir), 1.0 / dir).to_array(),
@@ -125,7 +126,7 @@ impl TraversalRay {
     }
 }
 
-/// Callbacks of a traversal for the items of a tree.
+/// Callbacks that [`traverse`] calls at the nodes and leaves that a ray visits.
 pub(super) trait Visitor {
     type TraversalCounter: TraversalCounter;
 
@@ -138,11 +139,12 @@ pub(super) trait Visitor {
     #[inline(always)]
     fn enter(&mut self, _: usize) {}
 
-    /// Prefetches hit children, of which the given one is likely to be next.
+    /// Prefetches the children that were hit. The third argument is the one that is likely to be
+    /// next.
     fn fetch<L: Lanes>(&self, _: L, _: &NodeHits<L>, _: u32) {}
 
-    /// Tests the items of a leaf. `FAST` says if the ray is fast. Returns the new `t_max`, which
-    /// must not exceed the old one; minus infinity ends the traversal.
+    /// Tests the items of a leaf. `FAST` is true if the ray is fast. Returns the new `t_max`, which
+    /// must not exceed the old one. Minus infinity ends the traversal.
     fn leaf<L: Lanes, const FAST: bool>(&mut self, lanes: L, leaf: u32, t_max: f32) -> f32;
 }
 
@@ -214,7 +216,8 @@ pub(super) fn traverse<L: Lanes, V: Visitor, const FAST: bool>(
     }
 }
 
-/// Children of a node that a ray hits.
+/// Result of testing a ray against the children of a node: a mask of the hit children, and their
+/// entry distances.
 pub(super) struct NodeHits<'a, L: Lanes> {
     pub node: &'a WideNode,
     child_tags: &'a [u8; WIDTH],
@@ -226,7 +229,7 @@ pub(super) struct NodeHits<'a, L: Lanes> {
     enter: L::Floats,
 }
 
-/// Location of a child.
+/// Next child to visit in a traversal.
 enum Target {
     /// Offset of a node.
     Node(usize),
@@ -234,19 +237,20 @@ enum Target {
 }
 
 impl<L: Lanes> NodeHits<'_, L> {
-    /// Slot of the next child in the bits of [`PLACE`]. If it was found by its
-    /// [tag](WideNode::child_tags), the result contains the whole tag.
+    /// Returns the next child, with its slot in the bits of [`PLACE`]. For fast closest-hit rays,
+    /// the last eight bits of the result are the full [tag](WideNode::child_tags).
     ///
-    /// The next child is the one that the ray enters first. Any-hit rays take the `likely` one,
-    /// which is known sooner, and so do rays that are not fast, whose distances cannot be compared
-    /// as integers.
+    /// The next child is the one that the ray enters first. Any-hit rays visit the `likely` child
+    /// instead, which is known sooner. So do rays that are not fast, since their distances cannot
+    /// be compared as integers.
     #[inline(always)]
     pub fn next<const FAST: bool>(&self, lanes: L, any: bool, likely: u32) -> u32 {
         if FAST && !any { lanes.nearest(self.enter, self.which, self.child_tags) } else { likely }
     }
 
-    /// Location of the next child. A node is located by its tag, since the ray waits for its
-    /// address. A leaf, whose address is predicted as often as waited for, is located by its slot.
+    /// Finds the next child from the result of [`NodeHits::next`]. An inner node is found by its
+    /// tag, which is fastest, since the ray waits for the node's address. A leaf is found by its
+    /// slot.
     #[inline(always)]
     fn target<const FAST: bool>(&self, any: bool, next: u32) -> Target {
         if FAST && !any {
@@ -285,8 +289,8 @@ pub(super) fn end_of(lanes: u32, last: bool) -> u32 {
     if last { lanes.leading_zeros() ^ 31 } else { lanes.trailing_zeros() }
 }
 
-/// Lanes of each mask in push order: for visits from first to last, and for visits from last to
-/// first.
+/// Lanes of each mask in the order in which they are pushed. The first table is for visits from
+/// first to last, the second for visits from last to first.
 static PUSHED: [[[u8; WIDTH]; 256]; 2] = {
     let mut table = [[[0; WIDTH]; 256]; 2];
     let mut set = 0;
@@ -307,7 +311,7 @@ static PUSHED: [[[u8; WIDTH]; 256]; 2] = {
 };
 const _: () = assert!(size_of_val(&PUSHED[0]) == FROM_LAST as usize);
 
-/// Box test coefficients of a ray, in all lanes.
+/// A [`TraversalRay`] with each coefficient copied to all lanes, for box tests of eight children.
 pub(super) struct Slabs<'a, L: Lanes> {
     inverse: [L::Floats; 3],
     near_origin: [L::Floats; 3],
@@ -356,9 +360,9 @@ pub(super) fn intersect_node<'a, L: Lanes, const FAST: bool>(
     let (x, y, z) = (ends!(0), ends!(1), ends!(2));
     let (node, child_tags) = (at.node, at.child_tags());
     if FAST {
-        // Nothing is NaN, and no start is negative, so comparing the ends as integers finds the
-        // right end, or a negative one if the box is missed. Padding ensures that hit boxes end
-        // after they begin.
+        // No distance is NaN and no start is negative, so the ends can be compared as integers. The
+        // result is the right end, or a negative one if the box is missed. Padding ensures that the
+        // interval of a hit box is not empty.
         let [enter, leave] = lanes.interval([x, y, z], [*t_min, limit]);
         let which = lanes.before(enter, leave);
         return NodeHits { node, child_tags, mask: lanes.signs(which), which, enter };

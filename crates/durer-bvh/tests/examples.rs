@@ -13,7 +13,8 @@ macro_rules! examples {
     )*};
 }
 
-/// Return type of an example's `main`.
+/// Return types of the `main` functions of examples, `()` or `Result`, to check that they
+/// succeeded.
 trait ExampleResult {
     fn ended(self);
 }

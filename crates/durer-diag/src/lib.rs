@@ -1,6 +1,6 @@
-//! Diagnostics: problems of an input, and their positions.
+//! Diagnostics: errors, warnings, and notes about input files, with their positions.
 //!
-//! The library creates them; the command line and Python print them.
+//! The library creates diagnostics, and the command line and Python print them.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -9,9 +9,10 @@ use std::sync::Arc;
 /// Maximum number of errors that are collected for one input.
 pub const ERROR_LIMIT: usize = 20;
 
-/// A range of bytes in a file.
+/// Range of bytes in an input file, to which a diagnostic or an item of a scene refers.
 ///
-/// All spans compare equal, so that the position of an item in a file does not affect its equality.
+/// Any two spans compare as equal, so that the positions of items do not matter when scenes are
+/// compared.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Span {
     /// Number of the file in its [`Files`].
@@ -29,7 +30,7 @@ impl PartialEq for Span {
 }
 
 impl Span {
-    /// Returns true if the span lies in a file. Items from options, and defaults, have no position.
+    /// Returns true if the span is in a file. Items from options and defaults have no position.
     pub fn is_place(self) -> bool {
         self.end > 0
     }
@@ -44,18 +45,18 @@ impl Span {
     }
 }
 
-/// Severity of a diagnostic.
+/// Severity of a [`Diagnostic`]: note, warning, or error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// Worth knowing.
+    /// The diagnostic is only for information.
     Note,
-    /// The picture may differ from what was meant.
+    /// The picture may differ from what the author intended.
     Warning,
     /// No picture can be rendered.
     Error,
 }
 
-/// A replacement in a file's text.
+/// A text replacement in an input file, part of the fix of a [`Diagnostic`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Edit {
     /// Range to replace; empty for an insertion.
@@ -64,7 +65,7 @@ pub struct Edit {
     pub text: String,
 }
 
-/// A diagnostic about an input.
+/// An error, warning, or note about an input file, with its position and suggestions to fix it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
     /// Severity.
@@ -73,17 +74,17 @@ pub struct Diagnostic {
     pub code: &'static str,
     /// Description of the problem, in one sentence without a full stop.
     pub message: String,
-    /// Position; `None` if the problem has no position in a file.
+    /// Position in a file; `None` if the problem has no position.
     pub span: Option<Span>,
-    /// Text at the underlined position.
+    /// Text that is printed next to the underlined position.
     pub label: String,
-    /// Suggestion: the likely meaning, or a remedy.
+    /// Suggestion how to fix the problem, such as the likely meaning.
     pub help: Option<String>,
-    /// Second position that is related, with a description.
+    /// A second, related position, with a description.
     pub related: Option<(Span, String)>,
     /// Effect on the picture.
     pub effect: Option<String>,
-    /// Edits that fix the problem, if that is mechanical.
+    /// Edits that fix the problem automatically; empty if there is no such fix.
     pub fix: Vec<Edit>,
 }
 
@@ -107,17 +108,17 @@ impl Diagnostic {
         Diagnostic::new(Severity::Error, message)
     }
 
-    /// Creates a warning: the picture may differ from what was meant.
+    /// Creates a warning: the picture may differ from what the author intended.
     pub fn warning(message: impl Into<String>) -> Self {
         Diagnostic::new(Severity::Warning, message)
     }
 
-    /// Creates a note: worth knowing.
+    /// Creates a note, which is only for information.
     pub fn note(message: impl Into<String>) -> Self {
         Diagnostic::new(Severity::Note, message)
     }
 
-    /// Sets the kind of problem.
+    /// Sets the identifier of the kind of problem.
     pub fn code(self, code: &'static str) -> Self {
         Diagnostic { code, ..self }
     }
@@ -147,7 +148,7 @@ impl Diagnostic {
         self
     }
 
-    /// Sets the text at the underlined position.
+    /// Sets the text that is printed next to the underlined position.
     pub fn label(mut self, label: impl Into<String>) -> Self {
         self.label = label.into();
         self
@@ -166,7 +167,8 @@ impl Diagnostic {
     }
 }
 
-/// A collection of diagnostics, of up to [`ERROR_LIMIT`] errors and as many warnings.
+/// The diagnostics of one input: up to [`ERROR_LIMIT`] errors and as many warnings and notes.
+/// Further ones are only counted.
 #[derive(Clone, Debug, Default)]
 pub struct Diagnostics {
     list: Vec<Diagnostic>,
@@ -175,7 +177,8 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    /// Adds a diagnostic. Beyond the limit of its severity, it is only counted.
+    /// Adds a diagnostic. If there are already [`ERROR_LIMIT`] errors, or as many warnings and
+    /// notes, it is only counted.
     pub fn push(&mut self, diagnostic: Diagnostic) {
         let count = match diagnostic.severity {
             Severity::Error => &mut self.errors,
@@ -187,9 +190,9 @@ impl Diagnostics {
         }
     }
 
-    /// Adds a diagnostic unless one with the same code and message exists. In that case, notes in
-    /// the existing one that the problem occurs again, and adds the edits to it. Returns true if
-    /// the diagnostic is new.
+    /// Adds a diagnostic and returns true, unless there is one with the same code and message
+    /// already. In that case, the label of the existing one says that the problem occurs again, and
+    /// the edits are added to it.
     pub fn push_once(&mut self, diagnostic: Diagnostic) -> bool {
         let is_same = |known: &&mut Diagnostic| known.code == diagnostic.code && known.message == diagnostic.message;
         let Some(known) = self.list.iter_mut().find(is_same) else {
@@ -228,7 +231,7 @@ impl Diagnostics {
         self.list.iter()
     }
 
-    /// End of the last position in a file to which a diagnostic refers, in bytes.
+    /// Byte offset of the end of the last span in a file to which a diagnostic refers.
     fn end_in(&self, file: u32) -> usize {
         let places = |d: &Diagnostic| {
             let others = d.related.iter().map(|other| other.0).chain(d.fix.iter().map(|edit| edit.span));
@@ -243,7 +246,8 @@ impl Diagnostics {
     }
 }
 
-/// The files that were read, by number. Converts spans to lines and columns.
+/// The input files that were read, by number, with which spans are converted to file names, lines,
+/// and columns.
 #[derive(Clone, Debug, Default)]
 pub struct Files {
     files: Vec<(String, Arc<[u8]>)>,
@@ -252,7 +256,7 @@ pub struct Files {
 }
 
 impl Files {
-    /// Size in bytes up to which files are kept whole, for later use.
+    /// Size in bytes up to which files are kept completely.
     const SMALL: usize = 64 << 20;
 
     /// Adds a file and returns its number.
@@ -261,16 +265,16 @@ impl Files {
         (self.files.len() - 1) as u32
     }
 
-    /// Drops the end of a large file that was read, to save memory. Keeps the first `end` bytes, to
-    /// which later spans may refer, and everything to which diagnostics in `said` refer.
+    /// Drops the end of a large file to save memory. Keeps the first `end` bytes, to which later
+    /// spans may refer, and everything to which the diagnostics in `messages` refer.
     pub fn cut(&mut self, file: u32, end: usize, messages: &Diagnostics) {
         let Some((_, bytes)) = self.files.get_mut(file as usize).filter(|(_, bytes)| bytes.len() > Self::SMALL) else {
             return;
         };
         let end = end.max(messages.end_in(file));
         if end < bytes.len() {
-            // Keep the rest of the last line, which is printed with a diagnostic. Binary files may
-            // have no lines.
+            // Keep the rest of the last line, which is printed with a diagnostic, but at most 256
+            // bytes, since a binary file may have no lines.
             *bytes = bytes[..bytes.len().min(end + 256)].into();
             self.cut.insert(file);
         }
@@ -315,8 +319,8 @@ impl Files {
 
 /// Finds the candidate most similar to `word`, if one is similar enough.
 pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    // The distance takes time and memory in proportion to the length of the word, which may be the
-    // contents of a file.
+    // Time and memory are proportional to the length of the word, which may be the content of a
+    // whole file.
     if word.len() > 64 {
         return None;
     }
@@ -326,7 +330,7 @@ pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str
         letters.sort_unstable();
         letters
     };
-    // A candidate with the same letters is nearest: `RotateY` suggests `YRotate`.
+    // A candidate with the same letters is the most similar: for `RotateY`, it is `YRotate`.
     let distance = |candidate: &str| match letters(candidate) == letters(&lower) {
         true => 0,
         false => strsim::damerau_levenshtein(&lower, candidate),
@@ -344,8 +348,8 @@ pub fn at_least(bytes: u64) -> String {
     rounded(bytes, u64::div_ceil)
 }
 
-/// Formats a number of bytes for humans, rounded down. The result is never more than [`at_least`]
-/// of a larger number.
+/// Formats a number of bytes for humans, rounded down. A limit formatted like this is never shown
+/// as larger than a size formatted by [`at_least`] that exceeds it.
 pub fn at_most(bytes: u64) -> String {
     rounded(bytes, |bytes, unit| bytes / unit)
 }

@@ -2,7 +2,7 @@
 
 use durer_bvh::math::Vec3;
 
-/// A linear Rec. 709 colour: red, green, and blue. Unbounded above.
+/// A colour in the working colour space, linear Rec. 709, as red, green, and blue. Unbounded above.
 pub type Color = Vec3;
 
 /// Weights of red, green, and blue in the luminance of a [`Color`] (Rec. 709).

@@ -71,8 +71,7 @@ fn alpha_is_written_where_a_format_has_it_and_black_elsewhere() {
         let mut out = Vec::new();
         format.write(std::slice::from_ref(&layer), &WriteOptions::default(), &mut out).unwrap();
         let back = read(&out, &name(format)).unwrap();
-        // Readers drop alpha here. Formats with 8-bit alpha store colours that are not multiplied
-        // by it.
+        // `read` drops alpha. Formats with 8-bit alpha store colours that are not premultiplied.
         let straight = ["PNG", "TGA"].contains(&format.name);
         let expected = if straight { 128.0 / 255.0 } else { 0.25 };
         assert!((back.pixels[0].x - expected).abs() < 0.002, "{}: {}", format.name, back.pixels[0]);
@@ -111,8 +110,8 @@ fn no_prefix_is_a_picture() {
     }
 }
 
-/// Checks that forged bytes give at most a different picture: no panic, and no picture larger than
-/// the limit.
+/// Checks that forged bytes give an error or some other picture, but no panic and no picture larger
+/// than the limit.
 fn survives(format: &Format, bytes: &[u8]) {
     if let Ok(image) = read(bytes, &name(format)) {
         assert!(image.check().is_ok());

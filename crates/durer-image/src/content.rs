@@ -1,8 +1,8 @@
-//! Content to write to files and streams.
+//! Content that is written to files and streams.
 
 use std::io::{self, Write};
 
-/// Content of a file: bytes, or a value that is serialised while it is written.
+/// Content of a file to save: bytes, or a value that is serialised while it is written.
 pub trait Content {
     /// Writes the whole content to `out`.
     ///

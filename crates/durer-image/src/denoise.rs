@@ -1,8 +1,8 @@
 //! A denoiser that is guided by the surface at each pixel.
 //!
-//! Irradiance, the light divided by the albedo, is smooth on a smooth surface. The filter averages
-//! it over pixels with similar normals, positions, and albedos, more strongly where the variance of
-//! a pixel is higher. Denoised pictures are estimates, not measurements.
+//! On a smooth surface, the irradiance, which is the light divided by the albedo, is smooth too.
+//! The filter averages it over pixels with similar normals, positions, and albedos, more strongly
+//! where the variance is higher. Denoised pictures are estimates, and they are biased.
 //!
 //! Source: Dammertz and others, *Edge-Avoiding À-Trous Wavelet Transform for fast Global
 //! Illumination Filtering*, HPG 2010. The weights by variance are the spatial half of Schied and
@@ -13,12 +13,13 @@ use crate::{Color, LUMINANCE};
 use durer_bvh::math::{Vec3, fp};
 use rayon::prelude::*;
 
-/// Properties of the surface at each pixel, row by row.
+/// Auxiliary images that guide the denoiser: albedo, normal, position, and variance of each pixel,
+/// row by row.
 #[derive(Clone, Copy, Debug)]
 pub struct Guides<'a> {
     /// Albedo.
     pub albedo: &'a [Color],
-    /// Unit normal; zero where the ray hit nothing.
+    /// Unit normal of the surface; zero where the camera ray hit nothing.
     pub normal: &'a [Vec3],
     /// Position.
     pub position: &'a [Vec3],
@@ -32,7 +33,7 @@ const ROUNDS: u32 = 5;
 /// One row of the kernel: a cubic B-spline.
 const KERNEL: [f32; 5] = [1.0 / 16.0, 0.25, 0.375, 0.25, 1.0 / 16.0];
 
-/// Intermediate pixel: light divided by albedo, and the variance of its luminance.
+/// Pixel during denoising: light divided by albedo, and the variance of its luminance.
 #[derive(Clone, Copy)]
 struct Pixel {
     light: Color,
@@ -56,7 +57,7 @@ pub fn denoise(picture: &Image, guides: &Guides) -> Option<Image> {
     {
         return None;
     }
-    // Surfaces without albedo, such as mirrors and lights, are filtered without division.
+    // For surfaces without albedo, such as mirrors and lights, filter the light itself.
     let albedo: Vec<Color> =
         guides.albedo.iter().map(|&a| if a.min_element() > 0.01 { a } else { Color::ONE }).collect();
     let mut pixels: Vec<Pixel> = (0..count)
@@ -121,7 +122,7 @@ mod tests {
     use durer_bvh::internal::random::Random;
 
     /// Two walls that meet in the middle, one of them checkered, with light that increases to the
-    /// right, and noise of a known variance.
+    /// right, without and with noise of a known variance.
     fn noisy(deviation: f32) -> (Image, Image, [Vec<Vec3>; 3], Vec<f32>) {
         let (width, height) = (48_u32, 32_u32);
         let mut random = Random(11);

@@ -1,11 +1,12 @@
-//! Conversion of light to 8-bit values: exposure and tone mapping.
+//! Conversion of linear colours to 8-bit values: exposure, tone mapping, and transfer function.
 
 use super::Transfer;
 use crate::{Color, LUMINANCE};
 use durer_bvh::math::{Vec3, fp};
 use glam::Mat3;
 
-/// Conversion of colours to 8-bit values. Floating-point formats ignore it.
+/// Conversion of linear colours to 8-bit values for a file or a screen: exposure, tone mapping, and
+/// transfer function. Floating-point formats ignore it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Display {
     /// Factor on colours, applied first.
@@ -35,14 +36,14 @@ impl Display {
     }
 }
 
-/// A tone mapping operator.
+/// Tone mapping operator, which compresses the range of linear colours for display.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tone {
     /// No tone mapping: values above 1 are clipped.
     #[default]
     None,
-    /// By luminance: L / (1 + L). Source: Reinhard and others, *Photographic Tone Reproduction for
-    /// Digital Images*, 2002.
+    /// Scales each colour so that its luminance L becomes L / (1 + L). Source: Reinhard and others,
+    /// *Photographic Tone Reproduction for Digital Images*, 2002.
     Reinhard,
     /// A fit of the ACES curve for each channel. Source: Narkowicz, *ACES Filmic Tone Mapping
     /// Curve*, 2016.
@@ -55,7 +56,7 @@ pub enum Tone {
 }
 
 impl Tone {
-    /// Operators with their names.
+    /// Pairs of name, as on the command line, and operator.
     pub const ALL: [(&'static str, Tone); 5] = [
         ("none", Tone::None),
         ("reinhard", Tone::Reinhard),

@@ -1,8 +1,8 @@
-//! Errors of reading and writing pictures.
+//! Errors from reading and writing pictures.
 
 use durer_diag::{at_least, at_most};
 
-/// Error of reading or writing a picture.
+/// Error from decoding, encoding, or creating a picture.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImageError {
@@ -38,7 +38,7 @@ pub enum ImageError {
         /// Description of the unsupported feature.
         reason: String,
     },
-    /// The declared size exceeds the limit for a file of this length.
+    /// The size in the header exceeds the limit for a file of this length.
     #[error("a picture of {width} x {height} pixels is too large for a file of {bytes} bytes")]
     TooLarge {
         /// Declared width in pixels.
@@ -63,13 +63,14 @@ pub enum ImageError {
         /// Memory that is allowed, in bytes.
         allowed: u64,
     },
-    /// The system cannot provide this much memory, in bytes.
+    /// An allocation of this many bytes failed.
     #[error("it needs {} of memory in one allocation, which failed", at_least(*.0))]
     NoRoom(u64),
-    /// 8-bit values were requested, but the picture has a different depth.
+    /// 8-bit values were requested, but the picture has more bits per channel.
     #[error("the picture does not have eight bits per channel")]
     NotEightBit,
-    /// A side is 0, there are too many pixels, or their number does not match the sides.
+    /// The width or height is 0, there are too many pixels, or their number is not width times
+    /// height.
     #[error("{width} x {height} is not a possible size: a picture has from 1 to {} pixels", super::MAX_PIXELS)]
     Size {
         /// Width in pixels.
@@ -80,7 +81,7 @@ pub enum ImageError {
     /// The list of layers is empty.
     #[error("there is no layer to write")]
     NoLayer,
-    /// Several layers were passed to a format that holds one; write each to its own file.
+    /// Several layers were passed to a format that holds only one. Write each to its own file.
     #[error("{format} holds one layer, not {count}")]
     SeveralLayers {
         /// Name of the format.

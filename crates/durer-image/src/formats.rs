@@ -35,7 +35,7 @@ use durer_diag as diag;
 use rayon::prelude::*;
 use std::path::Path;
 
-/// Formats that can be written, in the order in which content is matched.
+/// Formats that can be read and written, in the order in which their signatures are checked.
 pub static FORMATS: &[Format] = &[
     #[cfg(feature = "codecs")]
     png::FORMAT,
@@ -62,68 +62,71 @@ static READ_ONLY: &[Format] = &[
     ktx2::FORMAT,
 ];
 
-/// Depth of a channel.
+/// Kind of values that a file format stores for each channel: 8-bit integers or floating point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
     /// Values from 0 to 255, after the [`Transfer`] function.
     EightBit,
-    /// Floating point: keeps light beyond white.
+    /// Floating-point values, which can exceed 1.
     Float,
 }
 
-/// Options for writing pictures.
+/// Options for encoding a picture with [`Format::write`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WriteOptions<'a> {
     /// Conversion of colours to 8-bit values. Floating-point formats ignore it.
     pub display: Display,
-    /// Names and texts to store as metadata, in formats that support them.
+    /// Metadata as pairs of name and text, stored by formats that support it.
     pub attributes: &'a [(&'static str, String)],
 }
 
-/// Header of a file.
+/// Size and memory needs of a picture, from the header of its file.
 pub(super) struct Head {
-    /// Width and height as declared, possibly invalid.
+    /// Width and height as stored in the header, possibly invalid.
     pub width: u64,
     pub height: u64,
     /// True if a channel has eight bits.
     pub eight: bool,
-    /// Memory that decoding takes, including the decoded picture: bytes per pixel, and a constant.
+    /// Memory that decoding takes, including the decoded picture: bytes per pixel, and an
+    /// additional number of bytes, `spare`.
     pub bytes_per_pixel: u64,
     pub spare: u64,
 }
 
-/// Decoded content of a file.
+/// Decoded pixels of a picture file, with the depth that they have in the file.
 pub enum Raster {
     /// 8 bits per channel.
     Eight(Image8),
-    /// 16 bits per channel, scaled to the range from 0 to 1, before a transfer function is applied.
-    /// Opacity of each pixel, if the file contains it.
+    /// 16 bits per channel, scaled to the range from 0 to 1 without applying a transfer function.
+    /// The list is the opacity of each pixel; empty if the file has none.
     Sixteen(Image, Vec<f32>),
-    /// Floating-point values as stored, with opacity.
+    /// Floating-point values as stored in the file. The list is the opacity of each pixel; empty if
+    /// the file has none.
     Float(Image, Vec<f32>),
 }
 
-/// Appends layers that were checked to fit the format.
+/// Encoder of a [`Format`]: appends a file with these layers, whose number and sizes were already
+/// checked.
 type Encode = fn(&[Layer], &WriteOptions, &mut Vec<u8>) -> Result<(), ImageError>;
 
-/// A picture file format.
+/// A picture file format, such as PNG or OpenEXR, with the functions that read and write it.
 #[derive(Debug)]
 pub struct Format {
     /// Display name.
     pub name: &'static str,
-    /// Extensions of its files, lower case, without the dot; the usual one first.
+    /// File name extensions in lower case, without the dot; the usual one comes first.
     pub extensions: &'static [&'static str],
     /// Depth of a channel.
     pub depth: Depth,
-    /// True if a file may contain several layers.
+    /// True if a file can contain several layers.
     pub layers: bool,
-    /// Maximum width or height.
+    /// Maximum width and height in pixels.
     pub most_side: u32,
     /// Returns true if the bytes begin with the format's signature.
     begins: fn(&[u8]) -> bool,
     /// Reads the header only.
     head: fn(&[u8]) -> Result<Head, ImageError>,
-    /// Decodes a picture whose size was checked.
+    /// Decodes a picture whose size was already checked.
     decode: fn(&[u8]) -> Result<Raster, ImageError>,
     encode: Encode,
     /// Row-by-row writer, if supported.
@@ -131,7 +134,8 @@ pub struct Format {
 }
 
 impl Format {
-    /// Checks that a picture of this size fits the format. Useful before a long render.
+    /// Checks that a picture of this size can be written in the format, for example before a long
+    /// render.
     ///
     /// # Errors
     /// [`ImageError::Size`] and [`ImageError::Unsupported`].
@@ -185,7 +189,8 @@ impl Format {
         self.caught(|| (self.decode)(bytes))
     }
 
-    /// Most decoders are third-party code. A panic in one counts as a malformed file.
+    /// Runs a decoder and treats a panic as a malformed file, since most decoders are third-party
+    /// code.
     fn caught<T>(&self, work: impl FnOnce() -> Result<T, ImageError>) -> Result<T, ImageError> {
         caught(work).unwrap_or_else(|| Err(ImageError::malformed(self.name, "its decoder failed")))
     }
@@ -195,7 +200,7 @@ impl Format {
     }
 }
 
-/// Finds the format by a file name's extension.
+/// Finds the format for the extension of a file name.
 ///
 /// # Errors
 /// [`ImageError::UnknownExtension`].
@@ -216,13 +221,13 @@ pub(super) fn recognise(bytes: &[u8], name: &str) -> Result<&'static Format, Ima
     by_content.or_else(by_name).ok_or_else(|| ImageError::Unrecognised { name: name.into() })
 }
 
-/// Usual extension of the format of a picture, found by content or, failing that, by name; `None`
-/// if the format is unknown.
+/// Usual file name extension for a picture, whose format is determined by its content or, failing
+/// that, by its name. `None` if the format is unknown.
 pub fn extension_of(bytes: &[u8], name: &str) -> Option<&'static str> {
     recognise(bytes, name).ok().map(|format| format.extensions[0])
 }
 
-/// Usual extensions of all formats, for a message.
+/// Lists the usual extensions of all formats, for a message.
 fn known_extensions() -> String {
     let endings: Vec<String> = FORMATS.iter().map(|format| format!(".{}", format.extensions[0])).collect();
     endings.join(", ")
@@ -235,8 +240,8 @@ fn extension(path: &str) -> Option<String> {
 /// Conversion of a layer to 8-bit values.
 fn display(layer: &Layer, options: &WriteOptions) -> Display {
     match (layer.kind, options.display.transfer) {
-        // A transfer function would falsify data. The `Course` transfer, which truncates, was
-        // applied to all pictures in the course.
+        // A transfer function would falsify data. `Course`, which only truncates, is an exception:
+        // the course applied it to all pictures.
         (LayerKind::Data, Transfer::Srgb) => Transfer::Linear.into(),
         (LayerKind::Data, transfer) => transfer.into(),
         _ => options.display,

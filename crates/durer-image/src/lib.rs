@@ -1,8 +1,8 @@
 //! Reading, writing, and safe saving of pictures.
 //!
-//! Pictures in memory are linear floating point; [`Transfer`] converts them to 8-bit values. The
-//! table [`FORMATS`] lists the file formats, [`read()`] decodes pictures in memory, and [`save()`]
-//! writes bytes to a file.
+//! Pictures in memory have linear floating-point values, which [`Transfer`] converts to 8-bit
+//! values. The table [`FORMATS`] lists the file formats. [`read()`] decodes the bytes of a file,
+//! and [`save()`] writes bytes to a file.
 
 mod color;
 pub mod compare;
@@ -39,10 +39,10 @@ pub use transfer::{Transfer, decode_linear, decode_srgb, linear_from_srgb};
 use durer_bvh::math::Vec3;
 use std::sync::Arc;
 
-/// Maximum number of pixels of a picture: 2^28, a square of 16384.
+/// Maximum number of pixels of a picture: 2^28, for example 16384 x 16384.
 pub const MAX_PIXELS: u64 = 1 << 28;
 
-/// A picture of linear floating-point pixels.
+/// A picture in memory with three floating-point values per pixel, usually linear light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
     /// Width in pixels.
@@ -53,7 +53,7 @@ pub struct Image {
     pub pixels: Vec<Vec3>,
 }
 
-/// A picture with 8 bits per channel, as stored in a file.
+/// A picture in memory with 8 bits per channel, as stored in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image8 {
     /// Width in pixels.
@@ -66,16 +66,18 @@ pub struct Image8 {
     pub alpha: Vec<u8>,
 }
 
-/// Meaning of a layer's values, which determines if a transfer function applies.
+/// Meaning of the values of a [`Layer`], which determines if tone mapping and the transfer function
+/// are applied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LayerKind {
-    /// Light: the transfer function applies in 8-bit formats.
+    /// Light. In 8-bit formats, tone mapping and the transfer function are applied.
     Color,
-    /// Data such as normals, depths, and masks: written unchanged.
+    /// Data such as normals, depths, and masks. Written without tone mapping or the sRGB curve.
     Data,
 }
 
-/// A named picture, one of the outputs of a render.
+/// A named picture to write to a file: one of the outputs of a render, such as its light, normals,
+/// or depth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
     /// Name, used for the channels of formats that hold several layers.
@@ -136,17 +138,17 @@ impl Image {
 }
 
 impl Layer {
-    /// Creates a layer of light.
+    /// Creates a layer of light that covers all pixels.
     pub fn color(name: impl Into<String>, image: Image) -> Layer {
         Layer { name: name.into(), image: Arc::new(image), kind: LayerKind::Color, coverage: None }
     }
 
-    /// Creates a layer of data.
+    /// Creates a layer of data that covers all pixels.
     pub fn data(name: impl Into<String>, image: Image) -> Layer {
         Layer { name: name.into(), image: Arc::new(image), kind: LayerKind::Data, coverage: None }
     }
 
-    /// Sets the coverage of each pixel; drops it if all pixels are fully covered.
+    /// Sets the coverage of each pixel, or removes it if all pixels are fully covered.
     pub fn with_coverage(self, coverage: Vec<f32>) -> Layer {
         // Opaque pictures are written without alpha.
         let opaque = coverage.iter().all(|&share| share == 1.0);

@@ -1,16 +1,16 @@
-//! Memory limits.
+//! Memory limits for decoding.
 //!
-//! A declared size is not trusted: before decoding, the size in the header is compared with the
-//! length of the file and with the memory that the caller allows.
+//! The size in a header is not trusted. Before decoding, it is compared with the length of the file
+//! and with the memory that the caller allows.
 
 use super::{ImageError, MAX_PIXELS};
 
-/// Pixels allowed for any length of the file: a square of 2048.
+/// Number of pixels that are allowed for a file of any length: 2048 x 2048.
 const FREE_PIXELS: u64 = 1 << 22;
 
-/// Pixels allowed for each byte of a file. Deflate compresses by a factor of at most 1032, so a
-/// byte holds at most 1032 / 3 pixels of three 8-bit channels, or 1032 of one grey channel. The
-/// limit is about twice that.
+/// Number of additional pixels that are allowed per byte of the file. Deflate compresses by a
+/// factor of at most 1032, so a byte holds at most 1032 / 3 pixels of three 8-bit channels, or 1032
+/// of one grey channel. The limit is about twice that.
 const PIXELS_PER_BYTE: u64 = 2048;
 
 /// Maximum number of pixels that are read from a file of `bytes` bytes.
@@ -18,7 +18,8 @@ pub fn pixel_limit(bytes: usize) -> u64 {
     (bytes as u64).saturating_mul(PIXELS_PER_BYTE).saturating_add(FREE_PIXELS).min(MAX_PIXELS)
 }
 
-/// Number of pixels of a declared size, if a file of `bytes` bytes may have it.
+/// Number of pixels of a picture whose header states this size, if it is allowed for a file of
+/// `bytes` bytes.
 pub(super) fn declared_count(width: u64, height: u64, bytes: usize) -> Result<usize, ImageError> {
     match width.checked_mul(height) {
         Some(count) if count <= pixel_limit(bytes) && count > 0 => Ok(count as usize),
@@ -27,7 +28,8 @@ pub(super) fn declared_count(width: u64, height: u64, bytes: usize) -> Result<us
     }
 }
 
-/// Allocates `count` copies of a value. Lack of memory is an error and does not end the program.
+/// Creates a list of `count` copies of a value. Returns an error if there is not enough memory,
+/// instead of ending the program.
 pub(super) fn room_for<T: Clone>(count: usize, item: T) -> Result<Vec<T>, ImageError> {
     let mut all = Vec::new();
     all.try_reserve_exact(count).map_err(|_| ImageError::no_room(count, size_of::<T>()))?;
@@ -35,11 +37,11 @@ pub(super) fn room_for<T: Clone>(count: usize, item: T) -> Result<Vec<T>, ImageE
     Ok(all)
 }
 
-/// Returns true if this many bytes can be allocated now. Large jobs fail with an error before they
-/// start if a system limit forbids them.
+/// Returns true if this many bytes can be allocated now. It lets large jobs fail with an error
+/// before they start if a system limit is too low.
 pub fn can_allocate(bytes: u64) -> bool {
     let length = usize::try_from(bytes).unwrap_or(usize::MAX);
-    // The system provides no pages until they are written.
+    // This uses no memory, since the system provides pages only when they are written.
     Vec::<u8>::new().try_reserve_exact(length).is_ok()
 }
 

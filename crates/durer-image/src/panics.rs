@@ -1,4 +1,4 @@
-//! Conversion of panics in third-party decoders to errors.
+//! Catches panics of third-party decoders, which are reported as errors.
 //!
 //! This crate sets no panic hook. A program whose hook prints panics should call [`are_expected`]
 //! first.
@@ -7,7 +7,7 @@ use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 thread_local! {
-    /// True while this thread does work whose panics are caught.
+    /// True while this thread runs code whose panics are caught.
     static EXPECTED: Cell<bool> = const { Cell::new(false) };
 }
 

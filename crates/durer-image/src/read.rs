@@ -1,12 +1,12 @@
-//! Decoding of pictures in memory.
+//! Decodes pictures from the bytes of a file.
 
 use super::formats::{Format, Head, Raster, recognise};
 use super::limits::declared_count;
 use super::{Depth, Image, Image8, ImageError, decode_linear, decode_srgb};
 use durer_bvh::math::Vec3;
 
-/// A picture in a file of which only the header was read, so that too large pictures are rejected
-/// before they take memory.
+/// A picture file of which only the header was read, so that its size and memory needs are known
+/// before decoding.
 pub struct Encoded<'a> {
     format: &'static Format,
     bytes: &'a [u8],
@@ -39,7 +39,7 @@ impl<'a> Encoded<'a> {
         self.format.depth
     }
 
-    /// Memory in bytes that [`Encoded::read8`] takes, without the bytes of the file.
+    /// Memory in bytes that [`Encoded::read8`] takes in addition to the bytes of the file.
     pub fn needed8(&self) -> u64 {
         (self.count as u64).saturating_mul(self.head.bytes_per_pixel).saturating_add(self.head.spare)
     }
@@ -50,8 +50,8 @@ impl<'a> Encoded<'a> {
         self.needed8().saturating_add(floats as u64)
     }
 
-    /// Memory in bytes that [`Encoded::read_raster`] takes, including one copy of the values to
-    /// their final place.
+    /// Memory in bytes that [`Encoded::read_raster`] takes, including one copy of the values by the
+    /// caller.
     pub fn needed_raster(&self) -> u64 {
         let texel = if self.head.eight { size_of::<[u8; 4]>() } else { size_of::<[f32; 4]>() };
         self.needed8().max((2 * self.count * texel) as u64)
@@ -81,8 +81,7 @@ impl<'a> Encoded<'a> {
         self.decode(self.needed_raster(), memory)
     }
 
-    /// Decodes the pixels. `decode` converts 8-bit values; the values of floating-point formats are
-    /// unchanged.
+    /// Decodes the pixels. 8-bit values are converted by `decode`, and others are not changed.
     ///
     /// # Errors
     /// Errors of [`Encoded::read8`].
@@ -90,8 +89,8 @@ impl<'a> Encoded<'a> {
         self.read_for(0, memory, decode)
     }
 
-    /// Decodes the pixels as [`Encoded::read`] does, and reserves `more` further bytes per pixel in
-    /// the memory limit for later processing.
+    /// Decodes the pixels as [`Encoded::read`] does. The memory limit must also allow `more` bytes
+    /// per pixel for later processing.
     ///
     /// # Errors
     /// Errors of [`Encoded::read`].
@@ -121,10 +120,10 @@ impl<'a> Encoded<'a> {
 /// Decodes a picture. The content determines the format or, failing that, the extension of
 /// `name_hint`.
 ///
-/// 8-bit values are divided by 255, without a transfer function, as the course uses its textures;
-/// see [`read_srgb`]. The values of floating-point formats are unchanged, including NaN and
-/// infinities. Alpha is dropped. At most [`pixel_limit`](super::pixel_limit) pixels are read;
-/// [`Encoded`] allows other limits.
+/// 8-bit values are divided by 255 without a transfer function, as the course does for textures;
+/// see also [`read_srgb`]. Values of floating-point formats are not changed, including NaN and
+/// infinities. Alpha is dropped. At most [`pixel_limit`](super::pixel_limit) pixels are read. For
+/// other limits, use [`Encoded`].
 ///
 /// # Errors
 /// Errors of [`Encoded::open`].

@@ -1,9 +1,9 @@
 //! Atomic file writes.
 //!
-//! Bytes are written to a temporary file in the target's folder and synced; then the file is
-//! renamed to the target. If anything fails, the old file is intact and no temporary file remains.
-//! The new file has the permissions of the old one, or those of an ordinary new file. Symbolic
-//! links are followed; hard links are not.
+//! Bytes are written to a temporary file in the same folder and synced, and then the file is
+//! renamed. If anything fails, the old file is intact and no temporary file remains. The new file
+//! has the permissions of the old one or, if there was none, those of any new file. Symbolic links
+//! are followed, but other hard links to the old file keep the old content.
 
 use super::content::Content;
 use super::temporary::{Temporary, remove_stale};
@@ -11,17 +11,17 @@ use std::fs::{self, File, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Error of saving a file. The old file, if any, is unchanged.
+/// Error from saving a file with [`save()`] or [`save_all()`]. The old file, if any, is unchanged.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SaveError {
-    /// A folder has this name.
+    /// The path is a folder.
     #[error("cannot write `{}`: it is a folder", path.display())]
     IsFolder {
         /// Target path.
         path: PathBuf,
     },
-    /// A disk or a socket has this name.
+    /// The path is neither a file nor a pipe, but for example a disk or a socket.
     #[error("cannot write `{}`: it is neither a file nor a pipe", path.display())]
     NotAFile {
         /// Target path.
@@ -33,7 +33,7 @@ pub enum SaveError {
         /// Target path.
         path: PathBuf,
     },
-    /// The path is a pipe without a reader, for which the system would wait.
+    /// The path is a pipe without a reader. Opening it would wait for one.
     #[error("cannot write `{}`: it is a pipe without a reader; start the reader first", path.display())]
     NobodyReads {
         /// Target path.
@@ -47,7 +47,7 @@ pub enum SaveError {
         /// The missing folder.
         folder: PathBuf,
     },
-    /// The system reported an error: no permission, no space left, or a closed pipe.
+    /// The system reported an error, such as missing permission, no space left, or a closed pipe.
     #[error("cannot write `{}`: {error}", path.display())]
     Io {
         /// Target path.
@@ -58,18 +58,18 @@ pub enum SaveError {
     },
 }
 
-/// A target path that was checked to be writable. Useful before a long render.
+/// Path of a file to save, checked to be writable, for example before a long render.
 #[derive(Debug)]
 pub struct Destination {
     path: PathBuf,
-    /// The open device or pipe, which is written directly. Kept open, so that its reader is not
-    /// lost in the meantime.
+    /// The open device or pipe, which is written directly. It is kept open, so that the reader of a
+    /// pipe does not see its end in the meantime.
     stream: Option<File>,
 }
 
 impl Destination {
-    /// Checks the path for known obstacles to saving, and removes temporary files that killed
-    /// programs left in its folder. Opens a pipe.
+    /// Checks that the path can be written, and opens it if it is a device or pipe. Also removes
+    /// temporary files that killed programs have left in its folder.
     ///
     /// # Errors
     /// [`SaveError`]. Saving may still fail later.
@@ -90,7 +90,7 @@ impl Destination {
         &self.path
     }
 
-    /// Returns true if the target is a device or a pipe, in which bytes cannot be replaced.
+    /// Returns true if the target is a device or a pipe, which cannot be replaced atomically.
     pub fn is_stream(&self) -> bool {
         self.stream.is_some()
     }
@@ -104,11 +104,11 @@ pub fn save(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), SaveError> {
     save_all(&[(&Destination::new(path.as_ref())?, bytes)])
 }
 
-/// Saves several files: writes all of them to temporary files before the first rename.
+/// Saves several files. All of them are written to temporary files before the first is renamed.
 ///
 /// # Errors
-/// [`SaveError`]. All files are then unchanged, unless a rename itself fails because the folders
-/// have changed meanwhile.
+/// [`SaveError`]. All files are then unchanged, unless one of the renames fails because its folder
+/// has changed in the meantime.
 pub fn save_all<C: Content>(files: &[(&Destination, C)]) -> Result<(), SaveError> {
     let mut staged = Vec::with_capacity(files.len());
     for (place, content) in files.iter().filter(|file| !file.0.is_stream()) {
@@ -130,7 +130,8 @@ pub fn save_all<C: Content>(files: &[(&Destination, C)]) -> Result<(), SaveError
     Ok(())
 }
 
-/// File to replace and its metadata, if it exists; `None` if the path is to be written directly.
+/// Returns the file to replace and its metadata, if it exists; `None` if the path is a device or
+/// pipe, which is written directly.
 fn resolve(path: &Path) -> Result<Option<(PathBuf, Option<fs::Metadata>)>, SaveError> {
     let io = |error| SaveError::Io { path: path.into(), error };
     let old = match fs::metadata(path) {
@@ -156,7 +157,7 @@ fn resolve(path: &Path) -> Result<Option<(PathBuf, Option<fs::Metadata>)>, SaveE
     Ok(Some((target, old)))
 }
 
-/// Returns true if bytes can be written to it sequentially.
+/// Returns true for a pipe or character device, to which bytes are written directly.
 fn is_pipe_or_device(old: &fs::Metadata) -> bool {
     #[cfg(unix)]
     {
@@ -170,8 +171,8 @@ fn is_pipe_or_device(old: &fs::Metadata) -> bool {
     }
 }
 
-/// Opens a device or pipe without blocking. Appends, since a redirected standard output is a file
-/// that may contain earlier bytes.
+/// Opens a device or pipe for appending, without waiting for a reader. Appending matters if
+/// standard output is redirected to a file, which can already contain bytes.
 fn open_stream(path: &Path) -> Result<File, SaveError> {
     let mut options = OpenOptions::new();
     options.append(true);
@@ -180,7 +181,7 @@ fn open_stream(path: &Path) -> Result<File, SaveError> {
         use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};
         use std::os::unix::fs::OpenOptionsExt;
         let opened = options.custom_flags(OFlags::NONBLOCK.bits() as i32).open(path).and_then(|stream| {
-            // Only opening must not block: a reader may be slow.
+            // Later writes must block, since the reader can be slow.
             fcntl_setfl(&stream, fcntl_getfl(&stream)?.difference(OFlags::NONBLOCK))?;
             Ok(stream)
         });
@@ -198,7 +199,7 @@ fn open_stream(path: &Path) -> Result<File, SaveError> {
 /// Writes the temporary file for a target.
 fn stage(path: &Path, content: &impl Content) -> Result<(Temporary, PathBuf), SaveError> {
     let io = |error| SaveError::Io { path: path.into(), error };
-    // The path may have changed its type since it was checked.
+    // The path may have become something else since it was checked.
     let (target, old) = resolve(path)?.ok_or_else(|| SaveError::NotAFile { path: path.into() })?;
     let temporary = Temporary::new_in(folder_of(&target)).map_err(io)?;
     if let Some(old) = old {
@@ -209,13 +210,13 @@ fn stage(path: &Path, content: &impl Content) -> Result<(Temporary, PathBuf), Sa
     Ok((temporary, target))
 }
 
-/// Folder of a file; the current one for a bare name.
+/// Folder of a file; the current folder if the path is only a file name.
 fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Returns true for names of open files. The shell that redirected them has the file open, and a
-/// rename would not reach it.
+/// Returns true for paths that name open files, such as `/dev/stdout`. A renamed file would not
+/// replace the one that is open.
 fn is_stream(path: &Path) -> bool {
     ["/dev/stdout", "/dev/stderr", "/dev/fd", "/proc"].iter().any(|stream| path.starts_with(stream))
 }

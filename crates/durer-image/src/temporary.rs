@@ -1,9 +1,9 @@
-//! Temporary files that leave nothing behind, even if the program is killed.
+//! Temporary files that are removed even if the program is killed.
 //!
-//! On Linux, the file has no name until it is complete (`O_TMPFILE`), and vanishes with the
-//! program. Elsewhere it has a name from the start, and on Linux it has one briefly before it
-//! replaces an old file. The next program removes temporary files left by a killed one: they lack
-//! the lock that a running program holds.
+//! On Linux, the file has no name until it is complete (`O_TMPFILE`), so it vanishes when the
+//! program ends. Only if it replaces an old file does it briefly have a temporary name. On other
+//! systems it has a temporary name from the start. The next program removes temporary files that a
+//! killed program has left, which it recognises because they are not locked.
 
 use std::fs::{self, File};
 use std::io;
@@ -11,17 +11,17 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tempfile::NamedTempFile;
 
-/// Prefix and suffix of temporary file names. Files that were complete before they got a name begin
-/// with `READY`.
+/// Prefix and suffix of temporary file names. The names of files that were complete before they got
+/// a name begin with `READY`.
 const PREFIX: &str = ".durer-";
 const READY: &str = ".durer-ready-";
 const SUFFIX: &str = ".tmp";
 
-/// Minimum age at which an unlocked file that may be incomplete is removed: its program may be
-/// about to lock it.
+/// Age above which an unlocked file that may be incomplete is removed. A younger one may be about
+/// to be locked by a running program.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// A file that is not yet at its target.
+/// A temporary file that is being written and then moved to its target by [`Temporary::persist`].
 pub(super) enum Temporary {
     /// A file without a name.
     #[cfg(target_os = "linux")]
@@ -58,7 +58,7 @@ impl Temporary {
             #[cfg(target_os = "linux")]
             Temporary::Unnamed(file, folder) => match link(&file, target) {
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-                    // A link cannot replace a file, but a rename can, which needs a name.
+                    // A link cannot replace a file. A rename can, but needs a temporary name.
                     let link = |path: &Path| link(&file, path);
                     let (_, path) = builder(READY).make_in(folder, link)?.into_parts();
                     return path.persist(target).map_err(|failed| failed.error);
@@ -103,7 +103,8 @@ fn link(file: &File, path: &Path) -> io::Result<()> {
     Ok(rustix::fs::linkat(CWD, own, CWD, path, AtFlags::SYMLINK_FOLLOW)?)
 }
 
-/// Locks the file, so that cleanup skips it. Without locks, only its age protects it.
+/// Locks the file, so that other programs do not remove it. If locks are not supported, they keep
+/// it only while it is young.
 fn lock(file: &File) {
     #[cfg(unix)]
     let _ = rustix::fs::flock(file, rustix::fs::FlockOperation::NonBlockingLockExclusive);

@@ -3,15 +3,15 @@
 use durer_bvh::math::{Vec3, fp};
 use std::sync::LazyLock;
 
-/// Transfer function from linear values to 8-bit values.
+/// Transfer function that converts linear values to 8-bit values, such as the sRGB curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Transfer {
-    /// The curve of IEC 61966-2-1, rounded to nearest, as screens expect.
+    /// The sRGB curve of IEC 61966-2-1, which screens expect, with rounding to nearest.
     #[default]
     Srgb,
-    /// No curve, rounded to nearest.
+    /// No curve, with rounding to nearest.
     Linear,
-    /// No curve, truncated instead of rounded, as in the programs of the course.
+    /// No curve, with truncation instead of rounding, as in the programs of the course.
     Course,
 }
 
@@ -51,16 +51,17 @@ impl Transfer {
 /// Lookup table for 8-bit sRGB.
 static SRGB: LazyLock<SrgbTable> = LazyLock::new(SrgbTable::new);
 
-/// Thresholds of the 256 steps of the sRGB curve.
+/// Lookup table that encodes linear values as 8-bit sRGB, from the thresholds of its 256 steps.
 struct SrgbTable {
     /// Least linear value of each step, followed by infinity.
     least: [f32; 257],
-    /// Step at the beginning of each of [`CELLS`] equal parts of [0, 1]. A part contains at most
-    /// one threshold.
+    /// Step at the start of each of [`CELLS`] equal intervals of [0, 1]. An interval contains at
+    /// most one threshold.
     guide: [u8; CELLS + 1],
 }
 
-/// Number of cells. The curve is steepest at black: 255 * 12.92 steps per unit.
+/// Number of intervals of the lookup table. It exceeds the steepest slope of the curve, which is
+/// 255 * 12.92 steps per unit at black.
 const CELLS: usize = 4096;
 
 impl SrgbTable {
@@ -92,10 +93,10 @@ fn round(value: f32) -> u8 {
     (value * 255.0).round() as u8
 }
 
-/// `(int)(value * 255)`, then clamped.
+/// Computes `(int)(value * 255)` as in C, then clamps to 0..=255.
 ///
-/// Values that do not fit an `int` (infinities, NaN, and very large values) became the least `int`
-/// on the machines of the course, and so 0.
+/// On the machines of the course, values that do not fit an `int` (infinities, NaN, and very large
+/// values) became the least `int` and were then clamped to 0.
 fn truncate(value: f32) -> u8 {
     let scaled = value * 255.0;
     if scaled < i32::MAX as f32 { (scaled as i32).clamp(0, 255) as u8 } else { 0 }
@@ -111,12 +112,12 @@ pub fn decode_linear(value: u8) -> f32 {
     f32::from(value) / 255.0
 }
 
-/// Linear value of an 8-bit sRGB value: the inverse curve of IEC 61966-2-1.
+/// Converts an 8-bit sRGB value to a linear one by the inverse curve of IEC 61966-2-1.
 pub fn decode_srgb(value: u8) -> f32 {
     linear_from_srgb(decode_linear(value))
 }
 
-/// Linear value of an sRGB value in [0, 1].
+/// Converts an sRGB value in [0, 1] to a linear one.
 pub fn linear_from_srgb(value: f32) -> f32 {
     if value <= 0.04045 { value / 12.92 } else { fp::pow((value + 0.055) / 1.055, 2.4) }
 }

@@ -12,7 +12,7 @@ use glam::DVec3;
 /// Maximum number of objects that are listed.
 const MAX_TESTS: usize = 200;
 
-/// Intersects a ray (world space) with every object and reports each result.
+/// Intersects a ray in world space with every object, and reports the result for each object.
 pub(crate) fn cast(compiled: &CompiledDocument, ray: &Ray) -> CastAccount {
     let world = &compiled.world;
     let ray64 = Ray64::from(*ray);
@@ -175,7 +175,7 @@ fn plane(it: &Plane, line: &Line) -> Vec<Row> {
     rows
 }
 
-/// Solves o + t d = a + β (b − a) + γ (c − a) by Cramer's rule.
+/// Returns the rows that solve o + t d = a + β (b − a) + γ (c − a) by Cramer's rule.
 fn triangle(corners: [Vec3; 3], line: &Line) -> Vec<Row> {
     let [a, b, c] = corners.map(|corner| corner.as_dvec3());
     let (e1, e2, s, d) = (b - a, c - a, line.origin - a, line.dir);
@@ -204,7 +204,7 @@ fn triangle(corners: [Vec3; 3], line: &Line) -> Vec<Row> {
     rows
 }
 
-/// Returns the crossings of a line with any other shape, as computed by the shape itself.
+/// Returns the values of t at which a line crosses any other shape, without formulas.
 fn crossings(shape: &Primitive, back: Vec3, line: &Line) -> Vec<Row> {
     let moved = Line { origin: line.origin - back.as_dvec3(), dir: line.dir };
     let mut found: Vec<f64> = Vec::new();

@@ -1,4 +1,4 @@
-//! Conversion of linear radiance to the 8-bit pixels of a page.
+//! Conversion of linear colours to the 8-bit pixels that a page shows.
 
 use durer::image::{Display, Layer, Tone, Transfer};
 

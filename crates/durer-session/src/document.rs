@@ -23,16 +23,16 @@ use std::sync::Arc;
 /// File number of the scene's own file.
 const OWN: u32 = 0;
 
-/// An editable scene file.
+/// The scene file that a session edits, with its compiled form.
 pub(crate) struct Document {
     pub path: PathBuf,
     pub bytes: Arc<[u8]>,
     pub options: LoadOptions,
-    /// Compiled form of the last text without errors.
+    /// Compiled form of the last version of the text that had no errors.
     pub compiled: Option<CompiledDocument>,
 }
 
-/// A text without errors, and its compiled world.
+/// A scene that was read without errors, and its compiled world, from which a session renders.
 pub(crate) struct CompiledDocument {
     loaded: LoadedScene,
     pub world: World,
@@ -53,8 +53,8 @@ impl Document {
         if self.is_model() { None } else { std::str::from_utf8(&self.bytes).ok() }
     }
 
-    /// Reads and compiles the text. Returns true on success, and the findings. After errors, the
-    /// previous compiled scene remains.
+    /// Reads and compiles the text. Returns true on success, and the findings. If there are errors,
+    /// the previous compiled scene is kept.
     pub fn compile(&mut self) -> (bool, Vec<Finding>) {
         let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
         let loaded = load_text(&self.path, self.bytes.clone(), &self.options, &mut files, &mut diagnostics);
@@ -66,7 +66,8 @@ impl Document {
         (true, findings)
     }
 
-    /// True for a file that is not text in the scene language: a mesh, a glTF file, or other bytes.
+    /// Returns true if the file is not text in the scene language, but for example a mesh or a glTF
+    /// file.
     pub fn is_model(&self) -> bool {
         let name = self.path.to_string_lossy();
         let is_written = |format: &SceneFormat| format.write.is_some();
@@ -75,8 +76,8 @@ impl Document {
             || find_scene_format(&self.bytes, &name).is_some_and(is_written)
     }
 
-    /// Changes the scene of a model and compiles it again. After an error the document is
-    /// unchanged.
+    /// Changes the scene of a model and compiles it again. If that fails, the document is not
+    /// changed.
     pub fn change(&mut self, change: impl FnOnce(&mut Scene) -> Result<(), String>) -> Result<(), String> {
         let compiled = self.compiled.as_mut().ok_or("the scene has errors")?;
         let before = compiled.loaded.scene.clone();
@@ -100,8 +101,8 @@ impl Document {
         }
     }
 
-    /// Scene as text in the scene language, and the files that the text names. The camera is the
-    /// picture's current one.
+    /// Converts the scene to text in the scene language, with the current camera. Also returns the
+    /// files to which the text refers.
     pub fn as_text(&self) -> Result<(String, Vec<AssetFile>), String> {
         let compiled = self.compiled.as_ref().ok_or("the scene has errors")?;
         let stem = plain(&self.path.file_stem().unwrap_or_default().to_string_lossy());
@@ -110,7 +111,7 @@ impl Document {
         Ok((write(&scene, Dialect::Durer), files))
     }
 
-    /// Byte range of the camera's statement in the text, from its keyword to its closing brace.
+    /// Byte range of the camera statement in the text, from its keyword to its closing brace.
     pub fn camera_statement(&self) -> Option<(usize, usize)> {
         let compiled = self.compiled.as_ref()?;
         let span = compiled.loaded.scene.camera_span;

@@ -1,4 +1,4 @@
-//! Fields of cameras and materials, for sliders.
+//! Fields of cameras and materials, which a page shows as sliders.
 
 use crate::protocol::FieldState;
 use durer::describe::{Constraint, DescribedList, Field, Value};
@@ -10,7 +10,7 @@ pub(crate) fn field_states(list: &impl DescribedList) -> Vec<FieldState> {
     list.fields().iter().enumerate().map(|(i, field)| state(field, list.get(i))).collect()
 }
 
-/// Sets the numbers of a field, which is given by its keyword in the scene language.
+/// Sets the numbers of the field with the keyword `word` in the scene language.
 pub(crate) fn set_numbers(list: &mut impl DescribedList, word: &str, numbers: &[f32]) -> Result<(), String> {
     let fields = list.fields();
     let at = fields.iter().position(|field| spelled(field) == word).ok_or_else(|| format!("no field `{word}`"))?;
@@ -18,7 +18,7 @@ pub(crate) fn set_numbers(list: &mut impl DescribedList, word: &str, numbers: &[
         (Some(Value::Vec3(_)), &[x, y, z]) => Value::Vec3(Vec3::new(x, y, z)),
         (Some(Value::Int(_)), &[x]) if x >= 0.0 => Value::Int(x as u32),
         (Some(Value::Float(_)) | None, &[x]) => Value::Float(x),
-        _ => return Err(format!("`{word}` has another form")),
+        _ => return Err(format!("`{word}` takes a different number or type of values")),
     };
     fields[at].rule.validate(&value).map_err(|wrong| format!("`{word}` {wrong}"))?;
     list.set(at, value);

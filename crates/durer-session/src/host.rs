@@ -4,17 +4,18 @@ use crate::protocol::{Answer, Ask, Event, Request};
 use crate::session::{Clock, Session, Start};
 use std::collections::BTreeMap;
 
-/// Maximum number of sessions; each holds a scene in memory.
+/// Maximum number of sessions. It is limited because each holds a scene in memory.
 const MAX_SESSIONS: usize = 64;
 
-/// The sessions of a page.
+/// The sessions of one connection from a page: passes messages to them and shares the time between
+/// them.
 pub struct Host {
     start: Start,
     clock: Clock,
     sessions: BTreeMap<u32, Session>,
-    /// Session that received the last request; it has priority for coarse pictures.
+    /// Session that received the last request. Its coarse pictures have priority.
     latest: u32,
-    /// Session that worked last; the others get their turn before it.
+    /// Session that worked last, for taking turns.
     worked: u32,
 }
 
@@ -29,7 +30,7 @@ impl Host {
         let Ask { session, id, request } = match serde_json::from_str(message) {
             Ok(ask) => ask,
             Err(error) => {
-                // The error may quote the message, which may be long.
+                // Truncate the error, which can quote a long message.
                 let why: String = format!("invalid request: {error}").chars().take(200).collect();
                 let event = Event::Refused { why };
                 return send(Answer { session: 0, id: 0, event }.encode(&[]));
@@ -58,8 +59,8 @@ impl Host {
         self.sessions.values().any(Session::is_busy)
     }
 
-    /// Works for a few milliseconds. Sessions whose last change is not visible yet come first,
-    /// starting with the one that received the last request; the others take turns.
+    /// Works for a few milliseconds. Sessions whose last change is not visible yet have priority,
+    /// first the one that received the last request. The others take turns.
     pub fn step(&mut self, send: &mut dyn FnMut(Vec<u8>)) {
         let Some(session) = self.next() else { return };
         self.worked = session;
@@ -75,7 +76,7 @@ impl Host {
         first.or_else(|| turns.filter(|(_, session)| session.is_busy()).map(|(id, _)| *id).next())
     }
 
-    /// Notifies pages of files that changed on disk.
+    /// Notifies the page of scene files that have changed on disk.
     #[cfg(feature = "fs")]
     pub fn look_at_disk(&mut self, send: &mut dyn FnMut(Vec<u8>)) {
         for (&session, found) in &mut self.sessions {

@@ -1,5 +1,5 @@
-//! Contents of a scene: groups, objects and materials. The text of a scene is edited elsewhere;
-//! models have no text, so their materials are edited here.
+//! Contents of a scene: groups, objects and materials. Scenes with text are edited as text, but the
+//! materials of models, which have no text, are edited here.
 
 use crate::document::CompiledDocument;
 use crate::fields::{field_states, set_numbers};
@@ -8,7 +8,7 @@ use durer::describe::DescribedList;
 use durer::dialect::Dialect;
 use durer::scene::{Material, Node, Object, Scene};
 
-/// Maximum number of nodes and of materials.
+/// Maximum number of nodes, and of materials, that are listed.
 const MAX_NODES: usize = 2000;
 
 /// Returns the objects of a scene as a tree of groups.
@@ -18,7 +18,7 @@ pub(crate) fn nodes(compiled: &CompiledDocument) -> Vec<TreeNode> {
     root.map_while(|object| node(compiled, object, &mut left)).collect()
 }
 
-/// Returns an object with its subtree; `None` beyond the maximum.
+/// Returns an object with its subtree; `None` if the maximum number of nodes is reached.
 fn node(compiled: &CompiledDocument, object: &Object, left: &mut usize) -> Option<TreeNode> {
     *left = left.checked_sub(1)?;
     let below: &[Object] = match &object.node {

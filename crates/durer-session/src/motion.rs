@@ -1,4 +1,4 @@
-//! Camera motions.
+//! Applies motions, such as orbit and pan, to the camera.
 
 use crate::fields::{field_states, set_numbers};
 use crate::protocol::{CameraState, Motion};
@@ -19,8 +19,8 @@ pub(crate) fn distance(world: &World) -> f32 {
     let bounds = world.bounds();
     let center = if bounds.is_empty() { 1.0 } else { (bounds.center() - frame.eye).dot(frame.forward) };
     let hit = world.closest(&ray, &mut ()).map(|hit| hit.t).filter(|t| t.is_finite());
-    // Ignore a hit far beyond the scene, such as a ground plane near the horizon: it is not a
-    // useful center of an orbit.
+    // Ignore a hit far beyond the scene, for example on a ground plane near the horizon, since it
+    // is not a useful centre of an orbit.
     let size = if bounds.is_empty() { f32::INFINITY } else { bounds.size().length() };
     let near = hit.filter(|&t| t <= center.max(0.0) + size);
     near.unwrap_or(center).max(1e-3 * frame.eye.length().max(1.0))
@@ -93,7 +93,7 @@ fn turned(forward: Vec3, axis: Vec3, right: Vec3, around: f32, towards: f32) -> 
     (Quat::from_axis_angle(axis, around) * pitched).normalize_or(forward)
 }
 
-/// Sets the numbers of a camera's field, which is given by its keyword in the scene language.
+/// Sets the numbers of the camera field with the keyword `word` in the scene language.
 pub(crate) fn set_field(camera: &mut Camera, word: &str, numbers: &[f32]) -> Result<(), String> {
     let mut changed = camera.clone();
     set_numbers(&mut changed, word, numbers)?;

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 #[cfg(test)]
 use ts_rs::TS;
 
-/// A message to a session.
+/// A message from a page to a session: a request, with the number of the session.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Ask {
@@ -27,7 +27,7 @@ pub struct Ask {
     pub request: Request,
 }
 
-/// A message from a session.
+/// A message from a session to a page: an event, with the number of the request that it answers.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Answer {
@@ -39,7 +39,8 @@ pub struct Answer {
     pub event: Event,
 }
 
-/// Requests from a page.
+/// A request from a page to a session, such as opening a scene, moving the camera, or explaining a
+/// pixel.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(tag = "kind", rename_all = "snake_case")]
@@ -52,7 +53,7 @@ pub enum Request {
         /// Text of the scene; `None` for a file.
         text: Option<String>,
     },
-    /// Uploads a file that the scene refers to.
+    /// Uploads a scene file, or a file to which the scene refers.
     Give {
         /// Name of the file, as written in the scene.
         name: String,
@@ -73,7 +74,7 @@ pub enum Request {
         /// Height in pixels.
         height: u32,
     },
-    /// Selects the picture to show and its display transform.
+    /// Selects the picture to show, and its exposure and tone curve.
     Show {
         /// `color`, or the name of an auxiliary picture.
         picture: String,
@@ -82,7 +83,7 @@ pub enum Request {
         /// Name of the tone curve.
         tone: String,
     },
-    /// Sets the options of the job. Options that are not listed follow from the scene.
+    /// Sets the options of the render job. Options that are not listed have the scene's defaults.
     Options {
         /// Names and values, as on the command line.
         options: Vec<Setting>,
@@ -103,7 +104,7 @@ pub enum Request {
         /// True while the motion continues.
         moving: bool,
     },
-    /// Replaces the camera by a perspective camera. Answer: [`Event::Camera`].
+    /// Replaces the camera with a perspective camera. Answer: [`Event::Camera`].
     Look {
         /// Position of the eye in world space.
         center: [f32; 3],
@@ -146,7 +147,8 @@ pub enum Request {
         /// The requested row; `None` for all rows.
         row: Option<u32>,
     },
-    /// Requests the traversal of a structure over the objects by a ray. Answer: [`Event::Walk`].
+    /// Requests the steps in which a ray traverses an acceleration structure over the objects.
+    /// Answer: [`Event::Walk`].
     Walk {
         /// Structure to traverse.
         structure: Structure,
@@ -155,7 +157,8 @@ pub enum Request {
         /// Direction of the ray, of any length.
         direction: [f32; 3],
     },
-    /// Requests the boxes of the trees over objects and triangles. Answer: [`Event::Boxes`].
+    /// Requests the bounding boxes of the BVHs over objects and triangles. Answer:
+    /// [`Event::Boxes`].
     Boxes,
     /// Requests the values of some pixels. Answer: [`Event::Values`].
     Values {
@@ -198,7 +201,8 @@ pub enum Request {
     /// Converts a model to text in the scene language, with separate asset files. Answer:
     /// [`Event::Opened`], then [`Event::Scene`].
     AsText,
-    /// Requests the scene's text and its files. Answer: [`Event::Packed`], followed by their bytes.
+    /// Requests the text of the scene and the files to which it refers. Answer: [`Event::Packed`],
+    /// followed by their bytes.
     Pack,
     /// Requests the lesson that the server was started with. Answer: [`Event::Lesson`].
     Lesson,
@@ -225,7 +229,7 @@ pub enum Request {
     Close,
 }
 
-/// Events from a session.
+/// An event from a session to a page: the answer to a request, a new picture, or a notification.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(tag = "kind", rename_all = "snake_case")]
@@ -247,7 +251,7 @@ pub enum Event {
         /// Integrators.
         integrators: Vec<Choice>,
     },
-    /// A text was read.
+    /// The text of the scene was read and compiled.
     Scene {
         /// Findings of the parser and the compiler.
         findings: Vec<Finding>,
@@ -266,7 +270,7 @@ pub enum Event {
         /// The current camera.
         camera: CameraState,
     },
-    /// A picture. The payload holds four bytes per pixel: red, green, blue, coverage.
+    /// A picture to show. The payload holds four bytes per pixel: red, green, blue, coverage.
     Picture {
         /// Description of the payload.
         head: PictureHead,
@@ -286,12 +290,12 @@ pub enum Event {
         /// The rays.
         rays: Vec<Option<RayAccount>>,
     },
-    /// Traversal of a structure by a ray.
+    /// Traversal of an acceleration structure by a ray.
     Walk {
         /// The traversal.
         walk: WalkAccount,
     },
-    /// Boxes of the trees.
+    /// Bounding boxes of the BVHs.
     Boxes {
         /// Boxes, level by level, up to a limit.
         boxes: Vec<BoxState>,
@@ -340,7 +344,7 @@ pub enum Event {
         /// Keywords that begin a statement.
         words: Vec<Word>,
     },
-    /// The session changed the text, or the file changed on disk.
+    /// The session has changed the text, or the file has changed on disk.
     Text {
         /// The new text.
         text: String,
@@ -354,7 +358,7 @@ pub enum Event {
     },
     /// The text was saved.
     Saved,
-    /// The file changed since it was read; it was not overwritten.
+    /// The text was not saved, because the file has changed since it was read.
     Conflict,
     /// The request failed.
     Refused {

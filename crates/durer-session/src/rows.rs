@@ -1,4 +1,4 @@
-//! Formulas with their numbers.
+//! Rows of explanations: formulas with their numbers.
 
 use crate::protocol::Row;
 use glam::DVec3;

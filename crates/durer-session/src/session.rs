@@ -1,4 +1,4 @@
-//! One scene with its camera and its picture, for one viewer.
+//! A session: a scene with its camera and picture, for one view of a page.
 
 mod disk;
 
@@ -19,10 +19,11 @@ use durer::world::{Epsilon, Geometry};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// File name and content.
+/// Name and content of a file of a packed scene.
 type NamedBytes = (String, Arc<[u8]>);
 
-/// Clock in milliseconds, with an arbitrary origin.
+/// Function that returns the time in milliseconds since an arbitrary origin, for time budgets of
+/// sessions.
 pub type Clock = Arc<dyn Fn() -> f64 + Send + Sync>;
 
 /// Maximum number of objects that are listed.
@@ -30,19 +31,19 @@ const MAX_THINGS: usize = 2000;
 /// Maximum size of a text or file from a page, in bytes.
 const MAX_BYTES: usize = 256 << 20;
 
-/// Starting state of a session.
+/// Files of the server with which new sessions start: a scene file and a lesson.
 #[derive(Clone, Debug, Default)]
 pub struct Start {
-    /// File that is opened and saved if a page does not name one.
+    /// Scene file that is opened and saved if a page does not name one.
     pub file: Option<PathBuf>,
     /// A teacher's lesson in Markdown. The scenes that it names are in the same folder.
     pub lesson: Option<PathBuf>,
 }
 
-/// A message to the page, and its payload.
+/// An event for the page, and its payload.
 pub(crate) type Message = (Event, Vec<u8>);
 
-/// One scene, its camera and its picture.
+/// An interactive session: answers requests about one scene and renders its picture progressively.
 pub struct Session {
     start: Start,
     clock: Clock,
@@ -55,7 +56,7 @@ pub struct Session {
     paused: bool,
     /// Minimum `t` of secondary rays; `None` for exact ray origins.
     epsilon: Option<f32>,
-    /// Stamp of the scene's file when it was last read or saved.
+    /// Stamp of the scene file when it was last read or saved.
     #[cfg(feature = "fs")]
     stamp: Option<durer::source::Stamp>,
     /// Stamp of the file when the page was last notified.
@@ -95,7 +96,7 @@ impl Session {
         !self.paused && self.viewer.is_urgent()
     }
 
-    /// Handles a request immediately.
+    /// Answers a request. Pictures are rendered later, by [`Session::step`].
     pub(crate) fn handle(&mut self, request: Request, say: &mut dyn FnMut(Message)) {
         if let Err(why) = self.answer(request, say) {
             say((Event::Refused { why }, Vec::new()));
@@ -184,7 +185,7 @@ impl Session {
             }
             Request::Epsilon { epsilon } => {
                 if epsilon.is_some_and(|epsilon| !(0.0..=1e6).contains(&epsilon)) {
-                    return Err("epsilon is a number from 0".into());
+                    return Err("epsilon must be a number from 0 to 1000000".into());
                 }
                 self.epsilon = epsilon;
                 self.read(false, &mut send)?;
@@ -195,7 +196,7 @@ impl Session {
             }
             Request::Material { number, name, values } => {
                 let document = self.document.as_mut().filter(|document| document.is_model());
-                let document = document.ok_or("materials of a text are changed in the text")?;
+                let document = document.ok_or("this scene has a text: edit its materials there")?;
                 document.change(|scene| model::set_material(scene, number, &name, &values))?;
                 self.restart();
                 let contents = Some(self.contents()?);
@@ -268,8 +269,8 @@ impl Session {
         self.begin(path, bytes, send)
     }
 
-    /// Path of a scene from a page. It always lies in the folder of the server's file, so the scene
-    /// can refer to files in that folder only.
+    /// Path of a scene that a page has sent. It is always in the folder of the server's file, so
+    /// the scene can only refer to files in that folder.
     fn beside(&self, name: &str) -> PathBuf {
         let own = self.start.file.as_deref().or(self.start.lesson.as_deref());
         let folder = own.and_then(Path::parent).unwrap_or(Path::new(""));
@@ -438,7 +439,7 @@ impl Session {
         Ok(Event::Walk { walk: walk::walk(&self.compiled()?.world, structure, &ray)? })
     }
 
-    /// Converts a model to text with asset files, which is edited from then on.
+    /// Converts a model to text with asset files. From then on, the text is edited.
     fn become_text(&mut self, send: &mut dyn FnMut(Event)) -> Result<(), String> {
         let document = self.document.as_mut().ok_or("no scene is open")?;
         let (text, files) = document.as_text()?;
@@ -511,7 +512,7 @@ fn picture((head, bytes): PictureMessage) -> Message {
 
 fn read(path: &Path) -> Result<Arc<[u8]>, String> {
     let wrong = |error: std::io::Error| format!("{}: {error}", path.display());
-    // Reading a pipe or a device may never end.
+    // Reading a pipe or a device might never end.
     if !std::fs::metadata(path).map_err(wrong)?.is_file() {
         return Err(format!("{}: not a file", path.display()));
     }

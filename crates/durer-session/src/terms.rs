@@ -1,4 +1,4 @@
-//! Tree of terms of a pixel's radiance, each with its formula and numbers.
+//! Explains the radiance of a pixel as a tree of terms, each with its formula and numbers.
 
 use crate::document::CompiledDocument;
 use crate::protocol::{PixelAccount, Role, Row, Segment, Term};
@@ -12,7 +12,8 @@ use durer::render::Job;
 use durer::render::explain::{Explanation, Names};
 use durer::world::emitters::LightId;
 
-/// Explains a pixel by one of its samples; `None` selects the sample with the largest contribution.
+/// Explains a pixel by one of its samples. If `sample` is `None`, it is the one with the largest
+/// contribution.
 pub(crate) fn account(
     compiled: &CompiledDocument,
     job: &Job,
@@ -48,7 +49,7 @@ pub(crate) fn account(
     }
 }
 
-/// Formulas of the camera ray through a position in the picture.
+/// Returns the formulas of the camera ray through a position in the picture.
 fn camera_rows(compiled: &CompiledDocument, job: &Job, place: Vec2) -> Vec<Row> {
     let world = &compiled.world;
     let raster = durer::render::raster(world, job.width, job.height);
@@ -72,7 +73,7 @@ fn camera_rows(compiled: &CompiledDocument, job: &Job, place: Vec2) -> Vec<Row> 
     rows
 }
 
-/// Vectors of the enclosing terms.
+/// Vectors of the enclosing terms that the formulas of a term refer to.
 #[derive(Clone, Default)]
 struct TermContext {
     dir: Vec3,
@@ -80,6 +81,7 @@ struct TermContext {
     to_light: Vec3,
 }
 
+/// Converter of the trace of a pixel sample to the tree of [`Term`]s for the page.
 struct TermFormatter<'a> {
     compiled: &'a CompiledDocument,
     names: Names<'a>,

@@ -1,4 +1,4 @@
-//! Progressive rendering from coarse to fine, in steps of a few milliseconds.
+//! Renders the picture of a session from coarse to fine, in steps of a few milliseconds.
 
 use crate::display::{display, pixels};
 use crate::document::CompiledDocument;
@@ -9,21 +9,22 @@ use durer::image::Layer;
 use durer::job::View;
 use durer::render::{Control, Crop, Job, ProgressiveRender, RenderError, Sampling};
 
-/// Time budget for a coarse picture in milliseconds: while the camera moves, and otherwise.
+/// Time budgets for a coarse picture in milliseconds: `MOVING` while the camera moves, and
+/// `RESTING` otherwise.
 const MOVING: f64 = 24.0;
 const RESTING: f64 = 45.0;
-/// Duration of a step in milliseconds; messages are handled between steps.
+/// Duration of a step in milliseconds. Messages are handled between steps.
 const STEP: f64 = 12.0;
-/// Time between pictures of one render, in milliseconds.
+/// Time between pictures that are sent during one render, in milliseconds.
 const BETWEEN: f64 = 160.0;
-/// Sizes of a coarse picture's blocks, in pixels.
+/// Possible sizes of the blocks of a coarse picture, in pixels.
 const DIVISORS: [u32; 9] = [1, 2, 3, 4, 5, 6, 8, 12, 16];
 /// Maximum width and height of a picture, in pixels.
 const LARGEST: u32 = 8192;
 /// Maximum number of pixels whose values are sent in one answer.
 const MAX_VALUES: u64 = 4096;
 
-/// The picture of a session.
+/// Progressive renderer of the picture that a session shows, with its display settings.
 pub(crate) struct Viewer {
     pub width: u32,
     pub height: u32,
@@ -42,26 +43,27 @@ pub(crate) struct Viewer {
     tiles: u64,
     changed: f64,
     reported: f64,
-    /// Last finished picture, to show it with other display settings or to export it.
+    /// Last finished picture, kept to show it with other display settings or to export it.
     shown: Option<ProgressiveRender>,
-    /// Denoised picture, if it was requested.
+    /// Denoised version of the finished picture, if denoising is on.
     clean: Option<Layer>,
     rays: u64,
     /// Time at which the fine picture was started.
     began: f64,
 }
 
-/// Stage of the picture.
+/// Stage of progressive rendering in a [`Viewer`]: idle, coarse picture, or full picture.
 enum Stage {
     /// No work is left.
     Rest,
     /// A coarse picture is next.
     Coarse,
-    /// The full picture, with the samples per pixel of the last complete pass.
+    /// The full picture is being rendered. The number is the samples per pixel after the last
+    /// complete pass.
     Fine(Box<ProgressiveRender>, Option<u32>),
 }
 
-/// A picture for the page: its description and its pixels.
+/// A picture to send to the page: its description and its pixels.
 pub(crate) type PictureMessage = (PictureHead, Vec<u8>);
 
 impl Viewer {
@@ -107,7 +109,7 @@ impl Viewer {
         (self.stage, self.changed, self.rays) = (Stage::Coarse, now, 0);
     }
 
-    /// Discards the measured cost and the last picture when another scene is opened.
+    /// Discards the measured cost and the last picture. Called when another scene is opened.
     pub fn forget(&mut self) {
         (self.cost, self.shown, self.clean, self.crop) = (None, None, None, None);
     }
@@ -193,8 +195,8 @@ impl Viewer {
         while render.next_pass(&compiled.world, &control).map_err(wrong)?.is_some() {}
         let shown = self.picture_of(&render, divisor, 1, None)?;
         let made = (clock() - start) / coarse.window().pixels() as f64;
-        // Average the cost, so that the influence of a first picture with cold caches or a coarse
-        // clock soon fades.
+        // Average the cost with its previous value, so that outliers from cold caches or a coarse
+        // clock have little effect after a few pictures.
         let known = self.cost.map_or(made, |cost| 0.5 * (cost + made));
         self.cost = (made > 0.0).then_some(known).or(self.cost);
         self.tiles = self.cost.map_or(4, |cost| ((STEP / cost / 256.0) as u64).clamp(2, 4096));
@@ -343,7 +345,7 @@ impl Viewer {
     }
 }
 
-/// Intersection of a crop with the picture; at least one pixel.
+/// Clips a crop to the picture `whole`, but keeps at least one pixel.
 fn within(crop: Crop, whole: Crop) -> Crop {
     let left = crop.left.clamp(whole.left, whole.left + whole.width - 1);
     let top = crop.top.clamp(whole.top, whole.top + whole.height - 1);

@@ -1,4 +1,4 @@
-//! Camera rays, and the traversal of structures over the objects by rays.
+//! Camera rays, and the steps in which rays traverse acceleration structures over the objects.
 
 use crate::protocol::{BoxState, RayAccount, Structure, WalkAccount, WalkStep, WalkTest};
 use durer::bvh::{Bvh, Grid};
@@ -6,10 +6,10 @@ use durer::math::{Aabb, Ray, Ray64, Vec3};
 use durer::render::{center_ray, raster};
 use durer::world::{Accel, Geometry, Object, World};
 
-/// Maximum number of boxes.
+/// Maximum number of boxes that are sent.
 const MAX_BOXES: usize = 3000;
-/// Maximum number of rays, and maximum number of objects over which a structure is built for one
-/// ray.
+/// Maximum number of camera rays in one answer. `MAX_OBJECTS` is the maximum number of objects over
+/// which a structure is built to show one traversal.
 const MAX_RAYS: u32 = 1 << 16;
 const MAX_OBJECTS: usize = 20_000;
 
@@ -34,7 +34,7 @@ pub(crate) fn rays(
     Ok(wanted.flat_map(|y| (0..columns).map(move |x| (x, y))).map(one).collect())
 }
 
-/// Tests objects against a ray, and keeps the nearest hit.
+/// Tests objects against a ray during a traversal, and keeps the closest hit.
 struct Walker<'a> {
     world: &'a World,
     ray: Ray64,
@@ -42,7 +42,7 @@ struct Walker<'a> {
 }
 
 impl Walker<'_> {
-    /// Tests an object.
+    /// Tests an object, and records the hit if it is the closest so far.
     fn test(&mut self, object: u32) -> WalkTest {
         let t = self.world.hit_of(object, &self.ray).map(|hit| hit.t);
         let test = WalkTest { object, t };
@@ -53,7 +53,7 @@ impl Walker<'_> {
         test
     }
 
-    /// Returns the end of the interval in which hits count.
+    /// Returns the end of the interval of `t` in which a hit can be the closest one.
     fn end(&self) -> f32 {
         self.closest.and_then(|closest| closest.t).map_or(self.ray.rounded.t_max, f32::next_up)
     }
@@ -64,8 +64,8 @@ impl Walker<'_> {
     }
 }
 
-/// Traverses a structure, built over all bounded objects, with a ray. Unbounded objects such as
-/// planes are tested first.
+/// Builds a structure over all bounded objects, and records how a ray traverses it. Unbounded
+/// objects such as planes are tested first.
 pub(crate) fn walk(world: &World, structure: Structure, ray: &Ray) -> Result<WalkAccount, String> {
     let objects = world.objects();
     if objects.len() > MAX_OBJECTS {
@@ -128,9 +128,8 @@ pub(crate) fn walk(world: &World, structure: Structure, ray: &Ray) -> Result<Wal
     Ok(WalkAccount { steps, visits, tests, objects: count, hit: walker.closest, boxes: shown })
 }
 
-/// Returns the boxes of the tree over the objects and, below it, of the trees over their meshes'
-/// triangles. A world with few objects has no tree; its boxes are those of the tree that would be
-/// built.
+/// Returns the boxes of the BVH over the objects and, at deeper levels, of the BVHs over the
+/// triangles of meshes. A world with few objects has no BVH, so one is built here.
 pub(crate) fn boxes(world: &World) -> Vec<BoxState> {
     let bounds: Vec<Aabb> = world.objects().iter().filter_map(Object::bounds).collect();
     let built;
@@ -148,7 +147,7 @@ pub(crate) fn boxes(world: &World) -> Vec<BoxState> {
     for object in world.objects() {
         let Geometry::Mesh(mesh) = &object.geometry else { continue };
         let place = |corner| object.world_point(corner);
-        // The root box of a mesh is the box of its object.
+        // Skip the root box of a mesh, which is the box of its object.
         let found = mesh.bvh.boxes().filter(|found| found.level > 0).take(MAX_BOXES);
         meshes.extend(found.map(|found| state(below + found.level, &found.bounds, place)));
         if meshes.len() > 16 * MAX_BOXES {

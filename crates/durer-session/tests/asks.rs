@@ -119,7 +119,7 @@ fn a_part_of_the_picture_has_the_pixels_of_the_whole() {
         let at = 4 * ((22 + i / 20) * 90 + 31 + i % 20);
         assert_eq!(pixel, &whole.1[at..at + 4], "{i}");
     }
-    // The crop is clamped to the picture.
+    // A crop beyond the edges is clipped to the picture.
     page.ask(r#"{"kind":"crop","crop":[80,50,4000000000,4000000000]}"#);
     assert_eq!(last(&mut page).0.region, [80, 50, 10, 10]);
     page.ask(r#"{"kind":"crop","crop":null}"#);

@@ -1,10 +1,10 @@
-//! Robustness of a session against thousands of random edits.
+//! Tests that a session survives thousands of random edits.
 
 use durer_session::{Host, Start};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Linear congruential generator.
+/// A linear congruential random number generator, for reproducible edits.
 struct Random(u64);
 
 impl Random {

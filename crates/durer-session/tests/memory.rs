@@ -1,5 +1,5 @@
-//! Memory of a session over many edits. The test runs in its own process, since allocations of
-//! other tests would be counted.
+//! Tests that the memory of a session does not grow over many edits. The test is alone in its
+//! process, since allocations of other tests would be counted too.
 
 mod page;
 
@@ -28,7 +28,7 @@ fn memory_stays_flat_over_a_thousand_edits() {
     };
     (0..200).for_each(&mut edit);
     let Some(before) = resident() else {
-        return eprintln!("skipped: the system does not tell how much memory is used");
+        return eprintln!("skipped: the system does not report how much memory is used");
     };
     (200..1200).for_each(&mut edit);
     let after = resident().unwrap();

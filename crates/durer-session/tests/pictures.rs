@@ -1,5 +1,5 @@
-//! Tests that pictures of sessions equal those of the library bit by bit, for any history of
-//! requests.
+//! Tests that pictures of sessions have the same bits as those of the library, regardless of
+//! earlier requests.
 
 mod page;
 

@@ -16,7 +16,8 @@ pub(crate) fn main() -> Result<(), Error> {
     // A surface emits light through its material, in cd/m^2.
     let light = scene.material(PrincipledMaterial { emission_luminance: 40.0, ..Default::default() });
 
-    // A pyramid: five corners; sides counter-clockwise seen from outside.
+    // A pyramid with five corners. The corners of its faces are counter-clockwise when seen from
+    // outside.
     let corners = [[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0], [0.0, 1.5, 0.0_f32]];
     let sides = [[4, 3, 2], [4, 2, 1], [4, 1, 0], [4, 0, 3], [0, 1, 2], [0, 2, 3]];
     let pyramid = scene.mesh(&corners, &sides);

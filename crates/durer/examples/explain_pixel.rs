@@ -1,4 +1,4 @@
-//! Explains a pixel: its samples, and the terms that add up to each.
+//! Explains a pixel: lists its samples, and the terms that add up to each of them.
 
 use durer::prelude::*;
 use durer::render::explain::explain;
@@ -19,7 +19,7 @@ pub(crate) fn main() -> Result<(), Error> {
     }
     assert_eq!(found.samples.len(), 1);
 
-    // The result equals the picture's colour bit for bit.
+    // The colour has the same bits as in the picture.
     let picture = Renderer::new(&world, options)?.finish()?;
     assert_eq!(picture.pixel(16, 12), Some(found.color));
     Ok(())

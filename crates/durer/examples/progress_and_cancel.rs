@@ -12,7 +12,7 @@ pub(crate) fn main() -> Result<(), Error> {
 
     let options = RenderJob::for_scene(&world).size((32, 24)).samples(1_u32 << 16);
     let mut render = Renderer::new(&world, options)?;
-    // Another thread may stop the render.
+    // With this handle, another thread could stop the render.
     let canceller = render.canceller();
     let mut passes = 0;
     loop {

@@ -16,7 +16,8 @@ use std::ops::Deref;
 #[cfg(feature = "fs")]
 use std::path::Path;
 
-/// A scene and its compiled world. Dereferences to [`World`] for ray queries.
+/// A scene that is ready for rendering and ray queries: its description and the [`World`] compiled
+/// from it, to which it dereferences.
 #[derive(Debug)]
 pub struct CompiledScene {
     scene: Scene,
@@ -57,17 +58,18 @@ impl CompiledScene {
         &self.diagnostics
     }
 
-    /// Returns the texts that the spans of diagnostics refer to.
+    /// Returns the files to which the spans of diagnostics refer.
     pub fn files(&self) -> &Files {
         &self.files
     }
 
-    /// Returns the context from which a job's defaults follow.
+    /// Returns the context that determines the defaults of a job.
     pub fn job_context(&self) -> JobContext<'_> {
         JobContext { scene: &self.scene, rules: &self.rules, emulates: self.emulates, timed: false }
     }
 
-    /// Resolves options into a job for a picture in colour, with the scene's defaults.
+    /// Resolves options into a job for a colour picture. Options that are not set have the scene's
+    /// defaults.
     ///
     /// # Errors
     ///
@@ -80,8 +82,8 @@ impl CompiledScene {
 }
 
 impl RenderJob {
-    /// Returns the default job of a scene, with size, integrator, depth and samples set explicitly.
-    /// Each may be changed.
+    /// Returns the default job of a scene, with size, integrator, depth and samples set explicitly,
+    /// so that each can be read and changed.
     pub fn for_scene(scene: &CompiledScene) -> RenderJob {
         let context = scene.job_context();
         match RenderJob::default().resolve(&context, Some(&View::default())) {
@@ -95,7 +97,7 @@ impl RenderJob {
     }
 }
 
-/// Compiles scenes that are built in code.
+/// Extension of [`Scene`] that compiles scenes which are built in code.
 pub trait CompileScene {
     /// Compiles the scene by the rules of Dürer's own language. All meshes and pictures must be in
     /// memory.
@@ -131,7 +133,7 @@ impl CompileScene for Scene {
     }
 }
 
-/// Reads and compiles a scene file of any format. Detects the format and the dialect.
+/// Reads and compiles a scene file. Its format and dialect are detected.
 ///
 /// # Errors
 ///

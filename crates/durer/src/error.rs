@@ -7,32 +7,33 @@ use durer_image::SaveError;
 use durer_render::render::RenderError;
 use durer_scene::source::SourceError;
 
-/// An error while loading, rendering or saving.
+/// Error from loading, compiling or rendering a scene, or from saving its picture.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// The scene has errors.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// Options of a job are invalid, or contradict each other or the scene.
+    /// Options of a render job are invalid, or contradict each other or the scene.
     #[error("{0}")]
     Options(String),
     /// The render failed or was cancelled.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// The picture does not fit into the format of the file.
+    /// The picture cannot be stored in the format of the file.
     #[error(transparent)]
     Image(#[from] ImageError),
-    /// The file was not written.
+    /// The file could not be written.
     #[cfg(feature = "fs")]
     #[error(transparent)]
     Save(#[from] SaveError),
-    /// The scene's file was not read.
+    /// The scene file could not be read.
     #[error(transparent)]
     Source(#[from] SourceError),
 }
 
-/// Errors of a scene, with the texts that they refer to.
+/// Errors of a scene, with the files to which they refer. Displayed with file name, line and
+/// column.
 #[derive(Debug)]
 pub struct SceneError {
     diagnostics: Diagnostics,
@@ -44,12 +45,12 @@ impl SceneError {
         SceneError { diagnostics, files }
     }
 
-    /// Returns the errors, and all other diagnostics.
+    /// Returns the errors, and all other diagnostics of the scene.
     pub fn diagnostics(&self) -> &Diagnostics {
         &self.diagnostics
     }
 
-    /// Returns the texts that the spans of diagnostics refer to.
+    /// Returns the files to which the spans of diagnostics refer.
     pub fn files(&self) -> &Files {
         &self.files
     }

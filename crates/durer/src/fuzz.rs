@@ -1,8 +1,8 @@
-//! Properties that must hold for arbitrary input: no panic, memory in proportion to the input, and
-//! consistent results.
+//! Checks for arbitrary input: it causes no panic, memory is proportional to the input, and results
+//! are consistent.
 //!
-//! The targets of `fuzz/` call these functions with random bytes. A test calls them with the seeds,
-//! which include inputs of past failures.
+//! The fuzz targets in `fuzz/` call these functions with random bytes. A test calls them with the
+//! seeds, which include the inputs of past failures.
 
 use crate::LoadOptions;
 use durer_diag::{Diagnostics, Files, Span};
@@ -26,10 +26,10 @@ use std::sync::{Arc, OnceLock};
 
 /// Memory limit for pictures, in bytes.
 const MEMORY: u64 = 64 << 20;
-/// Number of pixels up to which the pictures of a partial render are computed.
+/// Maximum number of pixels for which the pictures of a partial render are computed.
 const PIXELS: u64 = 1 << 16;
 
-/// Reads a scene file; writing and reading it again gives the same scene.
+/// Reads a scene file, and checks that writing and reading it again gives the same scene.
 pub fn scene(data: &[u8]) {
     let mut files = Files::default();
     let file = files.add("scene.txt", data.into());
@@ -50,7 +50,7 @@ pub fn scene(data: &[u8]) {
     }
 }
 
-/// Reads a JSON scene; writing and reading it again gives the same scene.
+/// Reads a JSON scene, and checks that writing and reading it again gives the same scene.
 pub fn json(data: &[u8]) {
     let read = |data: &[u8]| {
         let mut diagnostics = Diagnostics::default();
@@ -68,7 +68,7 @@ pub fn json(data: &[u8]) {
     }
 }
 
-/// Reads a mesh file.
+/// Reads a mesh file, and checks that its indices are in range and its positions are finite.
 pub fn mesh(data: &[u8], name: &str) {
     let mut files = Files::default();
     let file = files.add(name, data.into());
@@ -80,7 +80,7 @@ pub fn mesh(data: &[u8], name: &str) {
     }
 }
 
-/// Reads a photometric file; its intensity is finite in every direction.
+/// Reads a photometric file, and checks that its intensity is never NaN.
 pub fn profile(data: &[u8]) {
     let mut files = Files::default();
     let file = files.add("x.ies", data.into());
@@ -94,7 +94,8 @@ pub fn profile(data: &[u8]) {
     }
 }
 
-/// Reads a spectrum; its wavelengths ascend, and it works as an illuminant or is black.
+/// Reads a spectrum, and checks that its wavelengths ascend and that it works as an illuminant or
+/// is black.
 pub fn curve(data: &[u8]) {
     let mut files = Files::default();
     let file = files.add("x.csv", data.into());
@@ -108,7 +109,7 @@ pub fn curve(data: &[u8]) {
     }
 }
 
-/// Reads a model; its meshes are valid and it has a camera.
+/// Reads a model, and checks that its meshes are valid and it has a camera.
 pub fn model(data: &[u8], name: &str) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let bytes = data.into();
@@ -135,7 +136,7 @@ pub fn model(data: &[u8], name: &str) {
     }
 }
 
-/// Reads a picture file; its header predicts the decoded size and an upper bound for the memory.
+/// Reads a picture file, and checks that the size and memory in its header are right.
 pub fn picture(data: &[u8], name: &str) {
     let Ok(encoded) = Encoded::open(data, name) else { return };
     let (width, height) = encoded.size();
@@ -151,7 +152,8 @@ pub fn picture(data: &[u8], name: &str) {
     }
 }
 
-/// Reads a partial render; writing it gives the same bytes, and its colours are finite.
+/// Reads a partial render, and checks that writing it gives the same bytes and that its colours are
+/// finite.
 pub fn part(data: &[u8]) {
     let mut bytes = data.to_vec();
     bytes.extend(Digest::of(data).0);
@@ -172,7 +174,7 @@ pub fn part(data: &[u8]) {
     }
 }
 
-/// Returns a folder with the files that the scenes name.
+/// Returns a folder with the files to which random scenes refer.
 fn folder() -> PathBuf {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     let make = || {
@@ -183,7 +185,7 @@ fn folder() -> PathBuf {
     FOLDER.get_or_init(make).clone()
 }
 
-/// Writes the files that random scenes refer to into a folder.
+/// Writes the files to which random scenes refer into a folder.
 ///
 /// # Errors
 ///
@@ -201,8 +203,8 @@ pub fn random_scene(bytes: &[u8]) -> String {
     write(&Random::tame(bytes).scene(Dialect::Durer), Dialect::Durer)
 }
 
-/// Builds a random scene from bytes; its text reads back as the same scene, and its picture is the
-/// same with BVH, grid and brute force.
+/// Builds a random scene from bytes, and checks that its text gives the same scene again, and that
+/// its picture is the same with BVH, grid and brute force.
 pub fn ways(data: &[u8]) {
     let scene = Random::tame(data).scene(Dialect::Durer);
     let text = random_scene(data);

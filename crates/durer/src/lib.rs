@@ -34,9 +34,9 @@
 //! }
 //! ```
 //!
-//! This crate is the entry point to the others: it loads files ([`open`], [`load()`]), defines the
-//! defaults of pictures ([`job`]), returns reports as JSON ([`report`]), and re-exports the modules
-//! of the crates that do the work.
+//! This crate is the entry point to the others. It loads files ([`open`], [`load()`]), defines the
+//! options of a render and their defaults ([`job`]), creates reports as JSON ([`report`]), and
+//! re-exports the modules of the other crates.
 
 pub mod compiled;
 pub mod error;

@@ -1,4 +1,5 @@
-//! Loads scenes from files: format, dialect, rules, assets.
+//! Loads scenes from files: detects format and dialect, applies the rules of the dialect, and finds
+//! assets.
 
 use crate::job::JobContext;
 use durer_diag::{Diagnostic, Diagnostics, Files, Severity};
@@ -20,15 +21,15 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Options for loading a scene file.
+/// Options for loading a scene file and compiling it: dialect, quirks, assets, and limits.
 #[derive(Clone, Debug, Default)]
 pub struct LoadOptions {
-    /// Dialect, with that year's bugs. `None`: detected, without bugs.
+    /// Dialect, including the bugs of its program. `None`: detected, without bugs.
     pub dialect: Option<Dialect>,
-    /// Also apply the bugs of a detected dialect, and also look for files below the current
-    /// directory, as the course's command line does.
+    /// True to behave like the command line of the course: also applies the bugs of a detected
+    /// dialect, and also looks for files below the current directory.
     pub course: bool,
-    /// Other hints for detecting the dialect.
+    /// Additional hints for detecting the dialect.
     pub hints: Vec<Hint>,
     /// Quirks to turn on or off.
     pub compat: Vec<(Quirk, bool)>,
@@ -48,14 +49,15 @@ pub struct LoadOptions {
     pub threads: Option<usize>,
     /// Memory limit of the world in bytes; `None`: unlimited.
     pub memory: Option<u64>,
-    /// Expected number of camera rays; `None`: many. Few rays get a faster BVH build.
+    /// Expected number of camera rays; `None`: many. If there are few, the BVH is built faster.
     pub rays: Option<u64>,
-    /// Meshes and pictures of the previous version of the scene. Unchanged ones are not read or
-    /// built again.
+    /// Cache with the meshes and pictures of the previous version of the scene, so that unchanged
+    /// ones are not read or built again.
     pub cache: Option<Arc<AssetCache>>,
 }
 
-/// A scene that was read.
+/// A scene that was read from a file but not compiled yet, with its dialect and the source of its
+/// files.
 #[derive(Debug)]
 pub struct LoadedScene {
     /// The scene's description.
@@ -64,7 +66,7 @@ pub struct LoadedScene {
     pub rules: Rules,
     /// Dialect of the file.
     pub dialect: Dialect,
-    /// The reasons for the dialect, if it was detected.
+    /// Detected dialect with the reasons for it; `None` if the dialect was requested.
     pub guess: Option<Guess>,
     /// Source of the scene's files.
     source: FolderSource,
@@ -114,7 +116,7 @@ pub fn load_text(
     for (name, bytes) in &options.in_memory {
         source = source.give(name, bytes.clone());
     }
-    // The scene's digest does not depend on its path.
+    // Record the scene file without a name, since the digest must not depend on its path.
     source.record().add("", &bytes);
     let mut name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut bytes = bytes;
@@ -189,18 +191,18 @@ pub fn load_text(
         diagnostics.extend(portability(&bytes, file, dialect, diagnostics));
     }
     if let (None, Some(guess)) = (&scene, &guess) {
-        // An error in one dialect may be valid in another one.
+        // A construct that is an error in this dialect may be valid in another one.
         diagnostics.push(guess.note());
     }
     scene.map(|scene| LoadedScene { scene, rules, dialect, guess, source, memory })
 }
 
-/// Returns the number of bytes that may be read.
+/// Returns the maximum number of bytes that are read from all files.
 fn budget(options: &LoadOptions) -> u64 {
     FolderSource::DEFAULT_BUDGET.min(options.memory.unwrap_or(u64::MAX))
 }
 
-/// Returns a note about the first construct that the official program of the year would reject,
+/// Returns a note about the first construct that the official program of the dialect would reject,
 /// unless it was already reported.
 fn portability(bytes: &[u8], file: u32, dialect: Dialect, messages: &Diagnostics) -> Diagnostics {
     let (mut strict, mut notes) = (Diagnostics::default(), Diagnostics::default());
@@ -210,22 +212,23 @@ fn portability(bytes: &[u8], file: u32, dialect: Dialect, messages: &Diagnostics
     let first = strict.iter().find(|d| d.severity == Severity::Error);
     if let Some(first) = first.filter(|first| !messages.iter().any(|known| known.span == first.span)) {
         let message = format!("the program of {} would refuse this file: {}", dialect.name(), first.message);
-        let note = Diagnostic::note(message).code("portability").help("it is read anyway; `--strict` refuses it too");
+        let note = Diagnostic::note(message).code("portability").help("Dürer reads the file anyway, unless `--strict` is given");
         notes.push(Diagnostic { span: first.span, ..note });
     }
     notes
 }
 
 impl LoadedScene {
-    /// Returns the context of a job's defaults. `timed`: a time limit ends the sampling.
+    /// Returns the context that determines the defaults of a job. `timed` is true if a time limit
+    /// ends the sampling.
     pub fn job_context(&self, timed: bool) -> JobContext<'_> {
         // Dürer's own dialect emulates no program.
         let emulates = self.guess.is_none() && self.dialect != Dialect::Durer;
         JobContext { scene: &self.scene, rules: &self.rules, emulates, timed }
     }
 
-    /// Returns the paths of the files that were read, except the scene's own. Complete after
-    /// compilation.
+    /// Returns the paths of the files that were read so far, except the scene file. The list is
+    /// complete after compilation.
     pub fn files(&self) -> Vec<PathBuf> {
         self.source.paths()
     }
@@ -243,15 +246,16 @@ impl LoadedScene {
         found
     }
 
-    /// Writes the scene as a model in another format, if the format supports writing. Warns of
-    /// everything that the format cannot express.
+    /// Converts the scene to the format given by the extension of `name`; `None` if it cannot be
+    /// written. Adds a warning for everything that the format cannot express.
     pub fn write(&self, name: &str, diagnostics: &mut Diagnostics) -> Option<Vec<u8>> {
         let write = scene_format_for(name)?.write?;
         let output = Output { name, source: &self.source, normals: self.rules.mesh_normals, memory: self.memory };
         Some(write(&self.scene, &output, diagnostics))
     }
 
-    /// Returns a copy of the scene in which embedded data is moved to files in `folder`.
+    /// Returns a copy of the scene in which embedded data is replaced with files in `folder`, and
+    /// these files.
     pub fn export_assets(&self, folder: &str) -> (Scene, Vec<AssetFile>) {
         export_assets(&self.scene, folder, &self.source)
     }

@@ -16,7 +16,7 @@ pub use durer_scene::shape::{
     Cone, Cuboid, Cylinder, Disc, Ellipsoid, MeshData, Plane, Quadric, Rectangle, Sphere, Torus, Triangle,
 };
 
-/// Creates a colour from linear sRGB components.
+/// Creates a colour from linear components with sRGB primaries.
 pub fn rgb(red: f32, green: f32, blue: f32) -> Color {
     Color::new(red, green, blue)
 }

@@ -14,8 +14,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Renders a scene pass by pass: see the example of [this crate](crate). Also an iterator over
-/// [`Progress`].
+/// Progressive renderer of a [`CompiledScene`], which adds samples pass by pass. See the example of
+/// [this crate](crate). It is also an iterator over [`Progress`].
 #[derive(Debug)]
 pub struct Renderer<'w> {
     world: &'w World,
@@ -55,8 +55,8 @@ impl<'w> Renderer<'w> {
         Ok(Renderer { world, render: ProgressiveRender::new(world, &job)?, control })
     }
 
-    /// Renders the next pass over all pixels; `None` once the picture is finished. Passes double
-    /// the samples at first, and short ones are joined.
+    /// Renders the next pass over all pixels; `None` if the picture is finished. At first, each
+    /// pass doubles the number of samples, and short passes are combined.
     ///
     /// # Errors
     ///
@@ -80,7 +80,7 @@ impl<'w> Renderer<'w> {
         Canceller(Arc::clone(&self.control))
     }
 
-    /// Returns the picture so far; black until a pass has finished.
+    /// Returns the picture as rendered so far. It is black until the first pass has finished.
     ///
     /// # Errors
     ///
@@ -102,7 +102,8 @@ impl Iterator for Renderer<'_> {
     }
 }
 
-/// A picture in linear light with sRGB primaries; by default 1 is white.
+/// A rendered picture in linear light with sRGB primaries, as returned by [`Renderer::image`]. By
+/// default, 1 is white.
 #[derive(Clone, Debug)]
 pub struct Picture {
     layer: Layer,
@@ -131,13 +132,13 @@ impl Picture {
         self.layer.image.get(x, y)
     }
 
-    /// Returns the image without its attributes.
+    /// Returns the image without its metadata.
     pub fn image(&self) -> &Image {
         &self.layer.image
     }
 
-    /// Writes the picture into a file atomically. The extension selects the format: `.exr`, `.hdr`
-    /// and `.pfm` keep linear light, others have eight bits per channel with the sRGB curve.
+    /// Saves the picture to a file atomically. The extension determines the format: `.exr`, `.hdr`
+    /// and `.pfm` store linear light, and other formats eight bits per channel with the sRGB curve.
     ///
     /// # Errors
     ///

@@ -1,5 +1,5 @@
-//! Tests of the source structure: crates only use crates below them, the modules of a folder have
-//! no cyclic dependencies, and files stay small.
+//! Tests of the source structure: crates use only crates of lower layers, the modules of a folder
+//! have no cyclic dependencies, and files are small.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -35,7 +35,7 @@ fn layer(name: &str) -> Option<usize> {
     LAYERS.iter().position(|crates| crates.contains(&name))
 }
 
-/// Returns our crates in the `[dependencies]` of a Cargo.toml, without dev-dependencies.
+/// Returns the crates of this workspace in the `[dependencies]` of a Cargo.toml.
 fn dependencies(manifest: &str) -> Vec<String> {
     let mut section = "";
     let mut found = Vec::new();
@@ -75,9 +75,10 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
+/// Path of a module from the root of its crate, as a list of names.
 type Module = Vec<String>;
 
-/// Returns the modules of a crate that have their own files, by path from its root, without tests.
+/// Returns the files of a crate's modules, except tests, by module path from the root of the crate.
 fn modules(source: &Path) -> BTreeMap<Module, PathBuf> {
     let mut all = Vec::new();
     files(source, &mut all);
@@ -108,7 +109,8 @@ fn paths(tree: &UseTree, before: &mut Module, found: &mut Vec<Module>) {
     }
 }
 
-/// Returns our module that a `use` path in `own` refers to; `None` for other crates.
+/// Returns the module of this crate to which a `use` path in module `own` refers; `None` for other
+/// crates.
 fn target(path: &[String], own: &Module, modules: &BTreeMap<Module, PathBuf>) -> Option<Module> {
     let (mut at, rest) = match path[0].as_str() {
         "crate" => (Vec::new(), &path[1..]),

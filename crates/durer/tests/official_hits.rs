@@ -1,5 +1,5 @@
-//! Arithmetic of the course's programs since 2012: their rays, their hits, and Dürer's behaviour
-//! without their quirks.
+//! Tests that rays and hits are computed like the course's programs since 2012 do, and without
+//! their quirks otherwise.
 
 #![allow(clippy::disallowed_methods, reason = "the official programs call the platform's tangent")]
 
@@ -366,7 +366,7 @@ fn triangles_of_2012_block_a_ray_that_ends_on_them() {
 
 #[test]
 fn normals_of_spheres_are_rounded_as_in_the_program_of_their_year() {
-    // On a ground of radius 1000, the normals are off by the rounding of the point.
+    // On a sphere of radius 1000, the rounding error of the hit point changes the normal.
     let ground = "Sphere { center 0 -1002 0 radius 1000 }";
     let (eye, dir) = (Vec3::new(1.5, 2.25, 9.0), Vec3::new(0.1, -0.2, -1.0).normalize());
     for dialect in [Dialect::F12a4, Dialect::F16] {

@@ -1,5 +1,5 @@
-//! Treatment of degenerate values and repeated sections by the course's programs since 2012, and
-//! Dürer's behaviour without their quirks.
+//! Tests that degenerate values and repeated sections are treated like the course's programs since
+//! 2012 do, and without their quirks otherwise.
 
 use durer::diag::{Diagnostics, Files, Severity};
 use durer::dialect::{Dialect, Quirk};
@@ -12,8 +12,8 @@ use durer::world::World;
 use durer::{LoadOptions, load_text};
 use std::path::Path;
 
-/// Loads a world of a dialect, with its quirks if `official`, and returns the diagnostics; the
-/// world is `None` after errors.
+/// Loads a scene in a dialect, with its quirks if `official`. Returns the world, which is `None`
+/// after errors, and the diagnostics.
 fn load(folder: &Path, text: &str, dialect: Dialect, official: bool) -> (Option<World>, Diagnostics) {
     let all = Quirk::ALL.iter().map(|row| (row.0, false));
     let compat = if official { Vec::new() } else { all.collect() };
@@ -70,7 +70,7 @@ fn nodes(fov: &str, shininess: &str, node: &str) -> String {
 
 const NODE: &str = "Node { Component<Material> { index 0 } Component<Object> { type sphere radius 2 } }";
 
-/// Years with an official program, each with a scene.
+/// Returns the dialects that have an official program, each with a scene.
 fn years(edit: impl Fn(&str) -> String) -> Vec<(Dialect, String)> {
     let classic = edit(&classic(LIT, "40", "10", BALL));
     let mut scenes: Vec<_> =
@@ -148,7 +148,8 @@ fn flat_scales_are_rendered_before_2020_and_ignored_since() {
         let (world, found) = load(Path::new("."), &flat("1 0 1"), dialect, false);
         assert!(world.is_none() && found.has_errors(), "{dialect:?}");
     }
-    // The sphere of 2016 is hit at a NaN t and is black; that of 2012 is hit at t = 10000, as by a4soln.
+    // In 2016, the sphere is hit at a NaN t and is black. In 2012, it is hit at t = 10000, as in
+    // a4soln.
     assert_eq!(seen(&official(&flat("1 0 1"), Dialect::F16), [0.0, 5.0, 0.0], DOWN), Color::ZERO);
     assert_eq!(seen(&official(&flat("1 0 1"), Dialect::F12a4), [0.0, 5.0, 0.0], DOWN), Color::splat(0.25));
     let node = |scale: &str| {

@@ -1,4 +1,4 @@
-//! Quirks of the course's programs, one test each: behaviour with the quirk, and without it.
+//! Tests of the quirks of the course's programs, one test per quirk, with the quirk and without it.
 
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::{Dialect, Quirk};
@@ -8,7 +8,7 @@ use durer::world::World;
 use durer::{LoadOptions, load_text};
 use std::path::Path;
 
-/// Compiles a world in a dialect, with its quirks or without; files are in `folder`.
+/// Compiles a world in a dialect, with its quirks if `official`. Files are read from `folder`.
 fn world_in(folder: &Path, text: &str, dialect: Dialect, official: bool) -> World {
     let compat = if official { Vec::new() } else { off(dialect.rules()) };
     world_with(folder, text, dialect, compat, official)
@@ -78,7 +78,8 @@ fn transform_of_2023_drops_shear_and_nested_transforms_keep_it() {
     let image = bounds(&node(sheared, ball), true);
     let [a, b] = [[2.0 / root(2.0), 1.0 / root(2.0)], [-0.4 * root(2.0), 0.8 * root(2.0)]];
     let extent = |i: usize| (a[i] * a[i] + b[i] * b[i]).sqrt();
-    // The bounds of a transformed box are larger than that: here by the sums of the axes.
+    // The bounds of the transformed box are larger: they are sums of absolute components of the
+    // axes.
     close(image, [a[0] + b[0].abs(), a[1] + b[1].abs(), 1.0]);
     assert!(extent(0) < image.x);
     close(bounds(&node(sheared, ball), false), [4.0 / root(2.0), 2.0 / root(2.0), 1.0]);

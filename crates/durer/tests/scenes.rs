@@ -1,5 +1,5 @@
-//! Tests of every scene in the repository: it is read without diagnostics, rendered identically
-//! with every accelerator, and listed in the README and the pictures.
+//! Tests of every scene in the repository: it is read without diagnostics, gives the same picture
+//! with every acceleration structure, and is listed in the README and the gallery.
 
 use durer::compile::AccelKind;
 use durer::diag::{Diagnostics, Files};
@@ -94,7 +94,7 @@ fn scenes_are_identical_for_all_thread_counts_and_accelerators() {
         assert!(picture.iter().any(|p| *p != picture[0]), "{name} has only one colour");
         for (accel, threads) in [(AccelKind::Bvh, 2), (AccelKind::Grid(None), 1), (AccelKind::Grid(None), 2)] {
             let other = pixels(&name, accel, threads);
-            // Keep whole pictures out of the message.
+            // Avoid printing pictures in the message.
             assert!(bits(&other) == bits(&picture), "{name}: {accel:?} on {threads} threads differs");
         }
     }

@@ -1,4 +1,4 @@
-//! A binary tree over references, built top down by the surface area heuristic.
+//! Builds a binary tree over references, top down, by the surface area heuristic.
 
 use super::builder::{Bin, Builder, half_area};
 use super::cut::HALVING_DEPTH;
@@ -13,9 +13,9 @@ use glam::Vec4;
 /// Number of references above which subtrees are built in parallel.
 const PARALLEL: u32 = 4096;
 
-/// A node of a binary tree. Nodes are in depth-first order: the left child follows its parent, and
-/// the right child follows the subtree of the left one. Unused nodes may lie between subtrees that
-/// were built in parallel.
+/// Node of a binary BVH during construction, before it is collapsed to nodes with eight children.
+/// Nodes are in depth-first order: the left child follows its parent, and the right child follows
+/// the left subtree. There may be unused nodes between subtrees that were built in parallel.
 #[derive(Clone, Copy, Debug)]
 pub struct BinaryNode {
     /// Minimum corner. The fourth lane holds the number of references, tagged as leaf or inner
@@ -30,7 +30,7 @@ const INNER: u32 = 2;
 const LEAF: u32 = 3;
 
 impl BinaryNode {
-    /// An unused node.
+    /// An unused entry of the list of nodes.
     pub const NONE: BinaryNode = BinaryNode { min: Vec4::ZERO, max: Vec4::ZERO };
 
     pub fn leaf(mut min: Vec4, mut max: Vec4, count: u32, first: u32) -> Self {
@@ -78,7 +78,7 @@ impl BinaryNode {
     }
 }
 
-/// A binary tree, and the factor that scales sizes before areas are compared.
+/// A binary BVH during construction. `scale` is the factor for sizes before areas are compared.
 pub struct Tree {
     pub nodes: Vec<BinaryNode>,
     pub scale: f32,
@@ -86,7 +86,7 @@ pub struct Tree {
     pub is_cut: bool,
 }
 
-/// Range of references for a subtree.
+/// Part of the list of references from which a subtree is built.
 struct BuildRange<'a> {
     /// References of the subtree, followed by space for those that splits add.
     references: &'a mut [Reference],
@@ -95,14 +95,15 @@ struct BuildRange<'a> {
     searches: Searches,
 }
 
-/// Number of references in a subtree, and number of nodes reserved for it.
+/// Result of building a subtree: the number of references in it, and of nodes reserved for it.
 struct SubtreeSize {
     references: u32,
     nodes: usize,
 }
 
-/// Builds a tree over at least one reference. Triangles with known corners may be split. Also
-/// returns the references of the leaves; references outside of all leaves are meaningless.
+/// Builds a binary tree over at least one reference. Also returns the references to which the
+/// leaves refer; list entries outside of all leaves are meaningless. If `corners` is not empty,
+/// triangles may be split.
 pub fn build(
     mut references: Vec<Reference>,
     settings: &BuildSettings,
@@ -193,7 +194,7 @@ impl Builder<'_> {
         SubtreeSize { references, nodes: 1 + left.nodes + right.nodes }
     }
 
-    /// Returns true if a few references are so close together that separate boxes would save few
+    /// Returns true if the references are so close together that separate boxes would save few
     /// tests.
     fn is_whole(&self, references: &[Reference], all: &Bin) -> bool {
         let areas = references.iter().map(|r| half_area(r.min, r.max, self.scale));

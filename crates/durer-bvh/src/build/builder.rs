@@ -1,4 +1,4 @@
-//! Growing boxes, and the parameters of a build, shared by all kinds of splits.
+//! Parameters of a build, and growing boxes, used for both object splits and spatial splits.
 
 use super::reference::Reference;
 use crate::math::{Aabb, Vec3};
@@ -15,6 +15,7 @@ pub fn half_area(min: Vec4, max: Vec4, scale: f32) -> f32 {
     d.x * d.y + d.y * d.z + d.z * d.x
 }
 
+/// Parameters for building a binary tree: scale, root area, and limits on leaves and bins.
 pub struct Builder<'a> {
     pub scale: f32,
     /// Half the surface area of the root.
@@ -27,7 +28,7 @@ pub struct Builder<'a> {
     pub corners: &'a [[Vec3; 3]],
 }
 
-/// A growing box and the number of references in it.
+/// A box that grows with each reference that is added, and the number of references in it.
 #[derive(Clone, Copy)]
 pub struct Bin {
     pub min: Vec4,
@@ -63,14 +64,16 @@ impl Bin {
         Bin { min: self.min.min(other.min), max: self.max.max(other.max), count: self.count + other.count }
     }
 
+    /// Cost by the surface area heuristic: the scaled area of the box times the number of
+    /// references.
     #[inline]
     pub fn cost(&self, scale: f32) -> f32 {
         half_area(self.min, self.max, scale) * self.count as f32
     }
 }
 
-/// Bounds of a property of all references. Grows four boxes in turn, since each step of one waits
-/// for the previous step.
+/// Bounding box of the values of `of` for all references. It grows four boxes in turn, since each
+/// step of one box waits for its previous step.
 pub fn around_all(references: &[Reference], of: &(impl Fn(&Reference) -> [Vec4; 2] + Sync)) -> [Vec4; 2] {
     if references.len() > MIN_PARALLEL {
         let (a, b) = references.split_at(references.len() / 2);

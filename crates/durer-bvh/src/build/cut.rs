@@ -1,7 +1,8 @@
 //! Object splits: partitions of references into two sets by the surface area heuristic.
 //!
-//! Many references are binned along each axis; for a few, all partitions are compared. Source:
-//! Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies*, IEEE RT 2007.
+//! Large sets of references are binned along each axis. For small sets, all partitions are
+//! compared. Source: Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies*, IEEE RT
+//! 2007.
 
 use super::builder::{Bin, Builder, MIN_PARALLEL, around_all};
 use super::reference::Reference;
@@ -9,15 +10,15 @@ use super::settings::BINS;
 use crate::parallel;
 use glam::{IVec4, Mat4, Vec4};
 
-/// Depth from which references are halved by number, which bounds the depth of all trees: 28 levels
-/// halve 2^28 primitives.
+/// Depth from which references are split into halves of equal number, which bounds the depth of all
+/// trees: 2^28 primitives are halved 28 times.
 pub const HALVING_DEPTH: usize = 60;
 /// Maximum number of references for which all partitions are compared.
 const MAX_EXHAUSTIVE: usize = 4;
-/// Minimum number of references for separate bins for each half.
+/// Number of references from which each half of the list has its own bins.
 const MIN_FOR_MORE_BINS: usize = 64;
 
-/// Bins of equal width over the centres of references.
+/// Intervals of equal width along each axis into which the centres of references are binned.
 #[derive(Clone, Copy)]
 struct Grid {
     low: Vec4,
@@ -51,7 +52,7 @@ fn middles(references: &[Reference]) -> [Vec4; 2] {
     around_all(references, &|r| [r.middle(); 2])
 }
 
-/// A box and a number of references for each axis.
+/// Bin of an object split along all three axes at once: a box and a number of references per axis.
 #[derive(Clone, Copy)]
 struct Bins {
     boxes: [[Vec4; 2]; 3],
@@ -124,19 +125,21 @@ fn filled<const N: usize>(references: &[Reference], grid: &Grid) -> [Bins; N] {
     bins
 }
 
-/// A partition of references into two sets, with the boxes of both.
+/// An object split: a partition of references into two sets, with its cost and the boxes of both
+/// sets.
 pub struct Cut {
     pub cost: f32,
     pub sides: [Bin; 2],
     way: Split,
 }
 
+/// Rule by which an object split assigns references to the left or right set.
 enum Split {
-    /// References in bins before a border along an axis go left.
+    /// The left set has the references in bins before a border along an axis.
     Bins { grid: Grid, axis: usize, border: usize },
-    /// References whose bits are set in the mask go left.
+    /// The left set has the references whose bits are set in the mask.
     Mask(usize),
-    /// Half of the references go left, sorted along the longest axis.
+    /// The left set has the first half of the references, sorted along the longest axis.
     Half,
 }
 
@@ -161,8 +164,8 @@ impl Builder<'_> {
     fn binned<const N: usize>(&self, references: &[Reference]) -> Option<Cut> {
         let grid = Grid::new(references, (self.bins)(references.len()).min(N));
         let bins = filled::<N>(references, &grid);
-        // Costs of everything to the right of each border, then sums from the left, for all axes at
-        // once.
+        // Compute the costs to the right of each border, then the costs to the left, for all axes
+        // at once.
         let mut right_costs = [Vec4::ZERO; N];
         let mut right = Bins::EMPTY;
         for i in (1..grid.bins).rev() {

@@ -22,11 +22,11 @@ use settings::MIN_GAIN;
 use wide::CollapsePlan;
 
 /// Number of reinsertion passes after which a tree with split triangles is compared with the best
-/// one so far: an improvement of the binary tree may be worse for the wide tree, above all after
-/// splits.
+/// one so far. A better binary tree can give a worse wide tree, especially after splits.
 const TRUSTED_PASSES: usize = 2;
 
-/// A finished tree.
+/// A finished tree with eight children per node, from which [`Bvh`](super::Bvh) and
+/// [`TriangleBvh`](super::TriangleBvh) are made.
 pub(super) struct Tree {
     pub nodes: Vec<WideNode>,
     /// Primitive numbers in the order of the leaves.
@@ -34,7 +34,7 @@ pub(super) struct Tree {
     pub bounds: Aabb,
 }
 
-/// Builds a tree over boxes. The result depends on the references and settings alone.
+/// Builds a tree over boxes. The result depends only on the references and settings.
 pub(super) fn build(references: Vec<Reference>, settings: &BuildSettings) -> Tree {
     build_of(references, settings, Vec::new())
 }
@@ -71,7 +71,7 @@ fn build_of(references: Vec<Reference>, settings: &BuildSettings, corners: Vec<[
 /// Improves a tree by reinsertion as long as that pays, and returns the best collapse plan.
 fn improved(tree: &mut binary::Tree, settings: &BuildSettings) -> CollapsePlan {
     let mut plans = CollapsePlan::new(&tree.nodes, tree.scale, settings);
-    // With fewer nodes, all are the root or its children, which stay.
+    // With fewer than five nodes, there are no nodes below the root's children that could be moved.
     if settings.reinsertions == 0 || tree.nodes.len() < 5 {
         return plans;
     }

@@ -1,4 +1,4 @@
-//! References to primitives: numbered boxes from which trees are built.
+//! References to primitives: the numbered boxes from which trees are built.
 
 use super::settings::BuildSettings;
 use crate::lanes::listed;
@@ -7,7 +7,8 @@ use crate::node::MAX_ITEMS;
 use crate::parallel;
 use glam::Vec4;
 
-/// Box of a primitive or of a part of it, with the number of the primitive.
+/// Box of a primitive, or of a part of a split triangle, with the number of the primitive; input of
+/// a tree build.
 #[derive(Clone, Copy, Debug)]
 pub struct Reference {
     pub min: Vec4,
@@ -40,11 +41,12 @@ pub fn lane(tag: u32, number: u32) -> f32 {
     f32::from_bits(number | tag << 28)
 }
 
+/// Decodes the number from a value of [`lane`].
 pub fn lane_number(lane: f32) -> u32 {
     lane.to_bits() & !(3 << 28)
 }
 
-/// References to boxes 0, 1, 2, ..., without the empty ones.
+/// Creates references to boxes 0, 1, 2, ..., without the empty ones.
 pub fn references(boxes: &[Aabb]) -> Vec<Reference> {
     assert!(boxes.len() <= MAX_ITEMS, "a tree holds fewer than 2^28 primitives");
     let full = boxes.iter().enumerate().filter(|(_, b)| !b.is_empty());
@@ -56,8 +58,8 @@ pub fn is_finite(corners: &[Vec3; 3]) -> bool {
     corners.iter().all(|p| p.is_finite())
 }
 
-/// References to triangles 0, 1, 2, ..., with capacity for those that splits add. Triangles with a
-/// corner that is not finite are left out.
+/// Creates references to triangles 0, 1, 2, ..., with capacity for those that splits add. Triangles
+/// with a corner that is not finite are left out.
 pub fn triangle_references(
     count: usize,
     settings: &BuildSettings,
@@ -73,7 +75,7 @@ pub fn triangle_references(
     references
 }
 
-/// Power of two that scales sizes to about 1, so that areas neither overflow nor vanish.
+/// Power of two that scales sizes to about 1, so that areas neither overflow nor underflow.
 pub fn area_scale(bounds: Aabb) -> f32 {
     let size = (bounds.max * 0.5 - bounds.min * 0.5).max_element();
     let exponent = size.to_bits() >> 23 & 0xff;

@@ -1,4 +1,4 @@
-//! Optimisation of a binary tree by reinsertion: moves subtrees to where they enlarge boxes least.
+//! Optimises a binary tree by reinsertion: moves subtrees to where they enlarge boxes least.
 //!
 //! Source: Meister, Bittner, *Parallel Reinsertion for Bounding Volume Hierarchy Optimization*,
 //! Eurographics 2018.
@@ -10,23 +10,25 @@ use crate::lanes::room;
 use crate::node::MAX_DEPTH;
 use crate::parallel;
 
-/// Share of the nodes that a pass examines. If much can be saved, most of the savings are in a few
-/// nodes.
+/// Share of the nodes that a pass examines. If a lot can be saved, a few nodes give most of the
+/// savings.
 const SHARE: f64 = 0.04;
-/// Factor of further nodes to examine if the possible savings do not predict the actual ones.
+/// Additional shares of the nodes that a pass examines if possible savings do not predict actual
+/// ones.
 const MAX_SHARES: usize = 3;
 /// Maximum number of nodes visited in a search for a better place.
 const PATIENCE: usize = 1 << 8;
 
 const NONE: u32 = u32::MAX;
 
-/// A tree with explicit links, and the sum of all areas.
+/// A binary BVH with links to parents and children, so that reinsertion can move its subtrees.
 pub struct Linked {
     nodes: Vec<Link>,
     scale: f32,
     area: f64,
 }
 
+/// A node of [`Linked`], with its scaled half area and the positions of its parent and children.
 #[derive(Clone, Copy)]
 struct Link {
     node: BinaryNode,
@@ -36,7 +38,7 @@ struct Link {
     children: [u32; 2],
 }
 
-/// A subtree, its new sibling, and the area that the move saves.
+/// A reinsertion to apply: the subtree to move, its new sibling, and the area that the move saves.
 #[derive(Clone, Copy)]
 struct Move {
     gain: f32,
@@ -44,7 +46,7 @@ struct Move {
     to: u32,
 }
 
-/// Maximum area that moving a node may save, and the node.
+/// A node that may be moved, after the maximum area that moving it can save.
 type Candidate = (f32, u32);
 
 /// Partitions `nodes` into the `count` nodes with the greatest possible savings, and the others.
@@ -95,7 +97,7 @@ impl Linked {
         // Removing a subtree saves at least its parent's area, and inserting it costs at least its
         // own area. `max` also replaces the NaN difference of infinite areas.
         let spared = |i: u32| ((self.at(self.at(i).parent).area - self.at(i).area).max(0.0), i);
-        // The root and its children stay.
+        // The root and its children are never moved.
         let movable = |&i: &u32| i != 0 && self.at(i).parent != 0;
         let mut candidates: Vec<Candidate> = (0..self.nodes.len() as u32).filter(movable).map(spared).collect();
         let count = ((self.nodes.len() as f64 * SHARE) as usize).clamp(16, 1 << 24);
@@ -103,8 +105,8 @@ impl Linked {
         let (next, rest) = greatest(rest, count / 4);
         let (mut moves, more) = (self.moves(first), self.moves(next));
         let gain = |moves: &[Move]| moves.iter().map(|m| f64::from(m.gain)).sum::<f64>();
-        // If the actual savings hardly decrease with the possible ones, these do not predict where
-        // to search: examine more nodes.
+        // If the actual savings hardly decrease with the possible ones, the possible ones do not
+        // predict where to search. Examine more nodes.
         let is_even = 4.0 * gain(&more) >= (0.25 * gain(&moves)).max(MIN_GAIN * self.area);
         moves.extend(more);
         if is_even {
@@ -132,8 +134,8 @@ impl Linked {
         parallel::filter_map(candidates, 64, |&(_, from)| self.find(from))
     }
 
-    /// Returns true if a node lies in a subtree. An earlier move of the same pass may have put it
-    /// there.
+    /// Returns true if a node is in a subtree, for example because an earlier move of the same pass
+    /// has put it there.
     fn is_below(&self, mut i: u32, subtree: u32) -> bool {
         while i != NONE && i != subtree {
             i = self.at(i).parent;

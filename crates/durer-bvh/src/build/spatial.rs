@@ -1,10 +1,9 @@
-//! Spatial splits: planes that divide the space of a node, so that parts of a triangle go to both
-//! sides.
+//! Spatial splits: planes that divide the space of a node, so that a triangle can be in both
+//! children, each with a part of its box.
 //!
-//! If the boxes of the cheapest partition of references overlap, planes are also tried. A plane
-//! splits the triangles that it intersects, unless it is cheaper to keep a triangle whole on one
-//! side. Source: Stich, Friedrich, Dietrich, *Spatial Splits in Bounding Volume Hierarchies*, HPG
-//! 2009.
+//! If the two boxes of the cheapest object split overlap, planes are also tried. A plane splits the
+//! triangles that it intersects, unless it is cheaper to keep a triangle whole on one side. Source:
+//! Stich, Friedrich, Dietrich, *Spatial Splits in Bounding Volume Hierarchies*, HPG 2009.
 
 use super::builder::{Bin, Builder, half_area};
 use super::cut::Cut;
@@ -23,18 +22,19 @@ const LENGTH: f32 = 0.3;
 const GAIN: f32 = 0.95;
 /// Number of references up to which splits save less than they cost.
 pub const MIN_REFERENCES: usize = 330;
-/// Number of failed searches along a path after which levels are skipped: one, then two, up to
-/// four.
+/// Number of failed searches on the path from the root after which levels are skipped: first one,
+/// then two, up to four.
 const IN_VAIN: u32 = 3;
 
-/// State of the searches for planes above a node.
+/// Counters of the failed searches for split planes above a node, which make the build skip levels.
 #[derive(Clone, Copy, Default)]
 pub struct Searches {
     in_vain: u32,
     pause: u32,
 }
 
-/// A split plane. The cost is the sum of area times number of references.
+/// A candidate plane for a spatial split. The cost is the sum of area times number of references
+/// over both sides.
 struct Plane {
     cost: f32,
     axis: usize,
@@ -194,14 +194,14 @@ impl Builder<'_> {
     }
 }
 
-/// A triangle with its corners sorted along an axis.
+/// A triangle with its corners sorted along an axis, prepared to be cut by split planes.
 struct Sorted<const AXIS: usize> {
     corners: [Vec4; 3],
-    /// Bound on the rounding error of a section.
+    /// Upper bound on the rounding error of a section.
     slack: Vec4,
 }
 
-/// Bounding box of the line segment in which a plane across the axis cuts the triangle.
+/// Bounding box of the line segment in which a split plane cuts a triangle.
 struct Section {
     at: f32,
     min: Vec4,
@@ -223,7 +223,8 @@ impl<const AXIS: usize> Sorted<AXIS> {
         Sorted { corners: [a, b, c], slack: 8.0 * f32::EPSILON * most + f32::MIN_POSITIVE }
     }
 
-    /// Section at a coordinate, or the first or last corner outside the triangle.
+    /// Section at a coordinate along the axis. Outside the triangle, it is the first or last
+    /// corner.
     #[inline(always)]
     fn section(&self, at: f32) -> Section {
         let [a, b, c] = self.corners;
@@ -238,7 +239,8 @@ impl<const AXIS: usize> Sorted<AXIS> {
         Section { at, min: p.min(q) - self.slack, max: p.max(q) + self.slack }
     }
 
-    /// Box of the part of a reference between two sections; empty if there is none.
+    /// Bounding box of the part of a reference between two sections; empty if there is no such
+    /// part.
     #[inline(always)]
     fn between(&self, from: &Section, to: &Section, r: &Reference) -> Reference {
         let middle = self.corners[1];
@@ -249,7 +251,8 @@ impl<const AXIS: usize> Sorted<AXIS> {
         let across = BVec4A::new(AXIS == 0, AXIS == 1, AXIS == 2, false);
         let low = Vec4::select(across, Vec4::splat(from.at), r.min);
         let high = Vec4::select(across, Vec4::splat(to.at), r.max);
-        // The number in the fourth lane is larger than any slack.
+        // The fourth lane, with the number of the primitive, is not changed: it is larger than any
+        // slack.
         Reference { min: min.max(low), max: max.min(high) }
     }
 

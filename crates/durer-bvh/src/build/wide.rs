@@ -1,4 +1,5 @@
-//! Eight-wide nodes from a binary tree, at minimal cost by the surface area heuristic.
+//! Collapses a binary tree into nodes with eight children, at minimal cost by the surface area
+//! heuristic.
 //!
 //! The cost C(n, i) of a subtree n as a forest of at most i roots follows from its children l and
 //! r:
@@ -21,7 +22,8 @@ use glam::Vec3A;
 /// Number of references above which subtrees are processed in parallel.
 const PARALLEL: usize = 4096;
 
-/// Cheapest choice for each node of a binary tree, and the total cost.
+/// Plan for collapsing a binary tree to eight children per node: the cheapest choice for each
+/// binary node, and the total cost.
 pub struct CollapsePlan {
     plans: Vec<Plan>,
     pub cost: f32,
@@ -55,9 +57,9 @@ pub fn collapse(tree: &binary::Tree, numbers: &[u32], plans: CollapsePlan) -> (V
 /// Costs of a subtree as a forest of at most 1, 2, ..., 7 roots.
 type Costs = [f32; WIDTH - 1];
 
-/// Cheapest choice for a node. Bit 0 is set if the subtree becomes a leaf. The three bits from 3 i
-/// on are the number of roots in the left child out of at most i roots, or 0 if fewer roots cost no
-/// more.
+/// Cheapest way to collapse the subtree of a binary node, for any number of roots. Bit 0 is set if
+/// the subtree becomes a leaf. The three bits from bit 3 i on are the number of roots in the left
+/// child if the subtree has at most i roots, or 0 if fewer roots cost no more.
 #[derive(Clone, Copy, Default)]
 struct Plan(u32);
 
@@ -88,7 +90,7 @@ fn shared(left: &Costs, right: &Costs, roots: usize) -> (f32, usize) {
     best
 }
 
-/// Parameters of the cost function.
+/// Parameters of the cost function by which a binary tree is collapsed.
 struct Prices<'a> {
     /// Factor for sizes before areas are computed.
     scale: f32,
@@ -119,7 +121,7 @@ fn plan(nodes: &[binary::BinaryNode], plans: &mut [Plan], prices: &Prices) -> Co
     let (opened, k) = shared(&left, &right, most);
     own.set_left(WIDTH, k);
     let opened = area + opened;
-    // If costs are NaN, as with infinite areas, small subtrees become leaves.
+    // If costs are NaN, for example for infinite areas, small subtrees become leaves.
     let dearer = opened < leaf;
     let is_leaf = count <= settings.leaf_size && !dearer;
     own.0 |= u32::from(is_leaf);
@@ -134,27 +136,29 @@ fn plan(nodes: &[binary::BinaryNode], plans: &mut [Plan], prices: &Prices) -> Co
     costs
 }
 
+/// Writer of wide nodes from a binary tree and its [`CollapsePlan`].
 struct NodeWriter<'a> {
     tree: &'a binary::Tree,
     numbers: &'a [u32],
     plans: Vec<Plan>,
 }
 
-/// A wide node with all nodes below it and the primitives of their leaves. Offsets and positions
-/// count from 0.
+/// Finished part of the wide tree: a node, all nodes below it, and the primitives of their leaves.
+/// Offsets and positions count from 0.
 struct SubtreeNodes {
     nodes: Vec<WideNode>,
     order: Vec<u32>,
 }
 
-/// Binary nodes that become the children of a wide node.
+/// The up to eight binary nodes that become the children of one wide node.
 #[derive(Default)]
 struct Children {
     list: [usize; WIDTH],
     count: usize,
 }
 
-/// Roots of the subtrees that are built in parallel, and the number of wide nodes above them.
+/// Binary nodes at which the tree is divided into subtrees that are collapsed in parallel, and the
+/// number of wide nodes above them.
 #[derive(Default)]
 struct CutPoints {
     above: usize,
@@ -166,7 +170,7 @@ impl NodeWriter<'_> {
         &self.tree.nodes[i]
     }
 
-    /// Children of the wide node for a binary node.
+    /// Returns the children of the wide node that replaces a binary node.
     fn open(&self, i: usize) -> Children {
         let mut children = Children::default();
         match self.node(i).is_leaf() {
@@ -195,7 +199,7 @@ impl NodeWriter<'_> {
         self.forest(i + self.node(i).right(), roots - left, children);
     }
 
-    /// Finds the nodes with too few references to parallelise further, in the order of
+    /// Finds the topmost nodes with too few references for further parallel work, in the order of
     /// [`NodeWriter::fill`].
     fn cuts(&self, i: usize, cuts: &mut CutPoints) {
         if self.node(i).count() <= PARALLEL {
@@ -207,7 +211,7 @@ impl NodeWriter<'_> {
         inner.for_each(|&i| self.cuts(i, cuts));
     }
 
-    /// Builds the wide node for a binary node and all nodes below.
+    /// Builds the wide node for a binary node and all nodes below it.
     fn subtree(&self, i: usize) -> SubtreeNodes {
         let count = self.node(i).count();
         let mut subtree = SubtreeNodes { nodes: Vec::with_capacity(count / 16 + 1), order: Vec::with_capacity(count) };
@@ -216,8 +220,8 @@ impl NodeWriter<'_> {
         subtree
     }
 
-    /// Fills a wide node from a binary one, and all nodes below. Takes subtrees from `ready` while
-    /// there are any.
+    /// Fills in a wide node from a binary one, and adds all nodes below it. Subtrees are taken from
+    /// `ready` as long as it has any.
     fn fill(&self, all: &mut SubtreeNodes, number: usize, i: usize, ready: &mut std::slice::Iter<SubtreeNodes>) {
         if self.node(i).count() <= PARALLEL
             && let Some(subtree) = ready.next()
@@ -230,8 +234,8 @@ impl NodeWriter<'_> {
         }
     }
 
-    /// Fills a wide node with the children of a binary one. Returns the position reserved for its
-    /// inner children, and their binary nodes.
+    /// Fills in a wide node for a binary one. Returns the position that is reserved for its inner
+    /// children, and their binary nodes.
     ///
     /// Data that a ray is likely to need together is stored together: first the leaves of a node,
     /// then its inner children side by side, then the nodes below each of them.
@@ -272,7 +276,7 @@ impl NodeWriter<'_> {
             }
         }
         if self.tree.is_cut {
-            // Reunited parts of a split primitive count once.
+            // Parts of a split primitive that are in the same leaf again count only once.
             items[..count].sort_unstable();
             let mut different = 1;
             for i in 1..count {
@@ -327,8 +331,8 @@ fn from_last(axis: usize, [first, last]: [f32; 2]) -> [u32; 2] {
 
 /// Value of [`WideNode::from_last`], and a slot for each child.
 ///
-/// Children are sorted along the axis that separates them best. Every ray hits two separated
-/// children in the right order, and the larger they are, the more likely it hits both.
+/// Children are sorted along the axis that separates them best. Every ray visits two separated
+/// children in the right order, and the larger they are, the more likely it is to hit both.
 fn places(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
     let mut areas = [0.0; WIDTH];
     areas.iter_mut().zip(bounds).for_each(|(area, bounds)| *area = bounds.half_area());

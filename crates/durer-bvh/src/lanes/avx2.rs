@@ -1,4 +1,4 @@
-//! AVX2 with FMA.
+//! SIMD operations with AVX2 and FMA.
 
 use super::operations::{Kernel, Lanes, Numbers};
 use super::stack::Stack;
@@ -8,7 +8,8 @@ use crate::node::WIDTH;
 use std::arch::asm;
 use std::arch::x86_64::*;
 
-/// Proof that the processor supports AVX2, FMA, BMI 1 and 2, LZCNT, and POPCNT.
+/// SIMD level AVX2. A value proves that the processor supports AVX2, FMA, BMI 1 and 2, LZCNT, and
+/// POPCNT.
 #[derive(Clone, Copy)]
 pub struct Avx2(());
 
@@ -205,9 +206,9 @@ macro_rules! literally {
         }
     };
 }
-// Comparisons of signed integers. With intrinsics, the compiler compares the last operand with the
-// one before first and turns comparisons into masks, which takes longer. Used for the last
-// comparison only, since wrapping all of them would move vectors between registers.
+// Comparisons of signed integers. With intrinsics, the compiler would first compare the last
+// operand with the one before it and would turn comparisons into masks, which takes longer. Used
+// only for the last comparison, since wrapping all of them would move vectors between registers.
 literally!(greater = "vpmaxsd");
 literally!(lesser = "vpminsd");
 literally!(is_greater = "vpcmpgtd");

@@ -1,4 +1,4 @@
-//! AVX-512 on eight lanes, with masks in mask registers, and on sixteen lanes.
+//! SIMD operations with AVX-512, on eight lanes with mask registers and on sixteen lanes.
 
 use super::avx2::{Four, arithmetic_of_eight, doubles, operations, order_of_eight, proven};
 use super::operations::{Kernel, Lanes, Numbers, WIDE, Wide};
@@ -6,7 +6,8 @@ use super::stack::Stack;
 use crate::node::WIDTH;
 use std::arch::x86_64::*;
 
-/// Proof that the processor supports AVX-512 F, VL, and DQ, in addition to the AVX2 level.
+/// SIMD level AVX-512. A value proves that the processor supports AVX-512 F, VL, and DQ, in
+/// addition to the AVX2 level.
 #[derive(Clone, Copy)]
 pub struct Avx512(());
 
@@ -86,7 +87,7 @@ impl Lanes for Avx512 {
     }
 }
 
-/// Eight `f64`. A value also proves that the processor supports AVX-512.
+/// Eight `f64` in an AVX-512 register. A value also proves that the processor supports AVX-512.
 #[derive(Clone, Copy)]
 pub struct Eight(__m512d);
 
@@ -100,7 +101,8 @@ doubles! { Eight:
     [sqrt = _mm512_sqrt_pd; copysign = _mm512_set1_pd, _mm512_and_pd, _mm512_andnot_pd, _mm512_or_pd]
 }
 
-/// One vector of sixteen lanes. A value also proves that the processor supports AVX-512.
+/// SIMD level AVX-512 for vectors of sixteen `f32`. A value proves that the processor supports
+/// AVX-512.
 #[derive(Clone, Copy)]
 pub struct Sixteen(());
 

@@ -1,14 +1,15 @@
-//! Selection of the SIMD level, once, by the processor and `DURER_SIMD`.
+//! Selection of the SIMD level, by the processor and the environment variable `DURER_SIMD`.
 
 use super::operations::{Kernel, Lanes};
 use super::scalar;
 use std::fmt;
 use std::sync::OnceLock;
 
-/// An instruction set for eight lanes. All levels give the same hits, bit for bit.
+/// Instruction set that ray queries use for vectors of eight lanes. All levels give the same hits,
+/// bit for bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SimdLevel {
-    /// Plain code, for any processor.
+    /// Code without SIMD instructions, for any processor.
     Scalar,
     /// AVX2 and FMA, on x86-64.
     Avx2,
@@ -20,7 +21,8 @@ pub enum SimdLevel {
     Simd128,
 }
 
-/// Error for a value of `DURER_SIMD` that this processor does not support.
+/// Error from [`SimdLevel::from_environment`]: `DURER_SIMD` is not the name of a level that this
+/// processor supports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownSimdLevel {
     word: String,
@@ -69,8 +71,8 @@ impl SimdLevel {
         Self::available().find(|level| level.name() == word).ok_or_else(|| UnknownSimdLevel { word, known: known() })
     }
 
-    /// Returns [`SimdLevel::from_environment`], read once; the best level if the variable is
-    /// invalid.
+    /// Returns the level from [`SimdLevel::from_environment`], or the best one if the variable is
+    /// invalid. The variable is read only once.
     pub fn chosen() -> SimdLevel {
         static CHOSEN: OnceLock<SimdLevel> = OnceLock::new();
         *CHOSEN.get_or_init(|| Self::from_environment().unwrap_or_else(|_| Self::best()))
@@ -97,9 +99,10 @@ impl SimdLevel {
     }
 }
 
-/// Loops over arrays in plain code that are compiled for each level, so that compilers vectorise
-/// them to its width. Compilers do not fuse or reorder operations on their own, so all levels give
-/// the same bits. Functions that `run` calls should be inlined into it.
+/// Code without SIMD operations, usually loops over arrays, that is compiled for each SIMD level,
+/// so that the compiler vectorises it with the instructions of that level. Compilers do not fuse or
+/// reorder operations on their own, so all levels give the same bits. Functions that `run` calls
+/// should be inlined into it.
 pub trait PlainKernel {
     /// Result of the kernel.
     type Output;
@@ -108,12 +111,13 @@ pub trait PlainKernel {
     fn run(self) -> Self::Output;
 }
 
-/// Runs plain code at the selected level.
+/// Runs a [`PlainKernel`] at the chosen SIMD level.
 #[inline(always)]
 pub fn run_plain<K: PlainKernel>(kernel: K) -> K::Output {
     Available::chosen().run_plain(kernel)
 }
 
+/// Adapter that runs a [`PlainKernel`] as a [`Kernel`].
 struct Plain<K>(K);
 
 impl<K: PlainKernel> Kernel for Plain<K> {
@@ -125,7 +129,7 @@ impl<K: PlainKernel> Kernel for Plain<K> {
     }
 }
 
-/// A level that the processor is known to support.
+/// A SIMD level that the processor is known to support, so that kernels can be run at it safely.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Available(SimdLevel);
 
@@ -139,7 +143,7 @@ impl Available {
         Available(if level.is_available() { level } else { SimdLevel::Scalar })
     }
 
-    /// Runs plain code at this level.
+    /// Runs a [`PlainKernel`] at this level.
     #[inline(always)]
     pub fn run_plain<K: PlainKernel>(self, kernel: K) -> K::Output {
         self.run(Plain(kernel))

@@ -1,10 +1,9 @@
 //! SIMD operations on eight lanes, with all unsafe code of the library.
 //!
 //! [`Lanes`] lists the operations that traversal needs. Each level implements it once, and
-//! [`SimdLevel::run`] calls a [`Kernel`] with the selected level. Hits depend only on addition,
-//! subtraction, multiplication, and comparison, which are never fused, so every level gives the
-//! same bits. [`Numbers::mul_add`] may be fused or not; only box tests use it, which allow for
-//! either.
+//! [`Available::run`] runs a [`Kernel`] at a level. Hits depend only on operations that are never
+//! fused, so every level gives the same bits. [`Numbers::mul_add`] may be fused or not, but only
+//! box tests use it, and they allow for either.
 #![allow(unsafe_code)]
 
 #[cfg(target_arch = "x86_64")]

@@ -1,4 +1,4 @@
-//! NEON: eight lanes as two vectors of four.
+//! SIMD operations with NEON: eight lanes as two vectors of four.
 
 use super::operations::{Lanes, Numbers};
 use super::stack::Stack;
@@ -7,11 +7,11 @@ use crate::math::Doubles;
 use crate::node::WIDTH;
 use std::arch::aarch64::*;
 
-/// Every 64-bit ARM has NEON.
+/// SIMD level NEON, which every 64-bit ARM processor has.
 #[derive(Clone, Copy)]
 pub struct Neon;
 
-/// Eight `f32` in two vectors.
+/// Eight `f32` in two NEON vectors of four.
 #[derive(Clone, Copy)]
 pub struct Pair(float32x4_t, float32x4_t);
 
@@ -23,7 +23,7 @@ macro_rules! proven {
     };
 }
 
-/// Two `f64` in one vector.
+/// Two `f64` in one NEON vector.
 #[derive(Clone, Copy)]
 pub struct TwoDoubles(float64x2_t);
 
@@ -65,7 +65,7 @@ impl Doubles for TwoDoubles {
 #[inline(always)]
 unsafe fn bits(a: uint32x4_t, b: uint32x4_t) -> u32 {
     const WEIGHTS: [u32; 4] = [1, 2, 4, 8];
-    // SAFETY: the caller's.
+    // SAFETY: as the caller guarantees.
     proven! {
         let weights = vld1q_u32(WEIGHTS.as_ptr());
         vaddvq_u32(vandq_u32(a, weights)) | vaddvq_u32(vandq_u32(b, weights)) << 4

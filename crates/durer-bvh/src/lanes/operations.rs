@@ -1,5 +1,4 @@
-//! Traits that each SIMD level implements once, and the layout of nodes, leaves, and rays in
-//! memory.
+//! Traits that each SIMD level implements, and access to the memory of nodes, leaves, and rays.
 
 use super::stack::Stack;
 use crate::math::{Doubles, Ray, Triple};
@@ -8,7 +7,8 @@ use crate::watertight::AxisOrder;
 use glam::Vec3A;
 use std::mem::offset_of;
 
-/// Arithmetic on lanes. A value of the type proves that the processor supports it.
+/// Arithmetic on vectors of `f32`, implemented by each SIMD level. A value of the type proves that
+/// the processor supports the level.
 pub(crate) trait Numbers: Copy {
     /// Vector of `f32`, one in each lane.
     type Floats: Copy;
@@ -37,7 +37,7 @@ pub(crate) trait Numbers: Copy {
     }
 }
 
-/// Operations on eight lanes.
+/// Operations on vectors of eight lanes that ray queries need, implemented by each SIMD level.
 pub(crate) trait Lanes: Numbers {
     /// Operations on sixteen lanes.
     type Wide: Wide;
@@ -86,24 +86,24 @@ pub(crate) trait Lanes: Numbers {
     fn before(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// Mask of the lanes with a sign bit.
     fn signs(self, a: Self::Floats) -> u32;
-    /// Intersects three slab intervals and the ray's own interval: the last start by
-    /// [`Lanes::later`] and the first end by [`Lanes::sooner`]. Pass the slab that is loaded last
-    /// as the last one.
+    /// Intersects three slab intervals with the interval `within` of the ray: returns the last
+    /// start, by [`Lanes::later`], and the first end, by [`Lanes::sooner`]. Of the slabs, pass the
+    /// one last that is loaded last.
     #[inline(always)]
     fn interval(self, [x, y, z]: [[Self::Floats; 2]; 3], within: [Self::Floats; 2]) -> [Self::Floats; 2] {
         let enter = self.later(z[0], self.later(y[0], self.later(x[0], within[0])));
         let leave = self.sooner(z[1], self.sooner(y[1], self.sooner(x[1], within[1])));
         [enter, leave]
     }
-    /// Minimum of `a` in the lanes with all bits set in `which`. The last eight bits of the result
-    /// are the tag of that lane instead of bits of `a`, which are not compared. `a` must not be
-    /// negative. Without such a lane, the result is arbitrary.
+    /// Minimum of `a` over the lanes in which all bits of `which` are set. The last eight bits of
+    /// `a` are ignored, and in the result they are replaced by the tag of the lane. `a` must not be
+    /// negative. If there is no such lane, the result is arbitrary.
     fn nearest(self, a: Self::Floats, which: Self::Floats, child_tags: &[u8; WIDTH]) -> u32;
     /// `a` in the lanes whose mask bits are set, `b` in the others. Keeps the bits.
     fn select(self, mask: u32, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// Moves lane k of vector i to lane i of vector k.
     fn transpose(self, rows: [Self::Floats; WIDTH]) -> [Self::Floats; WIDTH];
-    /// Pushes the first `count` children in the given lane order, each with its entry distance.
+    /// Pushes the first `count` children of the lane order `order`, each with its entry distance.
     fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: Self::Floats, order: &[u8; WIDTH], count: u32);
     /// Prefetches the cache line at an address, which may be invalid.
     fn prefetch<T>(self, at: *const T);
@@ -112,7 +112,8 @@ pub(crate) trait Lanes: Numbers {
 /// Number of lanes of [`Wide`].
 pub const WIDE: usize = 2 * WIDTH;
 
-/// Operations on sixteen lanes.
+/// Operations on vectors of sixteen lanes, for ray packets, implemented with one AVX-512 vector or
+/// two vectors of eight lanes.
 pub(crate) trait Wide: Numbers {
     fn load(self, from: &[f32; WIDE]) -> Self::Floats;
     fn store(self, a: Self::Floats) -> [f32; WIDE];
@@ -127,23 +128,25 @@ pub(crate) trait Wide: Numbers {
 /// Number of rows of a leaf of triangles: nine coordinates and a number.
 pub const ROWS: usize = 10;
 
-/// Storage for the rows of a leaf. A vector that begins in one of the first nine rows lies within
-/// it.
+/// Storage for the rows of a triangle leaf, long enough to load a vector from the start of any of
+/// the first nine rows.
 pub type Rows = [f32; ROOM_OF_ROWS];
 
 /// Number of values in [`Rows`].
 pub const ROOM_OF_ROWS: usize = ROWS * WIDTH;
 
-/// Planes of boxes where a ray enters and leaves, in all nodes of a tree.
+/// Access to the near and far box planes, by the signs of a ray's direction, in all nodes of a
+/// tree.
 pub(crate) struct Sides<'a> {
     nodes: &'a [WideNode],
-    /// Planes in the first node, by axis.
+    /// Addresses of the planes in the first node, by axis.
     near: [*const u8; 3],
     far: [*const u8; 3],
 }
 
 impl<'a> Sides<'a> {
-    /// Selects the planes for rays that are negative along the axes whose bits are set.
+    /// Selects the planes for rays with negative directions along the axes whose bits are set in
+    /// `negative`.
     #[inline(always)]
     pub fn new(nodes: &'a [WideNode], negative: u32) -> Self {
         assert!(nodes.len() <= node::MAX_NODES);
@@ -158,15 +161,15 @@ impl<'a> Sides<'a> {
     /// Node at a [`node_offset`](node::node_offset).
     #[inline(always)]
     pub fn at(&self, address: usize) -> At<'a, '_> {
-        // Rotating moves the low bits of a misaligned offset to the top, so the bounds check
-        // rejects it, too.
+        // If the offset is misaligned, rotating moves its low bits to the top, so the bounds check
+        // fails.
         let number = address.rotate_right(node::UNITS.trailing_zeros());
         assert!(number < self.nodes.len());
         At { sides: self, offset: address * node::UNIT, node: &self.nodes[number] }
     }
 }
 
-/// A node and its offset in bytes.
+/// A node in a traversal, with the near and far planes of its boxes; returned by [`Sides::at`].
 pub(crate) struct At<'a, 's> {
     sides: &'s Sides<'a>,
     offset: usize,
@@ -189,8 +192,8 @@ impl<'a> At<'a, '_> {
         unsafe { &*self.sides.far[axis].wrapping_add(self.offset).cast() }
     }
 
-    /// [Tags](WideNode::child_tags) of the node. Addressed as early as the planes, since the ray
-    /// waits for them.
+    /// [Tags](WideNode::child_tags) of the node. The address is computed like those of the planes,
+    /// since the ray waits for the tags.
     #[inline(always)]
     pub fn child_tags(&self) -> &'a [u8; WIDTH] {
         let first = self.sides.nodes.as_ptr().cast::<u8>().wrapping_add(offset_of!(WideNode, child_tags));
@@ -207,7 +210,7 @@ pub(crate) fn numbers_of(ray: &Ray) -> &[f32; WIDTH] {
     unsafe { &*std::ptr::from_ref(ray).cast() }
 }
 
-/// Positions of the corners of a leaf's triangles, with permuted axes.
+/// Positions of the corners of a leaf's triangles in [`Rows`], with permuted axes.
 #[derive(Clone, Copy)]
 pub(crate) struct Columns {
     /// Start of the rows of the first corner, by axis.
@@ -221,7 +224,7 @@ impl Columns {
     #[inline(always)]
     pub fn new(&[x, y, z, _]: &AxisOrder, count: usize) -> Self {
         assert!(count <= WIDTH);
-        // With the mask, no row begins beyond the last.
+        // The mask keeps the start within the rows.
         Columns { starts: [x, y, z].map(|axis| (axis & 3) as usize * count), corner: 3 * count }
     }
 
@@ -242,7 +245,7 @@ impl Columns {
     }
 }
 
-/// A function that runs at any SIMD level.
+/// A function that can be run at any SIMD level, such as a ray query, with its arguments as fields.
 pub(crate) trait Kernel {
     type Output;
     /// Runs the kernel. Must be inlined, so that it is compiled for the level.

@@ -1,4 +1,4 @@
-//! Large pages and prefetching.
+//! Lists on large pages, and prefetching.
 
 use crate::parallel;
 
@@ -9,8 +9,8 @@ pub fn room<T>(count: usize) -> Vec<T> {
     room
 }
 
-/// Creates a list of `of(0)`, `of(1)`, ... on large pages, with capacity for `more` further items.
-/// All threads write it, because the first access to memory takes longer than the writes.
+/// Creates a list of `of(0)`, ..., `of(count - 1)` on large pages, with capacity for `more` further
+/// items. The list is filled by all threads, because the first access to each page is slow.
 pub fn listed<T: Send>(count: usize, more: usize, of: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     const AT_ONCE: usize = 4096;
     let mut all = room(count + more);
@@ -18,7 +18,7 @@ pub fn listed<T: Send>(count: usize, more: usize, of: impl Fn(usize) -> T + Sync
     all
 }
 
-/// Prefetches a value into the cache, if the processor can do so without waiting.
+/// Prefetches a value into the cache on x86-64; does nothing on other processors.
 #[inline]
 pub fn bring_near<T>(value: &T) {
     #[cfg(target_arch = "x86_64")]
@@ -34,8 +34,9 @@ pub fn bring_near<T>(value: &T) {
     let _ = value;
 }
 
-/// Asks the system to place uninitialised memory for `count` items on large pages, if it is large
-/// enough. The processor caches the addresses of only a limited number of pages.
+/// Asks the system for large pages for the uninitialised memory of `count` items, if it is large
+/// enough. This saves TLB misses, since the processor caches the addresses of only a limited number
+/// of pages.
 fn large_pages<T>(room: *const T, count: usize) {
     #[cfg(target_os = "linux")]
     {

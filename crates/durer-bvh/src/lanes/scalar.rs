@@ -1,4 +1,4 @@
-//! Scalar code for any processor.
+//! SIMD operations in scalar code, for any processor.
 
 use super::operations::{Lanes, Numbers};
 use super::stack::Stack;
@@ -7,12 +7,14 @@ use crate::math::Doubles;
 use crate::node::WIDTH;
 use std::array::from_fn;
 
+/// SIMD level without SIMD instructions, for any processor.
 #[derive(Clone, Copy)]
 pub struct Scalar;
 
+/// Eight `f32` in an array.
 type F = [f32; WIDTH];
 
-/// Eight `f64`.
+/// Eight `f64` in an array.
 #[derive(Clone, Copy)]
 pub struct Plain([f64; WIDTH]);
 

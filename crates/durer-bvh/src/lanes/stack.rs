@@ -3,11 +3,11 @@
 use crate::node::{MAX_DEPTH, WIDTH};
 use std::mem::MaybeUninit;
 
-/// Maximum height of the stack for a tree of [`MAX_DEPTH`](crate::node::MAX_DEPTH) levels, plus the
-/// width of a vector.
+/// Maximum height of the stack for a tree of [`MAX_DEPTH`](crate::node::MAX_DEPTH) levels, plus
+/// space for storing a full vector.
 const ROOM: usize = (WIDTH - 1) * MAX_DEPTH + 2 * WIDTH;
 
-/// Memory of a stack. Creating it costs nothing, since it stays uninitialised.
+/// Uninitialised memory for the [`Stack`] of a traversal.
 pub struct StackStorage {
     children: MaybeUninit<[u32; ROOM]>,
     near: MaybeUninit<[f32; ROOM]>,
@@ -20,9 +20,10 @@ impl StackStorage {
     }
 }
 
-/// A stack of nodes.
+/// Traversal stack of the nodes and leaves that are still to be visited, with their entry
+/// distances.
 pub struct Stack<'a> {
-    // Apart from the height: as one value, the initial stack would be copied from a constant for
+    // Separate from the height, since otherwise an empty stack would be copied from a constant for
     // every ray.
     room: &'a mut StackStorage,
     height: usize,
@@ -54,7 +55,8 @@ impl<'a> Stack<'a> {
         Some(unsafe { (*children.add(height), *near.add(height)) })
     }
 
-    /// Pops children until one is entered at `far` or before, and returns it. There must be one.
+    /// Pops children until one has an entry distance of at most `far`, and returns it. There must
+    /// be one.
     #[inline(always)]
     pub fn pop_until(&mut self, far: f32) -> u32 {
         loop {
@@ -79,7 +81,8 @@ impl<'a> Stack<'a> {
         unsafe { *self.room.children.as_ptr().cast::<u32>().add(self.height - usize::from(!wanted)) }
     }
 
-    /// Pointers to space for a whole vector on top of the stack. Call [`Stack::grow`] afterwards.
+    /// Pointers to the top of the stack, with space for a full vector. Call [`Stack::grow`] after
+    /// writing to it.
     #[inline(always)]
     pub(super) fn top(&mut self) -> (*mut u32, *mut f32) {
         assert!(self.height <= ROOM - WIDTH);
@@ -90,7 +93,8 @@ impl<'a> Stack<'a> {
 
     /// # Safety
     ///
-    /// `count` entries must have been written to [`Stack::top`], at most eight.
+    /// `count` must be at most eight, and that many entries must have been written to
+    /// [`Stack::top`].
     #[cfg(any(target_arch = "x86_64", all(target_arch = "wasm32", target_feature = "simd128")))]
     #[inline(always)]
     pub(super) unsafe fn grow(&mut self, count: u32) {

@@ -1,4 +1,4 @@
-//! Tests that all levels give the same bits for any numbers.
+//! Tests that all SIMD levels give the same bits for any numbers.
 
 use super::*;
 use crate::math::random::{Random, rounds};
@@ -7,7 +7,7 @@ use crate::watertight::AxisOrder;
 use crate::watertight::turned_axes;
 use glam::Vec3A;
 
-/// Numbers that are difficult for arithmetic.
+/// Special values of arithmetic: zeros, infinities, NaN, and very large and small numbers.
 const SPECIAL: [f32; 14] = [
     0.0,
     -0.0,
@@ -38,7 +38,7 @@ fn number(random: &mut Random) -> f32 {
     }
 }
 
-/// Random values for all operations.
+/// Random arguments for all operations.
 struct Input {
     floats: [[f32; WIDTH]; 3],
     rows: Rows,
@@ -61,8 +61,8 @@ impl Input {
     }
 }
 
-/// Results of all lane operations except [`Numbers::mul_add`], as bits. Every NaN has the same
-/// bits.
+/// Kernel that runs all operations except [`Numbers::mul_add`] and returns the bits of the results.
+/// NaN always gives the same bits.
 struct AllOperations<'a>(&'a Input);
 
 /// Number of vectors computed for each input: arithmetic, double precision, two joined halves,
@@ -78,7 +78,7 @@ impl Kernel for AllOperations<'_> {
         let [a, b, c] = [lanes.load(&floats[0]), lanes.load(&floats[1]), lanes.load(&floats[2])];
         let mut found = Vec::with_capacity(WIDTH * OPERATIONS + 16);
         let number = |x: f32| if x.is_nan() { f32::NAN.to_bits() } else { x.to_bits() };
-        // Vectors are read through the stack.
+        // Read each vector by pushing it onto a stack.
         let mut record = |v: L::Floats, count: usize| {
             let mut room = StackStorage::new();
             let mut stack = Stack::new(&mut room);
@@ -185,7 +185,7 @@ fn every_level_gives_the_same_bits() {
     println!("{} lanes at {} levels", inputs * WIDTH * OPERATIONS, SimdLevel::available().count());
 }
 
-/// Sums that a compiler might fuse or reorder.
+/// Kernel with sums and products that a compiler might fuse or reorder.
 struct Sums([[f32; 24]; 3]);
 
 impl PlainKernel for Sums {

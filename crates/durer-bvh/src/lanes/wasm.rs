@@ -1,8 +1,8 @@
-//! WebAssembly's `simd128`: eight lanes as two vectors of four.
+//! SIMD operations with WebAssembly's `simd128`: eight lanes as two vectors of four.
 //!
-//! A module either contains these instructions or not, so nothing is tested at run time. The
-//! compiler option `-C target-feature=+simd128` selects this level. Relaxed SIMD is not used,
-//! because its results may differ between machines.
+//! The compiler option `-C target-feature=+simd128` selects this level. There is no check at run
+//! time, since a module either contains the instructions or not. Relaxed SIMD is not used, because
+//! its results can differ between machines.
 
 use super::operations::{Columns, Lanes, Numbers, Rows};
 use super::stack::Stack;
@@ -11,11 +11,11 @@ use crate::math::Doubles;
 use crate::node::WIDTH;
 use std::arch::wasm32::*;
 
-/// Proof that the target has `simd128`: the type exists only there.
+/// SIMD level `simd128`. The type exists only if the target supports it.
 #[derive(Clone, Copy)]
 pub struct Simd128;
 
-/// Eight `f32` in two vectors.
+/// Eight `f32` in two vectors of four.
 #[derive(Clone, Copy)]
 pub struct Pair(v128, v128);
 
@@ -35,7 +35,7 @@ macro_rules! store {
     };
 }
 
-/// Two `f64` in one vector.
+/// Two `f64` in one 128-bit vector.
 #[derive(Clone, Copy)]
 pub struct TwoDoubles(v128);
 

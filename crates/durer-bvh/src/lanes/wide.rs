@@ -3,7 +3,7 @@
 use super::operations::{Lanes, Numbers, WIDE, Wide};
 use crate::node::WIDTH;
 
-/// Two vectors of eight lanes.
+/// Sixteen lanes as two vectors of eight, for SIMD levels without longer vectors.
 #[derive(Clone, Copy)]
 pub struct Two<L>(pub L);
 

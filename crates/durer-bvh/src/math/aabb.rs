@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-/// An axis-aligned box. Empty when `min` exceeds `max` in any axis.
+/// An axis-aligned bounding box. It is empty if `min` exceeds `max` along any axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
     /// Minimum corner.
@@ -24,7 +24,7 @@ impl Aabb {
         Aabb { min: self.min.min(point), max: self.max.max(point) }
     }
 
-    /// Smallest box around both.
+    /// Smallest box around both boxes.
     #[inline]
     pub fn union(self, other: Aabb) -> Self {
         Aabb { min: self.min.min(other.min), max: self.max.max(other.max) }
@@ -60,14 +60,15 @@ impl Aabb {
         0.5 * self.min + 0.5 * self.max
     }
 
-    /// Returns true if the centre is farther from the origin than 256 times the size, in the
-    /// maximum norm. Single precision is coarse on such a box.
+    /// Returns true if the box is far from the origin for its size, so that single precision is
+    /// coarse in it: the largest absolute coordinate of the centre exceeds 256 times the longest
+    /// edge.
     #[inline]
     pub fn is_far(self) -> bool {
         self.center().abs().max_element() > 256.0 * self.size().max_element()
     }
 
-    /// Half the surface area, as compared by the surface area heuristic.
+    /// Half the surface area, for the surface area heuristic.
     #[inline]
     pub fn half_area(&self) -> f32 {
         let d = self.size();

@@ -3,10 +3,11 @@ use super::ray::{Line, Ray, Ray64};
 use super::rounding::gamma;
 use glam::{DAffine3, DVec3, Vec3};
 
-/// An invertible affine map between two spaces, with its inverse.
+/// An invertible affine map between two spaces, such as object space and world space, with its
+/// inverse.
 ///
-/// The matrices are double precision, and results are rounded once, so that distant points keep
-/// their digits on the way back.
+/// The matrices are in double precision and results are rounded only once, so that mapping a
+/// distant point there and back loses no digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affine {
     forward: DAffine3,
@@ -111,21 +112,23 @@ impl Affine {
 
     /// Bound on the absolute error of `point64(p)` if `p` is known to within `error`.
     ///
-    /// Covers rounding on the way forward and on a later way back: double precision in world space,
-    /// where 2^-40 leaves room for ill-conditioned maps, and single precision in object space.
+    /// It covers the rounding errors of the forward map and of mapping the point back later. These
+    /// are in double precision in world space, with 2^-40 to allow for ill-conditioned maps, and in
+    /// single precision in object space.
     pub fn point_error(&self, p: Vec3, error: Vec3) -> Vec3 {
         const DOUBLE: f32 = 1.0 / (1u64 << 40) as f32;
         let far = self.forward.translation.abs().as_vec3() + self.spread(p.abs());
         DOUBLE * far + self.spread(error + gamma(2) * p.abs())
     }
 
-    /// Component-wise bound on the image of a vector with component-wise bound `bound`.
+    /// Maps a bound on the absolute components of a vector to a bound for the image of the vector.
     #[inline]
     pub fn spread(&self, bound: Vec3) -> Vec3 {
         (self.forward.matrix3.abs() * bound.as_dvec3()).as_vec3()
     }
 
-    /// Component-wise bound for the inverse map; see [`Affine::spread`].
+    /// Maps a bound on the absolute components of a vector by the inverse map; see
+    /// [`Affine::spread`].
     #[inline]
     pub fn inverse_spread(&self, bound: Vec3) -> Vec3 {
         (self.inverse.matrix3.abs() * bound.as_dvec3()).as_vec3()

@@ -1,6 +1,7 @@
 //! Double-precision arithmetic on one number or on several lanes.
 
-/// An `f64`, or several in lanes.
+/// Arithmetic on an `f64`, or on several in SIMD lanes, so that tests of one ray and of several
+/// share their code.
 pub(crate) trait Doubles: Copy {
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
@@ -15,7 +16,7 @@ pub(crate) trait Doubles: Copy {
     fn copysign(self, sign: Self) -> Self;
 }
 
-/// Three components of one vector, or of several vectors in lanes.
+/// Arithmetic on a vector of three `f64`, or on several such vectors in SIMD lanes.
 pub(crate) trait Triple: Doubles {
     /// Type of a component.
     type Component: Doubles;

@@ -1,8 +1,8 @@
-//! Transcendental functions with the same bits on every platform.
+//! Transcendental functions that give the same bits on every platform.
 //!
-//! The platform's libm rounds differently from system to system. These functions use the pure-Rust
-//! `libm` or plain arithmetic, so that a picture has the same bits everywhere. `clippy.toml`
-//! forbids the others.
+//! The functions of `std` use the platform's libm, whose rounding differs between systems. These
+//! functions use the pure-Rust `libm` or plain arithmetic, so that an image has the same bits
+//! everywhere. `clippy.toml` forbids the functions of `std`.
 
 use std::hint::select_unpredictable;
 
@@ -33,15 +33,16 @@ pub fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
     }
 }
 
-/// Sine and cosine of an angle in turns below 2^20, accurate to one rounding; exact at multiples of
-/// a quarter turn.
+/// Sine and cosine of an angle in turns, for angles below 2^20, with an error of about one
+/// rounding. Exact at multiples of a quarter turn.
 ///
-/// Subtracts the nearest quarter turn. The rest is below an eighth, where short series suffice.
+/// The nearest quarter turn is subtracted. The remaining angle is at most an eighth of a turn,
+/// where short series suffice.
 #[inline]
 pub fn sin_cos_turn(turn: f32) -> (f32, f32) {
     const SINE: [f64; 5] = [1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5_040.0, 1.0 / 362_880.0];
     const COSINE: [f64; 6] = [1.0, -0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0];
-    // The sum has no bits for a fraction, and its last two bits count the quarters.
+    // Adding this removes the fraction. The last two bits of the sum count the quarter turns.
     const WHOLE: f32 = 1.5 * (1_u32 << 23) as f32;
     let quarters = 4.0 * turn + WHOLE;
     let x = std::f64::consts::TAU * (f64::from(turn) - 0.25 * f64::from(quarters - WHOLE));
@@ -132,8 +133,9 @@ pub fn atan2(y: f32, x: f32) -> f32 {
 
 /// Raises `base` to the power of `exponent`.
 ///
-/// For ordinary numbers the result is 2^(exponent log2 base) in double precision, whose error is so
-/// far below a rounding of the result that only ties may round the other way. Other cases use libm.
+/// For ordinary numbers, 2^(exponent log2 base) is computed in double precision. Its error is so
+/// small that after rounding to single precision, only near ties can differ from the exact result.
+/// Other cases use libm.
 #[inline]
 pub fn pow(base: f32, exponent: f32) -> f32 {
     let usual = usual_pow(base, exponent);
@@ -196,7 +198,7 @@ fn exp2(x: f64) -> f64 {
         4.4455382718708116e-10,
         2.5678435993488206e-11,
     ];
-    // The sum has no bits for a fraction.
+    // Adding this removes the fraction.
     const WHOLE: f64 = 1.5 * (1_u64 << 52) as f64;
     let shifted = x + WHOLE;
     // The bits of the sum are the bits of `WHOLE` plus the integer part.
@@ -204,8 +206,8 @@ fn exp2(x: f64) -> f64 {
     f64::from_bits(whole.wrapping_add(1023) << 52) * polynomial(x - (shifted - WHOLE), &SERIES)
 }
 
-/// Evaluates c0 + c1 x + c2 x^2 + ... in pairs (Estrin's scheme), so that few products wait for
-/// each other.
+/// Evaluates c0 + c1 x + c2 x^2 + ... in pairs (Estrin's scheme), which shortens the chain of
+/// dependent products.
 #[inline(always)]
 fn polynomial<const N: usize>(x: f64, c: &[f64; N]) -> f64 {
     let x2 = x * x;
@@ -309,7 +311,7 @@ mod tests {
         for base in numbers {
             for exponent in numbers {
                 let (found, wanted) = (pow(base, exponent), libm::powf(base, exponent));
-                // libm itself is off by one rounding in places.
+                // In some places, libm itself has an error of one rounding.
                 let near = (found - wanted).abs() <= f32::EPSILON * wanted.abs();
                 assert!(
                     found == wanted || near || found.is_nan() && wanted.is_nan(),

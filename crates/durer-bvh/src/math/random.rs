@@ -2,16 +2,16 @@
 
 use glam::{DAffine3, DMat3, DQuat, Vec3};
 
-/// Number of rounds of a test: `usual`, times `DURER_ROUNDS` in the long runs of `cargo xtask
-/// long`; a five-hundredth of it under Miri, which is far slower.
+/// Number of rounds of a test: `usual` times `DURER_ROUNDS`, which `cargo xtask long` sets. Under
+/// Miri, which is far slower, it is a five-hundredth of that.
 pub fn rounds(usual: usize) -> usize {
     let usual = if cfg!(miri) { usual.div_ceil(500) } else { usual };
     let times = std::env::var("DURER_ROUNDS").ok();
     usual * times.map_or(1, |times| times.parse::<usize>().expect("DURER_ROUNDS is a whole number"))
 }
 
-/// A SplitMix64 generator. Source: Steele, Lea, Flood, *Fast Splittable Pseudorandom Number
-/// Generators*, OOPSLA 2014.
+/// A SplitMix64 random number generator, for reproducible tests. Source: Steele, Lea, Flood, *Fast
+/// Splittable Pseudorandom Number Generators*, OOPSLA 2014.
 pub struct Random(pub u64);
 
 impl Random {

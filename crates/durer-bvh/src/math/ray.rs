@@ -2,10 +2,11 @@ use glam::{DVec3, Vec3};
 
 /// A ray: the points `origin + t * dir` for `t` in the open interval (`t_min`, `t_max`).
 ///
-/// `dir` is not normalised, so that `t` means the same in world and in object space: a transform
-/// maps origin and direction, and leaves `t` unchanged. `t_min` may be minus infinity.
+/// `dir` need not be normalised. A transform maps the origin and direction and leaves `t`
+/// unchanged, so that `t` has the same meaning in world space and in object space. `t_min` can be
+/// minus infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
-// The kernel loads a ray as eight numbers in this order.
+// SIMD code loads a ray as eight numbers in this order.
 #[repr(C)]
 pub struct Ray {
     /// Origin: the point at `t` = 0.
@@ -46,8 +47,8 @@ impl Ray {
 
 /// A ray whose origin is known in double precision.
 ///
-/// Queries of a whole scene take such rays: far from the coordinate origin, single precision would
-/// move a secondary ray off the surface that it starts from, and through the wall beside it.
+/// Queries of scenes take such rays. Far from the coordinate origin, single precision would move
+/// the origin of a secondary ray off its surface and possibly to the other side of a nearby wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray64 {
     /// The ray with its origin rounded to single precision.
@@ -58,24 +59,25 @@ pub struct Ray64 {
     pub side: Side,
 }
 
-/// A primitive that a ray leaves, and whether the ray starts inside it. Near an edge, the
-/// coordinates of the origin are too inexact to decide this.
+/// Primitive on whose surface a ray starts, and the side, inside or outside, on which it starts.
+/// Near an edge, the origin is too inexact to determine the side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 // 0 if unknown, else 2 * number + 1, plus 1 if inside.
 pub struct Side(u32);
 
 impl Side {
-    /// Side of a ray that leaves no primitive or an unknown one.
+    /// Side of a ray that does not start on a primitive, or starts on an unknown one.
     pub const ANY: Side = Side(0);
 
-    /// Inside or outside of a primitive, numbered by the caller. Numbers above 2^31 - 2 give
-    /// [`Side::ANY`].
+    /// Creates the inside or outside of a primitive, which is numbered by the caller. Numbers above
+    /// 2^31 - 2 give [`Side::ANY`].
     #[inline]
     pub fn of(primitive: u32, inside: bool) -> Side {
         if primitive < (1 << 31) - 1 { Side(2 * primitive + 1 + u32::from(inside)) } else { Side::ANY }
     }
 
-    /// Returns true if the ray starts inside the primitive; `None` if it leaves a different one.
+    /// Returns true if the ray starts inside the primitive; `None` if it starts on a different
+    /// primitive or an unknown one.
     #[inline]
     pub fn inside(self, primitive: u32) -> Option<bool> {
         (self != Side::ANY && (self.0 - 1) / 2 == primitive).then_some(self.0.is_multiple_of(2))

@@ -1,4 +1,4 @@
-//! Building a tree of triangles, and refitting it to moved vertices.
+//! Builds a [`TriangleBvh`], and refits it to moved vertices.
 
 use super::rows::{number, put};
 use super::tree::TriangleBvh;
@@ -9,15 +9,15 @@ use crate::math::{Aabb, Vec3};
 use crate::{node, parallel};
 use std::mem::MaybeUninit;
 
-/// Number of triangles whose rows one task writes, roughly.
+/// Approximate number of triangles whose rows one parallel task writes.
 const AT_ONCE: usize = 1024;
 
 impl TriangleBvh {
     /// Builds a tree over triangles given as three vertex indices each. Triangles with a corner
     /// that is not finite are never hit.
     ///
-    /// The result depends on the arguments alone. It takes about 50 bytes per triangle, up to 100
-    /// if triangles overlap much, and up to 140 more during the build (340 with
+    /// The result depends only on the arguments. The tree takes about 50 bytes per triangle, or up
+    /// to 100 if triangles overlap a lot. The build takes up to 140 bytes more (340 with
     /// [`BuildQuality::Best`]). The depth is bounded for any input.
     ///
     /// # Panics
@@ -52,7 +52,8 @@ impl TriangleBvh {
     ///
     /// # Errors
     ///
-    /// As [`TriangleBvh::try_build`], and if a list's length is not a multiple of three.
+    /// If the length of a list is not a multiple of three, an index is out of range, or there are
+    /// 2^28 triangles or more.
     ///
     /// ```
     /// use durer_bvh::{BuildError, BuildQuality, TriangleBvh};
@@ -137,10 +138,11 @@ impl TriangleBvh {
         (self.leaves.len() - ROOM_OF_ROWS) / ROWS
     }
 
-    /// Writes all leaves, with numbers in the given order or, if `None`, with those that they have.
+    /// Writes the rows of all leaves, with triangle numbers from `order`, or the present ones if
+    /// `None`.
     fn pack(&mut self, order: Option<&[u32]>, vertices: &[Vec3], triangles: &[[u32; 3]]) {
         let items = self.items();
-        // The count of each leaf, at the position of its first item.
+        // Number of triangles of each leaf, at the position of its first item.
         let mut counts = vec![0u8; items];
         for (_, _, child) in self.nodes.iter().flat_map(|node| node.children()) {
             if child & node::LEAF != 0 {

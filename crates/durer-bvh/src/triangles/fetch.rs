@@ -4,13 +4,13 @@ use super::tree::TriangleBvh;
 use crate::lanes::{Lanes, ROWS};
 use crate::node;
 
-/// Cache lines of a child: a node has four, and a leaf up to six.
+/// Number of cache lines to prefetch for a child alone: a node has four, and a leaf up to six.
 pub const ITSELF: usize = 6;
-/// Cache lines to prefetch if siblings will probably be visited too, since they follow the child in
-/// memory. Tuned by measurement.
+/// Number of cache lines to prefetch if siblings, which follow the child in memory, will probably
+/// be visited too. Tuned by measurement.
 pub const AND_SIBLINGS: usize = 12;
 
-/// Locations of nodes and leaves in memory.
+/// Addresses of the nodes and leaves of a [`TriangleBvh`], for prefetching.
 #[derive(Clone, Copy)]
 pub(super) struct Places {
     nodes_and_leaves: [*const u8; 2],
@@ -26,8 +26,8 @@ impl Places {
     #[inline(always)]
     pub fn fetch<L: Lanes, const LINES: usize>(&self, lanes: L, child: u32) {
         const SIZES: [usize; 2] = [node::UNIT, ROWS * size_of::<f32>()];
-        // `items` drops the highest bits of a node's offset. Beyond the first 2 GiB of nodes, the
-        // prefetch is useless but harmless.
+        // `items` drops the highest bits of a node's offset, so for nodes beyond the first 2 GiB, a
+        // wrong address is prefetched, which is harmless.
         let (kind, at) = ((child >> 31) as usize, node::items(child).0);
         let from = self.nodes_and_leaves[kind].wrapping_add(SIZES[kind].wrapping_mul(at));
         for line in 0..LINES {

@@ -1,4 +1,4 @@
-//! Height grids: terrain whose triangles need not be in memory.
+//! Height grids, whose triangles are computed when they are needed.
 
 use super::rows::TAG;
 use crate::BuildError;
@@ -10,11 +10,12 @@ use crate::node::{self, LEAF_SIZE};
 const SIDE: usize = 2;
 const _: () = assert!(2 * SIDE * SIDE == LEAF_SIZE);
 
-/// Terrain: heights y over the crossings of lines of constant x and lines of constant z.
+/// A height field such as terrain: heights y at the crossings of grid lines of constant x and z,
+/// from which a [`TriangleBvh`] computes triangles.
 ///
-/// Crossings are numbered along x first. Four neighbours enclose a cell of two triangles. With
-/// corner a at the lower x and z, b at the next z, c at the next x, and d at both, cell i has the
-/// triangles (a, b, d) with number 2 i and (a, d, c) with number 2 i + 1.
+/// Crossings and cells are numbered along x first. A cell lies between four crossings and has two
+/// triangles. With a at the lower x and z, b at the next z, c at the next x, and d at the next x
+/// and z, cell i has the triangles (a, b, d) with number 2 i and (a, d, c) with number 2 i + 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeightGrid {
     xs: Vec<f32>,
@@ -23,7 +24,8 @@ pub struct HeightGrid {
 }
 
 impl HeightGrid {
-    /// Creates a grid from the x and z of its lines, and the heights of their crossings.
+    /// Creates a grid from the x and z of its lines, and the heights at the crossings, along x
+    /// first.
     ///
     /// # Errors
     ///
@@ -59,7 +61,8 @@ impl HeightGrid {
         &self.heights
     }
 
-    /// Maps all coordinates: `coordinate` takes an axis and a coordinate.
+    /// Maps all coordinates. `coordinate` takes an axis (0 to 2) and a coordinate, and returns the
+    /// new one.
     pub fn map(&self, mut coordinate: impl FnMut(usize, f32) -> f32) -> Self {
         let mut along = |axis: usize, list: &[f32]| list.iter().map(|x| coordinate(axis, *x)).collect();
         HeightGrid { xs: along(0, &self.xs), zs: along(2, &self.zs), heights: along(1, &self.heights) }
@@ -141,7 +144,7 @@ impl HeightGrid {
         Aabb::around(crossings.map(|(row, column)| self.point(row * self.xs.len() + column)))
     }
 
-    /// Writes the rows of a block in the layout of any leaf.
+    /// Writes the triangles of a block as the rows of a leaf.
     pub(super) fn write_rows(&self, block: usize, rows: &mut Rows) {
         let [first, cells] = self.cells(block);
         match cells {

@@ -1,7 +1,7 @@
 //! Trees over height grids.
 //!
-//! The leaves are blocks of two by two cells of a [`HeightGrid`]. Their rows are written when a ray
-//! visits them; everything else is as for other triangles.
+//! The leaves are blocks of two by two cells of a [`HeightGrid`]. Their rows are computed whenever
+//! a ray visits them. Everything else is as for other triangles.
 
 use super::height_grid::HeightGrid;
 use super::rows::put;
@@ -14,12 +14,12 @@ use crate::{BuildError, parallel};
 use std::sync::{Arc, OnceLock};
 
 impl TriangleBvh {
-    /// Builds a tree over a height grid and other triangles, such as walls around it, which are
-    /// numbered after those of the grid. Each leaf holds eight of the other triangles in the given
-    /// order, so neighbours should be consecutive.
+    /// Builds a tree over a height grid and other triangles, for example walls around it, which are
+    /// numbered after those of the grid. Each leaf holds eight consecutive triangles of `others`,
+    /// so neighbours should be next to each other in that list.
     ///
-    /// Rays hit the same triangles as in a tree over all of them, bit for bit. The tree takes about
-    /// 5 bytes per triangle of the grid besides the heights, and up to 20 more during the build.
+    /// Hits have the same bits as in a tree that stores all triangles. In addition to the heights,
+    /// the tree takes about 5 bytes per triangle of the grid, and the build up to 20 more.
     ///
     /// # Errors
     ///
@@ -82,7 +82,8 @@ impl TriangleBvh {
         TriangleBvh { heights: Some(grid), ..bvh }
     }
 
-    /// Item of the first block, which follows all items with rows in memory.
+    /// Item number of the first block. Blocks are numbered after all items whose rows are in
+    /// memory.
     pub(super) fn first_block(&self) -> usize {
         self.items() + 1
     }
@@ -96,7 +97,7 @@ impl TriangleBvh {
         }
     }
 
-    /// Returns a copy with the rows of all leaves in memory.
+    /// Returns a copy of the tree with the rows of all leaves in memory.
     pub(super) fn expanded(&self) -> Self {
         let Some(grid) = &self.heights else { return self.clone() };
         let (first_block, mut items) = (self.first_block(), self.items());

@@ -1,15 +1,15 @@
-//! Triangle tests in lanes: several triangles and one ray, or one triangle and several rays.
+//! SIMD triangle tests: several triangles and one ray, or one triangle and several rays.
 //!
-//! The test equals that of [`WatertightRay`](crate::watertight::WatertightRay), with the same
-//! roundings. Edge functions in single precision have the correct sign unless they are zero, so
-//! vector arithmetic rejects or accepts nearly all triangles. The exact scalar test decides the
-//! others. Any-hit rays only need t between two bounds; for the closest hit, double precision
-//! computes the distance of every crossed triangle.
+//! The test gives the same results as that of [`WatertightRay`](crate::watertight::WatertightRay),
+//! with the same rounding. Edge functions in single precision have the correct sign unless they are
+//! zero, so vector arithmetic is enough to reject or accept nearly all triangles. The exact scalar
+//! test decides the others. For any-hit rays, bounds on t are usually sufficient. For the closest
+//! hit, t is computed in double precision for every crossed triangle.
 
 use crate::lanes::Numbers;
 
-/// Calls a macro for each corner and axis. (Not a closure: a function that is not inlined into a
-/// level's entry is compiled without its instructions.)
+/// Calls a macro for each corner and axis. (A closure might not be inlined, and would then be
+/// compiled without the instructions of the SIMD level.)
 macro_rules! by_corner {
     ($make:ident) => {
         [
@@ -21,10 +21,11 @@ macro_rules! by_corner {
 }
 pub(super) use by_corner;
 
-/// Triangles projected onto the planes across rays: several triangles and one ray, or one triangle
-/// and several rays.
+/// Triangles projected along rays, with their edge functions: several triangles for one ray, or one
+/// triangle for several rays.
 pub struct Flat<N: Numbers> {
-    /// By corner: position across the ray, and height along the third axis.
+    /// Projected position of each corner in the plane across the ray, and its height along the
+    /// third axis.
     corners: [[N::Floats; 3]; 3],
     /// Edge functions of the edges opposite to the corners.
     edges: [N::Floats; 3],
@@ -33,7 +34,8 @@ pub struct Flat<N: Numbers> {
     sign: N::Floats,
 }
 
-/// Bounds on the t at which triangles are crossed; NaN if unknown.
+/// Bounds on the t at which rays cross triangles, in single precision; NaN if unknown. Returned by
+/// [`Flat::span`].
 pub struct Span<N: Numbers> {
     pub near: N::Floats,
     pub far: N::Floats,
@@ -43,7 +45,7 @@ impl<N: Numbers> Flat<N> {
     /// Projects corners. Corners and origins have permuted axes, as in
     /// [`WatertightRay`](crate::watertight::WatertightRay).
     ///
-    /// Roundings are the same as in the scalar test, so the signs of edge functions are exact
+    /// The rounding is the same as in the scalar test, so the signs of edge functions are exact
     /// unless they are zero.
     #[inline(always)]
     pub fn new(numbers: N, corners: [[N::Floats; 3]; 3], origin: [N::Floats; 3], shear: [N::Floats; 2]) -> Self {
@@ -85,13 +87,14 @@ impl<N: Numbers> Flat<N> {
     /// Bounds on t for triangles that are certainly crossed.
     ///
     /// The height z of the crossing is the mean of the corners' heights, weighted by the edge
-    /// functions. Let R bound the corners' coordinates across the ray, Z their heights, and H the
-    /// difference of the heights. With e = 2^-23, a coordinate across is off by at most e (R + 2
-    /// Z), so an edge function is off by at most e (6 R^2 + 8 R Z). Errors of the weights move the
-    /// mean by at most their sum times H over the sum of the weights. Twice that is a bound even if
-    /// the sum of the weights is uncertain itself: it then exceeds H, and both the mean and the `t`
-    /// of [`WatertightRay`] lie between the heights of the corners. Other roundings add less than 6
-    /// e Z, and a few of the smallest numbers.
+    /// functions. Let R bound the coordinates of the corners across the ray, Z their heights, and H
+    /// the differences of their heights. With e = 2^-23, the error of a coordinate across the ray
+    /// is at most e (R + 2 Z), so that of an edge function is at most e (6 R^2 + 8 R Z). Errors of
+    /// the weights change the mean by at most the sum of the errors times H, divided by the sum of
+    /// the weights. Twice this value is a bound even if the sum of the weights is itself uncertain:
+    /// it then exceeds H, and both the mean and the `t` of [`WatertightRay`] lie between the
+    /// heights of the corners. Other rounding errors add less than 6 e Z, and a few times the
+    /// smallest number.
     ///
     /// `inverse_z` is `1 / dz`. The longest component dz of the direction must lie between 10^-15
     /// and 10^15, and coordinates must be below 10^15.

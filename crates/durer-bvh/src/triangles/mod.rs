@@ -1,5 +1,4 @@
-//! A tree over the triangles of a mesh, including the triangles themselves: the kernel in which
-//! rays spend their time.
+//! A tree over the triangles of a mesh, which also stores the triangles.
 
 mod build;
 mod fetch;
@@ -58,8 +57,8 @@ impl TriangleBvh {
         TriangleBvh { level: Available::or_scalar(level), ..self }
     }
 
-    /// Sets the least |(b - a) x (c - a) · d| of a triangle that rays can hit. With zero, all
-    /// triangles can be hit.
+    /// Sets the least |(b - a) x (c - a) · d| of a triangle that rays with direction d can hit, to
+    /// cull slivers and edge-on triangles. With 0, all triangles can be hit.
     pub fn least_volume(self, least_volume: f64) -> Self {
         TriangleBvh { least_volume, culls_slivers: least_volume != 0.0, ..self }
     }
@@ -96,7 +95,7 @@ impl TriangleBvh {
     /// sides, or excluded triangles.
     ///
     /// The filter may be called several times for a triangle, in any order, and for hits that are
-    /// not the closest. Its result should depend on its arguments alone.
+    /// not the closest. Its result should depend only on its arguments.
     ///
     /// ```
     /// use durer_bvh::math::{Ray, Vec3};
@@ -106,7 +105,7 @@ impl TriangleBvh {
     /// let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
     /// let bvh = TriangleBvh::build(&vertices, &triangles, BuildQuality::default());
     /// let ray = Ray::new(Vec3::new(0.2, 0.2, -1.0), Vec3::Z);
-    /// // The exit, since fronts are culled.
+    /// // Where the ray leaves the tetrahedron, since front faces are culled.
     /// let hit = bvh.closest_where(&ray, |_, facing| facing == Facing::Back).unwrap();
     /// assert_eq!(hit.triangle, 3);
     /// ```
@@ -134,7 +133,7 @@ impl TriangleBvh {
         counting(counter, || self.all_hits(ray), |counts| self.all_hits_counted(ray, counts))
     }
 
-    // Not generic, so that they are compiled once, here, and not for each caller's counter.
+    // These functions are not generic, so that they are compiled only once and not for each caller.
 
     pub(crate) fn closest_filtered(&self, ray: &Ray, filter: Filter) -> Option<TriangleHit> {
         self.query_with(ray, (), Filtered { inner: Nearest::default(), filter })
@@ -163,11 +162,12 @@ impl TriangleBvh {
     }
 
     /// Finds the closest hit of each ray, in order. The hits equal those of
-    /// [`TriangleBvh::closest`], bit for bit, but the batch is faster. Of 64 consecutive rays,
-    /// those with similar origins and directions traverse the tree as packets, so neighbours in the
-    /// list should be neighbours in space, like the pixels of a tile. After incoherent rays, up to
-    /// 960 rays skip this test. In a large tree, several of the remaining rays are traced
-    /// alternately, so that none waits for memory.
+    /// [`TriangleBvh::closest`], bit for bit, but a batch is faster. Within each group of 64
+    /// consecutive rays, those with similar origins and directions are traced as packets, so rays
+    /// that are close in space, such as those of the pixels of a tile, should be close in the list.
+    /// After incoherent rays, up to 960 rays are not tested for coherence. In a large tree, several
+    /// of the remaining rays are traced in turn, so that one ray proceeds while another waits for
+    /// memory.
     ///
     /// # Panics
     ///
@@ -238,7 +238,7 @@ impl TriangleBvh {
             return Some(grid.corners(triangle as usize));
         }
         let leaf_of = self.leaf_of.get_or_init(|| self.note_leaves());
-        // 0 stands for no leaf.
+        // 0 means that the triangle is in no leaf.
         let leaf = *leaf_of.get(triangle as usize).filter(|leaf| **leaf != 0)?;
         let mut room = MaybeUninit::uninit();
         let (rows, count) = self.rows(leaf, &mut room);
@@ -285,7 +285,7 @@ impl TriangleBvh {
     }
 
     /// Expected cost of a random ray through the bounds by the surface area heuristic, in node
-    /// tests; a leaf costs as much as a node. NaN if the bounds have no area.
+    /// tests. A leaf is assumed to cost as much as a node. NaN if the bounds have no area.
     pub fn sah_cost(&self) -> f64 {
         node::cost(&self.nodes, self.bounds)
     }

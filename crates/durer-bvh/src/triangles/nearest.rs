@@ -8,7 +8,7 @@ use crate::node::{self, LEAF, WideNode};
 use glam::DVec3;
 use std::mem::MaybeUninit;
 
-/// Point of a mesh that is nearest to a query point.
+/// Point on a mesh that is nearest to a query point; the result of [`TriangleBvh::nearest_point`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestPoint {
     /// Distance from the query point.
@@ -21,14 +21,15 @@ pub struct NearestPoint {
     pub triangle: u32,
 }
 
-/// Factor on distances to boxes. It reduces them by far more than rounding, so that all trees find
-/// the same triangle.
+/// Factor for distances to boxes. It reduces them by much more than their rounding error, so that
+/// the result does not depend on the boxes of the tree.
 const SLACK: f64 = 1.0 - 1e-12;
 
 impl TriangleBvh {
     /// Finds the point on the triangles that is nearest to `point`, if its distance is at most
-    /// `within`. Of triangles at the same distance, the one with the least number is chosen.
-    /// Computed in double precision; the result is the same, bit for bit, for all build qualities.
+    /// `within`. If several triangles are at the same distance, the one with the lowest number is
+    /// chosen. The computation is in double precision, and the result has the same bits for all
+    /// build qualities.
     ///
     /// ```
     /// use durer_bvh::{BuildQuality, TriangleBvh};
@@ -69,7 +70,8 @@ impl TriangleBvh {
     }
 }
 
-/// Squared distances to a node's boxes, slightly too small; infinite for unused slots.
+/// Squared distances from `point` to the boxes of a node, slightly reduced; infinite for unused
+/// slots.
 fn squares(node: &WideNode, point: DVec3) -> [f64; WIDTH] {
     let mut squares = [0.0; WIDTH];
     for (axis, [lower, upper]) in node.planes.iter().enumerate() {
@@ -87,7 +89,7 @@ fn corners(rows: &Rows, count: usize, lane: usize) -> [DVec3; 3] {
     [0, 3, 6].map(|row| DVec3::new(at(row), at(row + 1), at(row + 2)))
 }
 
-/// Best point so far.
+/// Nearest point found so far by a closest-point query, and its squared distance.
 struct Best {
     squared: f64,
     found: Option<(DVec3, [f64; 2], u32)>,
@@ -176,8 +178,8 @@ mod tests {
             let around = DVec3::new(p.x, p.z, 0.0).length() - 0.7;
             let exact = (DVec3::new(around, p.y, 0.0).length() - 0.3).abs();
             let near = tree.nearest_point(p.as_vec3(), f64::INFINITY).unwrap();
-            // The mesh lies inside the torus by the sagitta of its edges: 1 - cos(pi / 100) of 0.3,
-            // and 1 - cos(pi / 200) of 1.
+            // The mesh is inside the torus, by at most the sagittas of its edges: 0.3 (1 - cos(pi /
+            // 100)) and 1 - cos(pi / 200).
             assert!((near.distance - exact).abs() < 3e-4, "{p}: {} {exact}", near.distance);
             assert!((near.point.distance(p) - near.distance).abs() < 1e-6);
         }

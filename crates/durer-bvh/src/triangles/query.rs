@@ -1,4 +1,4 @@
-//! Queries of a ray on a tree of triangles.
+//! Ray queries on a [`TriangleBvh`]: one traversal for closest-hit, any-hit, and all-hits rays.
 
 use super::fetch::{AND_SIBLINGS, Places};
 use super::leaf::Flat;
@@ -12,7 +12,8 @@ use crate::watertight::{Plane, PreciseLine, WatertightRay, turn};
 use glam::Vec3A;
 use std::mem::MaybeUninit;
 
-/// A query whose hits are collected in an `F`.
+/// A query of one ray on a [`TriangleBvh`], as a kernel. The collector `F` determines which hits
+/// are returned.
 pub struct Query<'a, T, F> {
     pub bvh: &'a TriangleBvh,
     pub ray: &'a Ray,
@@ -20,31 +21,31 @@ pub struct Query<'a, T, F> {
     pub found: F,
 }
 
-/// A ray prepared for the triangles of a tree.
+/// A ray prepared for tests of the triangles of a [`TriangleBvh`].
 pub struct RayInTree<'a> {
     bvh: &'a TriangleBvh,
     ray: &'a Ray,
     sheared: WatertightRay,
 }
 
-/// Collector of the hits of a query.
+/// Collector of the hits of a ray query, such as the closest hit or all hits.
 pub trait HitCollector {
     type Answer: Default;
 
-    /// True if the existence of a hit suffices.
+    /// True if only the existence of a hit matters.
     const ANY: bool;
 
-    /// Records a hit at or before `t_max`. Returns the new `t_max`. `facing` computes the side of
-    /// the triangle when called.
+    /// Records a hit at or before `t_max`, and returns the new `t_max`. Calling `facing` computes
+    /// the side of the triangle.
     fn on_hit(&mut self, hit: TriangleHit, t_max: f32, facing: impl FnOnce() -> Facing) -> f32;
 
     /// Returns the result at the end of the traversal. `any` is true if it stopped at a hit.
     fn answer(&mut self, any: bool) -> Self::Answer;
 }
 
-/// Collector of the closest hit.
+/// [`HitCollector`] that keeps the closest hit.
 pub struct Nearest {
-    /// Best hit so far; its triangle is [`NONE`] before the first.
+    /// Closest hit so far. Before the first hit, its triangle is [`NONE`].
     best: TriangleHit,
 }
 
@@ -77,7 +78,7 @@ impl HitCollector for Nearest {
     }
 }
 
-/// Collector for occlusion queries.
+/// [`HitCollector`] that stops at the first hit, for occlusion queries.
 #[derive(Default)]
 pub struct Any;
 
@@ -97,7 +98,7 @@ impl HitCollector for Any {
     }
 }
 
-/// Collector of all hits, including duplicates.
+/// [`HitCollector`] that keeps all hits, including duplicates from split triangles.
 #[derive(Default)]
 pub struct All(Vec<TriangleHit>);
 
@@ -116,11 +117,11 @@ impl HitCollector for All {
     }
 }
 
-/// Predicate that accepts hits. It may be called several times for a hit, and for hits that are not
-/// the closest.
+/// Caller's predicate that accepts or rejects hits. It may be called several times for a hit, and
+/// for hits that are not the closest.
 pub type Filter<'a> = &'a mut dyn FnMut(&TriangleHit, Facing) -> bool;
 
-/// Collector of the hits that pass a filter.
+/// [`HitCollector`] that passes the hits that a filter accepts to another collector.
 pub struct Filtered<'a, F> {
     pub inner: F,
     pub filter: Filter<'a>,
@@ -183,13 +184,15 @@ impl<T: TraversalCounter, F: HitCollector> Query<'_, T, F> {
     }
 }
 
-/// Leaf tests of a query.
+/// Traversal visitor that tests a ray against the triangles of leaves and passes hits to a
+/// collector.
 pub struct Leaves<'a, T, F> {
     ray_in_tree: RayInTree<'a>,
     places: Places,
     counter: T,
     found: F,
-    /// True if vector arithmetic on the signs of edge functions cannot overflow.
+    /// True if the products of edge functions cannot overflow, so that vector arithmetic can be
+    /// used.
     side_by_side: bool,
 }
 
@@ -271,8 +274,8 @@ impl<T: TraversalCounter, F: HitCollector> Visitor for Leaves<'_, T, F> {
             }
             unsure |= crossed & !(lanes.le(span.far, start) | lanes.le(end, span.near));
         } else {
-            // Without `black_box`, the compiler would prepare this for every ray, even if it never
-            // reaches a leaf.
+            // Without `black_box`, the compiler would compute this for every ray, even if it
+            // reaches no leaf.
             let sheared = std::hint::black_box(sheared);
             let (origin, dir) = sheared.ray();
             let line = PreciseLine::new(lanes.triple(origin), lanes.triple(dir));

@@ -1,9 +1,10 @@
-//! Trees as bytes, to be stored in files.
+//! Saves trees as bytes, and loads them.
 //!
-//! All numbers are little-endian. The format is: a header with eight bytes of name, the version,
-//! the numbers of triangles, nodes, and items as `u64`, and the least volume; the nodes, field by
-//! field; the rows of leaves; and a checksum of all that. The reader trusts nothing: an accepted
-//! tree never leads a ray out of bounds, into a cycle, or deeper than the stack.
+//! All numbers are little-endian. The format consists of a header with an eight-byte name, the
+//! version, the numbers of triangles, nodes, and items as `u64`, and the least volume; the nodes,
+//! field by field; the rows of the leaves; and a checksum of everything before it. All data is
+//! checked: in a tree that is accepted, no ray reads out of bounds, runs into a cycle, or overflows
+//! the stack.
 
 use super::rows::TAG;
 use super::tree::TriangleBvh;
@@ -56,8 +57,8 @@ impl TriangleBvh {
 
     /// Deserialises a tree written by [`TriangleBvh::to_bytes`].
     ///
-    /// Untrusted bytes are safe: they are rejected, or give a tree that answers queries, though
-    /// with wrong results if they were forged.
+    /// Untrusted bytes are safe to load. Forged bytes are either rejected or give a tree whose
+    /// results are wrong, but queries do not panic or run forever.
     ///
     /// # Errors
     ///
@@ -100,7 +101,7 @@ impl TriangleBvh {
     }
 }
 
-/// Reads numbers from bytes, of which there must be enough.
+/// Reader of little-endian numbers from the bytes of a saved tree, which must be long enough.
 struct Reader<'a>(&'a [u8]);
 
 impl Reader<'_> {
@@ -135,7 +136,7 @@ fn check(nodes: &[WideNode], leaves: &[f32], items: usize, count: usize) -> Resu
     if nodes.is_empty() != (items == 0) {
         return Err("nodes and leaves do not match");
     }
-    // Depth of each node, known once its parent was visited; the root has no parent.
+    // Depth of each node, set when its parent is visited; 0 for the root.
     let mut depths = vec![None; nodes.len()];
     depths.iter_mut().take(1).for_each(|depth| *depth = Some(0));
     let mut is_taken = vec![false; items];
@@ -189,7 +190,7 @@ fn check_leaf(rows: &[f32], size: usize, count: usize) -> Result<(), &'static st
     }
 }
 
-/// Checksum against damage, not against forgery: FNV-1a by Fowler, Noll, and Vo, but with
+/// Checksum that detects damage, but not forgery: FNV-1a by Fowler, Noll, and Vo, modified to use
 /// eight-byte words, a rotation in each step, and the length at the end.
 fn checksum(bytes: &[u8]) -> u64 {
     let step = |sum: u64, word: u64| (sum ^ word).wrapping_mul(0x0000_0100_0000_01b3).rotate_left(23);
@@ -255,8 +256,8 @@ mod tests {
             for _ in 0..rounds(1_500) {
                 let mut bytes = bytes.clone();
                 for _ in 0..1 + random.below(3) {
-                    // Mostly in the header and the nodes. Replaces whole words, too, and copies
-                    // words from elsewhere.
+                    // Change bits, replace words, and copy words from elsewhere, mostly in the
+                    // header and the nodes.
                     let end = [HEAD, HEAD + NODE, bytes.len() - CHECKSUM][random.below(3)].min(bytes.len() - CHECKSUM);
                     let at = random.below(end / 4) * 4;
                     let from = random.below((bytes.len() - CHECKSUM) / 4) * 4;

@@ -1,9 +1,10 @@
-//! Tracing of many rays through one tree, one step at a time.
+//! Traces several incoherent rays through one tree in turn, one step at a time, to hide memory
+//! latency.
 //!
-//! A single ray waits for a node from memory, for the result of a test, or for a mispredicted
-//! branch. Here several rays are in flight, and while one waits, the others proceed. Rays at inner
-//! nodes and rays at leaves are on two lists, so no branch decides between the two: a step writes
-//! its ray to both lists, and one of them grows.
+//! A single ray often waits for a node from memory, for the result of a test, or after a
+//! mispredicted branch. Here several rays are in flight, and while one waits, the others proceed.
+//! Rays at inner nodes and rays at leaves are on separate lists, so no branch chooses between the
+//! two: each step writes its ray to both lists, but only one of them grows.
 
 use super::fetch::{ITSELF, Places};
 use super::query::{HitCollector, Leaves};
@@ -17,12 +18,14 @@ use std::marker::PhantomData;
 
 /// Number of rays in flight.
 const IN_FLIGHT: usize = 16;
-/// Bottom of each stack. It differs from all leaves, since its items would be beyond the maximum.
+/// Marker at the bottom of each stack. It differs from the codes of all leaves, since its items
+/// would be beyond the maximum.
 const END: u32 = u32::MAX;
 
-/// Size of a tree in bytes below which most of it is in the cache, so that single rays are faster.
+/// Size of a tree in bytes below which most of it is in the cache, so that tracing rays one by one
+/// is faster.
 const MAX_CACHED_BYTES: usize = 8 << 20;
-/// Minimum number of rays; fewer rays do not hide each other's latency.
+/// Minimum number of rays for a stream. Fewer rays do not hide each other's latency.
 const FEWEST: usize = 4;
 
 impl TriangleBvh {
@@ -50,6 +53,7 @@ impl TriangleBvh {
     }
 }
 
+/// Kernel that traces the numbered rays with several of them in flight.
 struct Stream<'a, F, A> {
     bvh: &'a TriangleBvh,
     rays: &'a [Ray],
@@ -59,7 +63,7 @@ struct Stream<'a, F, A> {
     found: PhantomData<F>,
 }
 
-/// A ray in flight.
+/// State of a ray that a [`Stream`] is tracing: its collector, `t_max`, and the next node or leaf.
 struct InFlightRay<'a, F> {
     number: usize,
     boxes: TraversalRay,
@@ -68,7 +72,7 @@ struct InFlightRay<'a, F> {
     child: u32,
 }
 
-/// A list of ray numbers.
+/// List of the slots of rays that are at inner nodes, or of those that are at leaves.
 struct List {
     numbers: [u8; 2 * IN_FLIGHT],
     len: usize,

@@ -11,9 +11,10 @@ mod heights;
 mod queries;
 mod reference;
 
+/// A mesh for tests: vertices, and the vertex indices of triangles.
 pub type Mesh = (Vec<Vec3>, Vec<[u32; 3]>);
 
-/// A torus whose neighbouring triangles share corners bit for bit.
+/// A torus whose neighbouring triangles have corners with the same bits.
 pub fn torus(columns: u32, rows: u32) -> Mesh {
     let turn = |i: u32, count: u32| crate::math::fp::sin_cos_degrees(360.0 * f64::from(i) / f64::from(count));
     let mut mesh: Mesh = Default::default();
@@ -29,7 +30,7 @@ pub fn torus(columns: u32, rows: u32) -> Mesh {
     mesh
 }
 
-/// A cube of six times `cuts`^2 squares. Rays along axes lie in its faces and edges.
+/// A cube with `cuts`^2 squares per face. Rays along axes can lie in its faces and edges.
 fn cube(cuts: u32) -> Mesh {
     let mut mesh: Mesh = Default::default();
     for face in 0..6 {
@@ -61,7 +62,7 @@ pub fn soup(random: &mut Random, count: u32, size: f32) -> Mesh {
     (vertices, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
 }
 
-/// Small triangles and long ones across all of them, some of which are split.
+/// Small triangles, and long ones through all of them, some of which the build splits.
 pub fn bars(random: &mut Random, small: u32, long: usize) -> Mesh {
     let (mut vertices, mut triangles) = soup(random, small, 0.05);
     for i in 0..long {
@@ -191,7 +192,7 @@ fn closed_mesh_has_even_crossings_from_outside_and_odd_from_inside() {
     let shapes = [(torus(60, 30), Vec3::new(0.7, 0.0, 0.0)), (cube(8), Vec3::ZERO)];
     for distance in [0.0, 1e3, 1e6] {
         for (mesh, inside) in &shapes {
-            // Whole numbers keep the mesh closed, since shared corners are rounded alike.
+            // The mesh stays closed, since shared corners are rounded in the same way.
             let offset = (distance * random.direction()).round();
             let scale = if distance > 1e5 { 64.0 } else { 1.0 };
             let mesh = scaled(mesh, scale, offset);
@@ -221,7 +222,7 @@ fn refitted_tree_finds_what_brute_force_finds() {
         for round in 1..6 {
             let bent = |v: &Vec3| *v + 0.1 * round as f32 * Vec3::new(v.y, v.z * v.x, -v.x) + Vec3::Y * round as f32;
             let mut moved: Mesh = (mesh.0.iter().map(bent).collect(), mesh.1.clone());
-            // Now and then, some vertices are not finite, and return later.
+            // In some rounds, some vertices are not finite. They become finite again later.
             match round {
                 2 => moved.0[50..250].fill(Vec3::NAN),
                 4 => moved.0[..100].fill(Vec3::new(0.0, f32::INFINITY, 1.0)),
@@ -239,7 +240,7 @@ fn refitted_tree_finds_what_brute_force_finds() {
     }
 }
 
-/// If sums of coordinates overflow, the result of a hit is still a valid triangle.
+/// If sums of coordinates overflow, hits still have valid triangle numbers.
 #[test]
 fn largest_offsets_lead_to_triangles() {
     let mut random = Random(5);
@@ -255,8 +256,8 @@ fn largest_offsets_lead_to_triangles() {
     }
 }
 
-/// A bundle of neighbouring rays, through a pinhole or parallel: towards corners, edges, and faces,
-/// often across octants, some with special values.
+/// A bundle of neighbouring rays, parallel or through one point, towards corners, edges, and faces.
+/// It often spans several octants, and some rays have special values.
 fn bundle(mesh: &Mesh, random: &mut Random, scale: f32, offset: Vec3) -> Vec<Ray> {
     let middle = ray(mesh, random, scale, offset);
     let count = 1 + random.below(150);
@@ -306,13 +307,14 @@ fn batches_answer_like_single_rays() {
                 }
                 let (mut hits, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
                 for tree in &trees {
-                    // Also in parts: after incoherent rays, some rays skip the coherence test.
+                    // Also pass the rays in parts, since after incoherent rays, some rays skip the
+                    // coherence test.
                     let part = [64, usize::MAX][round % 2];
                     rays.chunks(part).zip(hits.chunks_mut(part)).for_each(|(rays, to)| tree.closest_batch(rays, to));
                     rays.chunks(part)
                         .zip(occluded.chunks_mut(part))
                         .for_each(|(rays, to)| tree.occluded_batch(rays, to));
-                    // Streams, as in a large tree.
+                    // Also trace the rays as a stream, as in a large tree.
                     let (numbers, mut streamed) = ((0..rays.len() as u32).collect::<Vec<_>>(), hits.clone());
                     tree.stream::<Nearest>(&rays, &numbers, |i, hit| streamed[i] = hit);
                     tree.stream::<Any>(&rays, &numbers, |i, any| assert_eq!(any, occluded[i], "{name}"));

@@ -1,4 +1,4 @@
-//! The tree of triangles, and its hits.
+//! [`TriangleBvh`], and the hits that its queries return.
 
 use super::height_grid::HeightGrid;
 use crate::lanes::{Available, ROOM_OF_ROWS, ROWS, Rows};
@@ -9,7 +9,7 @@ use glam::Vec3A;
 use std::mem::MaybeUninit;
 use std::sync::{Arc, OnceLock};
 
-/// Intersection of a ray with a mesh.
+/// Intersection of a ray with a triangle of a mesh, returned by the queries of [`TriangleBvh`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleHit {
     /// Position along the ray, in units of the length of its direction.
@@ -20,12 +20,13 @@ pub struct TriangleHit {
     pub triangle: u32,
 }
 
-/// A bounding volume hierarchy over triangles, usable without a scene.
+/// A bounding volume hierarchy over the triangles of a mesh, which it stores. It can be used
+/// without a scene.
 ///
-/// A ray counts as moved by an infinitesimal distance sideways, so that it crosses exactly one of
-/// the triangles around an edge or a vertex: no ray slips through a closed mesh, and
-/// [`TriangleBvh::hit_count`] is exact. Triangles are hit from both sides. Of hits at the same `t`,
-/// the one with the least triangle number is the closest. All results are the same, bit for bit,
+/// A ray through an edge or a vertex crosses exactly one of the triangles that meet there, as if it
+/// were moved sideways by an infinitesimal distance. No ray slips through a closed mesh, and
+/// [`TriangleBvh::hit_count`] is exact. Triangles are hit from both sides. If several hits have the
+/// same `t`, the one with the lowest triangle number is the closest. All results have the same bits
 /// for all build qualities, SIMD levels, and numbers of threads.
 ///
 /// A ray that is NaN or infinite, or has no direction, hits nothing. Directions need not have
@@ -47,8 +48,9 @@ pub struct TriangleHit {
 #[derive(Clone, Debug)]
 pub struct TriangleBvh {
     pub(super) nodes: Vec<WideNode>,
-    /// Leaves with [`ROWS`] rows each, whose length is the number of triangles: corners by axis,
-    /// then numbers as bits. Padded by the size of a leaf.
+    /// Triangles of the leaves. A leaf has [`ROWS`] rows, each as long as its number of triangles:
+    /// the coordinates of the corners, then the triangle numbers as bits. The list is padded by the
+    /// size of a leaf.
     pub(super) leaves: Vec<f32>,
     pub(super) bounds: Aabb,
     /// Largest absolute coordinate.
@@ -59,17 +61,17 @@ pub struct TriangleBvh {
     pub(super) culls_slivers: bool,
     /// Number of triangles at build time.
     pub(super) count: usize,
-    /// A leaf of each triangle, computed on first use.
+    /// A leaf that contains each triangle, by triangle number; computed on first use.
     pub(super) leaf_of: OnceLock<Vec<u32>>,
     /// Grid for leaves whose rows are not in memory.
     pub(super) heights: Option<Arc<HeightGrid>>,
 }
 
-/// Side of a triangle that a ray hits.
+/// Side of a triangle that a ray hits, passed to filters of ray queries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Facing {
-    /// Side from which the corners are in counter-clockwise order: (b - a) x (c - a) points towards
-    /// the ray's origin.
+    /// Side from which the corners appear in counter-clockwise order: (b - a) x (c - a) points
+    /// towards the origin of the ray.
     Front,
     /// Opposite side.
     Back,
@@ -115,8 +117,8 @@ impl TriangleBvh {
     #[inline(always)]
     pub(super) fn rows<'a>(&'a self, leaf: u32, room: &'a mut MaybeUninit<Rows>) -> (&'a Rows, usize) {
         let (first, count) = node::items(leaf);
-        // The padding makes the slice long enough for any leaf in memory; blocks of heights have
-        // greater numbers.
+        // Because of the padding, the slice is long enough for any leaf in memory. Blocks of
+        // heights have higher numbers.
         let rows = match self.leaves.get(ROWS * first..) {
             Some(rest) => rest.first_chunk(),
             None => None,

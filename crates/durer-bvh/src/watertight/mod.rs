@@ -1,14 +1,14 @@
 //! Watertight ray-triangle intersection: a ray never slips between two triangles that share an
 //! edge, and crosses exactly one of the triangles around an edge or a vertex.
 //!
-//! A shear of the triangle aligns the ray with one axis. The remaining question is whether the
-//! projected edges wind around the origin. Corners shared by two triangles are rounded alike, and
-//! the sign of each edge function is exact, so two neighbours never disagree. If an edge passes
-//! through the ray, the ray counts as moved by an infinitesimal (e, e^2) in the plane across it.
+//! A shear aligns the ray with one axis. The ray crosses the triangle if the projected edges wind
+//! around the origin. Corners that two triangles share are rounded in the same way, and the sign of
+//! each edge function is exact, so neighbours never disagree. If the ray passes through an edge,
+//! the result is that of a ray moved by an infinitesimal (e, e^2) in the plane across it.
 //!
-//! Single precision decides if a triangle is crossed; double precision computes the distance. A ray
-//! that starts beside a triangle, off by no more than the rounding of its origin, is therefore on
-//! the right side of it.
+//! Single precision decides if a triangle is crossed, and double precision computes the distance.
+//! Therefore a ray whose origin is rounded to one side of a triangle is handled as starting on that
+//! side, however close to it.
 //!
 //! Sources: Woop, Benthin, Wald, *Watertight Ray/Triangle Intersection*, JCGT 2(1), 2013. The
 //! infinitesimal is from Edelsbrunner and Mücke, *Simulation of Simplicity*, ACM TOG 9(1), 1990.
@@ -19,7 +19,7 @@ use glam::Vec3A;
 #[cfg(test)]
 mod tests;
 
-/// Point where a ray crosses a triangle.
+/// Point where a ray crosses a single triangle; the result of [`WatertightRay::intersect`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
     /// Position along the ray.
@@ -28,7 +28,7 @@ pub struct Crossing {
     pub uv: Vec2,
 }
 
-/// A ray prepared for tests of many triangles.
+/// A ray prepared for watertight intersection tests with many triangles.
 ///
 /// Its axes are permuted: the longest component of its direction becomes the third axis, and the
 /// order of the other two preserves the sides of triangles. `WatertightRay::crosses` and similar
@@ -61,7 +61,7 @@ impl WatertightRay {
         WatertightRay { axes, origin, dir, shear: dir / dir.z, least_volume: 0.0 }
     }
 
-    /// Sets the least |(b - a) x (c - a) · d| of a triangle that the ray can hit.
+    /// Sets the least |(b - a) x (c - a) · d| of a triangle that the ray with direction d can hit.
     pub fn least_volume(self, least_volume: f64) -> Self {
         WatertightRay { least_volume, ..self }
     }
@@ -78,8 +78,7 @@ impl WatertightRay {
         (t > t_min && t < t_max).then(|| Crossing { t, uv: self.uv(corners) })
     }
 
-    /// Returns true if the line of the ray crosses the triangle. False if the triangle is seen
-    /// edge-on.
+    /// Returns true if the line of the ray crosses the triangle. False if the triangle is edge-on.
     pub(crate) fn crosses(&self, corners: [Vec3A; 3]) -> bool {
         let flat @ [a, b, c] = self.flatten(corners);
         let front = is_front(b, c);
@@ -95,8 +94,8 @@ impl WatertightRay {
     /// corners are in counter-clockwise order.
     pub(crate) fn is_front(&self, corners: [Vec3A; 3]) -> bool {
         let [a, b, c] = areas(self.flatten(corners).map(doubles));
-        // The three areas have the same sign, if any. The longest component of the direction, along
-        // which the plane is seen, may be negative.
+        // No two of the three areas have opposite signs. The axis order accounts for a direction
+        // whose longest component is negative.
         a + b + c > 0.0
     }
 
@@ -148,7 +147,8 @@ impl WatertightRay {
     }
 }
 
-/// Plane of a triangle with permuted axes, in double precision; one, or several in lanes.
+/// Plane of a triangle with permuted axes, for computing `t` in double precision; one plane, or
+/// several in SIMD lanes.
 #[derive(Clone, Copy)]
 pub(crate) struct Plane<V: Triple> {
     pub normal: V,
@@ -172,8 +172,8 @@ impl Plane<[f64; 3]> {
     }
 }
 
-/// Line of a ray with permuted axes, in double precision; one, or several in lanes. Its methods are
-/// branchless.
+/// Line of a ray with permuted axes, for computing `t` in double precision; one line, or several in
+/// SIMD lanes. Its methods are branchless.
 #[derive(Clone, Copy)]
 pub(crate) struct PreciseLine<V: Triple> {
     origin: V,
@@ -206,10 +206,9 @@ impl<V: Triple> PreciseLine<V> {
     /// Computes `t` of the crossing with a triangle that the line crosses, and the signed volume (b
     /// - a) x (c - a) · d.
     ///
-    /// `t` is the intersection with the plane, clamped to the lowest and highest corner: nearly
-    /// edge-on, the triangle still bounds `t`, also if the division gives NaN. Products are rounded
-    /// monotonically, so the distances of the corners lie between those of the lowest and the
-    /// highest.
+    /// `t` is the intersection with the plane, clamped to the range between the lowest and highest
+    /// corner. So `t` stays within the triangle even if it is nearly edge-on or the division gives
+    /// NaN. Rounding of products is monotonic, so the distances of all corners are in that range.
     #[inline(always)]
     pub fn t(&self, plane: &Plane<V>) -> [V::Component; 2] {
         let volume = plane.normal.dot(self.dir);
@@ -221,8 +220,8 @@ impl<V: Triple> PreciseLine<V> {
     }
 }
 
-/// Second and third barycentric coordinates of the origin, from the corners in the plane across a
-/// ray that crosses the triangle; one, or several in lanes.
+/// Second and third barycentric coordinates of the origin, from the corners of a triangle projected
+/// along a ray that crosses it; for one triangle, or several in SIMD lanes.
 #[inline(always)]
 pub(crate) fn uv_across<D: Doubles>(flat: [[D; 2]; 3]) -> [D; 2] {
     let [a, b, c] = areas(flat);
@@ -231,8 +230,8 @@ pub(crate) fn uv_across<D: Doubles>(flat: [[D; 2]; 3]) -> [D; 2] {
     [b.div(det), c.div(det)]
 }
 
-/// Components of a vector that become the first, second, and third after the permutation. The last
-/// entry pads the order to four.
+/// Permutation of axes for a ray: the axes that become the first, second, and third. The fourth
+/// entry is padding.
 pub(crate) type AxisOrder = [u32; 4];
 
 /// Axis order of a ray, by the longest component of its direction and its sign (1 if negative).
@@ -301,8 +300,8 @@ fn is_front(p: Vec2, q: Vec2) -> bool {
 /// Computes [`is_front`] if single precision gives zero or overflows.
 #[cold]
 fn is_front_exact(p: Vec2, q: Vec2) -> bool {
-    // Terms of the edge function at (e, e^2), in falling order: 1, e, e^2. Differences are taken in
-    // double precision, since they may underflow in single precision.
+    // Coefficients of the edge function at (e, e^2), largest term first: 1, e, e^2. Differences are
+    // computed in double precision, since they might underflow in single precision.
     let [p, q] = [doubles(p), doubles(q)];
     [edge(p, q), q[1] - p[1], p[0] - q[0]].into_iter().find(|term| *term != 0.0).is_some_and(|term| term > 0.0)
 }

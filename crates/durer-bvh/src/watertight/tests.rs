@@ -4,10 +4,11 @@
 use super::*;
 use crate::math::random::Random;
 
+/// The triangles of a mesh, by their corners.
 type Triangles = Vec<[Vec3; 3]>;
 
-/// A grid over [0, 1]^2 that the map of its corners closes: neighbours get the same corner, bit for
-/// bit.
+/// A surface of `columns` by `rows` squares. `point` maps grid points to corners, so neighbouring
+/// triangles share corners with the same bits.
 fn sheet(columns: usize, rows: usize, point: impl Fn(usize, usize) -> Vec3) -> Triangles {
     let mut triangles = Vec::new();
     for i in 0..columns {
@@ -66,9 +67,9 @@ fn closed_mesh_has_even_crossings_from_outside_and_odd_from_inside() {
     for (mesh, convex, inside) in meshes() {
         let mut through = 0;
         for distance in [0.0, 10.0, 1e3, 1e4, 1e5] {
-            // Whole numbers keep the mesh closed, since shared corners are rounded alike.
+            // The mesh stays closed, since shared corners are rounded in the same way.
             let offset = (distance * random.direction()).round();
-            // Far away, the rounded corners dent a convex mesh.
+            // Far away, a convex mesh is no longer convex after rounding of its corners.
             let convex = convex && distance <= 10.0;
             let moved: Triangles = mesh.iter().map(|corners| corners.map(|p| p + offset)).collect();
             for round in 0..1_500 {
@@ -110,7 +111,7 @@ fn exactly_one_triangle_of_a_fan_is_hit_at_its_center_and_spokes() {
         let fan: Triangles = (0..count).map(|i| [middle, rim[i], rim[(i + 1) % count]]).collect();
         let spoke = rim[random.below(count)];
         let goal = middle + [0.0, 0.5, random.between(0.01, 0.99)][round % 3] * (spoke - middle);
-        // From above, so that the ray sees the whole fan from one side.
+        // Start above the fan, so that all its triangles face the ray with the same side.
         let from = goal + Vec3::new(random.between(-1.0, 1.0), 3.0, random.between(-1.0, 1.0));
         for ray in [Ray::new(from, goal - from), Ray::new(goal + 3.0 * Vec3::Y, Vec3::NEG_Y)] {
             assert_eq!(crossed(&fan, &ray), 1, "{fan:?} {ray:?}");

@@ -1,12 +1,12 @@
-//! Separable filters, applied in bands of rows.
+//! Separable image filters, applied to bands of rows in parallel.
 
 use rayon::prelude::*;
 
-/// Number of rows that a task filters. Rows beyond the ends of a band are filtered twice, so small
-/// bands would waste work.
+/// Number of rows that a parallel task filters. Rows near the ends of a band are filtered twice, so
+/// small bands would waste work.
 const BAND: usize = 64;
 
-/// A symmetric or antisymmetric filter along one axis.
+/// Weights of a symmetric or antisymmetric filter along one axis, for the measures of a comparison.
 #[derive(Clone, Debug)]
 pub(super) struct Kernel {
     /// Weights from the centre outwards.
@@ -62,8 +62,8 @@ impl Kernel {
     }
 }
 
-/// A separable filter applied to a plane: index of the plane, kernel along rows, and kernel across
-/// rows.
+/// A separable filter for [`filter_rows`]: the index of the plane that it filters, and the kernels
+/// along and across rows.
 pub(super) type Filter<'k> = (usize, &'k Kernel, &'k Kernel);
 
 /// Filters the planes of a picture and passes each row of results to `finish`, which computes a row
@@ -114,7 +114,7 @@ pub(super) fn filter_rows(
     out
 }
 
-/// Mean of many numbers, summed in an order that does not depend on threads.
+/// Mean of many numbers. The order of the sum does not depend on the number of threads.
 pub(super) fn mean(values: &[f32]) -> f64 {
     values.iter().map(|&value| f64::from(value)).sum::<f64>() / values.len().max(1) as f64
 }

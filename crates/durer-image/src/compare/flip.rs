@@ -1,4 +1,4 @@
-//! FLIP: the perceived difference when flipping between two pictures.
+//! FLIP: a measure of the difference that is perceived when alternating between two pictures.
 //!
 //! Source: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, *FLIP: A Difference
 //! Evaluator for Alternating Images*, HPG 2020; for HDR pictures Andersson, Nilsson, Shirley and
@@ -30,7 +30,7 @@ const EDGE_WIDTH: f64 = 0.082;
 const COLOR_EXPONENT: f32 = 0.7;
 const KNEE: (f32, f32) = (0.4, 0.95);
 
-/// Filters and constants that depend only on the viewer.
+/// Filters and constants of FLIP, which depend only on the viewing distance.
 struct Filters {
     achromatic: Kernel,
     red_green: Kernel,
@@ -89,18 +89,19 @@ fn gauss(x: f64, deviation: f64) -> f64 {
     f64::from(fp::exp((-0.5 * x * x / (deviation * deviation)) as f32))
 }
 
-/// Perceived colour and features of a pixel.
+/// Perceived colour and features of a pixel after FLIP's spatial filters.
 struct PixelFeatures {
     /// Colour in Hunt-adjusted L*a*b*.
     color: Vec3,
-    /// Strengths of edges and of points.
+    /// Strengths of the edge and of the point at this pixel.
     edge: f32,
     point: f32,
 }
 
 /// Computes the error of each pixel, from 0 to 1, between two pictures of linear light from 0 to 1.
 ///
-/// This is the error map of 2020 for the usual viewing distance, 67 pixels per degree.
+/// This is the error map of the paper from 2020, at 67 pixels per degree, the usual viewing
+/// distance.
 pub(super) fn flip(width: usize, height: usize, a: &[Vec3], b: &[Vec3]) -> Vec<f32> {
     flip_of((width, height), |index| a[index], |index| b[index])
 }
@@ -129,8 +130,8 @@ fn flip_of(
     filter_rows((width, height), 6, &both, planes, finish)
 }
 
-/// Luminance and two colour differences, as in YCxCz but for constant factors, since the filters
-/// are linear.
+/// Computes the luminance and two colour differences of a row, as in YCxCz without its constant
+/// factors, which do not matter, since the filters are linear.
 fn opponent_row(start: usize, rows: &mut [Vec<f32>], light: impl Fn(usize) -> Vec3) {
     let [luminance, red_green, blue_yellow] = rows else { unreachable!("three planes") };
     for (x, ((l, rg), by)) in luminance.iter_mut().zip(red_green).zip(blue_yellow).enumerate() {
@@ -173,8 +174,8 @@ fn error(filters: &Filters, a: &PixelFeatures, b: &PixelFeatures) -> f32 {
     if distance == 0.0 {
         return 0.0;
     }
-    // Small differences take most of the range; the rest is for differences that do not occur in
-    // common pictures.
+    // Differences that occur in ordinary pictures are mapped to most of the range. Larger ones
+    // share the rest.
     let (difference, knee) = (fp::pow(distance, COLOR_EXPONENT), KNEE.0 * filters.largest);
     let color = if difference < knee {
         KNEE.1 / knee * difference

@@ -2,8 +2,8 @@
 
 use crate::Image8;
 
-/// Colours of errors at equal steps from 0 to 1. Their lightness increases, so that the map is
-/// readable without colours, too.
+/// Colours of errors at equal steps from 0 to 1. Their lightness increases, so that the map can
+/// also be read in greyscale.
 const RAMP: [[f32; 3]; 6] = [
     [0.0, 0.0, 8.0],
     [64.0, 10.0, 110.0],

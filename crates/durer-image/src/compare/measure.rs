@@ -1,4 +1,4 @@
-//! Measures of a comparison.
+//! Computes the measures of a comparison.
 
 use super::filter::mean;
 use super::flip::{flip, hdr_flip};
@@ -6,22 +6,22 @@ use super::picture::{Pair, Scale, linear_to_srgb};
 use super::ssim::ssim;
 use durer_bvh::math::{Vec3, fp};
 
-/// Measures of the difference between two pictures.
+/// Measures of the difference between a picture and its reference, such as RMSE, PSNR, SSIM, and
+/// FLIP.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measures {
-    /// Root of the mean squared difference over all channels, in values from 0 to 1 or in linear
-    /// light.
+    /// Root mean square of the difference over all channels, in the unit of the compared values.
     pub rmse: f64,
     /// Ratio of the peak value 1 to `rmse`, in decibels; infinite for equal pictures.
     pub psnr: f64,
-    /// Mean structural similarity of luma as displayed, at most 1; `None` if the picture is smaller
-    /// than the window of 11 pixels.
+    /// Mean structural similarity of the displayed luma, at most 1; `None` if the picture is
+    /// smaller than the window of 11 pixels.
     pub ssim: Option<f64>,
-    /// Mean FLIP error of the pictures as displayed, from 0 to 1.
+    /// Mean FLIP error of the displayed pictures, from 0 to 1.
     pub flip: f64,
     /// Mean HDR-FLIP error, from 0 to 1; only for linear light.
     pub hdr_flip: Option<f64>,
-    /// Largest difference of a channel, and its pixel; `None` if all finite values are equal.
+    /// Pixel with the largest difference of a channel; `None` if all finite values are equal.
     pub largest: Option<Largest>,
     /// Number of pixels with a channel that differs by more than the tolerance.
     pub over_tolerance: usize,
@@ -33,10 +33,10 @@ pub struct Measures {
     pub first_not_finite: Option<(u32, u32)>,
 }
 
-/// Largest difference and its pixel.
+/// Pixel in which a channel differs most between a picture and its reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Largest {
-    /// Difference of the channel.
+    /// Absolute difference of the channel.
     pub difference: f32,
     /// Column of the pixel.
     pub x: u32,
@@ -48,7 +48,8 @@ pub struct Largest {
     pub test: Vec3,
 }
 
-/// Slack for rounding of differences between 255ths: a tolerance of 2/255 means two steps.
+/// Allowance for rounding errors, so that a tolerance of 2/255 includes differences of two 8-bit
+/// steps.
 const SLACK: f32 = 1e-6;
 
 /// Returns true if two pixels differ by more than a tolerance.
@@ -77,7 +78,7 @@ pub(super) fn measure(pair: &Pair, tolerance: f32) -> (Measures, Vec<f32>) {
     let rmse = (sum / (3.0 * pair.reference.len() as f64)).sqrt();
     let equal = sum == 0.0;
     let (ssim, flip_map) = if equal {
-        // Fast path for equal pictures.
+        // Equal pictures need no filtering.
         let large = pair.width.min(pair.height) >= 11;
         (large.then_some(1.0), vec![0.0; pair.reference.len()])
     } else {

@@ -1,5 +1,5 @@
-//! Detection of common mistakes: each is applied to the reference, and the one that makes it most
-//! similar to the picture explains the difference.
+//! Detection of common mistakes. Each mistake is applied to the reference, and the one that makes
+//! the reference most similar to the picture explains the difference.
 
 mod flow;
 mod parts;
@@ -18,16 +18,15 @@ use rayon::prelude::*;
 use rule::{Rule, TURNS};
 use sample::{Sample, View};
 
-/// A mistake that explains a difference.
+/// A common mistake, such as a mirrored picture, that explains a difference between two pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// Keyword of the mistake, such as `mirrored`, `shifted`, or `factor`; one for each kind of
-    /// [`Finding::words`].
+    /// Keyword of the mistake, such as `mirrored`, `shifted`, or `factor`.
     pub kind: &'static str,
     /// Description of the mistake, without a full stop: "it is mirrored left to right".
     pub words: String,
-    /// Share of the squared difference, from 0 to 1, explained by this finding and the ones before
-    /// it.
+    /// Share of the squared difference, from 0 to 1, that this finding and the ones before it
+    /// explain.
     ///
     /// Measured on all pixels of small pictures, and on 100 000 pixels of larger ones.
     pub explained: f64,
@@ -35,30 +34,32 @@ pub struct Finding {
 
 /// Minimum share of the difference that a mistake in a part of the picture must explain.
 const WELL: f64 = 0.9;
-/// Unexplained share above which findings are dropped: a wrong explanation is worse than none.
+/// Unexplained share of the difference above which findings are dropped, since a wrong explanation
+/// is worse than none.
 const MAX_LEFT: f64 = 0.05;
 /// Unexplained share above which findings are dropped if they have fitted parameters.
 const MAX_LEFT_FITTED: f64 = 0.02;
-/// Minimum number of differing pixels that may form a pattern.
+/// Minimum number of differing pixels in which a pattern can be recognised.
 const FEWEST: usize = 12;
 /// Minimum share of the remaining difference that a finding must explain.
 const ENOUGH: f64 = 0.5;
-/// Maximum number of successive mistakes.
+/// Maximum number of mistakes that are combined.
 const STEPS: usize = 3;
 
-/// Limit on the remaining difference relative to the picture's contrast. Above it, the remainder is
-/// as strong as the explained part: a nearly uniform picture can be made from any other.
+/// Maximum remaining difference, relative to the variance of the picture. Without this limit, a
+/// nearly uniform picture could be explained from any reference by moving and darkening it.
 const MAX_CONTRAST: f64 = 0.1;
-/// Minimum share of the pixels that a rule must reproduce, so that nothing else is different.
+/// Minimum share of the pixels that the rules must reproduce for a finding without "something more
+/// is different".
 const MATCHED: f64 = 0.97;
 /// Smallest visible difference, for values from 0 to 1.
 const SEEN: f32 = 2.5 / 255.0;
 /// Half a step of 8-bit values.
 const HALF: f32 = 0.5 / 255.0;
 
-/// Finds the mistakes that best explain the difference between two pictures; empty if none explains
-/// half of it. If a single mistake explains nearly all of it but further pixels differ, its words
-/// say so.
+/// Finds the mistakes that best explain the difference between two pictures. The list is empty if
+/// no mistake explains half of the difference. If a single mistake explains nearly all of it but
+/// other pixels differ too, its description says so.
 pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
     let test = View::of(pair, &pair.test);
     let reference = View::of(pair, &pair.reference);
@@ -86,8 +87,8 @@ pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
     }
 }
 
-/// Finds rules one after another, each of which explains most of the difference that the previous
-/// ones leave.
+/// Finds a sequence of rules, each of which explains most of the difference that the previous ones
+/// leave.
 fn chain(pair: &Pair, test: &View, total: f64) -> (Vec<Rule>, Vec<Finding>) {
     let (mut rules, mut findings) = (Vec::new(), Vec::new());
     let mut reference = pair.reference.clone();
@@ -110,20 +111,21 @@ fn chain(pair: &Pair, test: &View, total: f64) -> (Vec<Rule>, Vec<Finding>) {
     (rules, findings)
 }
 
-/// Quality with which rules reproduce a picture, ignoring pixels that a shift moves in at the edge.
+/// Measures of how well rules, applied to the reference, reproduce a picture. Pixels that a shift
+/// moves in from outside are ignored.
 struct Fit {
     /// Remaining share of the squared difference.
     left: f64,
     /// Remaining squared difference, relative to the picture's variance.
     contrast: f64,
-    /// Share of correctly reproduced pixels (up to rounding) among those where the reproduction or
-    /// the reference visibly differs from the picture.
+    /// Share of correctly reproduced pixels (up to rounding), among those in which the reproduction
+    /// or the reference visibly differs from the picture.
     matched: f64,
 }
 
 impl Fit {
     fn of(pair: &Pair, rules: &[Rule], test: &View, samples: &[Sample]) -> Fit {
-        // The reference may have been rounded by up to half a step before the mistake.
+        // The values of the reference may have been rounded by up to half a step.
         let made = |offset: f32| {
             let start: Vec<Vec3> = pair.reference.iter().map(|value| pair.scale.clamp(*value + offset)).collect();
             rules.iter().fold(start, |pixels, rule| rule.made(&View::of(pair, &pixels)))
@@ -158,15 +160,15 @@ fn difference(samples: &[Sample]) -> f64 {
     samples.iter().map(|s| f64::from((s.test - s.reference).length_squared())).sum()
 }
 
-/// Finds the rule that leaves the smallest difference, and that difference. Of nearly equal rules,
-/// the simplest one is chosen.
+/// Finds the rule that leaves the smallest difference, and that difference. If several rules are
+/// nearly as good, the simplest one is chosen.
 fn best_rule(reference: &View, test: &View, samples: &[Sample]) -> Option<(Rule, f64)> {
     let rules = candidates(reference, test, samples);
     let left =
         |rule: &Rule| -> f64 { samples.iter().map(|s| f64::from(rule.rest(reference, s).length_squared())).sum() };
     let rests: Vec<f64> = rules.par_iter().map(left).collect();
     let least = rests.iter().copied().fold(f64::INFINITY, f64::min);
-    // Candidates are sorted by increasing freedom to fit any picture.
+    // Candidates are sorted by increasing number of parameters.
     let near = 1.25 * least + 0.01 * difference(samples);
     rules.into_iter().zip(rests).find(|(_, rest)| *rest <= near)
 }

@@ -25,11 +25,11 @@ pub use picture::{Picture, Scale};
 pub use picture::{linear_to_srgb, srgb_to_linear};
 pub use regions::Region;
 
-/// Options of a comparison.
+/// Tolerances and conversion for comparing two pictures with [`compare()`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Maximum difference of a channel that is ignored, in values from 0 to 1 or in linear light.
-    /// At least 0.
+    /// Maximum difference of a channel that is ignored, in the unit of the compared values. At
+    /// least 0.
     pub tolerance: f32,
     /// Share of pixels, from 0 to 1, that may exceed the tolerance.
     pub allowed: f64,
@@ -38,13 +38,13 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// Tolerance of 1/255 in every pixel, which covers rounding.
+    /// A tolerance of 1/255 in every pixel, which covers rounding.
     fn default() -> Self {
         Options { tolerance: 1.0 / 255.0, allowed: 0.0, transfer: Transfer::Srgb }
     }
 }
 
-/// Result of a comparison.
+/// Result of comparing two pictures: identical, same within the tolerance, or different.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// The values are equal everywhere.
@@ -66,30 +66,30 @@ impl Verdict {
     }
 }
 
-/// Difference between a picture and a reference.
+/// Result of comparing a picture with a reference: measures, verdict, likely mistakes, and regions
+/// that differ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Scale of the compared values.
+    /// Scale of the compared values: display values or linear light.
     pub scale: Scale,
     /// Measures of the difference.
     pub measures: Measures,
-    /// Verdict.
+    /// True if the pictures are the same, within the tolerance.
     pub verdict: Verdict,
-    /// Mistakes that explain the difference, in the order of detection: each explains most of the
-    /// difference that the previous ones leave. Empty if the pictures are the same, or if no
-    /// mistake explains the difference.
+    /// Mistakes that explain the difference. Each explains most of the difference that the previous
+    /// ones leave. Empty if the pictures are the same, or if no mistake explains the difference.
     pub findings: Vec<Finding>,
-    /// Regions that differ by more than the tolerance, the worst first; at most [`Region::LIMIT`].
+    /// Regions that differ by more than the tolerance, worst first; at most [`Region::LIMIT`].
     pub regions: Vec<Region>,
     /// FLIP error of each pixel, from 0 to 1; HDR-FLIP for linear light.
     pub flip_map: Vec<f32>,
 }
 
-/// Error of a comparison.
+/// Error from comparing two pictures: they have different sizes, or one is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CompareError {
@@ -118,8 +118,8 @@ fn exchanged(a: (u32, u32), b: (u32, u32)) -> &'static str {
 /// # Errors
 /// [`CompareError::Sizes`], before the pictures are decoded.
 pub fn memory_needed(reference: &Encoded, test: &Encoded) -> Result<u64, CompareError> {
-    // Both pictures, their displayed versions, and the buffers of the measures; 91 bytes per pixel
-    // were measured.
+    // Memory for both pictures, their displayed versions, and the buffers of the measures. By
+    // measurement, it is 91 bytes per pixel.
     const BYTES_PER_PIXEL: u64 = 100;
     let [a, b] = [reference, test].map(|picture| picture.size());
     if a != b {
@@ -133,8 +133,8 @@ pub fn memory_needed(reference: &Encoded, test: &Encoded) -> Result<u64, Compare
 /// Compares a picture with a reference.
 ///
 /// If only one of the pictures is linear, both are compared as displayed. A pixel with a value that
-/// is not finite exceeds any tolerance, unless both pictures have the same values at that pixel,
-/// and is excluded from the measures.
+/// is not finite is excluded from the measures. It exceeds any tolerance, unless both pictures have
+/// the same values at that pixel.
 ///
 /// # Errors
 /// [`CompareError::Sizes`], and [`CompareError::Image`] for a picture whose pixels do not match its
@@ -142,8 +142,8 @@ pub fn memory_needed(reference: &Encoded, test: &Encoded) -> Result<u64, Compare
 pub fn compare(reference: &Picture, test: &Picture, options: &Options) -> Result<Comparison, CompareError> {
     let pair = Pair::new(reference, test, options.transfer)?;
     let equal = pair.reference == pair.test;
-    // Search for causes in parallel with the measures, to save time. They are reported only if the
-    // pictures differ.
+    // Search for mistakes and regions in parallel with the measures, although they are reported
+    // only if the pictures differ.
     let causes = || match equal {
         true => (Vec::new(), Vec::new()),
         false => (mistake::explain(&pair), regions::worst(&pair, options.tolerance)),

@@ -1,10 +1,10 @@
-//! Pairs of pictures on the same scale.
+//! Pictures to compare, and their conversion to a common scale.
 
 use super::CompareError;
 use crate::{Depth, Encoded, Image, ImageError, Transfer, decode_linear, decode_srgb};
 use durer_bvh::math::{Vec3, fp};
 
-/// Meaning of a picture's values.
+/// Meaning of the values of a compared picture: encoded for display, or linear light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
     /// Display values from 0 to 1, as stored in integer formats (255ths for 8 bits).
@@ -38,8 +38,8 @@ impl Scale {
         }
     }
 
-    /// Smallest visible difference at a value, for a difference `step` of display values. For
-    /// linear light, it is relative to the value.
+    /// Smallest visible difference at a value, given the smallest visible difference `step` of
+    /// display values. For linear light, it is relative to the value.
     pub(super) fn visible(self, value: Vec3, step: f32) -> f32 {
         match self {
             Scale::Linear => step * value.abs().max_element().max(0.05),
@@ -56,20 +56,20 @@ impl Scale {
     }
 }
 
-/// Transfer function of IEC 61966-2-1, for values from 0 to 1.
+/// Converts linear light from 0 to 1 to an sRGB value (IEC 61966-2-1).
 pub fn linear_to_srgb(light: f32) -> f32 {
     if light <= 0.0031308 { 12.92 * light } else { 1.055 * fp::pow(light, 1.0 / 2.4) - 0.055 }
 }
 
-/// Inverse transfer function of IEC 61966-2-1.
+/// Converts an sRGB value from 0 to 1 to linear light (IEC 61966-2-1).
 pub fn srgb_to_linear(value: f32) -> f32 {
     if value <= 0.04045 { value / 12.92 } else { fp::pow((value + 0.055) / 1.055, 2.4) }
 }
 
-/// A picture as stored in its file.
+/// A picture to compare, with values as stored in its file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// Values, without any transfer function applied or undone.
+    /// Values as stored, to which no transfer function was applied.
     pub image: Image,
     /// Meaning of the values.
     pub scale: Scale,
@@ -85,7 +85,7 @@ impl Picture {
         Picture::decode(&Encoded::open(bytes, name)?, u64::MAX)
     }
 
-    /// Decodes a picture whose header was read, with at most `memory` bytes of memory.
+    /// Decodes a picture whose header was read, using at most `memory` bytes.
     ///
     /// # Errors
     /// Errors of [`Encoded::read`].
@@ -96,7 +96,7 @@ impl Picture {
     }
 }
 
-/// A reference and a picture of the same size and scale.
+/// A reference and a picture (`test`) to compare, of the same size and converted to the same scale.
 pub(super) struct Pair {
     pub width: usize,
     pub height: usize,
@@ -106,7 +106,7 @@ pub(super) struct Pair {
     /// Pixels with a value that is not finite, in the reference and in the other picture. Both
     /// pictures are set to 0 at each of these pixels.
     pub not_finite: [Vec<usize>; 2],
-    /// Pixels where one picture is not finite and the other one differs.
+    /// Pixels in which at least one picture is not finite and the pictures differ.
     pub finite_differs: Vec<usize>,
 }
 
@@ -162,7 +162,7 @@ impl Pair {
         }
     }
 
-    /// Linear light of both pictures as displayed, from 0 to 1.
+    /// Linear light from 0 to 1 of both pictures, as a screen would show it.
     pub fn shown(&self) -> [Vec<Vec3>; 2] {
         let table: [f32; 256] = std::array::from_fn(|value| decode_srgb(value as u8));
         // Nearly all values are 255ths.

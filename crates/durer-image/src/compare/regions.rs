@@ -4,7 +4,8 @@ use super::measure::over;
 use super::picture::Pair;
 use durer_bvh::math::Vec3;
 
-/// A region that differs from the reference by more than the tolerance.
+/// Rectangle around connected pixels in which a picture differs from its reference by more than the
+/// tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
     /// Leftmost column.
@@ -17,12 +18,12 @@ pub struct Region {
     pub height: u32,
     /// Number of differing pixels in the region.
     pub pixels: usize,
-    /// Mean of (picture - reference) over those pixels, for each channel; negative where the
+    /// Mean of (picture - reference) over the differing pixels, for each channel; negative if the
     /// picture is darker.
     pub mean_difference: Vec3,
     /// Share of the picture's total squared difference, from 0 to 1.
     pub share: f64,
-    /// Column and row of the pixel that differs most, a good one to explain.
+    /// Column and row of the pixel that differs most, for example to pass to `durer explain`.
     pub worst: (u32, u32),
 }
 
@@ -35,6 +36,7 @@ impl Region {
 /// if their cells touch.
 const CELLS: usize = 64;
 
+/// Bounds and sums of the differing pixels of a cell, or of a region of touching cells.
 #[derive(Clone, Copy)]
 struct RegionSums {
     low: (usize, usize),
@@ -67,7 +69,7 @@ impl RegionSums {
     }
 }
 
-/// Finds the regions with the largest squared difference, the worst first.
+/// Finds the regions with the largest squared difference, worst first.
 pub(super) fn worst(pair: &Pair, tolerance: f32) -> Vec<Region> {
     let side = pair.width.max(pair.height).div_ceil(CELLS).max(2);
     let (columns, rows) = (pair.width.div_ceil(side), pair.height.div_ceil(side));
@@ -111,7 +113,7 @@ pub(super) fn worst(pair: &Pair, tolerance: f32) -> Vec<Region> {
     regions.into_iter().map(region).collect()
 }
 
-/// Joins cells that touch, including at corners, and clears them.
+/// Joins cells that touch, even at corners, to regions. Clears the cells.
 fn joined(cells: &mut [RegionSums], columns: usize, rows: usize) -> Vec<RegionSums> {
     let mut regions = Vec::new();
     for start in 0..cells.len() {

@@ -1,4 +1,4 @@
-//! Structural similarity.
+//! SSIM: the structural similarity of two pictures.
 //!
 //! Source: Wang, Bovik, Sheikh and Simoncelli, *Image Quality Assessment: From Error Visibility to
 //! Structural Similarity*, IEEE Transactions on Image Processing 13(4), 2004: equation 13, with a
@@ -18,7 +18,8 @@ const LUMA: Vec3 = Vec3::new(0.299, 0.587, 0.114);
 /// Mean similarity of the luma of two pictures with values from 0 to 1, over all positions where
 /// the window fits.
 ///
-/// From -1 to 1, which means equal pictures. `None` if a picture is smaller than the window.
+/// The result is from -1 to 1, where 1 means equal pictures. `None` if the pictures are smaller
+/// than the window.
 pub(super) fn ssim(width: usize, height: usize, a: &[Vec3], b: &[Vec3]) -> Option<f64> {
     if width <= 2 * RADIUS || height <= 2 * RADIUS {
         return None;

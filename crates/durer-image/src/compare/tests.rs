@@ -1,4 +1,4 @@
-//! Tests with closed forms, and against the authors' programs on procedural pictures.
+//! Tests of the measures against closed forms, and against other programs on procedural pictures.
 
 use super::*;
 use crate::Image;
@@ -74,7 +74,7 @@ fn grey(width: u32, height: u32, value: f32) -> Picture {
     picture(width, height, Scale::Display, |_, _| Vec3::splat(value))
 }
 
-/// Measures of constant pictures are closed forms.
+/// For uniform pictures, the measures have closed forms.
 #[test]
 fn constant_pictures() {
     let found = compare(&grey(20, 13, 0.4), &grey(20, 13, 0.5), &Options::default()).unwrap();
@@ -89,7 +89,7 @@ fn constant_pictures() {
     let color = 0.95 + (distance - 0.4 * largest) / (0.6 * largest) * 0.05;
     near(found.measures.flip, color, 1e-3);
     near(found.measures.psnr, 0.0, 1e-6);
-    // Smaller than the window.
+    // A picture that is smaller than the window has no SSIM.
     assert_eq!(compare(&grey(10, 30, 0.0), &grey(10, 30, 1.0), &Options::default()).unwrap().measures.ssim, None);
 }
 
@@ -170,8 +170,8 @@ fn regions_are_found() {
     near(regions[0].share, 150.0 / 154.0, 1e-6);
 }
 
-/// Bands of rows leave no trace: a picture taller than a band gives the same result as its
-/// transpose.
+/// Filtering in bands of rows does not change the result: a picture taller than a band gives the
+/// same measures as its transpose.
 #[test]
 fn rows_and_columns_are_filtered_alike() {
     let tall = |change: f32| {

@@ -1,4 +1,4 @@
-//! Decoders and encoders of the `image` crate, with the limits and errors of this crate.
+//! Adapters for the decoders and encoders of the `image` crate.
 
 use super::limits::room_for;
 use super::{Head, Image, Image8, ImageError, Raster};
@@ -18,7 +18,7 @@ pub fn decoder<'a>(
     reader.into_decoder().map_err(|error| ImageError::malformed(name, error))
 }
 
-/// Header as reported by a decoder.
+/// Converts the header that a decoder has read.
 pub fn head(decoder: &impl ImageDecoder) -> Head {
     let ((width, height), color) = (decoder.dimensions(), decoder.color_type());
     let stored: u64 = color.bytes_per_pixel().into();

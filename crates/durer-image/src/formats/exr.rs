@@ -1,9 +1,10 @@
-//! OpenEXR: 32-bit floats, losslessly compressed, with any number of layers; row by row
-//! uncompressed, with a single layer.
+//! OpenEXR: 32-bit floats, losslessly compressed, with any number of layers. Files that are written
+//! row by row are uncompressed and have a single layer.
 //!
-//! Layers share one part. The first colour layer has the plain channels R, G, and B, which every
-//! viewer shows. The channels of the others begin with the layer's name: `normals.R`. A layer with
-//! coverage also has a channel A, and its colours are premultiplied, as the format requires.
+//! All layers are in one part. The first colour layer has the channels R, G, and B, which every
+//! viewer shows. The channels of other layers begin with the name of the layer, for example
+//! `normals.R`. A layer with coverage also has a channel A, and its colours are premultiplied, as
+//! the format requires.
 
 use super::limits::{pixel_limit, room_for};
 use super::{Depth, Format, Head, Image, ImageError, Layer, LayerKind, Raster, RowFormat, Strip, WriteOptions};
@@ -35,11 +36,10 @@ pub const FORMAT: Format = Format {
     rows: Some(&ROWS),
 };
 
-/// Single rows, uncompressed, so that the offsets of all rows are known before the first is
-/// written.
+/// Row-by-row format: uncompressed blocks of one row, so that all offsets are known in advance.
 static ROWS: RowFormat = RowFormat { bottom_up: false, head: head_of_rows, row, png: false };
 
-/// Channels of a single layer, in the order of a row.
+/// Channels of a single layer, in the order in which a row stores them.
 fn letters(alpha: bool) -> &'static [&'static str] {
     if alpha { &["A", "B", "G", "R"] } else { &["B", "G", "R"] }
 }
@@ -49,7 +49,7 @@ fn row_bytes(strip: &Strip) -> u64 {
     4 * letters(strip.alpha).len() as u64 * u64::from(strip.width)
 }
 
-/// Magic number, version, attributes, and offsets of the rows.
+/// Creates the beginning of a file: magic number, version, attributes, and offsets of the rows.
 ///
 /// Source: *OpenEXR File Layout*, openexr.com.
 fn head_of_rows(strip: &Strip) -> Result<Vec<u8>, ImageError> {
@@ -120,11 +120,11 @@ fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result
     Ok(())
 }
 
-/// Sorts the attributes in the header of a single-part file by name.
+/// Sorts the attributes in the header of a file with one part by name.
 ///
-/// The encoder writes them in the order of a hash map, which varies, but equal pictures should have
-/// equal bytes. An attribute consists of its name and its type (both end with a zero), the length
-/// of its value, and the value. A zero ends the header.
+/// The encoder writes them in the order of a hash map, which varies, but equal pictures should give
+/// equal bytes. An attribute consists of its name and its type, which both end with a zero byte,
+/// the length of its value, and the value. A zero byte ends the header.
 fn sort_attributes(file: &mut [u8]) {
     // Offset after the magic number and the version.
     const START: usize = 8;
@@ -201,7 +201,7 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
     let meta = MetaData::read_from_buffered(bytes, false).map_err(malformed)?;
     let (header, [red, green, blue]) = chosen(&meta)?;
     let (Vec2(width, height), offset) = window(header);
-    // Allocated at once, so that lack of memory is an error.
+    // Allocate all memory in advance, so that an error is returned if there is not enough.
     let room = RefCell::new(room_for(width * height, Vec3::ZERO)?);
     let is_grey = red == green;
     let channels = read().no_deep_data().largest_resolution_level().specific_channels();

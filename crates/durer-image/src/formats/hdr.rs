@@ -21,7 +21,7 @@ pub const FORMAT: Format = Format {
     rows: Some(&ROWS),
 };
 
-/// Widths for which rows are compressed; others are written pixel by pixel.
+/// Widths for which rows are compressed. Rows of other widths are written pixel by pixel.
 const PACKED_WIDTHS: std::ops::Range<u32> = 8..0x8000;
 /// Maximum length of a run, and of a sequence of literals.
 const RUN_LIMIT: usize = 127;
@@ -54,11 +54,11 @@ static ROWS: RowFormat = RowFormat {
     png: false,
 };
 
-/// Shared-exponent form: channel = mantissa / 256 * 2^(exponent - 128), with the greatest mantissa
-/// at least 128.
+/// Converts a colour to mantissas and a shared exponent: channel = mantissa / 256 * 2^(exponent -
+/// 128), where the largest mantissa is at least 128.
 ///
-/// Negative values and NaN become 0. Too large values, including infinity, become the greatest
-/// representable value.
+/// Negative values and NaN become 0. Values that are too large, including infinity, become the
+/// largest value that can be represented.
 fn rgbe(pixel: Vec3) -> [u8; 4] {
     let channels = pixel.to_array().map(|value| f64::from(value.clamp(0.0, f32::MAX).max(0.0)));
     let greatest = channels.into_iter().fold(0.0, f64::max);

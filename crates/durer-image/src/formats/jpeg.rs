@@ -1,11 +1,13 @@
-//! JPEG: 8 bits per channel, for photographs and textures. Read only, since it is lossy.
+//! JPEG: 8 bits per channel, for photographs and textures. Writing is not supported, since the
+//! format is lossy.
 
 use super::{Depth, Format, Head, ImageError, codec};
 use ::image::ImageFormat;
 
 const NAME: &str = "JPEG";
 
-/// Frame header: width, height, and the horizontal and vertical sampling factors of its components.
+/// Frame header of a JPEG file: width, height, and the horizontal and vertical sampling factors of
+/// its components.
 struct Frame {
     size: [u64; 2],
     factors: Vec<[u64; 2]>,
@@ -27,7 +29,7 @@ fn frame(bytes: &[u8]) -> Option<Frame> {
         }
         let length = usize::from(u16::from_be_bytes(*rest.first_chunk()?));
         let segment = rest.get(2..length)?;
-        // Start of frame, with any coding; the other markers in this range are for tables.
+        // Start of frame, with any coding. Three markers in this range have other meanings.
         if matches!(marker, 0xc0..=0xcf) && !matches!(marker, 0xc4 | 0xc8 | 0xcc) {
             let &[_, h1, h0, w1, w0, count, ref components @ ..] = segment else { return None };
             let factors = components.chunks_exact(3).take(count.into());
@@ -39,8 +41,8 @@ fn frame(bytes: &[u8]) -> Option<Frame> {
 }
 
 /// Memory in bytes that the decoder needs in addition to the pixels: 16-bit coefficients of all
-/// components up to the last scan, and rows of blocks while components are upsampled to the
-/// picture's size. Components fill whole blocks of the largest sampling factors.
+/// components until the last scan, and rows of blocks while components are upsampled to full size.
+/// Components are padded to full blocks at the largest sampling factors.
 fn decoding_bytes(Frame { size, factors }: Frame) -> u64 {
     let [across, down] = [0, 1].map(|axis| factors.iter().map(|factors| factors[axis]).max().unwrap_or(1));
     let (columns, rows) = (size[0].div_ceil(8 * across), size[1].div_ceil(8 * down));

@@ -1,5 +1,5 @@
-//! Khronos texture containers (KTX 2.0), uncompressed or compressed by zlib. Read only, and only
-//! the largest mip level.
+//! Khronos texture containers (KTX 2.0), uncompressed or compressed with zlib. Read only, and only
+//! the largest mip level is read.
 //!
 //! Source: *KTX File Format Specification*, version 2.0, Khronos Group.
 
@@ -23,7 +23,7 @@ pub const FORMAT: Format = Format {
     rows: None,
 };
 
-/// Type of a channel.
+/// Number type of the channels of a KTX2 texture.
 #[derive(Clone, Copy, PartialEq)]
 enum Number {
     /// Unsigned 8-bit, 0 to 255.
@@ -46,7 +46,8 @@ impl Number {
     }
 }
 
-/// Supported Vulkan formats by number: channels, channel type, and true if blue comes first.
+/// Supported Vulkan formats: number of the format, number of channels, channel type, and true if
+/// blue comes first.
 const KINDS: [(u32, usize, Number, bool); 22] = [
     (9, 1, Number::Eight, false),
     (15, 1, Number::Eight, false),
@@ -72,14 +73,14 @@ const KINDS: [(u32, usize, Number, bool); 22] = [
     (109, 4, Number::Single, false),
 ];
 
-/// Header and data of a texture.
+/// A KTX2 texture: its header, and the data of its largest mip level.
 struct Texture<'a> {
     width: u64,
     height: u64,
     channels: usize,
     number: Number,
     blue_first: bool,
-    /// Data of the largest mip level, and true if compressed by zlib.
+    /// Data of the largest mip level. `packed` is true if it is compressed with zlib.
     level: &'a [u8],
     packed: bool,
     /// Source of red, green, blue, and opacity: `r`, `g`, `b`, `a`, `0` or `1`.
@@ -107,7 +108,7 @@ fn long(bytes: &[u8], at: usize) -> Result<u64, ImageError> {
     Ok(word(bytes, at + 4)? << 32 | word(bytes, at)?)
 }
 
-/// Slice of the file.
+/// Returns a slice of the file, or an error if the file is too short.
 fn part(bytes: &[u8], start: u64, length: u64) -> Result<&[u8], ImageError> {
     let end = start.checked_add(length).filter(|&end| end <= bytes.len() as u64);
     let end = end.ok_or_else(|| malformed("it is truncated"))?;
@@ -160,7 +161,8 @@ fn open(bytes: &[u8]) -> Result<Texture<'_>, ImageError> {
     })
 }
 
-/// Value of a key. Entries consist of a length, the key, a 0, and the value, padded to four bytes.
+/// Finds the value of a key. An entry consists of a length, the key, a zero byte, and the value,
+/// padded to a multiple of four bytes.
 fn value<'a>(mut entries: &'a [u8], key: &[u8]) -> Option<&'a [u8]> {
     loop {
         let length = word(entries, 0).ok()? as usize;
@@ -190,8 +192,7 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
         false => texture.level,
         true => {
             let mut all = Vec::new();
-            // Decompression stops at the size of the picture, as a guard against decompression
-            // bombs.
+            // Stop at the size of the picture, as a guard against decompression bombs.
             let mut decoder = flate2::read::ZlibDecoder::new(texture.level).take((count * size) as u64);
             decoder.read_to_end(&mut all).map_err(|error| ImageError::malformed(NAME, error))?;
             unpacked = all;

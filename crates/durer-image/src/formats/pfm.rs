@@ -26,7 +26,7 @@ static ROWS: RowFormat = RowFormat {
     png: false,
 };
 
-/// Parsed header and sample data.
+/// A PFM file: its parsed header, and the bytes of its samples.
 struct PfmFile<'a> {
     width: u32,
     height: u32,
@@ -74,8 +74,8 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
     Ok(Raster::Float(Image { width, height, pixels }, Vec::new()))
 }
 
-/// Next word of the header. Skips exactly one whitespace character after it, since samples may
-/// follow.
+/// Reads the next word of the header, and skips exactly one whitespace character after it, since
+/// samples may follow.
 fn next_word<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     let text = rest.trim_ascii_start();
     let end = text.iter().position(u8::is_ascii_whitespace)?;

@@ -22,7 +22,7 @@ pub const FORMAT: Format = Format {
     rows: Some(&ROWS),
 };
 
-/// Writes rows and compresses them as they arrive.
+/// Writes a PNG file row by row, and compresses the rows as they arrive.
 pub(super) fn packed<T, E: From<io::Error>>(
     format: &'static RowFormat,
     strip: Strip,
@@ -42,7 +42,8 @@ pub(super) fn packed<T, E: From<io::Error>>(
     Ok(made)
 }
 
-/// Size and pixel type, from the first chunk. Errors in the rest are found by the decoder.
+/// Reads the size and pixel type from the first chunk. The decoder finds errors in the other
+/// chunks.
 fn head(bytes: &[u8]) -> Result<Head, ImageError> {
     let first = chunks(bytes).next().filter(|chunk| chunk[4..8] == *b"IHDR").and_then(|chunk| chunk.get(8..18));
     let Some([w @ .., depth, color]) = first else { return Err(ImageError::malformed(NAME, "its header is missing")) };
@@ -66,8 +67,8 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
     codec::raster(NAME, codec::decoder(NAME, ImageFormat::Png, &essence(bytes))?)
 }
 
-/// Chunks of a file. Each consists of the length of its content, four letters, the content, and a
-/// checksum of four bytes.
+/// Iterates over the chunks of a file. A chunk consists of the length of its content, four letters,
+/// the content, and a checksum of four bytes.
 fn chunks(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     let mut rest = bytes.get(MARK.len()..).unwrap_or_default();
     std::iter::from_fn(move || {
@@ -78,9 +79,9 @@ fn chunks(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     })
 }
 
-/// Removes the chunks that do not affect the pixels: animations, dates, and profiles and texts, of
-/// which a few bytes may decompress to gigabytes. Critical chunks begin with an upper-case letter.
-/// Source: PNG specification, third edition, 5.3 and 5.4.
+/// Removes the chunks that do not affect the pixels: animations, dates, profiles, and texts. A few
+/// bytes of profiles and texts could decompress to gigabytes. Critical chunks begin with an
+/// upper-case letter. Source: PNG specification, third edition, 5.3 and 5.4.
 fn essence(bytes: &[u8]) -> Cow<'_, [u8]> {
     let needed = |chunk: &&[u8]| chunk[4].is_ascii_uppercase() || chunk[4..8] == *b"tRNS";
     match chunks(bytes).all(|chunk| needed(&chunk)) {

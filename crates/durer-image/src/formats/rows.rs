@@ -5,10 +5,10 @@ use durer_bvh::math::Vec3;
 use rayon::prelude::*;
 use std::io::{self, Write};
 
-/// Number of rows that are encoded in parallel and then written.
+/// Number of rows that are encoded in parallel before they are written.
 const AT_ONCE: usize = 32;
 
-/// Row-by-row writer of a format.
+/// Functions of a [`Format`] for writing pictures row by row.
 #[derive(Debug)]
 pub struct RowFormat {
     /// True if the bottom row comes first.
@@ -22,7 +22,7 @@ pub struct RowFormat {
     pub(super) png: bool,
 }
 
-/// Common properties of a picture's rows.
+/// Size, alpha, and display conversion of a picture that is written row by row.
 #[derive(Clone, Copy, Debug)]
 pub struct Strip {
     /// Width in pixels.
@@ -36,7 +36,7 @@ pub struct Strip {
 }
 
 impl Strip {
-    /// Properties of a layer's rows for these options.
+    /// Creates the properties for writing a layer with these options.
     pub(super) fn of(layer: &Layer, options: &WriteOptions) -> Self {
         let alpha = layer.coverage.is_some();
         let Image { width, height, .. } = *layer.image;
@@ -59,7 +59,7 @@ impl Strip {
     }
 }
 
-/// Writer of a picture's rows.
+/// Writer to which [`Format::write_rows`] lets a closure pass the rows of a picture.
 pub struct RowWriter<'w> {
     format: &'static RowFormat,
     strip: Strip,
@@ -69,11 +69,12 @@ pub struct RowWriter<'w> {
 }
 
 impl Format {
-    /// Writes a picture row by row, bottom row first if [`RowFormat::bottom_up`] is set.
+    /// Writes a picture row by row: `rows` passes the rows to a [`RowWriter`], bottom row first if
+    /// [`RowFormat::bottom_up`] is set.
     ///
     /// # Errors
-    /// Errors of `rows` and of the file, and [`ImageError::Unsupported`] for formats without
-    /// row-by-row writing, and for sizes that they cannot hold.
+    /// Errors of `rows` and `out`, and [`ImageError::Unsupported`] if the format cannot be written
+    /// row by row or cannot hold this size.
     pub fn write_rows<T, E: From<ImageError> + From<io::Error>>(
         &self,
         strip: Strip,
@@ -107,8 +108,9 @@ impl<'w> RowWriter<'w> {
         RowWriter { format, strip, next: 0, out }
     }
 
-    /// Writes the next rows. `pixels` are in order from top to bottom, regardless of the order in
-    /// the file. `coverage` is the coverage of each pixel; empty if all are fully covered.
+    /// Writes the next rows. `pixels` are ordered from top to bottom, regardless of the order in
+    /// the file. `coverage` is the coverage of each pixel, or empty if all pixels are fully
+    /// covered.
     ///
     /// # Errors
     /// Errors of the file.

@@ -1,5 +1,5 @@
-//! Truevision Targa: uncompressed 24-bit true colour, bottom row first, as written by the programs
-//! of the course; 32 bits with alpha for layers with coverage.
+//! Truevision Targa: uncompressed 24-bit true colour, bottom row first, as the programs of the
+//! course write it. Layers with coverage have 32 bits per pixel, including alpha.
 
 use super::{Depth, Format, Head, ImageError, RowFormat, codec, rows};
 use ::image::ImageFormat;
@@ -12,11 +12,11 @@ pub const FORMAT: Format = Format {
     depth: Depth::EightBit,
     layers: false,
     most_side: 65535,
-    // The format has no signature and is recognised by its extension only.
+    // The format has no signature and is recognised only by its extension.
     begins: |_| false,
     head: |bytes| {
         let head = codec::head(&codec::decoder(NAME, ImageFormat::Tga, bytes)?);
-        // The decoder expands palettes and 16-bit pixels from a copy.
+        // For palettes and 16-bit pixels, the decoder needs memory for a copy.
         Ok(Head { bytes_per_pixel: head.bytes_per_pixel + 2, ..head })
     },
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Tga, bytes)?),
@@ -42,7 +42,7 @@ static ROWS: RowFormat = RowFormat {
         };
         let ([w0, w1], [h0, h1]) = (side(strip.width)?.to_le_bytes(), side(strip.height)?.to_le_bytes());
         let (bits, alpha_bits) = if strip.alpha { (32, 8) } else { (24, 0) };
-        // No identification, no palette, origin at the lower left.
+        // No image ID, no palette, and the origin at the lower left.
         Ok(vec![0, 0, TRUE_COLOR, 0, 0, 0, 0, 0, 0, 0, 0, 0, w0, w1, h0, h1, bits, alpha_bits])
     },
     row: |strip, _, pixels, coverage, out| {

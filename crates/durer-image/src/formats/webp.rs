@@ -14,7 +14,8 @@ pub const FORMAT: Format = Format {
     begins: |bytes| bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP"),
     head: |bytes| {
         let head = codec::head(&codec::decoder(NAME, ImageFormat::WebP, bytes)?);
-        // Memory for frames, and for separate planes of brightness, colour, and alpha.
+        // The decoder also needs memory for frames, and for separate planes of luma, chroma, and
+        // alpha.
         Ok(Head { bytes_per_pixel: head.bytes_per_pixel + 8, spare: bytes.len() as u64, ..head })
     },
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::WebP, bytes)?),

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 #[cfg(test)]
 use ts_rs::TS;
 
-/// A formula in symbols and in numbers.
+/// A line of an explanation: a formula in symbols and in numbers, with its result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Row {
@@ -21,7 +21,7 @@ pub struct Row {
     pub value: Option<f64>,
 }
 
-/// A segment of a ray, for drawing.
+/// A segment of a ray in world space, which a page draws into the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Segment {
@@ -35,7 +35,7 @@ pub struct Segment {
     pub escapes: bool,
 }
 
-/// Kind of a ray.
+/// Kind of the ray to which a [`Segment`] belongs, such as a camera ray or a shadow ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
@@ -54,7 +54,8 @@ pub enum Role {
     Shadowed,
 }
 
-/// A term of a pixel's colour.
+/// A term of the sum that gives the colour of a pixel, with its formulas and the terms that it
+/// consists of.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Term {
@@ -86,7 +87,7 @@ pub struct Term {
     pub terms: Vec<Term>,
 }
 
-/// Explanation of a pixel.
+/// Explanation of a pixel's colour, as a tree of terms for one of its samples.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct PixelAccount {
@@ -110,7 +111,7 @@ pub struct PixelAccount {
     pub tree: Option<Term>,
 }
 
-/// Result of an intersection test.
+/// Result of testing a ray against one object: the closest hit, a farther one, or none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
@@ -127,7 +128,7 @@ pub enum Verdict {
     Missed,
 }
 
-/// Intersection test of a ray with an object.
+/// Intersection test of a ray with one object, with its formulas and result.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ObjectTest {
@@ -147,7 +148,7 @@ pub struct ObjectTest {
     pub rows: Vec<Row>,
 }
 
-/// Intersection tests of a ray with the objects.
+/// Result of [`Request::Cast`](super::Request::Cast): intersection tests of a ray with each object.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct CastAccount {
@@ -163,7 +164,7 @@ pub struct CastAccount {
     pub hit: Option<HitAccount>,
 }
 
-/// Hit of a ray.
+/// Closest hit of a ray that was cast, with its position, normals, and texture coordinates.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct HitAccount {
@@ -185,7 +186,7 @@ pub struct HitAccount {
     pub barycentric: [f32; 3],
 }
 
-/// Outline of an object.
+/// Outline of an object as polylines in world space, for a page's line drawing of the scene.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Outline {
@@ -195,7 +196,7 @@ pub struct Outline {
     pub lines: Vec<Vec<f32>>,
 }
 
-/// A light, for drawing.
+/// Position and name of a light, for a page's line drawing of the scene.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Lamp {

@@ -5,12 +5,12 @@ use serde::{Deserialize, Serialize};
 #[cfg(test)]
 use ts_rs::TS;
 
-/// Acceleration structure over the objects of a scene.
+/// Acceleration structure over the objects of a scene whose traversal a page shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Structure {
-    /// Bounding volume hierarchy.
+    /// A bounding volume hierarchy.
     Tree,
     /// A uniform grid.
     Grid,
@@ -18,7 +18,7 @@ pub enum Structure {
     Nothing,
 }
 
-/// A camera ray.
+/// A camera ray through a pixel centre, and its first hit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct RayAccount {
@@ -32,7 +32,7 @@ pub struct RayAccount {
     pub object: Option<u32>,
 }
 
-/// Test of an object against a ray.
+/// Test of an object during a traversal, with the `t` of its first hit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct WalkTest {
@@ -42,7 +42,8 @@ pub struct WalkTest {
     pub t: Option<f32>,
 }
 
-/// Visit of a box or cell.
+/// One step of a traversal: the box or cell that the ray visits, and the objects that are tested
+/// there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct WalkStep {
@@ -56,7 +57,7 @@ pub struct WalkStep {
     pub closest: Option<f32>,
 }
 
-/// Traversal of a structure by a ray.
+/// Traversal of an acceleration structure by a ray, step by step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct WalkAccount {
@@ -74,7 +75,7 @@ pub struct WalkAccount {
     pub boxes: Vec<BoxState>,
 }
 
-/// A box, for drawing.
+/// Bounding box of a BVH node or grid cell, for drawing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct BoxState {
@@ -85,7 +86,7 @@ pub struct BoxState {
     pub corners: Vec<f32>,
 }
 
-/// A node of a scene.
+/// Node of the tree of groups and objects that a scene consists of.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct TreeNode {
@@ -99,7 +100,7 @@ pub struct TreeNode {
     pub nodes: Vec<TreeNode>,
 }
 
-/// A material.
+/// A material of a scene, with the fields that a page can show and edit.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct MaterialState {

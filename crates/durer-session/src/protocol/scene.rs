@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 #[cfg(test)]
 use ts_rs::TS;
 
-/// An option of a render job.
+/// An option of the render job and its value, as on the command line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Setting {
@@ -14,7 +14,7 @@ pub struct Setting {
     pub value: String,
 }
 
-/// A camera motion.
+/// A motion of the camera that a page requests, such as an orbit or a pan.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(tag = "kind", rename_all = "snake_case")]
@@ -60,7 +60,7 @@ pub enum Motion {
     Frame,
 }
 
-/// An item of a list of choices.
+/// An item from which a page lets the user choose, such as an integrator, with its description.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Choice {
@@ -70,7 +70,7 @@ pub struct Choice {
     pub doc: String,
 }
 
-/// A place in the scene's text.
+/// Position of an item or a finding in the text of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Place {
@@ -84,12 +84,12 @@ pub struct Place {
     pub end: u32,
 }
 
-/// Severity of a finding.
+/// Severity of a [`Finding`]: note, warning, or error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Severity {
-    /// Information.
+    /// The finding is only for information.
     Note,
     /// The picture may differ from the author's intent.
     Warning,
@@ -97,7 +97,7 @@ pub enum Severity {
     Error,
 }
 
-/// A finding in a text.
+/// An error, warning, or note about the text of a scene.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Finding {
@@ -119,7 +119,7 @@ pub struct Finding {
     pub fix: Vec<Change>,
 }
 
-/// A change of the text.
+/// A text replacement that is part of the fix of a [`Finding`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Change {
@@ -131,7 +131,7 @@ pub struct Change {
     pub text: String,
 }
 
-/// Contents of a scene.
+/// Summary of a scene: its camera, objects, lights, bounds, and job options.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Contents {
@@ -153,7 +153,7 @@ pub struct Contents {
     pub job: JobState,
 }
 
-/// Options of a render job.
+/// Options of the render job as a page shows them.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct JobState {
@@ -169,7 +169,7 @@ pub struct JobState {
     pub words: Vec<String>,
 }
 
-/// A statement of a scene.
+/// An object or light in the list of a scene's contents.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Thing {
@@ -179,7 +179,7 @@ pub struct Thing {
     pub place: Option<Place>,
 }
 
-/// State of a camera.
+/// The current camera of a session: its position, directions, and fields.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct CameraState {
@@ -205,7 +205,7 @@ pub struct CameraState {
     pub moved: bool,
 }
 
-/// A field of a camera.
+/// A field of a camera or material, with its value and range.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct FieldState {
@@ -223,7 +223,7 @@ pub struct FieldState {
     pub most: Option<f32>,
 }
 
-/// Description of a rendered picture.
+/// Description of a picture that is sent to a page: its size, progress, and timing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct PictureHead {
@@ -258,7 +258,7 @@ pub struct PictureHead {
     pub hash: Option<String>,
 }
 
-/// A keyword of the scene language.
+/// A keyword that begins a statement of the scene language, with its documentation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Word {
@@ -274,7 +274,7 @@ pub struct Word {
     pub example: String,
 }
 
-/// A field of a keyword's block.
+/// A field in the block of a statement, with its documentation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct WordField {

@@ -1,4 +1,4 @@
-//! The scene's file: saving, and changes by other programs.
+//! The scene file on disk: saving it, and noticing changes by other programs.
 
 use super::Session;
 #[cfg(feature = "fs")]
@@ -9,7 +9,7 @@ impl Session {
     #[cfg(feature = "fs")]
     pub(super) fn save(&mut self, force: bool) -> Result<Event, String> {
         use durer::format::folder::stamp_of;
-        let document = self.document.as_ref().filter(|_| self.on_disk).ok_or("this scene is in no file")?;
+        let document = self.document.as_ref().filter(|_| self.on_disk).ok_or("this scene was not opened from a file on the server")?;
         if !force && stamp_of(&document.path) != self.stamp {
             return Ok(Event::Conflict);
         }
@@ -23,8 +23,8 @@ impl Session {
         Err("files cannot be saved here".into())
     }
 
-    /// Reads the scene's file again if it has changed. Text that was edited here is kept; the page
-    /// learns of the conflict when it saves.
+    /// Reads the scene file again if it has changed on disk. If the text was edited in the session
+    /// too, it is kept, and the page is notified of the conflict when it saves.
     #[cfg(feature = "fs")]
     pub(crate) fn look_at_disk(&mut self, say: &mut dyn FnMut(Message)) {
         let Some(document) = self.document.as_ref().filter(|_| self.on_disk) else { return };
@@ -42,7 +42,7 @@ impl Session {
         }
     }
 
-    /// Accepts the current content of the scene's file, if it equals `text`.
+    /// If the scene file contains `text`, records its current version as the one that was read.
     #[cfg(feature = "fs")]
     pub(crate) fn take_over(&mut self, text: &str) {
         if let Some(document) = self.document.as_ref().filter(|_| self.on_disk)

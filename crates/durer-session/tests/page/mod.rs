@@ -8,7 +8,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// A host whose clock advances by one millisecond each time it is read.
+/// A simulated page with its own [`Host`], whose clock advances by one millisecond each time it is
+/// read.
 pub struct Page(Host);
 
 impl Page {

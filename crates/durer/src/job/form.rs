@@ -1,27 +1,29 @@
-//! Forms of option values: how a text is checked, parsed and printed.
+//! Forms of option values: how their texts are checked, parsed and printed.
 
 use durer_diag::did_you_mean;
 
-/// Form of an option's value.
+/// Form of the value that an option takes, such as a flag, a number in a range, or one of several
+/// words.
 #[derive(Clone, Copy, Debug)]
 pub enum OptionForm {
     /// No value.
     Flag,
-    /// `on`, `off`, or empty for `on`.
+    /// `on` or `off`; without a value, `on`.
     Switch,
     /// A whole number in a range, both ends included.
     Whole(u32, u32),
-    /// A number, or several joined by a letter; contains the name of the value.
+    /// A number, or several that are joined by a letter. Contains the name of the value.
     Value(&'static str),
-    /// A number that passes a test: the name of the value, the test, and the message if it fails.
+    /// A number that must pass a test. Contains the name of the value, the test, and the message if
+    /// it fails.
     Number(&'static str, fn(f32) -> bool, &'static str),
-    /// Two numbers separated by a blank; contains their names.
+    /// Two numbers separated by a space. Contains their names.
     Two(&'static str, &'static str),
     /// One of several words.
     Words(fn() -> Vec<&'static str>),
 }
 
-/// An option of a picture.
+/// Definition of an option of a render: its name, documentation, and form of value.
 #[derive(Clone, Copy, Debug)]
 pub struct JobOption {
     /// Name on the command line, without dashes.
@@ -33,7 +35,7 @@ pub struct JobOption {
 }
 
 impl OptionForm {
-    /// Checks the text of a value against the form, as far as the form determines it.
+    /// Checks that the text of a value has this form. Numbers of a free form are not checked.
     pub(crate) fn check(self, text: &str) -> Result<(), String> {
         match self {
             OptionForm::Whole(least, most) => match text.parse::<u32>() {
@@ -48,7 +50,7 @@ impl OptionForm {
     }
 }
 
-/// Checks that a text is one of some words.
+/// Checks that a text is one of the words.
 pub(super) fn one_of(text: &str, words: &[&str]) -> Result<(), String> {
     if words.contains(&text) { Ok(()) } else { Err(format!("expected one of {}", words.join(", "))) }
 }
@@ -61,7 +63,7 @@ pub(crate) fn unknown_option<'a>(name: &str, known: impl IntoIterator<Item = &'a
     }
 }
 
-/// A type of an option's value that can be parsed and printed.
+/// Type of an option's value, which is parsed from text and printed as text.
 pub(super) trait OptionValue: Sized {
     fn parse(text: &str) -> Result<Self, String>;
     fn shown(&self) -> String;

@@ -1,8 +1,9 @@
-//! Options of a picture, stated once, and their defaults.
+//! Options that determine a picture, and their defaults.
 //!
-//! [`RenderJob`] holds the options that are set. The command line, the text that reproduces a job
-//! ([`RenderJob::spelled`]), JSON and Python's arguments walk [`RenderJob::OPTIONS`].
-//! [`RenderJob::resolve`] turns them into a [`Job`], with defaults from the scene.
+//! [`RenderJob`] holds the options that are set. The options are defined only once, in
+//! [`RenderJob::OPTIONS`], which the command line, the text that reproduces a job
+//! ([`RenderJob::spelled`]), JSON and Python use. [`RenderJob::resolve`] turns the options into a
+//! [`Job`], with defaults from the scene.
 
 mod form;
 
@@ -45,7 +46,7 @@ macro_rules! options {
         }
 
         impl $name {
-            /// Every option except those of integrators, which state their own: see
+            /// Every option except those of the integrators, which define their own: see
             /// [`IntegratorKind`].
             pub const OPTIONS: &'static [JobOption] =
                 &[$(JobOption { name: $word, doc: concat!($($fdoc, "\n"),+), form: $form },)*];
@@ -57,12 +58,12 @@ macro_rules! options {
                 self
             })*
 
-            /// Sets an option by its name on the command line from the text after it, which is
-            /// empty for a flag.
+            /// Sets an option by its name on the command line. `text` is its value, or empty for a
+            /// flag.
             ///
             /// # Errors
             ///
-            /// A sentence, for an unknown option or a text that is not a value of it.
+            /// A message, if the option is unknown or the text is not a valid value.
             pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
                 let option = RenderJob::OPTIONS.iter().find(|option| option.name == name);
                 match option.map(|option| option.form) {
@@ -89,8 +90,8 @@ macro_rules! options {
 }
 
 options! {
-    /// Options of a picture. Options that are not set follow from the scene: see
-    /// [`RenderJob::resolve`].
+    /// Options of a render that determine the picture, such as size, integrator, and samples.
+    /// Options that are not set have the scene's defaults: see [`RenderJob::resolve`].
     ///
     /// ```
     /// use durer::job::RenderJob;
@@ -167,30 +168,31 @@ pub fn option_name(field: &Field) -> &'static str {
     field.spelling(Dialect::Durer).unwrap_or(field.name)
 }
 
-/// Returns the index of an integrator's option by name.
+/// Returns the index of an option among the fields of an integrator; `None` if the integrator does
+/// not have it.
 pub fn option_index(method: &IntegratorKind, option: &str) -> Option<usize> {
     method.fields().iter().position(|field| option_name(field) == option)
 }
 
-/// Facts from which a job's defaults follow.
+/// Scene and rules that determine the defaults of a job's options; see [`RenderJob::resolve`].
 #[derive(Clone, Copy, Debug)]
 pub struct JobContext<'a> {
     /// The scene.
     pub scene: &'a Scene,
     /// Rules of the scene's dialect.
     pub rules: &'a Rules,
-    /// True if a dialect was requested, so that all quirks of its program apply.
+    /// True if a dialect was requested, so that its program is emulated with all quirks.
     pub emulates: bool,
     /// True if a time limit ends the sampling.
     pub timed: bool,
 }
 
-/// Selection of output pictures.
+/// Selection of the pictures that a render writes, and of the part of the picture to render.
 #[derive(Clone, Debug)]
 pub struct View {
     /// Crop of the picture: left, top, width, height; `None` for the scene's own crop.
     pub crop: Option<(u32, u32, u32, u32)>,
-    /// Names of pictures: `color`, and those of [`durer_render::film::aov::AOVS`].
+    /// Names of the pictures to write: `color`, or names from [`durer_render::film::aov::AOVS`].
     pub show: Vec<String>,
 }
 
@@ -212,7 +214,7 @@ impl RenderJob {
     ///
     /// # Errors
     ///
-    /// A sentence, if no integrator has this option.
+    /// A message, if no integrator has this option.
     pub fn set_integrator_option(&mut self, name: &str, value: Value) -> Result<(), String> {
         let kinds = IntegratorKind::kinds();
         let fields = kinds.iter().flat_map(|kind| kind.fields());
@@ -251,12 +253,13 @@ impl RenderJob {
     ///
     /// # Errors
     ///
-    /// A sentence, for an unknown integrator, or an option that does not belong to it or is out of
+    /// A message, if the integrator is unknown, or an option does not apply to it or is out of
     /// range.
     pub fn resolved_method(&self, usual: IntegratorKind) -> Result<IntegratorKind, String> {
         let has = |kind: &IntegratorKind, (option, _): &(&str, Value)| option_index(kind, option).is_some();
         let mut methods = std::iter::once(usual).chain(IntegratorKind::kinds());
-        // Find an integrator with all options, or at least with the last one.
+        // Without a requested integrator, find one with all options that are set, or at least the
+        // last one.
         let fitting = methods.clone().find(|kind| self.method_options.iter().all(|option| has(kind, option)));
         let last = self.method_options.last();
         let found = match &self.method {
@@ -284,12 +287,13 @@ impl RenderJob {
         self.size
     }
 
-    /// Resolves the options into a job. Options that are not set follow from the scene and its
-    /// rules. Without a view, the job renders the whole picture in colour.
+    /// Resolves the options into a job. Options that are not set have defaults from the scene and
+    /// its rules. Without a view, the job renders the full picture in colour, and no other
+    /// pictures.
     ///
     /// # Errors
     ///
-    /// A sentence, if options contradict each other or the scene.
+    /// A message, if options contradict each other or the scene.
     pub fn resolve(&self, context: &JobContext, view: Option<&View>) -> Result<Job, String> {
         let JobContext { scene, rules, emulates, .. } = *context;
         let camera = scene.camera.as_ref();
@@ -297,7 +301,7 @@ impl RenderJob {
         let natural = || Raster::natural_size(camera.and_then(|camera| camera.proportions()), rules.size);
         let (width, height) = self.size.or(render_defaults.size).unwrap_or_else(natural);
         let method = self.resolved_method(usual_method(scene))?;
-        // Blur needs more samples than antialiasing.
+        // Blur from an aperture, and random integrators, need more samples than antialiasing.
         let plenty = if camera.is_some_and(|camera| camera.has_aperture()) || method.is_random() { 64 } else { 16 };
         let plenty = render_defaults.samples.unwrap_or(plenty);
         let is = |flag: Option<bool>| flag.unwrap_or(false);
@@ -323,7 +327,7 @@ impl RenderJob {
             }
             None => None,
         };
-        // The scene's crop only applies at the scene's own size.
+        // The crop in the scene applies only if the picture has the size in the scene.
         let wished = render_defaults.crop.filter(|_| render_defaults.size == Some((width, height)));
         let crop = view.and_then(|view| view.crop.or(wished));
         let shown = view.map_or(&[][..], |view| &view.show);
@@ -417,8 +421,8 @@ impl RenderJob {
         Ok(Sampling::Course2004 { sampler, samples, filter })
     }
 
-    /// Returns the options whose values differ from the scene's defaults, excluding size and view.
-    /// The inverse of [`RenderJob::resolve`].
+    /// Returns the options in which a job differs from the scene's defaults, except size and view:
+    /// the inverse of [`RenderJob::resolve`].
     pub fn of(job: &Job, context: &JobContext) -> RenderJob {
         let JobContext { scene, rules, emulates, .. } = *context;
         let settings = &job.settings;
@@ -474,7 +478,7 @@ impl RenderJob {
         options
     }
 
-    /// Returns the options that are set as words of a command line.
+    /// Returns the options that are set, as arguments of the command line.
     pub fn spelled(&self) -> Vec<String> {
         let mut words: Vec<String> = self.method.iter().map(|name| format!("--integrator {name}")).collect();
         words.extend(self.method_options.iter().filter_map(|(name, value)| match value {

@@ -1,4 +1,4 @@
-//! Tests that unchanged files are neither read nor built again.
+//! Tests of the cache: unchanged files are neither read nor built again.
 
 use super::*;
 use durer_render::compile::Reuse;
@@ -13,7 +13,7 @@ Materials { PhongMaterial { diffuseColor 1 1 1 texture a.ppm } PrincipledMateria
 Group { MaterialIndex 0 TriangleMesh { obj_file a.obj } MaterialIndex 1 TriangleMesh { obj_file b.obj } }";
 const MESH: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
 
-/// A folder with a scene, and its cached parts.
+/// A temporary folder with a scene, its meshes and pictures, and a cache for loading it.
 struct TestFolder {
     folder: tempfile::TempDir,
     cache: Option<Arc<AssetCache>>,
@@ -77,7 +77,7 @@ fn unchanged_files_are_not_read_again() {
     assert_eq!(place.watched("scene.txt"), (4, 0));
     place.put("scene.txt", SCENE.replace("color 1 1 1 }", "color 1 0 0 }").as_bytes());
     assert_eq!(place.watched("scene.txt"), (0, 4));
-    // A mesh that seems unchanged by size and time is not even read.
+    // A mesh whose size and time have not changed is not even read.
     place.replace("a.obj", format!("{:1$}", "f 7 8 9", MESH.len()).as_bytes());
     assert!(place.world("scene.txt", true).is_some() && place.reuse() == (0, 4));
     assert!(place.world("scene.txt", false).is_none());

@@ -10,7 +10,8 @@ use durer_scene::source::Digest;
 use durer_scene::texture::Channel;
 use std::fs;
 
-/// Loads a file of a folder; returns diagnostics as `code: message`.
+/// Loads a file in a folder. Returns the scene, if there were no errors, and the diagnostics as
+/// `code: message`.
 fn read(folder: &Path, name: &str, options: &LoadOptions) -> (Option<Scene>, Vec<String>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let loaded = load(&folder.join(name), options, &mut files, &mut diagnostics).unwrap();
@@ -351,7 +352,7 @@ fn mtl_pictures_set_their_parameters() {
     assert_eq!(mapping(&m.specular_roughness_texture).channel, Some(Channel::Green));
     assert_eq!(mapping(&m.base_metalness_texture).range, [0.25, 0.75]);
     assert!(m.specular_color_texture.is_some() && m.opacity_texture.is_some() && m.emission_texture.is_some());
-    // The texture of a parameter without a number is used unscaled.
+    // If a parameter has only a texture, the texture is not scaled.
     assert_eq!((m.specular_roughness, m.base_metalness, m.coat_weight, m.emission_luminance), (1.0, 1.0, 1.0, 1.0));
     // A bump map's height is relative to the size of the model, here 5.
     assert!(m.bump_texture.is_some() && (m.bump_height - 3.0 * 0.002 * 5.0).abs() < 1e-6, "{}", m.bump_height);

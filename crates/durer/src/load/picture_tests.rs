@@ -1,4 +1,4 @@
-//! Tests that textures keep the precision of their files: sixteen bits, floating point, opacity.
+//! Tests that textures keep sixteen-bit and floating-point values and opacity from their files.
 
 use super::*;
 use ::image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
@@ -56,7 +56,7 @@ fn sixteen_bit_textures_keep_precision_and_opacity() {
 fn memory_is_checked_before_allocation() {
     let large = [b"PF\n400 400\n-1.0\n".to_vec(), vec![0; 400 * 400 * 12]].concat();
     let read = |memory| texture("emissionTexture", "a.pfm", &large, Some(memory)).map(|texture| texture.bytes());
-    // The memory limit covers the picture and the texture made from it.
+    // The memory limit includes both the picture and the texture that is created from it.
     assert_eq!(read(6_000_000), Ok(400 * 400 * 12));
     let messages = read(3_000_000).unwrap_err();
     assert!(messages.contains("memory"), "{messages}");

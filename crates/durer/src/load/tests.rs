@@ -18,8 +18,8 @@ fn house(objects: &str) -> tempfile::TempDir {
     root
 }
 
-/// Loads and compiles; returns diagnostics as `file:line:column severity: message (help)`, without
-/// the folder's name.
+/// Loads and compiles the scene. Returns the world and the diagnostics as `file:line:column
+/// severity: message (help)`, with paths relative to `root`.
 fn made(root: &tempfile::TempDir, options: &LoadOptions) -> (Option<World>, Vec<String>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let path = root.path().join("scene/scene.txt");
@@ -81,7 +81,7 @@ fn missing_mesh_is_reported_once_with_a_similar_name() {
         ["scene/scene.txt:5:25 error: the mesh cannot be read: the file `tir.obj` does not exist (did you \
           mean `tri.obj`? Looked for scene/tir.obj)"]
     );
-    // Thousands of meshes take little time.
+    // Thousands of missing meshes are reported quickly.
     let many: String = (0..20_000).map(|i| mesh(&format!("{i}.obj"))).collect();
     assert_eq!(findings(&many).len(), 20);
 }

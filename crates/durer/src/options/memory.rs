@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 use sysinfo::System;
 
-/// A memory limit. The default is 80 percent of the memory available to the process.
+/// Memory limit of a render, in bytes or as a percentage. The default is 80 percent of the memory
+/// that is available to the process.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Memory {
     /// Bytes.
     Bytes(u64),
-    /// Percentage of the least of: the machine's memory, the limit of the process's control groups,
-    /// and its remaining address space.
+    /// Percentage of the memory that is available to the process: the least of the machine's
+    /// memory, the limits of its control groups, and its remaining address space.
     Percent(f64),
 }
 
@@ -24,7 +25,7 @@ impl Memory {
     ///
     /// # Errors
     ///
-    /// A sentence, for any other text.
+    /// A message, for any other text.
     pub fn parse(text: &str) -> Result<Self, String> {
         let wrong = || "expected a size or percentage, for example 8G, 512M or 80%".to_string();
         if let Some(percent) = text.strip_suffix('%') {
@@ -52,7 +53,7 @@ impl Memory {
         };
         let mut system = System::new();
         system.refresh_memory();
-        // Without `/proc`, the memory size is unknown, and querying control groups would fail.
+        // Without `/proc`, the size of the memory is unknown, and control groups cannot be read.
         let machine = Some(system.total_memory()).filter(|&bytes| bytes > 0)?;
         let all = [of_groups(), address_space()].into_iter().flatten().fold(machine, u64::min);
         Some((all as f64 * percent / 100.0) as u64)
@@ -67,9 +68,9 @@ fn of_groups() -> Option<u64> {
     limit_files(&groups, Path::new("/sys/fs/cgroup")).iter().filter_map(limit).filter(|&bytes| bytes > 0).min()
 }
 
-/// Returns the files that may limit memory, from the text of `/proc/self/cgroup`: those of each
-/// group and of all enclosing groups. In a container, the path may be the host's; then only the
-/// root exists.
+/// Returns the files that can limit memory, given the text of `/proc/self/cgroup`: those of each
+/// group and of all enclosing groups. In a container, the paths can be those of the host, of which
+/// only the root exists.
 ///
 /// Source: *Control Group v2* and *Memory Resource Controller*, Linux kernel documentation.
 fn limit_files(groups: &str, root: &Path) -> Vec<PathBuf> {

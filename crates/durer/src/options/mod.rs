@@ -1,8 +1,8 @@
 //! Options of a render as pairs of name and text, for the command line and Python.
 //!
-//! [`statements`] lists all options with their meaning, [`RenderOptions::set`] parses one. Options
-//! that are not set have the command's defaults, so equal options give equal bits in every
-//! language.
+//! [`statements`] lists all options with their meaning, and [`RenderOptions::set`] parses one.
+//! Options that are not set have the same defaults as on the command line, so equal options give
+//! the same bits from every language.
 //!
 //! ```
 //! use durer::options::RenderOptions;
@@ -28,17 +28,18 @@ use rows::{READING, VIEW, WORK};
 pub use rows::{compat, crop, doc, grid_cells};
 use std::time::Duration;
 
-/// Options of a render.
+/// The options of `durer render`, parsed from text: for loading, for the picture, and for
+/// execution.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct RenderOptions {
-    /// Options of reading and compiling the scene.
+    /// Options for reading and compiling the scene.
     pub load: LoadOptions,
     /// Options of the picture: size, samples, integrator.
     pub job: RenderJob,
     /// Crop and selection of output pictures.
     pub view: View,
-    /// Memory limit of scene and picture.
+    /// Memory limit for the scene and the picture.
     pub memory: Memory,
     /// Number of threads; `None`: one per processor.
     pub threads: Option<usize>,
@@ -46,7 +47,7 @@ pub struct RenderOptions {
     pub tile: Option<u32>,
     /// Time after which no more samples are taken; `None`: unlimited.
     pub time_limit: Option<Duration>,
-    /// Part of the work.
+    /// Part of the work to do, if the render is split into shards.
     pub shard: Shard,
 }
 
@@ -66,12 +67,12 @@ impl Default for RenderOptions {
 }
 
 impl RenderOptions {
-    /// Sets an option by its name without dashes. `text` is empty for a flag. Options that can be
-    /// repeated (`assets`, `compat`) add to the previous values.
+    /// Sets an option by its name without dashes. `text` is empty for a flag. For options that can
+    /// be repeated (`assets`, `compat`), the value is added to the previous ones.
     ///
     /// # Errors
     ///
-    /// A sentence, for an unknown option or a text that is not a value of it.
+    /// A message, if the option is unknown or the text is not a valid value.
     pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
         let mut rows = READING.iter().chain(VIEW).chain(WORK);
         let set = match rows.find(|row| row.option.name == name) {
@@ -98,7 +99,7 @@ impl RenderOptions {
     ///
     /// # Errors
     ///
-    /// A sentence, if options contradict each other or the scene.
+    /// A message, if options contradict each other or the scene.
     pub fn resolve(&self, loaded: &LoadedScene) -> Result<Job, String> {
         self.job.resolve(&loaded.job_context(self.time_limit.is_some()), Some(&self.view))
     }
@@ -115,24 +116,24 @@ impl RenderOptions {
     }
 }
 
-/// Category of an option.
+/// Category of an option of a render, by its effect on the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OptionGroup {
     /// Reading and compiling the scene.
     Reading,
-    /// The picture. These options determine every bit of it.
+    /// The picture. Together with the scene, these options determine every bit of it.
     Picture,
-    /// Threads, time and shards. These do not change any bit of a finished picture.
+    /// Execution: threads, time and shards. These options do not change a finished picture.
     Work,
 }
 
-/// Description of an option.
+/// Documentation of an option of a render, from which help and bindings are generated.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct OptionStatement {
     /// Name without dashes.
     pub name: &'static str,
-    /// Meaning, unit and default.
+    /// Meaning, unit and default value.
     pub help: String,
     /// Name of the value; `None` for a flag.
     pub value: Option<String>,
@@ -195,7 +196,7 @@ pub fn integrator_help() -> String {
     )
 }
 
-/// Returns the options of the integrators, each once, with their help.
+/// Returns the options of all integrators, each listed once, with their help.
 pub fn integrator_options() -> Vec<(Field, String)> {
     let kinds = IntegratorKind::kinds();
     let mut all: Vec<(Field, String)> = Vec::new();

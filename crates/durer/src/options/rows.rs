@@ -1,4 +1,4 @@
-//! Options of reading, view and work.
+//! Tables of the options for loading, output pictures, and execution.
 
 #![allow(clippy::unit_arg, reason = "each row assigns and succeeds in one expression")]
 
@@ -12,7 +12,7 @@ use durer_render::render::ShardBy;
 use durer_scene::dialect::{Dialect, Quirk};
 use durer_scene::scene::{Axis, DefaultLighting, View};
 
-/// An option, and a setter that parses text of its form.
+/// Row of a table of options: the definition of the option, and a function that parses and sets it.
 pub(super) struct Row {
     pub option: JobOption,
     pub set: fn(&mut RenderOptions, &str) -> Result<(), String>,
@@ -29,7 +29,7 @@ const fn row(
 
 const SAY_NUMBER: &str = "expected a number";
 
-/// Options of reading and compiling a scene.
+/// Options for reading and compiling a scene.
 pub(super) const READING: &[Row] = &[
     row(
         "dialect",
@@ -183,7 +183,7 @@ pub(super) const VIEW: &[Row] = &[
     ),
 ];
 
-/// Options of execution: threads, time, shards.
+/// Options for execution: threads, time, shards.
 pub(super) const WORK: &[Row] = &[
     row(
         "threads",
@@ -226,7 +226,7 @@ pub(super) const WORK: &[Row] = &[
     ),
 ];
 
-/// Sides from which a model can be seen.
+/// Names of the views from which a model can be rendered.
 const VIEWS: [(&str, View); 5] = [
     ("three-quarter", View::ThreeQuarter),
     ("front", View::Front),
@@ -235,7 +235,7 @@ const VIEWS: [(&str, View); 5] = [
     ("iso", View::Iso),
 ];
 
-/// Lights for models.
+/// Names of the sets of lights for models.
 const STUDIOS: [(&str, DefaultLighting); 3] =
     [("none", DefaultLighting::None), ("soft", DefaultLighting::Soft), ("sun", DefaultLighting::Sun)];
 
@@ -251,17 +251,17 @@ fn flag(text: &str) -> Result<bool, String> {
     }
 }
 
-/// Returns the help of an option of reading, view or work; empty for other names.
+/// Returns the help of an option in these tables; empty for other names.
 pub fn doc(name: &str) -> &'static str {
     let mut rows = READING.iter().chain(VIEW).chain(WORK);
     rows.find(|row| row.option.name == name).map_or("", |row| row.option.doc)
 }
 
-/// Reads the name of a quirk to turn on, or off with `no-` before it.
+/// Parses the name of a quirk to enable, or to disable if it has the prefix `no-`.
 ///
 /// # Errors
 ///
-/// A sentence, for unknown quirks.
+/// A message, if the quirk is unknown.
 pub fn compat(text: &str) -> Result<(Quirk, bool), String> {
     let (name, on) = text.strip_prefix("no-").map_or((text, true), |name| (name, false));
     Quirk::from_name(name).map(|compat| (compat, on)).ok_or_else(|| {
@@ -273,7 +273,7 @@ pub fn compat(text: &str) -> Result<(Quirk, bool), String> {
     })
 }
 
-/// Reads a part of a picture: left, top, width and height, as in `10,20,64x48`.
+/// Parses a part of a picture: left, top, width and height, for example `10,20,64x48`.
 ///
 /// # Errors
 ///
@@ -291,7 +291,7 @@ pub fn crop(text: &str) -> Result<(u32, u32, u32, u32), String> {
         .ok_or_else(|| "expected LEFT,TOP,WIDTHxHEIGHT, for example 10,20,64x48".into())
 }
 
-/// Reads the number of cells of a grid along each axis, as in `10x10x10`.
+/// Parses the numbers of grid cells along the axes, for example `10x10x10`.
 ///
 /// # Errors
 ///

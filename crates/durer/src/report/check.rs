@@ -1,15 +1,15 @@
-//! JSON of diagnostics and of the findings of a check.
+//! Diagnostics and findings of `durer check` as JSON.
 
 use durer_diag::{Files, Severity, Span};
 use durer_teach::check::Finding;
 use serde_json::{Value, json};
 
-/// Makes the list of findings in the document of `durer check --json`.
+/// Creates the list of findings in the output of `durer check --json`.
 pub fn findings(found: &[Finding], files: &Files) -> Value {
     found.iter().map(|found| finding(found, files)).collect()
 }
 
-/// Makes the entry of a finding in the document of `durer check --json`.
+/// Creates the entry of a finding in the output of `durer check --json`.
 pub fn finding(finding: &Finding, files: &Files) -> Value {
     let d = &finding.diagnostic;
     json!({
@@ -30,7 +30,7 @@ pub fn finding(finding: &Finding, files: &Files) -> Value {
     })
 }
 
-/// Makes the entry of a place in a file: lines and columns from 1, bytes from 0.
+/// Creates the entry of a position in a file. Lines and columns are counted from 1, bytes from 0.
 pub fn place(files: &Files, span: Span) -> Value {
     let end = Span { start: span.end, ..span };
     let ((line, column), (end_line, end_column)) =

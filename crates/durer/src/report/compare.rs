@@ -1,10 +1,10 @@
-//! JSON of a comparison of pictures.
+//! Comparisons of pictures as JSON.
 
 use durer_image::compare::Comparison;
 use serde_json::{Value, json};
 
-/// Makes the measures of a pair of pictures as `durer compare --json` lists them. `there` has the
-/// scene's objects at each region, in the order of the regions; it may be shorter.
+/// Creates the entry of a pair of pictures in the output of `durer compare --json`. `there` lists
+/// the objects of the scene at each region, in the order of the regions, and can be shorter.
 pub fn comparison(found: &Comparison, there: &[Value]) -> Value {
     let m = &found.measures;
     json!({

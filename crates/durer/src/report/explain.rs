@@ -1,4 +1,4 @@
-//! JSON of an explained pixel or ray.
+//! Explanations of a pixel or ray as JSON.
 
 use durer_render::integrator::trace::TermKind;
 use durer_render::integrator::{TraceNode, Tree};
@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 /// Version of the document's format.
 const VERSION: u32 = 2;
 
-/// Subject of an explanation.
+/// A traced pixel or ray, of which [`explanation`] creates the JSON document.
 pub enum Subject {
     /// A pixel with all its samples.
     Pixel(Explanation),
@@ -18,8 +18,8 @@ pub enum Subject {
     Ray(Box<Tree>),
 }
 
-/// Creates the document of `durer explain --json`: the tree of terms, and the names of the objects,
-/// materials and lights that it refers to by index.
+/// Creates the output of `durer explain --json`: the tree of terms, and the names of the objects,
+/// materials and lights to which it refers by index.
 pub fn explanation(subject: &Subject, names: &Names) -> Value {
     let (mut objects, mut lights, mut materials) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
     let mut note = |node: &TraceNode| match &node.what {
@@ -66,8 +66,8 @@ pub fn explanation(subject: &Subject, names: &Names) -> Value {
     json
 }
 
-/// Adds to each term the lines that derive its numbers. `at`: direction of the ray that it belongs
-/// to, and normal.
+/// Adds to each term the lines that derive its numbers. `at` is the direction of its ray, and the
+/// normal at the hit.
 fn annotate(node: &TraceNode, json: &mut Value, at: (Vec3, Vec3), names: &Names) {
     let lines = names.origins(node, at.0, at.1);
     if !lines.is_empty() {

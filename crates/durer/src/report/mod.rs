@@ -1,7 +1,9 @@
-//! Reports as JSON, in the form of the command's `--json`: explanations, findings, comparisons.
+//! Reports as JSON, as the command-line option `--json` prints them: explanations, findings,
+//! comparisons.
 //!
-//! [`explanation`] shows why a pixel has its colour, [`findings`] why a scene's picture may be odd,
-//! [`comparison`] how two pictures differ. [`outlines`] and [`lights`] draw the scene around them.
+//! [`explanation`] shows why a pixel has its colour, [`findings`] lists likely mistakes in a scene,
+//! and [`comparison`] shows how two pictures differ. [`outlines`] and [`lights`] are for drawing
+//! the scene.
 
 mod check;
 mod compare;

@@ -6,7 +6,7 @@ use durer_scene::math::{Aabb, Vec3};
 use durer_scene::shape::Shape;
 use serde_json::{Value, json};
 
-/// Maximum number of objects drawn; more would obscure each other.
+/// Maximum number of objects that are drawn. More would obscure each other.
 const MAX_OBJECTS: usize = 400;
 /// Maximum number of triangles drawn per mesh.
 const MAX_TRIANGLES: usize = 600;
@@ -16,19 +16,18 @@ pub fn outlines(world: &World) -> Vec<Vec<Vec3>> {
     object_outlines(world).flatten().collect()
 }
 
-/// Returns the polylines of each object in world space, by the object's number, for the first 400
-/// objects.
+/// Returns the polylines in world space of each of the first 400 objects, by the object's number.
 pub fn object_outlines(world: &World) -> impl Iterator<Item = Vec<Vec<Vec3>>> {
     let ends = with_camera(world);
     world.objects().iter().take(MAX_OBJECTS).map(move |object| outline(object, &ends))
 }
 
-/// Mark of a light in a scene drawing.
+/// Position at which a line drawing of a scene marks a light.
 pub struct LightMark {
     /// Position of the light in world space; for a directional light, a point outside the scene in
     /// the direction from which its light comes.
     pub at: Vec3,
-    /// True for a light at infinity.
+    /// True for a light at infinity, such as a directional light.
     pub is_far: bool,
 }
 
@@ -43,13 +42,13 @@ pub fn light_marks(world: &World) -> impl Iterator<Item = LightMark> {
     })
 }
 
-/// Returns the first lights with name and position; see [`light_marks`].
+/// Returns the first 16 lights with name and position as JSON; see [`light_marks`].
 pub fn lights(world: &World) -> Vec<Value> {
     let one = |(i, mark): (usize, LightMark)| json!({ "at": mark.at, "name": format!("{} {i}", if mark.is_far { "from light" } else { "light" }) });
     light_marks(world).enumerate().take(16).map(one).collect()
 }
 
-/// Bounds of the scene and its camera.
+/// Bounding box of the scene and the eye of its camera.
 fn with_camera(world: &World) -> Aabb {
     world.bounds().union(Aabb::around([world.camera_frame().eye]))
 }

@@ -1,4 +1,4 @@
-//! A packet: coherent rays and their shared data.
+//! A packet of coherent rays, and the data that they share.
 
 use super::rays::PacketRays;
 use super::shared::{Axes, PacketHit};
@@ -7,9 +7,10 @@ use crate::triangles::tree::TriangleBvh;
 
 /// Maximum number of rays in a packet.
 pub const RAYS: usize = 64;
-/// Rays of a packet, in groups of sixteen.
+/// Rays of a packet, in four groups of sixteen.
 pub type Sixteens = [PacketRays; RAYS / WIDE];
 
+/// Up to 64 coherent rays that traverse a [`TriangleBvh`] together, with their hits so far.
 pub struct Packet<'a> {
     pub bvh: &'a TriangleBvh,
     pub axes: Axes,
@@ -23,8 +24,8 @@ pub struct Packet<'a> {
     pub alive: u64,
     /// Mask of the rays with a hit.
     pub hit_mask: u64,
-    /// Upper bound of all rays' `t`.
+    /// Upper bound on the `t` of all rays.
     pub limit: f32,
-    /// Triangles hit so far. The first entry stands for none.
+    /// Triangles that were hit so far. The first entry is a placeholder for no hit.
     pub packet_hits: &'a mut Vec<PacketHit>,
 }

@@ -1,4 +1,4 @@
-//! Tests of a packet with the triangles of a leaf.
+//! Tests the rays of a packet against the triangles of a leaf.
 
 use super::bundle::{Packet, RAYS};
 use super::shared::PacketHit;
@@ -8,7 +8,8 @@ use crate::triangles::leaf::{Flat, by_corner, ends, from_origin};
 use crate::triangles::number;
 use std::mem::MaybeUninit;
 
-/// Corners of a leaf's triangles, absolute or relative to the origin, by corner and axis.
+/// Corners of the triangles of a leaf, with permuted axes, from which single triangles are
+/// broadcast to all lanes.
 struct Corners([[[f32; WIDTH]; 3]; 3]);
 
 impl Corners {
@@ -34,8 +35,7 @@ impl Corners {
     }
 }
 
-/// Projects triangles onto the planes across rays. With `POINT`, the corners are relative to the
-/// common origin.
+/// Projects triangles along rays. With `POINT`, the corners are relative to the common origin.
 #[inline(always)]
 fn flat<N: Numbers, const POINT: bool>(
     numbers: N,
@@ -67,8 +67,8 @@ impl Packet<'_> {
         for group in 0..self.groups {
             groups += usize::from(rays >> (group * WIDE) & 0xffff != 0);
         }
-        // Tuned by measurement: with few rays left in the groups, or many triangles, test ray by
-        // ray.
+        // If few rays are left in the groups, or there are many triangles, test ray by ray. Tuned
+        // by measurement.
         let hits = match 2 * (rays.count_ones() as usize) < groups * (count + 4) {
             true if self.is_point => self.ray_by_ray::<L, ANY, true>(lanes, leaf, rays),
             true => self.ray_by_ray::<L, ANY, false>(lanes, leaf, rays),
@@ -100,7 +100,7 @@ impl Packet<'_> {
         let triangles = lanes.corners(rows, columns);
         let triangles = Corners::new(lanes, if POINT { self.as_seen(lanes, triangles) } else { triangles });
         let mut all_hit = 0;
-        // Index of each triangle's meeting, or 0.
+        // Index of each triangle in the list of hits, or 0.
         let mut packet_hits = [0; WIDTH];
         for group in 0..self.groups {
             let mut active = (rays >> (group * WIDE)) as u32 & 0xffff;

@@ -1,16 +1,16 @@
 //! Packet traversal of coherent rays.
 //!
 //! A packet holds up to 64 rays whose directions have the same signs and the same longest axis.
-//! Interval arithmetic tests a node once for all rays. When a remaining child is visited, its box
-//! is tested with the rays in lanes, and so is each triangle of a leaf. Triangles are tested as for
-//! single rays, with the same roundings, so the hits are the same.
+//! Interval arithmetic tests the children of a node once for all rays. When a child is visited, its
+//! box is tested again with one ray per lane, and so are the triangles of a leaf. Triangle tests
+//! have the same rounding as for single rays, so the hits are the same.
 //!
 //! Sources: Wald, Slusallek, Benthin, Wagner, *Interactive Rendering with Coherent Ray Tracing*,
 //! Eurographics 2001; Boulos, Wald, Shirley, *Geometric and Arithmetic Culling Methods for Entire
 //! Ray Packets*, University of Utah 2006.
 
-/// Minimum or maximum of a value over all rays of a packet. (Not a closure: a function that is not
-/// inlined into a level's entry is compiled without its instructions.)
+/// Minimum or maximum of a value over all rays of a packet. (A closure might not be inlined, and
+/// would then be compiled without the instructions of the SIMD level.)
 macro_rules! end {
     ($packet:expr, $wide:expr, $end:ident, $across:ident, $($of:tt)*) => {{
         let mut all = $wide.load(&$packet.sixteens[0].$($of)*);
@@ -36,7 +36,7 @@ use shared::{Axes, PacketHit};
 use std::cell::RefCell;
 use walk::Entry;
 
-/// Minimum number of rays in a packet; fewer rays are faster alone.
+/// Minimum number of rays in a packet. Fewer rays are faster when traced one by one.
 const MIN_SIZE: usize = 16;
 /// Maximum number of windows that are skipped after incoherent rays.
 const MAX_SKIPPED_WINDOWS: u32 = 15;
@@ -47,7 +47,7 @@ const MAX_START: f32 = 0.25;
 
 impl TriangleBvh {
     /// Traces coherent rays in packets, then passes the numbers of the other rays to `others`. With
-    /// `ANY`, any hit suffices, and only the existence of a hit is meaningful.
+    /// `ANY`, the answer only tells if there is any hit.
     pub(super) fn packets<const ANY: bool>(
         &self,
         rays: &[Ray],
@@ -66,7 +66,7 @@ impl TriangleBvh {
     }
 }
 
-/// Buffers reused by all batches of a thread, since batches may be small.
+/// Buffers for packets that all batches of a thread reuse, since batches can be small.
 #[derive(Default)]
 struct Scratch {
     /// Numbers of the rays that are not traced in packets.
@@ -80,6 +80,7 @@ thread_local! {
     static SCRATCH: RefCell<Scratch> = RefCell::default();
 }
 
+/// Kernel that traces the coherent rays of a batch in packets.
 struct Packets<'a, A, const ANY: bool> {
     bvh: &'a TriangleBvh,
     rays: &'a [Ray],
@@ -105,8 +106,8 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             limit: 0.0,
             packet_hits,
         };
-        // If rays are incoherent, or none is fast, the next ones are probably alike: try less and
-        // less often.
+        // If rays are incoherent, or none is fast, the next ones are probably similar, so try
+        // packets less and less often.
         let (mut left_out, mut leave_out) = (0, 0);
         for (window, rays) in self.rays.chunks(RAYS).enumerate() {
             let first = (window * RAYS) as u32;
@@ -128,8 +129,8 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
                 }
             }
             let signs = packet.signs(lanes);
-            // Usually all rays have the same key and are in place already. Otherwise, gather the
-            // rays of each key.
+            // Usually all rays have the same key and are already loaded. Otherwise, gather the rays
+            // of each key.
             let mut left = all;
             while left != 0 {
                 let key = key_of(signs, left.trailing_zeros());
@@ -177,8 +178,8 @@ fn with_key([x, y, z, first, second]: [u64; 5], key: usize) -> u64 {
 }
 
 impl Packet<'_> {
-    /// Loads the first `count` numbered rays and repeats the last one in unused lanes. `in_order`
-    /// holds the same rays, if they are consecutive.
+    /// Loads the first `count` numbered rays and repeats the last one in unused lanes. If the rays
+    /// are consecutive, `in_order` holds them too.
     #[inline(always)]
     fn load<L: Lanes>(&mut self, lanes: L, rays: &[Ray], count: usize, in_order: &[Ray]) {
         self.groups = count.div_ceil(WIDE);
@@ -290,12 +291,13 @@ impl Packet<'_> {
         }
     }
 
-    /// Triangles of eight meetings, by corner and axis.
+    /// Corners of the triangles that eight rays have hit, by corner and axis. `numbers` holds the
+    /// indices in the list of hits, as bits.
     #[inline(always)]
     fn corners<L: Lanes>(&self, lanes: L, numbers: &[f32; WIDTH]) -> [[L::Floats; 3]; 3] {
         let [first, ..] = *numbers;
-        // The meetings are often the same. Compared as integers, since as floats they are
-        // subnormal.
+        // The triangles are often the same. Indices are compared as integers, since as floats they
+        // are subnormal.
         let (all, one) = (lanes.load(numbers), lanes.splat(first));
         if lanes.signs(lanes.before(all, one)) | lanes.signs(lanes.before(one, all)) == 0 {
             let [a, b, c] = self.packet_hits[first.to_bits() as usize].corners;

@@ -1,4 +1,4 @@
-//! Packet rays in lanes.
+//! The rays of a packet, sixteen at a time with one ray per lane.
 
 use super::shared::{Axes, PacketHit};
 use crate::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};
@@ -8,12 +8,12 @@ use crate::triangles::leaf::{across, from_origin};
 use crate::watertight::{Plane, PreciseLine, WatertightRay, uv_across};
 use glam::Vec3A;
 
-/// A value for each of sixteen rays.
+/// A value for each of sixteen rays of a packet.
 pub type PerRay = [f32; WIDE];
 
-/// Sixteen rays with the same octant and longest axis, prepared for box tests as in
-/// [`TraversalRay`](crate::traverse::TraversalRay), with slightly less padding, and for triangle
-/// tests as in [`WatertightRay`](crate::watertight::WatertightRay).
+/// Sixteen rays of a packet, one per lane, with the same octant and longest axis. They are prepared
+/// for box tests like [`TraversalRay`](crate::traverse::TraversalRay), with slightly less padding,
+/// and for triangle tests like [`WatertightRay`](crate::watertight::WatertightRay).
 #[derive(Clone, Copy, Default)]
 #[repr(align(64))]
 pub struct PacketRays {
@@ -31,17 +31,19 @@ pub struct PacketRays {
     inverse_z: [[f64; WIDTH]; 2],
     pub t_min: PerRay,
     pub t_max: PerRay,
-    /// Initially `t_max`; after a hit, its t.
+    /// `t` of the closest hit so far; `t_max` before the first hit.
     pub t_last: PerRay,
     /// Heights below the first or above the second bound are certainly outside the interval.
     /// Heights above the third and below the fourth are certainly inside.
     pub heights: [PerRay; 4],
-    /// Indices of the meetings as bits; 0 for none. Meaningless for any-hit rays.
+    /// Indices of the hit triangles in the packet's list, as bits; 0 for none. Meaningless for
+    /// any-hit rays.
     packet_hits: PerRay,
 }
 
 impl PacketRays {
-    /// Sets half of the rays, each given as origin, direction, and interval.
+    /// Sets eight of the rays, from `first` on. A row holds the origin, direction, and interval of
+    /// a ray.
     #[inline(always)]
     pub fn set<L: Lanes>(&mut self, lanes: L, first: usize, rays: [L::Floats; WIDTH]) {
         let [x, y, z, u, v, w, t_min, t_max] = lanes.transpose(rays);
@@ -141,7 +143,7 @@ impl PacketRays {
         }
     }
 
-    /// Records the triangle of meeting `number` as the closest hit of each ray in the mask
+    /// Records triangle `number` of the packet's list as the closest hit of each ray in the mask
     /// `crossed` that hits it within its interval and before any other triangle. Returns a mask of
     /// these rays.
     #[inline(always)]
@@ -197,8 +199,8 @@ impl PacketRays {
         hits
     }
 
-    /// Tests a single ray as [`PacketRays::intersect_node`] does, with a meeting that would be
-    /// appended.
+    /// Tests a single ray as [`PacketRays::intersect_node`] does, with a triangle that is appended
+    /// to the list if it is hit.
     #[inline(always)]
     pub fn intersect_one(&mut self, axes: &Axes, packet_hits: &[PacketHit], next: &PacketHit, lane: usize) -> bool {
         let [x, y, z] = axes.turned();
@@ -236,7 +238,7 @@ impl PacketRays {
         [lanes.store(lanes.singles(u)), lanes.store(lanes.singles(v))]
     }
 
-    /// Indices of the meetings of half of the rays, as bits.
+    /// Indices of the triangles that half of the rays have hit, as bits.
     #[inline(always)]
     pub fn packet_hits(&self, half: usize) -> &[f32; WIDTH] {
         part(&self.packet_hits, half)
@@ -271,7 +273,7 @@ fn part(numbers: &PerRay, half: usize) -> &[f32; WIDTH] {
     }
 }
 
-/// Bound on the rounding error of heights.
+/// Upper bound on the rounding error of heights.
 #[inline(always)]
 fn slack<W: Wide>(wide: W, height: W::Floats) -> W::Floats {
     let slack = wide.add(wide.mul(wide.splat(8.0 * f32::EPSILON), wide.abs(height)), wide.splat(f32::MIN_POSITIVE));

@@ -3,7 +3,7 @@
 use crate::watertight::{AxisOrder, Plane, turned_axes};
 use glam::Vec3A;
 
-/// Common axis order and signs of a packet's rays.
+/// Axis order and direction signs that all rays of a packet have in common.
 #[derive(Clone, Copy)]
 pub struct Axes {
     /// Axis order, as in [`WatertightRay`](crate::watertight::WatertightRay).
@@ -34,7 +34,8 @@ impl Axes {
     }
 }
 
-/// A triangle that some ray has hit.
+/// A triangle that at least one ray of a packet has hit, prepared for computing t and barycentric
+/// coordinates.
 pub struct PacketHit {
     /// Corners with permuted axes.
     pub corners: [[f32; 3]; 3],

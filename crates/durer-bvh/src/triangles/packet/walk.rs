@@ -7,18 +7,19 @@ use crate::node::{self, LEAF, PLACE, WideNode};
 use crate::traverse::end_of;
 use crate::triangles::fetch::{AND_SIBLINGS, Places};
 
-/// A node or leaf to visit.
+/// Entry of the stack in a packet traversal: a node or leaf to visit, and the rays to test.
 #[derive(Clone, Copy)]
 pub struct Entry {
     /// Mask of the rays that hit the parent.
     rays: u64,
     child: u32,
-    /// Location of its box: the sum of the parent's offset and the slot.
+    /// Location of the child's box: the sum of the parent's offset and the slot.
     box_at: u32,
     near: f32,
 }
 
-/// Intervals around all rays of a packet, for node tests.
+/// Intervals that contain all rays of a packet, for testing the children of a node once for all
+/// rays.
 struct IntervalRay<L: Lanes> {
     inverse: [[L::Floats; 2]; 3],
     near_from: [L::Floats; 3],
@@ -30,7 +31,7 @@ struct IntervalRay<L: Lanes> {
 impl<L: Lanes> IntervalRay<L> {
     /// Mask of the children that any ray may hit, and lower bounds of their entry distances.
     ///
-    /// Roundings are monotonic, so the intervals contain the results of single rays.
+    /// Rounding is monotonic, so the intervals contain the results of all single rays.
     #[inline(always)]
     fn intersect_node(&self, lanes: L, node: &WideNode, limit: L::Floats) -> (u32, L::Floats) {
         macro_rules! slab {
@@ -61,8 +62,9 @@ impl<L: Lanes> IntervalRay<L> {
     }
 }
 
-/// Slot of the hit child with the least entry distance, none of which is below `start`. (Node order
-/// follows a single axis: along other axes, rays would visit far children before near ones.)
+/// Slot of the hit child with the least entry distance. No entry distance is below `start`. (The
+/// order of the node is not used, since it follows a single axis: along other axes, rays would
+/// visit far children before near ones.)
 #[inline(always)]
 fn nearest<L: Lanes>(lanes: L, node: &WideNode, hits: u32, enter: L::Floats, start: f32) -> u32 {
     let nothing = lanes.splat(0.0);
@@ -116,9 +118,9 @@ impl Packet<'_> {
         end!(self, wide, max, greatest, t_last)
     }
 
-    /// Tests the triangles of all leaves with the rays that may hit them, roughly from near to far:
-    /// first the nearest child of each node, then the others in node order. With `ANY`, children
-    /// are visited in the order for any-hit rays.
+    /// Tests the rays against the triangles of all leaves that they may hit, roughly from near to
+    /// far: first the nearest child of each node, then the others in node order. With `ANY`,
+    /// children are visited in the order for any-hit rays.
     #[inline(always)]
     pub(super) fn traverse<L: Lanes, const ANY: bool>(&mut self, lanes: L, stack: &mut Vec<Entry>) {
         let bvh = self.bvh;
@@ -215,8 +217,8 @@ mod tests {
     use crate::lanes::{Available, Kernel, SimdLevel, WIDTH};
     use crate::math::{Aabb, Vec3};
 
-    /// A node, entry distances of its children, a mask of the hit children, and a lower bound of
-    /// the distances.
+    /// Kernel that calls [`nearest`] for a node, the entry distances of its children, a mask of the
+    /// hit children, and a lower bound of the distances.
     struct Nearest<'a>(&'a WideNode, [f32; WIDTH], u32, f32);
 
     impl Kernel for Nearest<'_> {

@@ -3,13 +3,14 @@
 use super::*;
 use crate::{BuildError, Facing};
 
-/// Crossings with their sides, by the normal in double precision.
+/// Hits found without a tree, with their sides by the normal in double precision; `None` if
+/// edge-on.
 fn with_sides(mesh: &Mesh, ray: &Ray) -> Vec<(TriangleHit, Option<Facing>)> {
     let side = |hit: &TriangleHit| {
         let [a, b, c] = mesh.1[hit.triangle as usize].map(|i| mesh.0[i as usize].as_dvec3());
         let (normal, dir) = ((b - a).cross(c - a), ray.dir.as_dvec3());
         let cosine = normal.dot(dir) / (normal.length() * dir.length());
-        // Edge-on, double precision cannot decide.
+        // If the triangle is nearly edge-on, double precision cannot decide.
         (cosine.abs() > 1e-6).then_some(if cosine < 0.0 { Facing::Front } else { Facing::Back })
     };
     brute_force(mesh, ray).into_iter().map(|hit| (hit, side(&hit))).collect()
@@ -47,7 +48,7 @@ fn sides_and_filters_match_brute_force() {
     assert!(hits > 1_000, "{hits}");
 }
 
-/// A ray crosses fronts and backs of a closed mesh in turn, even through edges and vertices.
+/// A ray hits the front and back sides of a closed mesh alternately, even at edges and vertices.
 #[test]
 fn sides_of_a_closed_mesh_alternate() {
     let mut random = Random(22);
@@ -70,8 +71,8 @@ fn sides_of_a_closed_mesh_alternate() {
             });
             sides.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             sides.dedup();
-            // The ray enters and leaves the mesh in turn. The order of crossings at nearly the same
-            // place, as at an edge, is unknown.
+            // The ray alternately enters and leaves the mesh. The order of crossings that nearly
+            // coincide, for example at an edge, is not determined.
             let mut depth = 0;
             for (i, side) in sides.iter().enumerate() {
                 depth += if side.2 == sides_in { 1 } else { -1 };

@@ -6,7 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::AddAssign;
 
-/// Result of the test in double precision.
+/// Result of the reference test of a ray and a triangle in double precision.
 enum Verdict {
     /// Crossed at `t`, with the tolerance of `t`.
     Crossed(f64, f64),
@@ -15,9 +15,9 @@ enum Verdict {
     Unsure,
 }
 
-/// Tests the signs of the volumes that the ray spans with each edge. Each coordinate of a corner
-/// may be off by its rounding error, which is proportional to its distance from the origin; a
-/// volume may be off by that error times the area spanned by the ray and the other corner.
+/// Tests the signs of the volumes that the ray spans with each edge. The rounding error of a
+/// corner's coordinates is proportional to its distance from the origin of the ray. The error of a
+/// volume is that error times the area spanned by the ray and the other corner.
 fn verdict(corners: [Vec3; 3], ray: &Ray) -> Verdict {
     let (o, d) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
     let [a, b, c] = corners.map(|p| p.as_dvec3() - o);
@@ -92,6 +92,7 @@ fn dozen() -> Vec<(&'static str, Mesh)> {
     ]
 }
 
+/// Numbers of crossed triangles, and of those too close to an edge to decide.
 #[derive(Default, Debug)]
 struct EdgeCounts {
     crossed: usize,

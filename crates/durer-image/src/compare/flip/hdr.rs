@@ -8,8 +8,8 @@ use durer_bvh::math::{Vec3, fp};
 /// its exposure of 0.6.
 const CURVE: [f32; 5] = [0.36 * 2.51, 0.6 * 0.03, 0.36 * 2.43, 0.6 * 0.59, 0.14];
 
-/// Display value of the brightest light in the first exposure, and of the median in the last. 2021,
-/// section 3.2.
+/// Display value to which the first exposure maps the brightest light, and the last exposure the
+/// median. 2021, section 3.2.
 const TARGET: f32 = 0.85;
 
 /// Computes the error of each pixel, from 0 to 1, between two pictures of linear light.
@@ -25,7 +25,7 @@ pub fn hdr_flip(width: usize, height: usize, reference: &[Vec3], test: &[Vec3]) 
 
 fn tone_map(light: Vec3) -> Vec3 {
     let [a, b, c, d, e] = CURVE;
-    // Beyond 1e15 the clamped curve is 1, and squares stay finite.
+    // Clamping to 1e15 keeps squares finite and does not change the result, which is 1 there.
     light.map(|x| {
         let x = x.clamp(0.0, 1e15);
         ((a * x * x + b * x) / (c * x * x + d * x + e)).clamp(0.0, 1.0)
@@ -37,7 +37,7 @@ fn tone_map(light: Vec3) -> Vec3 {
 pub fn exposures(reference: &[Vec3]) -> Vec<f32> {
     let mut light: Vec<f32> = reference.iter().map(|pixel| pixel.max(Vec3::ZERO).dot(LUMINANCE)).collect();
     let brightest = light.iter().copied().fold(0.0, f32::max);
-    // The upper median of an even number, as in the authors' program.
+    // For an even number of pixels, this is the upper median, as in the authors' program.
     let middle = light.len() / 2;
     let median = *light.select_nth_unstable_by(middle, f32::total_cmp).1;
     // Light that the curve maps to the target: the positive root of a quadratic equation.

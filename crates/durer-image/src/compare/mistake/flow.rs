@@ -1,21 +1,21 @@
 //! Detection of subpixel shifts at edges.
 //!
-//! If a picture f is shifted by s, the difference is about -s f'. Least squares over all edges give
-//! s even without antialiasing, since a share s of the edge pixels then changes sides. Source:
+//! If a picture f is shifted by s, it changes by about -s f'. Least squares over all edges give s
+//! even without antialiasing, since a shift by s then changes a share s of the edge pixels. Source:
 //! Lucas and Kanade, *An Iterative Image Registration Technique*, 1981.
 
 use super::sample::{Sample, View};
 use durer_bvh::math::Vec3;
 
-/// Smallest shift in pixels that is distinguishable from chance.
+/// Smallest shift in pixels that can be distinguished from chance.
 const LEAST: f64 = 0.2;
 
 /// Explains differences at edges by a shift of the edges, if possible.
 pub fn cause(reference: &View, at_edges: &[Sample]) -> Option<String> {
     let [right, stretch_x, down, stretch_y] = flow(reference, at_edges)?;
     let moved = |amount: f64| amount.abs() > LEAST;
-    // Pixel i of n at i / (n - 1) instead of (i + 0.5) / n is half a pixel too far out at both
-    // borders.
+    // If the ray of pixel i passes through i / (n - 1) instead of (i + 0.5) / n, it is half a pixel
+    // too far out at both borders.
     let is_half = |stretch: f64| (0.3..0.75).contains(&stretch.abs());
     let is_stretched = moved(stretch_x.abs().max(stretch_y.abs()));
     if !moved(right) && !moved(down) && is_half(stretch_x) && is_half(stretch_y) && stretch_x * stretch_y > 0.0 {
@@ -25,7 +25,7 @@ pub fn cause(reference: &View, at_edges: &[Sample]) -> Option<String> {
              i, (i + 0.5) / n"
         ));
     }
-    // Other stretches come from a different camera; the pictures cannot show why.
+    // Other stretches are due to a different camera, and the pictures alone do not show why.
     if is_stretched {
         return None;
     }
@@ -38,8 +38,8 @@ pub fn cause(reference: &View, at_edges: &[Sample]) -> Option<String> {
     (!ways.is_empty()).then(|| format!("it is shifted by about {}: {half}", ways.join(" and ")))
 }
 
-/// Shift of edges in pixels: to the right in the middle, the additional shift at the right border,
-/// and likewise downwards.
+/// Estimates the shift of edges in pixels: to the right in the middle of the picture, the
+/// additional shift to the right at the right border, and the same two values downwards.
 fn flow(reference: &View, at_edges: &[Sample]) -> Option<[f64; 4]> {
     let mut matrix = [[0.0; 5]; 4];
     let (half_width, half_height) = (reference.width as f64 / 2.0, reference.height as f64 / 2.0);

@@ -5,9 +5,10 @@ use super::{Finding, WELL, bytes, difference, flow};
 use crate::compare::picture::Scale;
 use durer_bvh::math::Vec3;
 
-/// A detector of one mistake, from the reference, the picture, and samples of both.
+/// Detector of one mistake in a part of the picture, given the reference, the picture, and samples
+/// of both.
 type Detector = fn(&View, &View, &[Sample]) -> Option<Finding>;
-/// Converts a colour to the vector that it shows.
+/// Function that converts a colour to the normal that it encodes.
 type Decode = fn(Vec3) -> Vec3;
 
 /// Minimum visible difference: slightly more than 1/255.
@@ -16,8 +17,8 @@ const SEEN: f32 = 1.5 / 255.0;
 const EDGE: f32 = 0.08;
 /// Minimum share of the difference at edges that mixtures of neighbouring colours must explain.
 const MIXED: f64 = 0.95;
-/// Maximum ratio of squared steps between neighbours in a smoothed picture and in the other one.
-/// For an edge at a random position in the pixel, two thirds are expected.
+/// Maximum ratio of squared differences between neighbours in an antialiased picture to those in
+/// the other one. For edges at random positions within pixels, two thirds are expected.
 const SMOOTHER: f64 = 0.85;
 
 /// Detects a picture of a single colour.
@@ -41,15 +42,15 @@ pub fn finding(reference: &View, test: &View, samples: &[Sample]) -> Option<Find
     all.iter().find_map(|part| part(reference, test, samples).filter(|finding| finding.explained >= WELL))
 }
 
-/// Finds samples of unit vectors shown as colours, as absolute values or mapped from [-1, 1] to [0,
-/// 1]. Returns the decoding and the samples.
+/// Finds samples whose reference colours encode unit vectors, as absolute values or mapped from
+/// [-1, 1] to [0, 1]. Returns the decoding and the samples.
 fn unit_vectors(samples: &[Sample]) -> Option<(Decode, Vec<&Sample>)> {
     let decodings: [Decode; 2] = [|color| color, |color| 2.0 * color - 1.0];
     decodings.into_iter().find_map(|decode| {
         let unit: Vec<&Sample> =
             samples.iter().filter(|s| (decode(s.reference).length() - 1.0).abs() < 0.015).collect();
-        // The rest is background. Full red, green, or blue may be unit vectors by chance, so
-        // require other colours, too.
+        // Other samples are background. Pure red, green, or blue could be unit vectors by chance,
+        // so require other colours too.
         let objects = samples.iter().filter(|s| s.reference != Vec3::ZERO).count();
         let mixed = unit.iter().filter(|s| s.reference.max_element() < 0.98).count();
         (3 * unit.len() > objects && 4 * mixed > unit.len() && !unit.is_empty()).then_some((decode, unit))
@@ -61,7 +62,7 @@ fn cut_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     let (_, unit) = unit_vectors(samples)?;
     let cut = |s: &Sample| Vec3::from(std::array::from_fn(|c| if s.test[c] == 0.0 { 0.0 } else { s.reference[c] }));
     let rest: f64 = samples.iter().map(|s| f64::from((s.test - cut(s)).length_squared())).sum();
-    // A black pixel may have any cause; but individual missing components may not.
+    // A black pixel can have any cause, but a single missing component is evidence.
     let some = |s: &&&Sample| cut(s) != s.reference && s.test != Vec3::ZERO;
     let explained = 1.0 - rest / difference(samples);
     let words = "components of its normals that should be positive are 0: negative values are clamped (take absolute values \
@@ -104,7 +105,7 @@ fn saturated(reference: &View, _: &View, samples: &[Sample]) -> Option<Finding> 
     }
     let words = "it differs only where channels of the reference are saturated (255): values above 1 wrap around \
                  instead of being clamped";
-    // A value that wraps around may become anything, including black.
+    // A value that wraps around can become any value, including black.
     let wrapped = |s: &&Sample| (0..3).any(|c| s.reference[c] >= 0.998 && s.test[c] < 0.5);
     let some = samples.iter().filter(wrapped).count();
     (full > 0 && full < 2 * samples.len() && some * 12 > full).then(|| Finding {
@@ -122,7 +123,8 @@ fn at_edge(picture: &View, s: &Sample) -> bool {
     (high - low).max_element() > EDGE
 }
 
-/// Detects differences at edges, from different sample positions or different averaging.
+/// Detects differences that occur only at edges, from different sample positions or different
+/// filtering.
 fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     let at_edges: Vec<Sample> = samples.iter().filter(|s| at_edge(reference, s) || at_edge(test, s)).copied().collect();
     let share = at_edges.len() as f64 / samples.len() as f64;
@@ -137,8 +139,8 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
         at_edges.iter().map(steps).sum()
     };
     let (own, others) = (roughness(test), roughness(reference));
-    // If an edge is sampled differently, one side gains what the other loses; if it is moved, this
-    // need not hold.
+    // If edges are sampled differently, brighter and darker pixels roughly balance. If an edge has
+    // moved, they may not.
     let (sum, all) = at_edges.iter().fold((0.0, 0.0), |(sum, all), s| {
         let by = (s.test - s.reference).element_sum();
         (sum + by, all + by.abs())
@@ -164,7 +166,7 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
 }
 
 /// Share of the squared difference in pixels whose colours lie between those of their neighbours.
-/// Different samples of a pixel show what its neighbours show, but different shading does not.
+/// Different sample positions give such colours, but different shading does not.
 fn mixed(reference: &View, test: &View, at_edges: &[Sample]) -> f64 {
     let between = |value: Vec3, picture: &View, s: &Sample| {
         let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| picture.at(s.x + dx, s.y + dy)));
@@ -175,8 +177,8 @@ fn mixed(reference: &View, test: &View, at_edges: &[Sample]) -> f64 {
     difference(&at_edges.iter().filter(is_between).copied().collect::<Vec<_>>()) / difference(at_edges).max(1e-12)
 }
 
-/// Returns true if equal areas lie on both sides of the differing edges. An object that is so thin
-/// that all its pixels are at edges gives no evidence.
+/// Returns true if the areas on both sides of the differing edges are equal in both pictures.
+/// Objects that are so thin that all their pixels are at edges are ignored.
 fn has_equal_sides(reference: &View, test: &View, at_edges: &[Sample]) -> bool {
     let differing: Vec<&Sample> = at_edges.iter().filter(seen).collect();
     let sides = |s: &&&Sample| {
@@ -190,7 +192,7 @@ fn has_equal_sides(reference: &View, test: &View, at_edges: &[Sample]) -> bool {
     differing.iter().filter(sides).count() * 8 > differing.len()
 }
 
-/// Number of a pixel's eight neighbours whose difference is not similar.
+/// Number of a pixel's eight neighbours whose difference is unlike that of the pixel.
 fn lonely(reference: &View, test: &View, s: &Sample) -> usize {
     let own = s.test - s.reference;
     let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (s.x + dx, s.y + dy)));
@@ -208,7 +210,7 @@ fn brighter(s: &Sample) -> bool {
 /// Detects isolated pixels that are all darker or all brighter.
 fn speckles(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     let seen: Vec<&Sample> = samples.iter().filter(seen).collect();
-    // Isolated pixels at edges differ because edges have moved.
+    // Ignore isolated pixels at edges, which differ if an edge has moved.
     let alone = seen.iter().filter(|s| lonely(reference, test, s) >= 7 && !at_edge(reference, s)).count();
     let share = seen.len() as f64 / samples.len() as f64;
     let (up, down): (Vec<Sample>, Vec<Sample>) = seen.iter().copied().copied().partition(brighter);
@@ -233,7 +235,8 @@ fn noise(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     let explained = difference(&seen.iter().copied().copied().collect::<Vec<_>>()) / difference(samples);
     let words = "it differs from pixel to pixel without a pattern: noise, from too few samples or other random \
                  numbers";
-    // Moved edges of a fine pattern look like noise, but noise also occurs away from edges.
+    // Edges of a fine pattern that have moved look like noise, but noise also occurs away from
+    // edges.
     let smooth = seen.iter().filter(|s| !at_edge(reference, s)).count();
     (alone > 5 * seen.len() && 10 * seen.len() > samples.len() && 2 * smooth > seen.len()).then(|| Finding {
         kind: "noise",
@@ -264,11 +267,12 @@ fn shaded(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
         false if fits && factor < 0.02 => ("black-parts", "black"),
         false => ("darker-parts", "darker"),
     };
-    // Shadows, lights, highlights, and missing rays all look like this.
+    // Differences in shadows, lights, highlights, and missing rays all look like this.
     let cause = "the pictures alone do not show the cause; pass `--scene` to try common mistakes";
     let by = if fits && kind != "black-parts" { format!(" by a factor of {factor:.3}") } else { String::new() };
     let share = part.len() as f64 / samples.len() as f64;
-    // A difference nearly everywhere that follows no rule is not a part.
+    // If nearly everything differs and no factor fits, this is not a difference in a part of the
+    // picture.
     if share > 0.75 && !fits {
         return None;
     }

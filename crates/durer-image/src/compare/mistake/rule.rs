@@ -1,10 +1,11 @@
-//! Rules: mistakes that affect the whole picture.
+//! Rules: mistakes that affect every pixel of a picture.
 
 use super::sample::{Sample, View};
 use crate::compare::picture::{Scale, linear_to_srgb, srgb_to_linear};
 use durer_bvh::math::{Vec3, fp};
 
-/// Mirroring of columns and rows, after an optional transposition.
+/// Rotation or reflection of a picture by a common mistake: an optional transposition, and
+/// mirroring of columns and rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Turn {
     pub exchange: bool,
@@ -12,7 +13,7 @@ pub struct Turn {
     pub rows_back: bool,
 }
 
-/// Transformations other than the identity.
+/// The seven rotations and reflections other than the identity.
 pub const TURNS: [Turn; 7] = [
     turn(false, true, false),
     turn(false, false, true),
@@ -40,7 +41,8 @@ impl Turn {
     }
 }
 
-/// A rule that transforms a reference like a mistake.
+/// A common mistake that affects every pixel, as a rule that computes the wrong picture from the
+/// reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rule {
     Turned(Turn),
@@ -51,7 +53,7 @@ pub enum Rule {
     Grey,
     /// Flags for the channels in which black and white are exchanged.
     Inverted([bool; 3]),
-    /// Inverts all channels, but keeps black.
+    /// Inverts every channel, except in black pixels.
     ThingsInverted,
     CurveOnceMore,
     CurveOnceLess,
@@ -81,8 +83,8 @@ impl Rule {
         (0..reference.pixels.len() as isize).map(|i| self.pixel(reference, i % width, i / width)).collect()
     }
 
-    /// Returns true if the rule determines a pixel; a shift leaves pixels undetermined where the
-    /// reference has no data.
+    /// Returns true if the rule determines the value of a pixel. After a shift, pixels that come
+    /// from outside the reference are undetermined.
     pub fn knows(&self, picture: &View, x: isize, y: isize) -> bool {
         match *self {
             Rule::Shifted(dx, dy) => {
@@ -101,7 +103,7 @@ impl Rule {
                 let (x, y) = turn.source(reference, x, y);
                 reference.at(x, y)
             }
-            // Pixels moved in at the edge are unknown.
+            // Pixels that come from outside the reference keep their value.
             Rule::Shifted(dx, dy) if self.knows(reference, x, y) => reference.at(x - dx, y - dy),
             Rule::Shifted(..) => value,
             Rule::Channels(order) => order.map(|channel| value[channel]).into(),
@@ -173,7 +175,7 @@ pub fn same_color(a: Vec3, b: Vec3) -> bool {
     (a - b).abs().max_element() <= 1e-4
 }
 
-/// Returns true if a value is clamped at an end of the scale, so that its original is unknown.
+/// Returns true if a value is at an end of the scale, where it may have been clamped.
 pub fn cut_off(scale: Scale, value: f32) -> bool {
     value <= 0.0 || scale == Scale::Display && value >= 0.998
 }

@@ -6,7 +6,7 @@ use durer_bvh::math::Vec3;
 /// Maximum number of pixels that are sampled.
 const MOST: usize = 100_000;
 
-/// Pixels of a picture.
+/// Borrowed pixels of a picture with their size and scale, for the detection of mistakes.
 #[derive(Clone, Copy)]
 pub struct View<'p> {
     pub width: usize,
@@ -33,7 +33,7 @@ impl<'p> View<'p> {
     }
 }
 
-/// A pixel of both pictures.
+/// Position of a pixel, and its values in the reference and in the other picture.
 #[derive(Clone, Copy)]
 pub struct Sample {
     pub x: isize,
@@ -42,12 +42,13 @@ pub struct Sample {
     pub test: Vec3,
 }
 
-/// Samples all pixels, or an evenly spread subset without a regular pattern.
+/// Samples all pixels or, in large pictures, an evenly distributed subset without a regular
+/// pattern.
 pub fn samples(reference: &View, test: &View) -> Vec<Sample> {
     let pixels = reference.pixels.len();
     let count = pixels.min(MOST);
     let place = |i: usize| {
-        // One pixel from each of `count` equal intervals, at an offset given by multiples of the
+        // Choose one pixel from each of `count` equal intervals, at an offset from multiples of the
         // golden ratio.
         let part = if pixels > MOST { (i as f64 * 0.618_033_988_749_895).fract() } else { 0.0 };
         (((i as f64 + part) * pixels as f64 / count as f64) as usize).min(pixels - 1)

@@ -1,14 +1,14 @@
-//! Detection of whole-pixel shifts, coarse to fine.
+//! Detection of shifts by whole pixels, from coarse to fine.
 
 use super::sample::View;
 use durer_bvh::math::Vec3;
 
-/// Maximum side of the coarsest level in pixels.
+/// Maximum width and height of the coarsest level in pixels.
 const SMALLEST: usize = 48;
-/// Maximum number of positions at which a shift is tested, roughly.
+/// Approximate maximum number of pixels that are compared for a shift.
 const PLACES: usize = 20_000;
 
-/// A greyscale picture.
+/// A greyscale picture at one resolution of the search for shifts.
 struct Grey {
     width: usize,
     height: usize,
@@ -30,13 +30,14 @@ impl Grey {
         Grey { width, height, values }
     }
 
-    /// Mean squared difference to a picture, assuming it is this one shifted, over the common area.
+    /// Mean squared difference between this picture, shifted by (`dx`, `dy`), and another one, over
+    /// their common area.
     fn difference(&self, shifted: &Grey, (dx, dy): (isize, isize)) -> f64 {
         let step = (self.values.len() as f64 / PLACES as f64).sqrt().ceil().max(1.0) as usize;
         let range = |d: isize, size: usize| d.max(0) as usize..(size as isize + d.min(0)).max(0) as usize;
         let (mut sum, mut count) = (0.0, 0usize);
         for y in range(dy, self.height).step_by(step) {
-            // Displace columns from row to row, so that regular patterns are not missed.
+            // Start each row at a different column, so that regular patterns are not missed.
             for x in range(dx, self.width).skip(y * 7 % step).step_by(step) {
                 let source = (y as isize - dy) as usize * self.width + (x as isize - dx) as usize;
                 let difference = f64::from(shifted.values[y * self.width + x] - self.values[source]);
@@ -61,7 +62,7 @@ pub fn shift(reference: &View, test: &View) -> Option<(isize, isize)> {
     let best = |(a, b): &(Grey, Grey), middle: (isize, isize), (rx, ry): (isize, isize)| {
         let around = |m: isize, r: isize| m - r..=m + r;
         let shifts = around(middle.1, ry).flat_map(|dy| around(middle.0, rx).map(move |dx| (dx, dy)));
-        // Of equally good shifts, choose the smallest.
+        // If several shifts are equally good, choose the smallest.
         let cost = |s: (isize, isize)| (a.difference(b, s), s.0.abs() + s.1.abs());
         shifts.min_by(|&s, &t| {
             let ((s, s_size), (t, t_size)) = (cost(s), cost(t));

@@ -1,4 +1,4 @@
-//! Tests that find mistakes made in pictures.
+//! Tests that deliberate mistakes in pictures are detected.
 
 use super::*;
 use crate::compare::picture::{Picture, Scale, linear_to_srgb, srgb_to_linear};
@@ -7,6 +7,7 @@ use durer_bvh::math::fp;
 
 const SIDE: usize = 96;
 
+/// Function that returns the colour of the pixel in a column and row.
 type Paint = dyn Fn(usize, usize) -> Vec3;
 
 /// A picture with values in 255ths, as in files.
@@ -184,7 +185,7 @@ fn what_is_no_usual_mistake_is_none() {
     assert!(found.iter().all(|f| f.kind == "noise"), "{found:?}");
 }
 
-/// Moving and darkening any picture makes a nearly black one.
+/// A nearly black picture could be made from any reference by moving and darkening it.
 #[test]
 fn a_nearly_uniform_picture_is_not_made_from_the_reference() {
     let dark = |x: usize, y: usize| if x + 2 * y > 240 { Vec3::splat(0.012) } else { Vec3::ZERO };

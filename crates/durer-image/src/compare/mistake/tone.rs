@@ -1,4 +1,4 @@
-//! Rules of brightness and colour, with parameters fitted to the samples by least squares.
+//! Rules for brightness and colour, with parameters fitted to the samples by least squares.
 
 use super::rule::{Rule, cut_off, same_color};
 use super::sample::Sample;
@@ -6,7 +6,7 @@ use crate::compare::picture::Scale;
 use durer_bvh::math::{Vec3, fp};
 use std::collections::BTreeMap;
 
-/// Values of both pictures in one channel, without those that are clamped in either.
+/// Values of one channel in both pictures, without those that are clamped in either picture.
 fn values(scale: Scale, samples: &[Sample], channel: usize) -> impl Iterator<Item = (f64, f64)> {
     samples
         .iter()
@@ -15,7 +15,7 @@ fn values(scale: Scale, samples: &[Sample], channel: usize) -> impl Iterator<Ite
         .map(|(a, b)| (f64::from(a), f64::from(b)))
 }
 
-/// Sums of values of the reference (a) and of the picture (b).
+/// Sums over the values of the reference (a) and of the picture (b), for linear least squares.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     count: f64,
@@ -52,7 +52,7 @@ impl Sums {
     }
 }
 
-/// Rules with one parameter, then those with more.
+/// Rules with fitted parameters: first those with one parameter, then those with more.
 pub fn fitted(scale: Scale, samples: &[Sample]) -> Vec<Rule> {
     let each: [Sums; 3] = std::array::from_fn(|channel| Sums::of(values(scale, samples, channel)));
     let all = Sums::of((0..3).flat_map(|channel| values(scale, samples, channel)));
