@@ -159,8 +159,8 @@ fn number_of_errors_and_nesting_are_limited() {
         read(&format!("{{\"type\": \"Scene\", \"objects\": [{open}{}]}}", "]}".repeat(depth)))
     };
     assert!(nested(super::DEEPEST).0.is_some());
-    assert!(nested(super::DEEPEST + 1).1[0].contains("objects are nested deeper than 200"));
-    assert!(nested(1000).1[0].contains("values are nested deeper than 640"));
+    assert!(nested(super::DEEPEST + 1).1[0].contains("objects are nested more than 200 levels deep"));
+    assert!(nested(1000).1[0].contains("values are nested more than 640 levels deep"));
     // A material index out of range is reported, and the scene is still read.
     let (scene, messages) = read(&SMALL.replace("\"material\": 2", "\"material\": 3"));
     assert!(
@@ -266,7 +266,7 @@ const BEYOND: [&str; 7] = [
     "last row",
     "has no direction",
     "too long or too short",
-    "nested deeper",
+    "are nested",
 ];
 
 #[test]

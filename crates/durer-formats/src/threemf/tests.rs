@@ -154,7 +154,7 @@ fn errors_have_positions() {
         (usual().replace("<build>", "<!--").replace("</build>", "-->"), "Error a model needs a `<build>`"),
         (usual().replace("object id='1'", "object id='1' type='thing'"), "unknown object type `thing`"),
         (usual().replace("v1='0' v2='2'", "p1='0' v1='0' v2='2'"), "`p1` needs a `pid`"),
-        (usual().replace("v1='0' v2='2'", "pid='4' p1='0' v1='0' v2='2'"), "no list of properties 4"),
+        (usual().replace("v1='0' v2='2'", "pid='4' p1='0' v1='0' v2='2'"), "no property list 4"),
         (usual().replace("<item", "<item transform='1 2'"), "expected twelve numbers, found `1 2`"),
         (usual().replace("<item", "<item transform='0 0 0 0 0 0 0 0 0 0 0 0'"), "expected an invertible transform"),
         (format!("<!DOCTYPE model>{}", usual()), "a.model:1:1 Error document type declarations"),
