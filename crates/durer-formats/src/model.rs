@@ -25,15 +25,15 @@ pub struct SceneFormat {
     pub up: Axis,
     /// True if a file with a camera is a complete scene, so that no light is added to it.
     pub whole: bool,
-    /// What to add to the file if the scene has no light, in terms of this format, for a message.
-    /// `None` for formats that use the scene language.
+    /// Help text for a scene without light: what to add to a file of this format. `None` if the
+    /// words of the scene language apply.
     pub light_hint: Option<&'static str>,
 }
 
 /// Function that encodes a scene as a file.
 pub type WriteScene = fn(&Scene, &Output, &mut Diagnostics) -> Vec<u8>;
 
-/// What a scene writer needs besides the scene: the file's name, the asset source and some
+/// Input of a scene writer besides the scene itself: the file's name, the asset source and some
 /// settings.
 pub struct Output<'a> {
     /// Name of the file with its extension.

@@ -19,7 +19,7 @@ use glam::DVec3;
 use std::path::Path;
 use std::sync::Arc;
 
-/// All scene formats, in the order in which a file's content is checked. Any other file is in the
+/// Scene formats, in the order in which a file's content is checked. Any other file is in the
 /// scene language.
 pub const SCENE_FORMATS: &[SceneFormat] = &[
     #[cfg(feature = "gltf")]

@@ -277,7 +277,7 @@ mod tests {
             ("words", 0, "no elements"),
             ("<a><b></a>", 6, "closes an element that is not open"),
             ("<a><b/>", 1, "not closed"),
-            ("<a/><b/>", 5, "a second"),
+            ("<a/><b/>", 5, "the second"),
             ("<a x=1/>", 5, "quotes"),
             ("<a x/>", 4, "`=`"),
             ("<a x='1' x='2'/>", 9, "twice"),

@@ -99,7 +99,7 @@ impl Splicer<'_, '_, '_> {
         self.files += 1;
         let refused = match () {
             () if self.stack.contains(&name) => Some(format!("`{name}` includes itself")),
-            () if self.stack.len() >= DEEPEST => Some(format!("includes are nested more than {DEEPEST} deep")),
+            () if self.stack.len() >= DEEPEST => Some(format!("includes are nested more than {DEEPEST} levels deep")),
             () if self.files > MAX_FILES => Some(format!("more than {MAX_FILES} files are included")),
             () if self.words > MAX_WORDS => Some("all files together have too many words".to_string()),
             () => None,

@@ -222,7 +222,7 @@ impl<'a, 'd> Reader<'a, 'd> {
     /// Enters one level of nesting; reports an error if the limit is reached.
     pub(super) fn descend(&mut self, what: &str, span: Span) -> bool {
         if self.depth >= DEEPEST {
-            self.error(Diagnostic::error(format!("{what} are nested deeper than {DEEPEST}")).at(span));
+            self.error(Diagnostic::error(format!("{what} are nested more than {DEEPEST} levels deep")).at(span));
             self.stop();
             return false;
         }

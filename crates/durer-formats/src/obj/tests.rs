@@ -137,7 +137,7 @@ fn warnings_and_notes() {
     let unknown =
         "5:1+6 Warning: 2 statements not understood and left out; the first is `usemlt` (did you mean `usemtl`?)";
     assert_eq!(findings("usemlt a\nf 1 2 3\ncurv2 1 2\n"), [unknown]);
-    assert_eq!(findings("f 1 2 2\nf 1 2 3 1\n"), ["5:1+7 Note: 2 faces name a vertex twice; the first is here"]);
+    assert_eq!(findings("f 1 2 2\nf 1 2 3 1\n"), ["5:1+7 Note: 2 faces use a vertex twice; the first is here"]);
 }
 
 #[test]

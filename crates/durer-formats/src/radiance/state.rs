@@ -168,7 +168,7 @@ impl<'a> Reader<'a> {
         self.files += 1;
         if place.depth >= DEEPEST || self.files > MAX_FILES {
             let message = match place.depth >= DEEPEST {
-                true => format!("files are nested more than {DEEPEST} deep: does one include itself?"),
+                true => format!("files are nested more than {DEEPEST} levels deep: does one include itself?"),
                 false => format!("more than {MAX_FILES} files are included"),
             };
             return self.report.bad(name.at, message);
@@ -228,7 +228,7 @@ impl<'a> Reader<'a> {
         let below = [modifier.parent, modifier.others[0], modifier.others[1]].into_iter().flatten();
         modifier.depth = below.map(|other| 1 + self.modifiers[other].depth).max().unwrap_or(0);
         if modifier.depth > DEEPEST {
-            return self.report.bad(name.at, format!("modifiers are nested more than {DEEPEST} deep"));
+            return self.report.bad(name.at, format!("modifiers are nested more than {DEEPEST} levels deep"));
         }
         self.modifiers.push(modifier);
         self.names.insert(name.text, self.modifiers.len() - 1);

@@ -209,7 +209,7 @@ fn errors_have_positions() {
         assert_eq!(found[0], format!("scene.rad:{expected}"), "{text}");
     }
     let (_, found) = read_in(cycle.path(), "scene.rad", "!cat a.rad");
-    assert_eq!(found, ["a.rad:2:8 error files are nested more than 32 deep: does one include itself?"]);
+    assert_eq!(found, ["a.rad:2:8 error files are nested more than 32 levels deep: does one include itself?"]);
     let (_, found) = read_in(cycle.path(), "scene.rad", "!cat far.rad");
     let help = "a scene can only use files in or below its own folder, unless `--allow-outside` is given";
     assert!(found[0].starts_with("far.rad:1:6 error ") && !found[0].contains("missing"), "{found:?} {help}");

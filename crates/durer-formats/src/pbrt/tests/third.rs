@@ -203,7 +203,7 @@ fn pictured_lights_follow_their_pictures() {
 fn errors_and_warnings_of_pbrt_v3() {
     for (text, wanted) in [
         ("\nMaterial \"mattte\"", "scene.pbrt:2:11 error unknown material `mattte` in pbrt-v3 (did you mean `matte`?)"),
-        ("Material \"conductor\"", "error unknown material `conductor` in pbrt-v3 (this material is of pbrt-v4"),
+        ("Material \"conductor\"", "error unknown material `conductor` in pbrt-v3 (this is a pbrt-v4 material"),
         ("Material \"mix\" \"string namedmaterial1\" \"a\"", "error no material `a` is defined before this"),
         ("Material \"mix\"", "error a mix needs `\"string namedmaterial1\"`"),
         ("LightSource \"infinite\" \"string mapname\" \"no.exr\"", "error the file `no.exr` does not exist"),
