@@ -47,7 +47,7 @@ enum Statement {
     Ignored,
 }
 
-/// All supported statements, by their first word.
+/// Supported statements, by their first word.
 const STATEMENTS: &[(&str, Statement)] = &[
     ("v", Statement::Position),
     ("vt", Statement::Uv),

@@ -14,7 +14,7 @@ use durer_scene::spectrum::space::RgbSpace;
 use glam::{DAffine3, DVec3};
 use std::rc::Rc;
 
-/// All directives; true if a string follows.
+/// Names of the directives; true if a string follows.
 pub(super) const DIRECTIVES: [(&str, bool); 44] = [
     ("Accelerator", true),
     ("ActiveTransform", false),

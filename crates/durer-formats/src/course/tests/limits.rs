@@ -16,8 +16,8 @@ fn strict_reading_allows_only_the_course_language() {
             "Group { numObjects 0 } # by me".to_string(),
             "1:24 error: the course's language has no comments [# by me]",
         ),
-        (Dialect::F04, "Group{ numObjects 0 }".into(), "1:6 error: there must be a blank before `{` [{]"),
-        (Dialect::F04, "Group {numObjects 0 }".into(), "1:7 error: there must be a blank after `{` [{]"),
+        (Dialect::F04, "Group{ numObjects 0 }".into(), "1:6 error: there must be a space before `{` [{]"),
+        (Dialect::F04, "Group {numObjects 0 }".into(), "1:7 error: there must be a space after `{` [{]"),
         (
             Dialect::F04,
             "Materials { numMaterials 1 Material { shininess 1 } }".into(),
