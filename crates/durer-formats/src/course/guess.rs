@@ -125,7 +125,7 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         } else {
             continue;
         };
-        // The minority's words are reported by warnings of their own.
+        // Words of the minority are reported by separate warnings.
         if majority == set::F23 && keep & set::F23 == 0 {
             continue;
         }

@@ -59,7 +59,7 @@ impl View {
     }
 }
 
-/// What a URI in a glTF file refers to: embedded data, or another file.
+/// Target of a URI in a glTF file: embedded data, or another file.
 pub(super) enum Target<'a> {
     /// Embedded data, with its media type.
     Data(&'a str, Arc<[u8]>),
