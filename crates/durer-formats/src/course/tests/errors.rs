@@ -1,4 +1,4 @@
-//! Tests of each kind of error and warning, with span and message.
+//! Tests of each kind of error and warning, with its span and message.
 
 use super::*;
 use durer_scene::math::Vec3;

@@ -206,7 +206,7 @@ fn hostile_files_never_panic() {
             "{end}: {messages:#?}"
         ); // prose: keep
     }
-    // Every prefix of a file, and a change of every byte.
+    // Every prefix of a file, and the file with every byte changed.
     let text = "Film \"rgb\" \"integer xresolution\" [8] Camera \"perspective\" \"float fov\" 40 WorldBegin\n\
                 Texture \"t\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [1 0 0] \"rgb tex2\" [0 0 1]\n\
                 AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [1 2 3] Material \"diffuse\" \"texture reflectance\" \"t\"\n\
@@ -263,7 +263,7 @@ fn settings_come_from_film_sampler_and_integrator() {
         (render_defaults.size, render_defaults.samples, render_defaults.bounces),
         (Some((30, 20)), Some(12), Some(6))
     );
-    // Pixels from, to, from, to; fractions are rounded up.
+    // Pixels as from, to, from, to; fractions are rounded up.
     let film = |more: &str| {
         format!(
             "Film \"rgb\" \"integer xresolution\" 30 \"integer yresolution\" 20 {more}\n\
