@@ -46,7 +46,7 @@ pub fn export_assets(scene: &Scene, folder: &str, source: &dyn AssetSource) -> (
     (made, put.files)
 }
 
-/// State of an export: the files written so far and the new names of assets.
+/// State of an asset export: the files written so far, and the new names of assets.
 struct AssetExport<'a> {
     scene: &'a Scene,
     folder: &'a str,

@@ -46,7 +46,7 @@ pub struct Output<'a> {
     pub memory: u64,
 }
 
-/// A file to read as a scene, with the context that its reader needs.
+/// Input of a scene reader: the bytes of a file, and the context needed to read it as a scene.
 pub struct Input<'a> {
     /// Bytes of the file.
     pub bytes: &'a Arc<[u8]>,

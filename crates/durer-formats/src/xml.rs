@@ -45,7 +45,7 @@ pub(super) struct Attribute<'a> {
     pub at: Span,
 }
 
-/// Event returned by the parser: an element begins, an element ends, or the text ends.
+/// Event returned by the XML parser: an element begins, an element ends, or the text ends.
 pub(super) enum Piece<'a> {
     Open(Tag<'a>),
     /// The innermost open element ends.

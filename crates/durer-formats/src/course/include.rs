@@ -57,7 +57,8 @@ impl<'a> Texts<'a> {
     }
 }
 
-/// Replaces each `include` in a list of tokens with the tokens of the included file.
+/// Preprocessor that replaces each `include` in a list of tokens with the tokens of the included
+/// file.
 pub(super) struct Splicer<'o, 't, 'a> {
     pub open: &'o dyn Fn(&str) -> IncludedFile,
     pub texts: &'t mut Texts<'a>,

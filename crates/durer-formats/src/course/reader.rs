@@ -141,6 +141,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         self.scene
     }
 
+    /// Returns the next token without moving past it.
     pub(super) fn peek(&self) -> Option<Token> {
         self.tokens.get(self.at).copied()
     }
@@ -174,14 +175,17 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
     }
 
+    /// Returns the span of the last token that was read.
     pub(super) fn last_span(&self) -> Span {
         self.tokens.get(self.at.wrapping_sub(1)).map_or(self.end_span(), |t| t.span)
     }
 
+    /// Returns the span of the end of the file.
     pub(super) fn end_span(&self) -> Span {
         self.texts.end()
     }
 
+    /// Returns the text of a span.
     pub(super) fn text(&self, span: Span) -> String {
         String::from_utf8_lossy(self.texts.at(span)).into_owned()
     }

@@ -85,6 +85,7 @@ impl Reader<'_, '_> {
         }
     }
 
+    /// Reads the block of a camera and makes it the scene's camera.
     pub(super) fn camera(&mut self, mut camera: Camera, keyword: Span) {
         self.check_keyword(&camera, keyword);
         self.fields(&mut camera, keyword, Order::Listed, |_, _, _| false);
@@ -92,6 +93,7 @@ impl Reader<'_, '_> {
         self.scene.camera_span = keyword;
     }
 
+    /// Reads the `Background` block.
     pub(super) fn background(&mut self, keyword: Span) {
         let mut background = Background::default();
         self.fields(&mut background, keyword, Order::Any, |_, _, _| false);
@@ -329,6 +331,7 @@ impl Reader<'_, '_> {
         }
     }
 
+    /// Reads the block of a group.
     pub(super) fn group(&mut self, keyword: Span) -> Group {
         let mut objects = Vec::new();
         self.counted(keyword, "numObjects", |reader, word, span| {

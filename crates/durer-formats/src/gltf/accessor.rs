@@ -30,6 +30,7 @@ impl Component {
         })
     }
 
+    /// Returns the size of a number in bytes.
     pub fn size(self) -> usize {
         match self {
             Component::I8 | Component::U8 => 1,
@@ -91,6 +92,7 @@ const TYPES: [(&str, usize); 7] =
     [("SCALAR", 1), ("VEC2", 2), ("VEC3", 3), ("VEC4", 4), ("MAT2", 4), ("MAT3", 9), ("MAT4", 16)];
 
 impl Model<'_> {
+    /// Reads all accessors; `None` for each invalid one.
     pub(super) fn accessors(&self, root: &JsonRef) -> Vec<Option<Accessor>> {
         let Some(accessors) = root.get("accessors") else { return Vec::new() };
         accessors.items().map(|accessor| self.accessor_of(&accessor)).collect()

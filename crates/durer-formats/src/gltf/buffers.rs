@@ -23,6 +23,7 @@ pub(super) struct Slice {
 }
 
 impl Slice {
+    /// Returns the bytes in the range.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes[self.range.clone()]
     }
@@ -54,6 +55,7 @@ pub(super) struct View {
 }
 
 impl View {
+    /// Returns the bytes of the view; empty if they cannot be read.
     pub fn bytes(&self) -> &[u8] {
         self.slice.as_ref().map_or(&[], Slice::bytes)
     }
@@ -174,6 +176,7 @@ impl Model<'_> {
         }
     }
 
+    /// Reads all buffer views; `None` for each invalid one.
     pub(super) fn views(&self, root: &JsonRef) -> Vec<Option<View>> {
         let Some(views) = root.get("bufferViews") else { return Vec::new() };
         views.items().map(|view| self.view_of(&view)).collect()

@@ -38,6 +38,7 @@ pub(super) struct LightData {
 }
 
 impl Model<'_> {
+    /// Reads all cameras; `None` for each invalid one.
     pub(super) fn read_cameras(&self, root: &JsonRef) -> Vec<Option<CameraData>> {
         root.list("cameras", |at| {
             at.object()?;
@@ -68,6 +69,7 @@ impl Model<'_> {
         })
     }
 
+    /// Reads all lights of KHR_lights_punctual; `None` for each invalid one.
     pub(super) fn read_lights(&self, root: &JsonRef) -> Vec<Option<LightData>> {
         let extensions = root.get("extensions");
         let Some(punctual) = extensions.as_ref().and_then(|e| e.get("KHR_lights_punctual")) else { return Vec::new() };

@@ -41,6 +41,7 @@ impl Skin {
 }
 
 impl Model<'_> {
+    /// Reads all skins; `None` for each invalid one.
     pub(super) fn read_skins(&self, root: &JsonRef) -> Vec<Option<Skin>> {
         let nodes = root.get("nodes").and_then(|nodes| nodes.value.as_array()).map_or(0, Vec::len);
         root.list("skins", |skin| self.skin(skin, nodes))

@@ -29,10 +29,12 @@ impl<'a> JsonReport<'a> {
         JsonReport { text, starts: RefCell::default(), report: RefCell::new(report), failed: Cell::default() }
     }
 
+    /// Returns the report with all diagnostics.
     pub fn finish(self) -> Report {
         self.report.into_inner()
     }
 
+    /// Returns true if an error was reported, even if the report dropped it.
     pub fn has_errors(&self) -> bool {
         self.failed.get() || self.report.borrow().has_errors()
     }
@@ -98,6 +100,7 @@ enum Step<'a> {
 }
 
 impl<'a> JsonRef<'a> {
+    /// Returns the root value of the document.
     pub fn root(value: &'a Value, findings: &'a JsonReport<'a>) -> Self {
         JsonRef { value, findings, parent: None, step: Step::Key("") }
     }
@@ -111,6 +114,7 @@ impl<'a> JsonRef<'a> {
         }
     }
 
+    /// Returns the span of this value.
     pub fn span(&self) -> Span {
         self.findings.span(&self.pointer())
     }

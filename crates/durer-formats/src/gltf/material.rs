@@ -39,6 +39,7 @@ pub(super) fn needs_tangents(at: &JsonRef) -> bool {
 }
 
 impl Model<'_> {
+    /// Converts all materials.
     pub(super) fn materials(&self, root: &JsonRef) -> Vec<PrincipledMaterial> {
         let Some(materials) = root.get("materials") else { return Vec::new() };
         materials.items().enumerate().map(|(i, material)| self.material(i, &material)).collect()

@@ -72,6 +72,7 @@ fn vector(at: &JsonRef) -> Option<DVec3> {
 }
 
 impl Model<'_> {
+    /// Reads all nodes, and checks that they form a forest.
     pub(super) fn read_nodes(&self, root: &JsonRef) -> Vec<NodeData> {
         let Some(list) = root.get("nodes") else { return Vec::new() };
         let count = list.items().len();

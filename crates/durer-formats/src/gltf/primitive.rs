@@ -47,6 +47,7 @@ const STRIP: u64 = 5;
 const FAN: u64 = 6;
 
 impl Model<'_> {
+    /// Reads all meshes and converts their primitives to triangles.
     pub(super) fn meshes(&self, root: &JsonRef) -> Vec<Primitives> {
         let Some(meshes) = root.get("meshes") else { return Vec::new() };
         meshes.items().map(|mesh| self.mesh(&mesh)).collect()

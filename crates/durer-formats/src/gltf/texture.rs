@@ -92,6 +92,7 @@ impl Model<'_> {
         Some(FileName { path, span })
     }
 
+    /// Reads all textures; `None` for each one without a usable image.
     pub(super) fn textures(&self, root: &JsonRef) -> Vec<Option<(PictureBytes, Mapping, Span)>> {
         let samplers = match root.get("samplers") {
             Some(samplers) => samplers.items().map(|sampler| self.sampler(&sampler)).collect(),

@@ -14,7 +14,7 @@ pub(super) struct Node {
     pub at: Range<usize>,
 }
 
-/// Content of a JSON value.
+/// Content of a JSON [`Node`]: null, a boolean, a number, a string, an array or an object.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Null,

@@ -79,7 +79,7 @@ pub(super) struct Loader<'a> {
     pub(super) is_old: bool,
 }
 
-/// Error type for a loader that cannot continue. The error itself has already been reported.
+/// Error type of the loader: loading cannot continue, and the error has already been reported.
 pub(super) struct ErrorReported;
 
 /// Converts a name to snake case: `toWorld` to `to_world`, `intIOR` to `int_ior`.

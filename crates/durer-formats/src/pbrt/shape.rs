@@ -34,6 +34,8 @@ struct MaterialDef {
 }
 
 impl Reader<'_> {
+    /// Executes a `Shape` directive: adds the shape to the scene, with the current material and
+    /// area light.
     pub fn shape(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
         let params = self.params(list, Some(SHAPE), at);
         let opacity = self.opacity(&params);

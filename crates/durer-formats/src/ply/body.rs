@@ -8,7 +8,7 @@ use crate::report::{Report, counted, shown};
 use durer_scene::shape::mesh::MeshData;
 use std::ops::Range;
 
-/// Error type for a reader that cannot continue. The error itself has already been reported.
+/// Error type of the PLY reader: reading cannot continue, and the error has already been reported.
 pub(super) struct ErrorReported;
 
 /// Reader that converts the rows of all elements of a PLY file to a mesh.

@@ -69,6 +69,7 @@ impl Scalar {
         }
     }
 
+    /// Returns true if the type is an integer type.
     pub fn is_integer(self) -> bool {
         !matches!(self, Scalar::F32 | Scalar::F64)
     }
@@ -139,7 +140,7 @@ pub(super) fn read_header(bytes: &[u8], report: &mut Report) -> Option<Header> {
     None
 }
 
-/// State of the PLY header parser.
+/// Parser of a PLY header, with the elements found so far.
 struct HeaderReader<'a, 'r> {
     bytes: &'a [u8],
     report: &'r mut Report,

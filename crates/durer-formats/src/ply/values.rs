@@ -34,7 +34,7 @@ pub(super) trait Values: Clone {
     fn fixed_size(scalar: Scalar) -> Option<usize>;
 }
 
-/// Cursor over values written as text, separated by whitespace.
+/// Cursor over the values of a text PLY file, which are separated by whitespace.
 #[derive(Clone)]
 pub(super) struct AsciiValues<'a> {
     bytes: &'a [u8],
@@ -93,7 +93,7 @@ impl Values for AsciiValues<'_> {
     }
 }
 
-/// Cursor over values in binary form.
+/// Cursor over the values of a binary PLY file.
 #[derive(Clone)]
 pub(super) struct BinaryValues<'a, const BIG_ENDIAN: bool> {
     bytes: &'a [u8],

@@ -23,12 +23,14 @@ impl ConvertedModifier {
         ConvertedModifier { number: None, kind: Kind::Plain, patterns: PatternEffect::default() }
     }
 
+    /// Returns true if surfaces with this modifier bound a glass body.
     pub fn is_glass(&self) -> bool {
         matches!(self.kind, Kind::Glass { .. })
     }
 }
 
-/// Combined effect of all patterns that are applied to a material.
+/// Combined effect of the Radiance patterns that are applied to a material: a tint, a sky and a
+/// directional distribution.
 #[derive(Clone)]
 pub(super) struct PatternEffect {
     /// Constant factor.
@@ -74,7 +76,8 @@ pub(super) enum Kind {
     },
 }
 
-/// Light from infinitely far away: a cone of directions, and the radiance from them.
+/// Radiance `source` that becomes part of the environment map: a cone of directions, and the
+/// radiance from them.
 pub(super) struct Distant {
     pub direction: DVec3,
     pub cosine: f64,

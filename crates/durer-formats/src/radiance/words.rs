@@ -37,7 +37,7 @@ impl Word {
     }
 }
 
-/// Start of a primitive: its first word, or a command.
+/// Start of a Radiance primitive: its first word, or a `!` command instead.
 pub(super) enum Start {
     Word(Word),
     /// Byte range of a command, without the `!`.
@@ -63,6 +63,7 @@ impl<'a> Words<'a> {
         Words { bytes, file, at: range.start, end: range.end }
     }
 
+    /// Returns the span of a byte range.
     pub fn span(&self, start: usize, end: usize) -> Span {
         Span { file: self.file, start: start as u32, end: end as u32 }
     }

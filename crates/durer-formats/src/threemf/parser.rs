@@ -20,7 +20,7 @@ pub(super) struct Parser<'a, 'x> {
     pub model: Model,
 }
 
-/// Error type for a parser that cannot continue. The error itself has already been reported.
+/// Error type of the 3MF parser: parsing cannot continue, and the error has already been reported.
 pub(super) struct ErrorReported;
 
 /// Reads and parses a model part of an archive.

@@ -19,6 +19,7 @@ use durer_scene::math::{Color, LUMINANCE, Vec3};
 const SHEEN: f32 = 0.1;
 
 impl Reader<'_> {
+    /// Converts `disney` to a mix of a base and a metal, or to one of them.
     pub(super) fn disney(&mut self, params: &Params, at: Span) -> MaterialDef {
         let (color, picture) = self.colored(params, "color", 0.5);
         let share = |reader: &Self, name, usual| reader.value(params, name, usual).clamp(0.0, 1.0);

@@ -22,6 +22,7 @@ const REFLECTED: f32 = 0.1514;
 const MEAN: f32 = 23.0 / 28.0;
 
 impl Reader<'_> {
+    /// Converts `substrate` to a base and a coat, which are to be summed.
     pub(super) fn substrate(&mut self, params: &Params) -> Vec<Part> {
         let rough = self.even_rough(params, None, true, 0.1);
         let (color, picture) = self.colored(params, "Kd", 0.5);
