@@ -161,8 +161,8 @@ fn unknown_format(name: &str) -> Diagnostic {
     let known = MESH_FORMATS.iter().map(|f| format!("{} (.{})", f.name, f.extensions.join(", .")));
     let known = known.collect::<Vec<_>>().join(", ");
     Diagnostic::error(format!("`{name}` is not a mesh file of a known format")).help(match suggestion {
-        Some(suggestion) => format!("did you mean `.{suggestion}`? Known are {known}"),
-        None => format!("known are {known}"),
+        Some(suggestion) => format!("did you mean `.{suggestion}`? Known formats are {known}"),
+        None => format!("known formats are {known}"),
     })
 }
 

@@ -192,7 +192,7 @@ impl<'a> Xml<'a> {
             let Cow::Borrowed(raw) = found.value else { continue };
             let place = self.place(raw);
             let value = escape::unescape(raw).map_err(|_| {
-                let help = "known are `&lt;`, `&gt;`, `&amp;`, `&apos;`, `&quot;` and character numbers";
+                let help = "known entities are `&lt;`, `&gt;`, `&amp;`, `&apos;`, `&quot;` and character numbers";
                 self.wrong(place, "`&` does not begin a known entity").help(help)
             })?;
             attributes.push(Attribute { name: local(found.key.0), value, at: place });

@@ -87,7 +87,7 @@ impl Reader<'_, '_> {
             let Some(word) = field.spelling(dialect) else { continue };
             let error = Diagnostic::error(format!("`{name}` has no `{word}`")).code("missing-field").at(keyword);
             self.error(match example(word) {
-                Some(value) => error.help(format!("add it to the block, as in `{word} {value}`")),
+                Some(value) => error.help(format!("add it to the block, for example `{word} {value}`")),
                 None => error,
             });
         }

@@ -89,7 +89,7 @@ impl Splicer<'_, '_, '_> {
                 Some(name) => all.extend(self.file(token.span, name.span)),
                 None => {
                     let error = Diagnostic::error("`include` needs the name of a file").code("missing-value");
-                    self.diagnostics.push(error.at(token.span).help("as in `include light.txt`"));
+                    self.diagnostics.push(error.at(token.span).help("for example `include light.txt`"));
                 }
             }
         }

@@ -270,7 +270,7 @@ impl Reader<'_> {
         if !known.contains(&word.as_str()) {
             let message = format!("{} is not a type of `{what}`", shown(word.as_bytes()));
             let near = suggest(word, known.iter().copied());
-            let help = near.unwrap_or_else(|| format!("known are {}", known.join(", ")));
+            let help = near.unwrap_or_else(|| format!("known types are {}", known.join(", ")));
             self.error(named.at.clone(), "unknown-word", message, Some(help));
             return None;
         }

@@ -76,7 +76,7 @@ impl Reader<'_> {
 /// Reports an unsupported command, and suggests a workaround.
 fn refuse(reader: &Reader, name: &Word) {
     let help = format!(
-        "known are `xform`, `cat`, `genbox`, `genprism` and `gensky`. Run Radiance's own `{}`, save its output in a \
+        "supported commands are `xform`, `cat`, `genbox`, `genprism` and `gensky`. Run Radiance's own `{}`, save its output in a \
          file beside the scene, and write `!cat FILE` here",
         name.text
     );

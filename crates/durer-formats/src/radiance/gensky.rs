@@ -193,7 +193,7 @@ impl SkyArgs {
         if !zone.is_empty() {
             let Some((_, meridian)) = ZONES.iter().find(|(name, _)| *name == zone) else {
                 let known = ZONES.map(|(name, _)| name).join(" ");
-                report.bad(word.at, format!("unknown time zone in {}: known are {known}", word.shown()));
+                report.bad(word.at, format!("unknown time zone in {}: known zones are {known}", word.shown()));
                 return None;
             };
             self.meridian = *meridian;

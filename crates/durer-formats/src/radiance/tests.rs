@@ -198,7 +198,7 @@ fn errors_have_positions() {
         ("!genbox m b 1 1", "1:2 error `genbox` needs a material, a name and three sizes"),
         (
             "!cat far.rad | grep x",
-            "1:16 error the command `grep` is not supported (known are `xform`, `cat`, `genbox`, `genprism` and `gensky`. Run Radiance's own `grep`, save its output in a file beside the scene, and write `!cat FILE` here)",
+            "1:16 error the command `grep` is not supported (supported commands are `xform`, `cat`, `genbox`, `genprism` and `gensky`. Run Radiance's own `grep`, save its output in a file beside the scene, and write `!cat FILE` here)",
         ),
         ("!| xform", "1:4 error a command is missing beside `|`"),
         ("!", "1:2 error a command is missing after `!`"),

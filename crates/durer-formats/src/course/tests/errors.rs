@@ -122,7 +122,7 @@ fn words_in_the_wrong_place() {
 fn fields_and_values() {
     in_group(
         "Sphere { center 0 0 0 }",
-        "2:1 error: `Sphere` has no `radius` [Sphere] (add it to the block, as in `radius 1`)",
+        "2:1 error: `Sphere` has no `radius` [Sphere] (add it to the block, for example `radius 1`)",
     );
     in_group(
         "Sphere { center 0 0\n radius 1 }",

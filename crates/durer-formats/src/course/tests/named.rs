@@ -82,7 +82,7 @@ fn wrong_names_are_errors() {
             "3:22 error: nothing is defined as `a` before this [a] (write `define NAME` and an object first, outside the object that uses it)",
         ),
         ("include light.txt", "3:1 error: a text without a folder cannot include files [include light.txt]"),
-        ("include", "3:1 error: `include` needs the name of a file [include] (as in `include light.txt`)"),
+        ("include", "3:1 error: `include` needs the name of a file [include] (for example `include light.txt`)"),
     ] {
         assert_eq!(refused(text)[0], expected, "{text}");
     }
