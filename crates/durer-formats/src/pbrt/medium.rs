@@ -1,7 +1,7 @@
 //! Reads participating media, inside shapes and around the camera.
 //!
-//! Source, including the default coefficients: *Physically Based Rendering*, 4th edition, chapter
-//! 11. Coefficients are per unit of world space.
+//! Coefficients are per unit of world space. Source, including the default coefficients:
+//! *Physically Based Rendering*, 4th edition, chapter 11.
 
 use super::defs::MaterialDef;
 use super::language::Language;

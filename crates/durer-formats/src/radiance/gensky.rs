@@ -33,7 +33,7 @@ struct SkyArgs {
     kind: Kind,
     sunny: bool,
     latitude: f64,
-    /// Degrees west of Greenwich; so is `meridian`, the standard meridian of the clock time.
+    /// Degrees west of Greenwich, as `meridian`, the standard meridian of the clock time.
     longitude: f64,
     meridian: f64,
     year: Option<i32>,

@@ -1,8 +1,8 @@
 //! Converts materials to OpenPBR parameters.
 //!
-//! Sources: the reference manual; Ward, *Measuring and Modeling Anisotropic Reflection*, SIGGRAPH
-//! 1992. Ward's roughness is the mean slope of the surface, as GGX's alpha is; alpha is the square
-//! of OpenPBR's roughness.
+//! Ward's roughness is the mean slope of the surface, as GGX's alpha is; alpha is the square of
+//! OpenPBR's roughness. Sources: the reference manual; Ward, *Measuring and Modeling Anisotropic
+//! Reflection*, SIGGRAPH 1992.
 
 use super::args::RadPrimitive;
 use super::converted::{ConvertedModifier, Kind, PatternEffect};

@@ -250,8 +250,8 @@ fn equal_area_mapping_inverts_and_preserves_area() {
         assert!((dir.length() - 1.0).abs() < 1e-5);
         assert!((equal_area(dir) - place).length() < 1e-3, "{place} {dir} {}", equal_area(dir));
     }
-    // The middle is +z, and the corners are -z. Areas are equal: a quarter of all positions have z
-    // > 1/2.
+    // The middle is +z, and the corners are -z. Areas are equal, so a quarter of all positions have
+    // z > 1/2.
     close(of_equal_area(Vec2::splat(0.5)), Vec3::Z);
     close(of_equal_area(Vec2::ZERO), Vec3::NEG_Z);
     close(of_equal_area(Vec2::new(1.0, 0.5)), Vec3::X);
