@@ -68,7 +68,7 @@ fn what_doubles_forty_times_in_a_mitsuba_scene_is_refused() {
             format!("<bsdf type=\"{material}\" id=\"b{i}\">{part}{part}</bsdf>\n")
         };
         place.put(file, doubled(first, both, shown));
-        refused(&place, &render(file), "a material of more than 4096 others is too large");
+        refused(&place, &render(file), "this material is too large: it consists of more than 4096 materials");
     }
     // Copies of a material that is just below the size limit.
     let mut copies = String::from("<scene version=\"3.0.0\"><bsdf type=\"diffuse\" id=\"b0\"/>\n");

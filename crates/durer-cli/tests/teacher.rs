@@ -234,7 +234,7 @@ fn reader_suggests_the_intended_word() {
         (sphere, "Transform { Scale 2 Sphere { center 0 0 0 radius 1 } }", "`UniformScale 2`"),
         (sphere, "Transform { Rotate 0 1 0 45 Sphere { center 0 0 0 radius 1 } }", "write `Rotate { 0 1 0 45 }`"),
         (sphere, "Transform { Translate 0 1 0 }", "write the object after its matrices"),
-        (sphere, "Sphere { center 0 0 0 }", "as in `radius 1`"),
+        (sphere, "Sphere { center 0 0 0 }", "for example `radius 1`"),
         ("PointLight {", "SpotLight {", "`SpotLight` has no field `attenuation`"),
         ("PointLight {", "DirectionalLight {", "a directional light has a `direction` in which it shines"),
     ] {

@@ -1,5 +1,5 @@
-//! Export of a scene's in-memory assets as separate files: meshes as PLY, light profiles as IES,
-//! densities as Mitsuba volumes, pictures unchanged.
+//! Exports a scene's in-memory assets as separate files: meshes as PLY, light profiles as IES,
+//! density grids as Mitsuba volumes, pictures unchanged.
 
 use super::ply::write_whole;
 use super::{extension, photometry, vol};
@@ -10,16 +10,17 @@ use durer_scene::source::AssetSource;
 use durer_scene::texture::Mapping;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Path of a file relative to the scene, and its bytes.
+/// Path of an exported file relative to the scene, and its bytes.
 pub type AssetFile = (String, Vec<u8>);
 
-/// Makes a name valid in a scene file: letters, digits and `-_.` stay, others become `_`.
+/// Makes a name valid in a scene file: keeps letters, digits and `-_.`, and replaces other
+/// characters by `_`.
 pub fn plain(name: &str) -> String {
     name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect()
 }
 
-/// Returns the scene with all its meshes and pictures moved to files in `folder`, and these files.
-/// Files that the scene names are copied there; unreadable ones keep their names.
+/// Returns a copy of the scene with all meshes and pictures moved to files in `folder`, and these
+/// files. Files that the scene names are copied too; unreadable ones keep their names.
 pub fn export_assets(scene: &Scene, folder: &str, source: &dyn AssetSource) -> (Scene, Vec<AssetFile>) {
     let (files, taken, known, textures) = Default::default();
     let mut put = AssetExport { scene, folder, source, files, taken, known, textures };
@@ -45,12 +46,13 @@ pub fn export_assets(scene: &Scene, folder: &str, source: &dyn AssetSource) -> (
     (made, put.files)
 }
 
+/// State of an asset export: the files written so far, and the new names of assets.
 struct AssetExport<'a> {
     scene: &'a Scene,
     folder: &'a str,
     source: &'a dyn AssetSource,
     files: Vec<AssetFile>,
-    /// Names of files and textures in use, in lower case, since some file systems ignore case.
+    /// Names of files and textures in use, in lower case because some file systems ignore case.
     taken: BTreeSet<String>,
     /// New names by kind and old name.
     known: BTreeMap<(&'static str, String), String>,
@@ -59,7 +61,7 @@ struct AssetExport<'a> {
 }
 
 impl AssetExport<'_> {
-    /// Returns an unused, valid name similar to `of`.
+    /// Returns a valid name similar to `of` that is not in use.
     fn name(&mut self, of: &str, extension: &str) -> String {
         let ending = if extension.is_empty() { String::new() } else { format!(".{extension}") };
         let last = of.rsplit(['/', '\\']).next().unwrap_or_default();
@@ -102,7 +104,7 @@ impl AssetExport<'_> {
         })
     }
 
-    /// Returns the new name of an asset; calls `put` on the first use.
+    /// Returns the new name of an asset; calls `put` on its first use.
     fn once(&mut self, kind: &'static str, name: &str, put: impl FnOnce(&mut Self) -> String) -> String {
         let key = (kind, name.to_string());
         if let Some(known) = self.known.get(&key) {
@@ -121,7 +123,7 @@ impl AssetExport<'_> {
         }
     }
 
-    /// Exports the files that a statement's fields name.
+    /// Exports the files named by a statement's fields.
     fn fields<T: DescribedList>(&mut self, item: &mut T) {
         for i in 0..item.fields().len() {
             let Some(Value::Path(file)) = DescribedList::get(item, i) else { continue };
@@ -130,8 +132,8 @@ impl AssetExport<'_> {
         }
     }
 
-    /// New name of a light profile, a density grid, or a picture: the name of its file, or of a
-    /// texture if it has a mapping.
+    /// Returns the new name of a light profile, density grid or picture: the name of its file, or
+    /// of a texture if it has a mapping.
     fn named(&mut self, name: &str) -> String {
         if let Some((known, _)) = self.textures.get(name) {
             return known.clone();
@@ -144,7 +146,8 @@ impl AssetExport<'_> {
             return self.once("densities", name, |put| put.file(name, "vol", vol::write(bounds, grid)));
         }
         let Some(Picture { bytes, mapping }) = scene.assets.pictures.get(name) else {
-            // `light.csv:red` and `picture.png:g` are a column and a channel of a file.
+            // In `light.csv:red` and `picture.png:g`, the last part is a column or a channel of the
+            // file.
             let parted = name.rsplit_once(':').filter(|_| !self.source.contains(name));
             let (path, what) = parted.map_or((name, String::new()), |(path, what)| (path, format!(":{what}")));
             return self.once("picture", path, |put| put.copied(path)) + &what;

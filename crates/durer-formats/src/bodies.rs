@@ -1,8 +1,8 @@
 //! Joins the meshes of glass bodies whose surface is split into several meshes.
 //!
-//! pbrt and Mitsuba decide only by the side of a surface whether a ray enters or leaves. Dürer
-//! tracks the objects that a ray is inside, so the surface of a body must be one object. Therefore
-//! open meshes of the same glass are joined.
+//! pbrt and Mitsuba decide by the side of the surface alone whether a ray enters or leaves a body.
+//! Dürer tracks the objects that a ray is inside, so the surface of a body must be a single object.
+//! Therefore open meshes of the same glass are joined.
 
 use durer_scene::dialect::MeshNormals;
 use durer_scene::material::principled::Walls;
@@ -13,7 +13,7 @@ use glam::{DAffine3, DVec3};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// Name of an object's mesh, and its transform.
+/// Returns the name of an object's mesh, and its transform.
 fn mesh_of(object: &Object) -> Option<(&str, DAffine3)> {
     match &object.node {
         Node::Mesh(mesh) => Some((&mesh.obj_file.path, DAffine3::IDENTITY)),
@@ -40,7 +40,7 @@ fn used(group: &Group, names: &mut BTreeSet<String>) {
     }
 }
 
-/// Appends a mesh, transformed to world space.
+/// Appends a mesh transformed to world space.
 fn append(body: &mut MeshData, data: &MeshData, map: DAffine3) {
     let mirrored = map.matrix3.determinant() < 0.0;
     let normals = map.matrix3.inverse().transpose();
@@ -63,7 +63,7 @@ fn append(body: &mut MeshData, data: &MeshData, map: DAffine3) {
     body.flat = true;
 }
 
-/// Joins the open meshes of each glass material. `name` is the name of the scene's file.
+/// Joins the open meshes of each glass material. `name` is the file name of the scene.
 pub(super) fn join_bodies(scene: &mut Scene, name: &str) {
     let Some(root) = &mut scene.root else { return };
     let materials = &scene.materials;

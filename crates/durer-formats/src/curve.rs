@@ -1,7 +1,7 @@
-//! Reader of spectra as text: rows of a wavelength in nanometres and values, separated by commas,
-//! semicolons or blanks.
+//! Reader of spectra in text files: rows of a wavelength in nanometres and values, separated by
+//! commas, semicolons or spaces.
 //!
-//! `#` starts a comment. A row of words before the numbers names the columns.
+//! `#` starts a comment. A row of words before the numbers contains the column names.
 
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use std::ops::Range;
@@ -9,10 +9,11 @@ use std::ops::Range;
 /// Maximum number of rows.
 const MAX_ROWS: usize = 100_000;
 
-/// Reads ascending wavelengths and the values of one column: the named one, or the first.
+/// Reads a spectrum: pairs of a wavelength and a value, in ascending order. `column` selects the
+/// column of values by name; the default is the first.
 pub fn read(bytes: &[u8], column: Option<&str>, file: u32, diagnostics: &mut Diagnostics) -> Option<Vec<[f32; 2]>> {
     std::str::from_utf8(bytes)
-        .map_err(|error| (error.valid_up_to()..error.valid_up_to() + 1, "a spectrum is text".to_string()))
+        .map_err(|error| (error.valid_up_to()..error.valid_up_to() + 1, "a spectrum file must be UTF-8 text".to_string()))
         .and_then(|text| parse(text, column))
         .map_err(|(at, message)| {
             let span = Span { file, start: at.start as u32, end: at.end as u32 };

@@ -1,8 +1,9 @@
-//! Mean reflectance of Disney's material over all directions, for formats that use it.
+//! Mean reflectance of Disney's material over all directions, used by formats that have this
+//! material.
 //!
-//! Disney's diffuse base ignores the Fresnel loss at the boundary, and its reflectance grows with
-//! roughness; its sheen is faint. Dürer's materials conserve energy, so readers choose colours and
-//! weights with the same mean.
+//! Disney's diffuse base ignores the Fresnel loss at the boundary, and reflects more the rougher it
+//! is; its sheen is faint. Dürer's materials conserve energy, so readers choose colours and weights
+//! that give the same mean reflectance.
 //!
 //! Source: Burley, *Physically-Based Shading at Disney*, SIGGRAPH 2012, and *Extending the Disney
 //! BRDF to a BSDF*, 2015.
@@ -11,29 +12,30 @@ use durer_scene::bsdf::albedo::{self, single_means};
 use durer_scene::math::{Color, fp};
 use std::f32::consts::PI;
 
-/// Roughness at which Dürer's fuzz is brightest at grazing directions, as Disney's sheen is.
+/// Roughness at which Dürer's fuzz is brightest at grazing angles, as Disney's sheen is.
 pub(super) const FUZZ_ROUGHNESS: f32 = 0.2;
 
-/// Number of steps of each cosine and of the azimuth between both directions.
+/// Number of steps of each cosine, and of the azimuth between the two directions.
 const STEPS: usize = 16;
 
-/// Two directions above a surface.
+/// Incident and outgoing direction above a surface, reduced to the cosines that Disney's lobes
+/// need.
 struct Pair {
-    /// Cosines to the normal.
+    /// Cosines of the angles to the normal.
     cosines: [f32; 2],
-    /// Cosine of half the angle between the directions.
+    /// Cosine of half the angle between the two directions.
     half: f32,
 }
 
 impl Pair {
-    /// Diffuse base, relative to Lambert's.
+    /// Returns the value of the diffuse base, relative to a Lambertian surface.
     fn matte(&self, roughness: f32) -> f32 {
         let [out, into] = self.cosines.map(schlick);
         let retro = 2.0 * roughness * self.half * self.half;
         (1.0 - 0.5 * out) * (1.0 - 0.5 * into) + retro * (out + into + out * into * (retro - 1.0))
     }
 
-    /// White sheen, relative to white Lambert.
+    /// Returns the value of white sheen, relative to a white Lambertian surface.
     fn sheen(&self) -> f32 {
         PI * schlick(self.half)
     }
@@ -44,7 +46,7 @@ fn schlick(cosine: f32) -> f32 {
     m * m * m * m * m
 }
 
-/// Returns the cosine-weighted mean over all pairs of directions.
+/// Returns the cosine-weighted mean of `value` over all pairs of directions.
 fn means(value: impl Fn(&Pair) -> f32) -> f32 {
     let step = |i: usize| (i as f32 + 0.5) / STEPS as f32;
     let mut sum = 0.0;
@@ -58,12 +60,12 @@ fn means(value: impl Fn(&Pair) -> f32) -> f32 {
     sum / STEPS.pow(3) as f32
 }
 
-/// Reflectance of a white diffuse base.
+/// Returns the reflectance of a white diffuse base of Disney's material.
 pub(super) fn matte_mean(roughness: f32) -> f32 {
     means(|pair| pair.matte(roughness))
 }
 
-/// Weight of Dürer's fuzz with the reflectance of sheen of strength 1.
+/// Returns the weight of Dürer's fuzz that has the same reflectance as sheen of strength 1.
 pub(super) fn sheen_of_fuzz() -> f32 {
     let at = |i: usize| {
         let cosine = (i as f32 + 0.5) / STEPS as f32;
@@ -72,33 +74,35 @@ pub(super) fn sheen_of_fuzz() -> f32 {
     means(Pair::sheen) / ((0..STEPS).map(at).sum::<f32>() / STEPS as f32)
 }
 
-/// Share of light that passes Dürer's boundary to a diffuse base and back out; more than 0. The
-/// arguments are those of [`kept`].
+/// Returns the fraction of light that crosses Dürer's boundary to a diffuse base and back out;
+/// always more than 0. The arguments are those of [`kept`].
 pub(super) fn passing([reflected, all]: [f32; 2]) -> f32 {
     (1.0 - kept([reflected, all])).max(1e-3)
 }
 
-/// Reflectance of Dürer's boundary from [`single_means`]: the single-scattering reflectance,
-/// divided by the total of single-scattering reflection and refraction, which is below 1 for rough
-/// boundaries.
+/// Returns the reflectance of Dürer's boundary from [`single_means`]: the single-scattering
+/// reflectance, divided by the total single-scattering reflectance and transmittance, which is
+/// below 1 for rough boundaries.
 pub(super) fn kept([reflected, all]: [f32; 2]) -> f32 {
     // Unphysical indices of refraction can make `all` 0.
     reflected / all.max(1e-6)
 }
 
-/// Converter of the base colour below a boundary, from Disney's material to Dürer's.
+/// Converts the base colour of Disney's material to Dürer's, for a base below a dielectric
+/// boundary.
 pub(super) struct Matte {
     given: f32,
     passing: f32,
 }
 
 impl Matte {
+    /// Creates a converter for a boundary with an index of refraction and a roughness.
     pub fn new(ior: f32, roughness: f32) -> Matte {
         let means = single_means(ior, roughness);
         Matte { given: matte_mean(roughness), passing: passing(means) }
     }
 
-    /// Returns Dürer's base colour for Disney's.
+    /// Returns the base colour in Dürer for a base colour in Disney's material.
     pub fn base(&self, color: Color) -> Color {
         self.given * color / self.passing
     }

@@ -1,4 +1,4 @@
-//! Reading of the files that a scene names, for all scene formats.
+//! Reads the files named by a scene, for all scene formats.
 
 use super::model::Input;
 use super::read_mesh;
@@ -8,8 +8,8 @@ use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_scene::shape::MeshData;
 use std::sync::Arc;
 
-/// Reads the bytes of a named file and registers it, for spans. `what` names the file's purpose in
-/// the error if that fails.
+/// Reads a file named by the scene and registers it for spans. `what` says what the file is for,
+/// and is used in the error if reading fails.
 pub(super) fn named_bytes(
     input: &Input,
     report: &SharedReport,
@@ -31,7 +31,7 @@ pub(super) fn named_bytes(
     }
 }
 
-/// Reads a mesh file of any format, compressed or not, without changes.
+/// Reads a mesh file of any format, compressed or not, without changing the mesh.
 pub(super) fn mesh_file(input: &Input, report: &SharedReport, name: &str, at: Span) -> Option<MeshData> {
     let (bytes, file) = named_bytes(input, report, "the mesh", name, at)?;
     let plain = name.strip_suffix(".gz").unwrap_or(name);
@@ -39,7 +39,7 @@ pub(super) fn mesh_file(input: &Input, report: &SharedReport, name: &str, at: Sp
     let data = read_mesh(&bytes, file, plain, &mut own);
     if own.has_errors() {
         let message = format!("the mesh `{name}` cannot be used");
-        report.push(Diagnostic::error(message).code("bad-file").at(at).label("asked for here"));
+        report.push(Diagnostic::error(message).code("bad-file").at(at).label("used here"));
     }
     report.extend(own);
     data

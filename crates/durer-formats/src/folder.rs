@@ -1,6 +1,6 @@
-//! Asset source that reads folders. Only this module opens a scene's files for reading.
+//! Asset source that reads from folders. Only this module opens a scene's files for reading.
 //!
-//! It only reads files below a few allowed folders, and only up to a limit in bytes.
+//! Files can be read only below a few allowed folders, and only up to a total number of bytes.
 
 use crate::files::unescaped;
 use durer_diag::did_you_mean;
@@ -12,28 +12,28 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::UNIX_EPOCH;
 
-/// Asset source over folders. Files must lie below the allowed folders, and their total size is
-/// limited.
+/// Asset source that reads a scene's files from folders. Files must lie below the allowed folders,
+/// and their total size is limited.
 #[derive(Debug)]
 pub struct FolderSource {
     /// Folders in which relative names are looked up, in this order.
     search: Vec<PathBuf>,
-    /// Folders that files must lie below; empty if any place is allowed.
+    /// Folders that must contain the files; empty if files anywhere are allowed.
     allowed: Vec<PathBuf>,
-    /// Folders that are also searched for the bare file name.
+    /// Folders that are also searched for the file name without its path.
     assets: Vec<PathBuf>,
-    /// Files in memory, by name; they take precedence over folders.
+    /// Files in memory, by name. They take precedence over files in folders.
     in_memory: BTreeMap<String, Arc<[u8]>>,
     record: ReadRecord,
     progress: Mutex<Progress>,
 }
 
-/// Remaining budget, and the paths that were read.
+/// Remaining byte budget of a [`FolderSource`], and the paths it has read.
 #[derive(Clone, Debug)]
 struct Progress {
     /// Remaining budget in bytes.
     left: u64,
-    /// Paths of all files that were read or tried.
+    /// Paths of all files that were read, or that it tried to read.
     paths: Vec<PathBuf>,
 }
 
@@ -54,7 +54,7 @@ impl FolderSource {
     /// Default budget of one scene: 4 GiB. See [`FolderSource::budget`].
     pub const DEFAULT_BUDGET: u64 = 4 << 30;
 
-    /// Source of files in and below one folder.
+    /// Creates a source of files in and below one folder.
     pub fn new(folder: impl Into<PathBuf>) -> Self {
         let folder = folder.into();
         FolderSource {
@@ -67,8 +67,8 @@ impl FolderSource {
         }
     }
 
-    /// Adds a folder to the search path, at its front if `first`. This does not allow reading
-    /// there.
+    /// Adds a folder to the search path, in first place if `first`. This does not allow reading
+    /// files in it.
     pub fn look_in(mut self, folder: impl Into<PathBuf>, first: bool) -> Self {
         let at = if first { 0 } else { self.search.len() };
         self.search.insert(at, folder.into());
@@ -77,27 +77,28 @@ impl FolderSource {
 
     /// Allows files in and below another folder.
     pub fn allow(mut self, folder: impl Into<PathBuf>) -> Self {
-        // An empty list already allows everything.
+        // An empty list already allows every folder.
         if !self.allowed.is_empty() {
             self.allowed.push(folder.into());
         }
         self
     }
 
-    /// Adds a folder that is searched by path and then by bare file name, and allows reading there.
+    /// Adds a folder that is searched for the path and then for the file name alone, and allows
+    /// reading there.
     pub fn assets(mut self, folder: impl Into<PathBuf>) -> Self {
         let folder = folder.into();
         self.assets.push(folder.clone());
         self.look_in(folder.clone(), false).allow(folder)
     }
 
-    /// Adds a file in memory; it replaces a file of this name on disk.
+    /// Adds a file in memory, which replaces any file of this name on disk.
     pub fn give(mut self, name: impl Into<String>, bytes: Arc<[u8]>) -> Self {
         self.in_memory.insert(name.into(), bytes);
         self
     }
 
-    /// Allows files anywhere.
+    /// Allows reading files anywhere.
     pub fn allow_outside(mut self) -> Self {
         self.allowed.clear();
         self
@@ -113,17 +114,17 @@ impl FolderSource {
         self.progress.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Paths of all files that were read or tried.
+    /// Returns the paths of all files that were read, or that it tried to read.
     pub fn paths(&self) -> Vec<PathBuf> {
         self.progress().paths.clone()
     }
 
-    /// Path of a file by its name, if it exists and may be read.
+    /// Returns the path of a file by its name, if it exists and may be read.
     pub fn place(&self, name: &str) -> Option<PathBuf> {
         self.find(name).ok().filter(|path| path.is_file())
     }
 
-    /// First path of the name in the search order that exists and is allowed.
+    /// Returns the first path in the search order that exists and is allowed.
     fn find(&self, name: &str) -> Result<PathBuf, SourceError> {
         // Scenes from Windows may contain backslashes.
         let portable = name.replace('\\', "/");
@@ -149,8 +150,8 @@ impl FolderSource {
         })
     }
 
-    /// A file name close to one of the candidates, in the same folder. Folders outside the allowed
-    /// ones are not listed.
+    /// Returns a file name similar to one of the candidates, in the same folder. Folders that are
+    /// not allowed are not listed.
     fn near(&self, candidates: &[PathBuf]) -> Option<String> {
         candidates.iter().find_map(|path| {
             let folder = path.parent()?.canonicalize().ok().filter(|folder| self.allows(folder))?;
@@ -163,11 +164,11 @@ impl FolderSource {
         })
     }
 
-    /// Path of an existing file with links resolved, if it may be read.
+    /// Resolves links in the path of an existing file, and checks that it may be read.
     ///
     /// # Errors
     ///
-    /// [`SourceError`]: there is no such file, or it lies outside the allowed folders.
+    /// [`SourceError`] if the file does not exist or lies outside the allowed folders.
     pub fn allowed(&self, path: &Path) -> Result<PathBuf, SourceError> {
         let name = || path.display().to_string();
         let real = path.canonicalize().map_err(|error| SourceError::Io { name: name(), error })?;
@@ -179,11 +180,11 @@ impl FolderSource {
         self.allowed.is_empty() || self.allowed.iter().any(below)
     }
 
-    /// Reads a file at a path without an entry in the record. `name` is for messages.
+    /// Reads a file at a path without adding it to the record. `name` is used in messages.
     ///
     /// # Errors
     ///
-    /// [`SourceError`], among others if the budget is used up.
+    /// [`SourceError`], for example if the budget is used up.
     pub fn read_path(&self, path: &Path, name: &str) -> Result<Arc<[u8]>, SourceError> {
         let io = |error| SourceError::Io { name: name.into(), error };
         self.progress().paths.push(path.into());
@@ -206,8 +207,8 @@ impl FolderSource {
     }
 }
 
-/// Returns the existing file that `path` most likely means, if it does not exist as written:
-/// percent escapes decoded, `folder/..` resolved, and letter case ignored, as on other systems.
+/// Returns the existing file that `path` most likely means if it does not exist as written. Decodes
+/// percent escapes, resolves `folder/..`, and ignores letter case, as other systems do.
 fn similar_path(folder: &Path, path: &Path) -> Option<PathBuf> {
     let mut names: Vec<&str> = Vec::new();
     for part in path.components() {
@@ -229,7 +230,8 @@ fn plain(name: &str) -> String {
     unescaped(name).unwrap_or_else(|| name.to_string())
 }
 
-/// Finds an entry of `folder` by its name as written, without percent escapes, or in another case.
+/// Finds an entry of `folder` by name: as written, with percent escapes decoded, or with different
+/// letter case.
 fn same_name(folder: &Path, name: &str) -> Option<PathBuf> {
     let plain = plain(name);
     let exact = [name, &plain].into_iter().map(|name| folder.join(name)).find(|path| path.exists());
@@ -291,7 +293,7 @@ impl AssetSource for FolderSource {
     }
 }
 
-/// Returns the version of the file at a path; `None` if it does not exist.
+/// Returns the version stamp of the file at a path; `None` if the file does not exist.
 pub fn stamp_of(path: &Path) -> Option<Stamp> {
     let metadata = fs::metadata(path).ok()?;
     #[cfg(unix)]
@@ -305,8 +307,8 @@ pub fn stamp_of(path: &Path) -> Option<Stamp> {
     Some(Stamp { path: path.into(), modified, size: metadata.len(), number })
 }
 
-/// Reads a file of about `size` bytes, but at most `most + 1` bytes of one that has grown. If the
-/// size is exact, the bytes are written once, into their final place.
+/// Reads a file of about `size` bytes; if it has grown, reads at most `most + 1` bytes. If the size
+/// is exact, the bytes are read directly into the result, without a copy.
 fn all_of(mut file: fs::File, size: usize, most: u64) -> std::io::Result<Arc<[u8]>> {
     let mut bytes: Arc<[u8]> = std::iter::repeat_n(0, size).collect();
     let mut room = Arc::get_mut(&mut bytes).unwrap_or_default();

@@ -1,5 +1,5 @@
-//! Limits on the objects and bytes that a reader creates from a file, which may be far larger than
-//! the file. Readers count both here before they allocate.
+//! Limits on the objects and bytes that a reader creates from a file, which can be much more than
+//! the file contains. Readers count both here before they allocate memory.
 
 use crate::shared_report::SharedReport;
 use durer_diag::{Span, at_most};
@@ -7,38 +7,39 @@ use std::cell::Cell;
 
 /// Maximum number of objects in a scene, counting those of each instance.
 pub(crate) const MAX_OBJECTS: usize = 1 << 20;
-/// Memory in bytes that any file may use, and additional memory per byte of the file.
+/// Memory in bytes that every file may use, and additional memory per byte of the file.
 const FREE: u64 = 256 << 20;
 const TIMES: u64 = 64;
 
-/// Counters of the objects and memory that a file takes.
+/// Counters of the objects and of the memory that a reader creates from one file, with their
+/// limits.
 pub(crate) struct Growth {
     objects: Cell<usize>,
     /// Remaining bytes.
     left: Cell<u64>,
-    /// Current limit in bytes, and the limit that it never exceeds.
+    /// Current limit in bytes, and the maximum of that limit.
     limit: Cell<u64>,
     memory: u64,
     is_over: Cell<bool>,
 }
 
-/// Error: a limit was exceeded.
+/// Error: a reader exceeded its limit of objects or memory.
 #[derive(Debug)]
 pub(crate) struct TooMuch {
     pub message: String,
-    /// True for the first error; later ones need no message.
+    /// True for the first error. Later ones need not be reported.
     pub is_first: bool,
 }
 
 impl Growth {
-    /// Counters with a memory limit in bytes.
+    /// Creates counters with a fixed memory limit in bytes.
     pub fn within(memory: u64) -> Self {
         let [left, limit] = [Cell::new(memory), Cell::new(memory)];
         Growth { objects: Cell::new(0), left, limit, memory, is_over: Cell::new(false) }
     }
 
-    /// Counters for a file of `length` bytes; the limit is in proportion to it and at most
-    /// `memory`.
+    /// Creates counters for a file of `length` bytes. The memory limit is in proportion to the
+    /// length, and at most `memory`.
     pub fn of_file(length: usize, memory: u64) -> Self {
         let growth = Growth::within(memory.min(FREE));
         let growth = Growth { memory, ..growth };
@@ -53,7 +54,7 @@ impl Growth {
         self.limit.set(self.limit.get() + more);
     }
 
-    /// Counts objects.
+    /// Counts objects; returns an error if they are too many.
     pub fn objects(&self, more: usize) -> Result<(), TooMuch> {
         self.objects.set(self.objects.get().saturating_add(more));
         match self.objects.get() <= MAX_OBJECTS {
@@ -64,22 +65,22 @@ impl Growth {
         }
     }
 
-    /// Number of objects so far.
+    /// Returns the number of objects so far.
     pub fn object_count(&self) -> usize {
         self.objects.get()
     }
 
-    /// Remaining bytes.
+    /// Returns the number of remaining bytes.
     pub fn left(&self) -> u64 {
         self.left.get()
     }
 
-    /// Counts `count` items of `size` bytes each.
+    /// Counts `count` items of `size` bytes each; returns an error if they exceed the limit.
     pub fn bytes(&self, count: usize, size: usize) -> Result<(), TooMuch> {
         let left = self.left.get().checked_sub((count as u64).saturating_mul(size as u64));
         self.left.set(left.unwrap_or(0));
         let limit = at_most(self.limit.get());
-        left.map(|_| ()).ok_or_else(|| self.over(format!("what this file makes needs more memory than {limit}")))
+        left.map(|_| ()).ok_or_else(|| self.over(format!("reading this file needs more memory than {limit}")))
     }
 
     fn over(&self, message: String) -> TooMuch {
@@ -118,7 +119,7 @@ mod tests {
         let growth = Growth::of_file(10, u64::MAX);
         assert!(growth.bytes(1, (FREE + 10 * TIMES) as usize).is_ok() && growth.bytes(1, 1).is_err());
         growth.feed(1);
-        // The request that failed used up the rest.
+        // The failed request used up the rest.
         assert!(growth.bytes(1, TIMES as usize).is_ok() && growth.bytes(1, 1).is_err());
         assert!(Growth::of_file(usize::MAX, 5).bytes(6, 1).is_err());
         let growth = Growth::within(0);

@@ -1,11 +1,11 @@
-//! Readers and writers of file formats. Each format has one file or folder, and one row of
+//! Readers and writers of file formats. Each format is in one file or folder, and has one entry in
 //! [`MESH_FORMATS`] or [`SCENE_FORMATS`].
 //!
-//! Files may be hostile. Readers allocate in proportion to the actual number of bytes, never to a
-//! count that a file promises. They reject non-finite numbers and indices out of range, and collect
-//! errors with spans.
+//! Files may be malicious. Readers allocate memory in proportion to the actual number of bytes,
+//! never to a count that a file promises. They reject non-finite numbers and indices out of range,
+//! and report errors with spans.
 
-// Parts that several formats share are not all used if a format is left out.
+// If a format is disabled, parts shared by several formats may be unused.
 #![cfg_attr(not(feature = "all"), allow(dead_code))]
 
 pub mod asset_export;
@@ -64,18 +64,19 @@ pub use scene::{SCENE_FORMATS, scene_format_for};
 use signature::mistaken;
 use std::borrow::Cow;
 
-/// A mesh file format.
+/// File format that stores one mesh: its name, extensions, reader and writer.
 pub struct MeshFormat {
     /// Display name.
     pub name: &'static str,
     /// File name extensions in lower case, without the dot.
     pub extensions: &'static [&'static str],
-    /// Returns true if a file with these first bytes seems to be of this format.
+    /// Returns true if a file that begins with these bytes seems to have this format.
     pub recognise: fn(&[u8]) -> bool,
-    /// Reads a file; the number is its index, for spans. Returns `None` after pushing errors to the
-    /// diagnostics.
+    /// Reads a file; the number is the file index for spans. Returns `None` after pushing errors to
+    /// the diagnostics.
     pub read: fn(&[u8], u32, &mut Diagnostics) -> Option<MeshData>,
-    /// Returns the part of a file that programs with these quirks read, with all bytes in place.
+    /// Returns the file as legacy programs with these quirks read it: parts that they ignore are
+    /// cut off or overwritten, and byte offsets stay valid.
     pub known: fn(&[u8], QuirkSet) -> Cow<'_, [u8]>,
     /// Writes a mesh.
     pub write: fn(&MeshData) -> Vec<u8>,
@@ -83,34 +84,34 @@ pub struct MeshFormat {
     pub up: Axis,
 }
 
-/// The mesh formats, in the order in which they are tried on a file of unknown extension.
+/// Mesh formats, in the order in which they are tried on a file with an unknown extension.
 pub const MESH_FORMATS: &[MeshFormat] = &[ply::FORMAT, obj::FORMAT, stl::FORMAT];
 
-/// Returns the bytes unchanged: no legacy program reads the format.
+/// Returns the bytes unchanged, for formats that no legacy program reads.
 fn as_it_is(bytes: &[u8], _: QuirkSet) -> Cow<'_, [u8]> {
     Cow::Borrowed(bytes)
 }
 
-/// Mesh format for the extension of a file name.
+/// Returns the mesh format for a file name, by its extension.
 pub fn mesh_format_for(name: &str) -> Option<&'static MeshFormat> {
     let extension = extension(name);
     MESH_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
 }
 
-/// Reads a mesh file. The format follows from the extension of its name or, if that is unknown,
-/// from its content.
+/// Reads a mesh file. The format is chosen by the extension of the file's name, or by the file's
+/// content if the extension is unknown.
 ///
 /// `file` is the index of the file in [`Files`](durer_diag::Files), for spans; `name` is its name
 /// with the extension.
 ///
-/// Adds all errors to `diagnostics`, with the spans of the offending bytes, and returns `None`. It
-/// also returns `None` if `diagnostics` was already full. Adds warnings and notes too; they leave
-/// the mesh usable.
+/// Adds all errors to `diagnostics`, with the spans of the offending bytes, and returns `None`.
+/// Also returns `None` if `diagnostics` was already full. Warnings and notes are added too, but the
+/// mesh is still usable.
 pub fn read_mesh(bytes: &[u8], file: u32, name: &str, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     read_mesh_as(bytes, file, name, 0, diagnostics)
 }
 
-/// Reads a mesh file as [`read_mesh`] does, with quirks of legacy programs.
+/// Reads a mesh file as [`read_mesh`] does, but as legacy programs with these quirks would.
 pub fn read_mesh_as(
     bytes: &[u8],
     file: u32,
@@ -136,14 +137,14 @@ pub fn read_mesh_as(
     }
 }
 
-/// Returns an error if a file of this size is too large: spans are 32-bit.
+/// Returns an error if a file of this size is too large for 32-bit spans.
 fn too_large(size: u64, name: &str) -> Option<Diagnostic> {
     const MOST: u64 = u32::MAX as u64 - 1;
     let message = || format!("`{name}` is too large for a mesh file: {size} bytes, at most {MOST}");
     (size > MOST).then(|| Diagnostic::error(message()).help("cut the mesh into several files"))
 }
 
-/// Extension of a file name in lower case, without the dot; empty if there is none.
+/// Returns the extension of a file name in lower case, without the dot; empty if there is none.
 fn extension(name: &str) -> String {
     let base = name.rsplit(['/', '\\']).next().unwrap_or(name);
     base.rsplit_once('.').map_or(String::new(), |(_, extension)| extension.to_lowercase())
@@ -160,8 +161,8 @@ fn unknown_format(name: &str) -> Diagnostic {
     let known = MESH_FORMATS.iter().map(|f| format!("{} (.{})", f.name, f.extensions.join(", .")));
     let known = known.collect::<Vec<_>>().join(", ");
     Diagnostic::error(format!("`{name}` is not a mesh file of a known format")).help(match suggestion {
-        Some(suggestion) => format!("did you mean `.{suggestion}`? Known are {known}"),
-        None => format!("known are {known}"),
+        Some(suggestion) => format!("did you mean `.{suggestion}`? Known formats are {known}"),
+        None => format!("known formats are {known}"),
     })
 }
 

@@ -1,4 +1,5 @@
-//! Participating media of pbrt and Mitsuba, given by absorption and scattering coefficients.
+//! Participating media of pbrt and Mitsuba, which are defined by absorption and scattering
+//! coefficients.
 
 use super::shared_report::SharedReport;
 use durer_diag::Span;
@@ -9,7 +10,8 @@ use durer_scene::medium::Fog;
 use durer_scene::scene::Spanned;
 use glam::DAffine3;
 
-/// A homogeneous or grid medium. Coefficients are per unit of length.
+/// Participating medium read from a pbrt or Mitsuba scene, homogeneous or with a density grid.
+/// Coefficients are per unit of length.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Medium {
     /// Absorption coefficient.
@@ -18,16 +20,16 @@ pub(super) struct Medium {
     pub scattering: Color,
     /// Mean cosine of the phase function.
     pub anisotropy: f32,
-    /// Grid of factors of the coefficients; `None` if the medium is homogeneous.
+    /// Grid of factors on the coefficients; `None` if the medium is homogeneous.
     pub density: Option<Density>,
 }
 
-/// A density grid with its placement.
+/// Density grid of a participating medium, with its placement in the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Density {
     /// Name of an asset or a file.
     pub name: FileName,
-    /// Transform from the unit cube to world space; `None`: the file's own bounds.
+    /// Transform from the unit cube to world space; `None` if the bounds in the file apply.
     pub placed: Option<DAffine3>,
 }
 
@@ -55,7 +57,8 @@ impl Medium {
         }
     }
 
-    /// Fog for a medium around the camera; `None` if it is clear or cannot be represented.
+    /// Returns fog for a medium around the camera; `None` if the medium is clear or cannot be
+    /// represented.
     pub(super) fn fog(&self, at: Span, report: &SharedReport) -> Option<Spanned<Fog>> {
         let extinction = self.extinction();
         let most = extinction.max_element();

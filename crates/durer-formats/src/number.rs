@@ -3,7 +3,7 @@
 use super::report::{Report, shown};
 use std::ops::Range;
 
-/// Reason why a word is not a usable number.
+/// Reason why a word in a text file is not a valid number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NumberError {
     /// The word cannot be parsed as a number.
@@ -28,14 +28,14 @@ pub(super) fn parse_f32(word: &[u8]) -> Result<f32, NumberError> {
     }
 }
 
-/// Powers of ten that `f64` represents exactly.
+/// Powers of ten that an `f64` represents exactly.
 const TENS: [f64; 23] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
     1e21, 1e22,
 ];
 
-/// Fast path for words of at most 15 digits; `None` for other words, and if the result might not be
-/// correctly rounded.
+/// Fast path for words of at most 15 digits. Returns `None` for other words, and if the result
+/// might not be correctly rounded.
 ///
 /// Source: Clinger, *How to read floating point numbers accurately*, 1990: multiplying or dividing
 /// an integer below 2^53 by an exact power of ten rounds once. Rounding that result to single
@@ -83,7 +83,7 @@ fn quickly(word: &[u8]) -> Option<f32> {
     (is_usual && !is_halfway).then_some(if negative { -value } else { value })
 }
 
-/// Returns true for non-finite numbers as C libraries print them: `-nan(ind)`, `1.#QNAN`,
+/// Returns true for non-finite numbers as printed by C libraries: `-nan(ind)`, `1.#QNAN`,
 /// `-1.#IND00`.
 fn is_c_not_finite(word: &[u8]) -> bool {
     let unsigned = word.strip_prefix(b"-").or(word.strip_prefix(b"+")).unwrap_or(word);
@@ -91,8 +91,8 @@ fn is_c_not_finite(word: &[u8]) -> bool {
     is_nan || unsigned.strip_prefix(b"1.").is_some_and(is_not_finite_tail)
 }
 
-/// Returns true if bytes begin with what Microsoft's C library prints after `1.` for non-finite
-/// numbers.
+/// Returns true if bytes begin with the text that Microsoft's C library prints after `1.` for
+/// non-finite numbers.
 pub(super) fn is_not_finite_tail(bytes: &[u8]) -> bool {
     [&b"#INF"[..], b"#IND", b"#QNAN", b"#SNAN"].iter().any(|tail| bytes.starts_with(tail))
 }
@@ -178,7 +178,8 @@ mod tests {
             }
         }
         assert!(quick > 120_000, "{quick}");
-        // Halfway between two `f32` values, and slightly above: only the first needs the slow path.
+        // The first number is halfway between two `f32` values, the second is above that: only the
+        // first needs the slow path.
         assert_eq!(quickly(b"16777217"), None);
         assert_eq!(quickly(b"16777217.5"), Some(16777218.0));
         assert_eq!(quickly(b"-0.0").map(f32::to_bits), Some((-0.0f32).to_bits()));

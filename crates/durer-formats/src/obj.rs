@@ -1,9 +1,9 @@
-//! Reader of Wavefront `.obj` files: polygons, lines and points, without curves and surfaces.
+//! Reader of Wavefront `.obj` files: polygons, lines and points, but not curves and surfaces.
 //! `scene.rs` adds the materials of `.mtl` files.
 //!
-//! The file is read in two passes: positions, texture coordinates and normals first, then the
-//! faces, which may refer to vertices further down. So only the mesh itself is kept in memory. Both
-//! passes read parts of the file in parallel.
+//! The file is read in two passes: first positions, texture coordinates and normals, then the
+//! faces, which can refer to vertices further down. Therefore only the mesh itself is kept in
+//! memory. Both passes read parts of the file in parallel.
 
 mod faces;
 mod materials;
@@ -26,33 +26,34 @@ use std::ops::Range;
 use words::Words;
 use write::write;
 
-/// Kind of a statement, by its first word.
+/// Kind of a Wavefront statement, determined by its first word.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Statement {
     Position,
     Uv,
     Normal,
     Face,
-    /// Lines and points have no surface: mesh readers ignore them, scene readers show them.
+    /// Lines and points have no surface. Mesh readers ignore them; scene readers show them.
     Line,
     Point,
     /// Sets the material of the following statements.
     Material,
-    /// Names material files.
+    /// Names the material files.
     Library,
-    /// Sets the smoothing group of the following faces, which smooths those without normals.
+    /// Sets the smoothing group of the following faces. Faces of a group that lack normals are
+    /// smoothed.
     Smoothing,
-    /// Known, but without effect on the mesh.
+    /// Known statement that does not affect the mesh.
     Ignored,
 }
 
-/// The supported statements by their first word.
+/// Supported statements, by their first word.
 const STATEMENTS: &[(&str, Statement)] = &[
     ("v", Statement::Position),
     ("vt", Statement::Uv),
     ("vn", Statement::Normal),
     ("f", Statement::Face),
-    // Name of `f` in versions before 2.11.
+    // `f` in versions of the format before 2.11.
     ("fo", Statement::Face),
     ("o", Statement::Ignored),
     ("g", Statement::Ignored),
@@ -74,7 +75,7 @@ const STATEMENTS: &[(&str, Statement)] = &[
 ];
 
 fn statement(word: &[u8]) -> Option<Statement> {
-    // Fast path: these two make up nearly all of a file.
+    // Fast path: nearly all statements of a file are of these two kinds.
     match word {
         b"v" => Some(Statement::Position),
         b"f" => Some(Statement::Face),
@@ -82,7 +83,7 @@ fn statement(word: &[u8]) -> Option<Statement> {
     }
 }
 
-/// The Wavefront mesh format.
+/// Mesh format entry for Wavefront files.
 pub(super) const FORMAT: MeshFormat = MeshFormat {
     name: "Wavefront OBJ",
     extensions: &["obj"],
@@ -104,13 +105,13 @@ fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshDa
     read_with(bytes, file, &mut Switches::default(), diagnostics)
 }
 
-/// A state change: index of the first triangle that it applies to, and the new state.
+/// State change between faces: index of the first triangle that it applies to, and the new state.
 type Switch<T> = (usize, T);
 
-/// State changes between the faces of a file.
+/// Changes of the material and of the smoothing group between the faces of a Wavefront file.
 #[derive(Default)]
 struct Switches {
-    /// Range of the material's name.
+    /// Byte range of the material's name.
     materials: Vec<Switch<Range<usize>>>,
     /// Number of the smoothing group; 0 for none.
     groups: Vec<Switch<u32>>,
@@ -135,15 +136,15 @@ fn read_with(bytes: &[u8], file: u32, switches: &mut Switches, diagnostics: &mut
     report.finish(diagnostics, mesh)
 }
 
-/// Vertices of one part of a file.
+/// Vertices read from one part of a Wavefront file, with the diagnostics.
 struct Vertices {
     mesh: MeshData,
-    /// Range of the first unsupported statement, and the number of such statements.
+    /// Byte range of the first unsupported statement, and the number of such statements.
     unknown: Option<(Range<usize>, usize)>,
     report: Report,
 }
 
-/// Number of positions, texture coordinates and normals.
+/// Numbers of positions, texture coordinates and normals.
 type Counts = [usize; 3];
 
 fn counts(mesh: &MeshData) -> Counts {
@@ -191,7 +192,7 @@ fn read_vertices(bytes: &[u8], parts: &[Range<usize>], mesh: &mut MeshData, repo
     before
 }
 
-/// Reads the vertices of one part.
+/// Reads the vertices of one part of the file.
 fn vertices(bytes: &[u8], part: Range<usize>, mut report: Report) -> Vertices {
     let (mut mesh, mut unknown) = (MeshData::default(), None::<(Range<usize>, usize)>);
     let mut words = Words::within(bytes, part);
@@ -231,16 +232,16 @@ fn vertices(bytes: &[u8], part: Range<usize>, mut report: Report) -> Vertices {
     Vertices { mesh, unknown, report }
 }
 
-/// Decodes an sRGB value in [0, 1]. Any other value, or NaN, becomes 1.
+/// Decodes an sRGB value from 0 to 1. Any other value, or NaN, becomes 1.
 fn decode(value: f32) -> f32 {
     if (0.0..=1.0).contains(&value) { durer_image::decode_srgb((value * 255.0 + 0.5) as u8) } else { 1.0 }
 }
 
-/// Reads the numbers of a statement; returns them and their count. The first `needed` are required,
-/// and the first `sound` must be finite; missing or invalid ones are 0.
+/// Reads the numbers of a statement; returns them and their count. The first `needed` numbers are
+/// required, and the first `sound` must be finite; missing or invalid ones are 0.
 ///
-/// More numbers may follow, such as weights and colours. Other words there are errors, since they
-/// indicate that two lines were joined.
+/// More numbers may follow, such as weights and colours. Other words are errors, since they suggest
+/// that two lines were joined.
 fn numbers<const N: usize>(
     bytes: &[u8],
     keyword: Range<usize>,
@@ -257,7 +258,8 @@ fn numbers<const N: usize>(
         match parse_f32(&bytes[word.clone()]) {
             Ok(value) if count < N => values[count] = value,
             Ok(_) => {}
-            // The others may be infinite: they are unused, or a colour that `decode` handles.
+            // The others may be infinite: they are either unused or a colour, and `decode` handles
+            // that.
             Err(NumberError::NotFinite) if count >= sound => _ = values.get_mut(count).map(|value| *value = f32::NAN),
             Err(error) => report_number(report, error, word.clone(), &bytes[word]),
         }

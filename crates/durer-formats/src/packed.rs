@@ -4,13 +4,13 @@ use durer_scene::source::{AssetSource, SourceError};
 use std::io::Read as _;
 use std::sync::Arc;
 
-/// Reads a file by its name in the scene, and decompresses it if necessary, within the source's
-/// budget.
+/// Reads a file by its name in the scene, and decompresses it if it is a gzip file. The result may
+/// not exceed the source's budget.
 ///
 /// # Errors
 ///
-/// Errors of [`AssetSource::read`]; [`SourceError::Io`] if compressed data is damaged or exceeds
-/// the budget.
+/// Errors of [`AssetSource::read`], and [`SourceError::Io`] if compressed data is damaged or
+/// exceeds the budget.
 pub fn read_unpacked(source: &dyn AssetSource, name: &str) -> Result<Arc<[u8]>, SourceError> {
     let bytes = source.read(name)?;
     if !is_packed(&bytes) {
@@ -29,15 +29,15 @@ pub fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\x1f\x8b")
 }
 
-/// Decompresses gzip data to at most `budget` bytes. The last four bytes declare the size, which
-/// the output may not exceed.
+/// Decompresses gzip data to at most `budget` bytes. The output may not exceed the size declared in
+/// the last four bytes.
 ///
 /// # Errors
 ///
-/// A message if the data is damaged or would exceed the budget.
+/// Returns a message if the data is damaged or would exceed the budget.
 pub fn unpacked(bytes: &[u8], budget: u64) -> Result<Arc<[u8]>, String> {
-    // Deflate compresses at most 1032 bytes into one. The last four bytes state the size of the
-    // last member.
+    // Deflate compresses at most 1032 bytes into one. The last four bytes contain the uncompressed
+    // size of the last member.
     let most = budget.min(1032 * bytes.len() as u64);
     let declared = bytes.last_chunk().map_or(0, |size| u64::from(u32::from_le_bytes(*size)));
     if declared > most {

@@ -1,4 +1,5 @@
-//! Distant light as one equirectangular picture, which becomes the scene's environment.
+//! Renders light from infinitely far away into an equirectangular picture, the scene's environment
+//! map.
 
 use durer_diag::Span;
 use durer_image::{self as image, Image, ImageError, Layer, WriteOptions};
@@ -13,16 +14,16 @@ use std::f32::consts::{PI, TAU};
 /// Number of samples along each side of a texel.
 const PLACES: u32 = 3;
 
-/// Memory per texel in bytes while the picture is computed: its colour, and the encoded file, whose
-/// buffer may grow to twice its size.
+/// Memory in bytes per texel while the picture is computed: its colour, and the encoded file, whose
+/// buffer can grow to twice its size.
 const MAKING: u64 = 4 * size_of::<Color>() as u64;
 
-/// Renders the light from each direction in world space into a picture, and sets it as the scene's
-/// environment.
+/// Renders the light from each direction in world space into a picture, and makes it the scene's
+/// environment map.
 ///
 /// # Errors
 ///
-/// [`ImageError::Memory`] if it takes more memory than `allowed` bytes.
+/// [`ImageError::Memory`] if this needs more than `allowed` bytes of memory.
 pub(super) fn surround(
     scene: &mut Scene,
     (name, span): (&str, Span),
@@ -45,12 +46,12 @@ pub(super) fn surround(
     Ok(())
 }
 
-/// Returns the part of `memory`, in bytes, that these pictures leave.
+/// Returns how many bytes of `memory` remain besides these pictures.
 pub(super) fn beside<'a>(pictures: impl IntoIterator<Item = &'a Image>, memory: u64) -> u64 {
     pictures.into_iter().fold(memory, |left, picture| left.saturating_sub(size_of_val(&picture.pixels[..]) as u64))
 }
 
-/// Looks up the nearest texel of an equirectangular picture in a direction, y up.
+/// Returns the nearest texel of an equirectangular picture in a direction, with y up.
 pub(super) fn looked_up(picture: &Image, dir: DVec3) -> Color {
     let dir = dir.as_vec3();
     let (u, v) = (fp::atan2(dir.x, -dir.z) / TAU + 0.5, fp::atan2((dir.x * dir.x + dir.z * dir.z).sqrt(), dir.y) / PI);
@@ -58,8 +59,8 @@ pub(super) fn looked_up(picture: &Image, dir: DVec3) -> Color {
     picture.get(texel(u, picture.width), texel(v, picture.height)).unwrap_or_default()
 }
 
-/// Looks up an equirectangular picture in a direction, y up, whose first and last rows lie at the
-/// poles. Bilinear between the centres of columns and the rows.
+/// Looks up an equirectangular picture in a direction, with y up. The first and last rows are at
+/// the poles. Interpolates bilinearly between rows, and between the centres of columns.
 ///
 /// Source: measured with Mitsuba 3.9, whose `envmap` has this layout.
 pub(super) fn between_poles(picture: &Image, dir: DVec3) -> Color {
@@ -75,8 +76,8 @@ pub(super) fn between_poles(picture: &Image, dir: DVec3) -> Color {
     row(above).lerp(row(above + 1), y - above as f32)
 }
 
-/// Bilinear lookup at a position in picture widths and heights, from the upper left corner. The
-/// picture repeats beyond its borders.
+/// Looks up a picture with bilinear interpolation. `place` is a fraction of the picture's width and
+/// height, from the upper left corner. The picture repeats beyond its borders.
 pub(super) fn between(image: &Image, place: Vec2) -> Color {
     let (width, height) = (image.width as i64, image.height as i64);
     let (x, y) = (place.x * width as f32 - 0.5, place.y * height as f32 - 0.5);
@@ -90,7 +91,7 @@ pub(super) fn between(image: &Image, place: Vec2) -> Color {
     upper.lerp(texel(0, 1).lerp(texel(1, 1), x - low_x), y - low_y)
 }
 
-/// Returns the texels for the light of all directions, in the layout of
+/// Computes the texels of an environment map from the light in each direction, in the layout of
 /// [`Environment`](durer_scene::texture::Environment).
 fn pixels(light: impl Fn(DVec3) -> Color + Sync, rows: u32) -> Vec<Color> {
     let columns = 2 * rows;

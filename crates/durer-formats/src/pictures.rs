@@ -1,4 +1,4 @@
-//! Reading and conversion of the pictures that materials name, for readers of whole scenes.
+//! Reads and converts the pictures used by materials, for readers of scenes.
 
 use super::model::Input;
 use super::shared_report::SharedReport;
@@ -10,11 +10,11 @@ use durer_scene::scene::{Picture, PictureBytes, Scene};
 use durer_scene::source::Digest;
 use std::sync::Arc;
 
-/// Memory in bytes per pixel needed to convert a picture, in addition to the picture: the new
+/// Memory in bytes per pixel for converting a picture, in addition to the picture itself: the new
 /// picture and its 8-bit data, raw and encoded.
 pub(super) const CHANGING: usize = 2 * size_of::<Color>();
 
-/// Reads pictures that a scene names; reports the errors.
+/// Reader of the pictures that a scene names; also converts pictures, and reports errors.
 #[derive(Clone, Copy)]
 pub(super) struct Pictures<'a> {
     pub input: &'a Input<'a>,
@@ -33,18 +33,18 @@ impl Pictures<'_> {
         self.decoded(name, at, image::decode_srgb)
     }
 
-    /// Reads a file as a picture, with `decode` as the transfer curve of its 8-bit values.
+    /// Reads a file as a picture. `decode` is the transfer function of its 8-bit values.
     pub fn decoded(&self, name: &str, at: Span, decode: fn(u8) -> f32) -> Option<Image> {
         let bytes = self.bytes(name, at)?;
         self.read(name, &bytes, decode).map_err(|error| self.complain(name, at, &error)).ok()
     }
 
-    /// Decodes a picture, with memory reserved for converting it.
+    /// Decodes a picture, and reserves the memory for converting it.
     fn read(&self, name: &str, bytes: &[u8], decode: fn(u8) -> f32) -> Result<Image, ImageError> {
         Encoded::open(bytes, name)?.read_for(CHANGING, self.input.memory, decode)
     }
 
-    /// Returns a file as an 8-bit picture; converts floating-point formats to PNG.
+    /// Returns a file as an 8-bit picture; floating-point formats are converted to PNG.
     pub fn eight_bits(&self, name: &str, at: Span) -> Option<PictureBytes> {
         let bytes = self.bytes(name, at)?;
         match Encoded::open(&bytes, name) {
@@ -60,8 +60,8 @@ impl Pictures<'_> {
         }
     }
 
-    /// Returns a file as an 8-bit picture and a factor. If a floating-point picture has values
-    /// above 1, the picture is divided by its maximum, and the factor is this maximum.
+    /// Returns a file as an 8-bit picture, and a factor on its values. A floating-point picture
+    /// with values above 1 is divided by its maximum, and the factor is that maximum.
     pub fn eight_bits_scaled(&self, name: &str, at: Span) -> Option<(PictureBytes, f32)> {
         let bytes = self.bytes(name, at)?;
         if Encoded::open(&bytes, name).is_ok_and(|encoded| encoded.depth() == Depth::Float) {
@@ -76,14 +76,14 @@ impl Pictures<'_> {
         Some((self.eight_bits(name, at)?, 1.0))
     }
 
-    /// Converts a picture from another transfer curve to sRGB if `is_color`, else to linear.
-    /// `decode` maps an 8-bit value, scaled to 0 to 1, to the linear value.
+    /// Converts a picture from another transfer function to sRGB if `is_color`, otherwise to linear
+    /// values. `decode` maps an 8-bit value, scaled to between 0 and 1, to a linear value.
     pub fn recoded(&self, picture: &Picture, at: Span, is_color: bool, decode: impl Fn(f32) -> f32) -> Option<Picture> {
-        // Converted pictures already have a standard curve.
+        // Pictures in memory were already converted to a standard transfer function.
         let PictureBytes::File(path) = &picture.bytes else { return None };
         let mut image = self.decoded(path, at, image::decode_linear)?;
         image.pixels.iter_mut().for_each(|pixel| *pixel = pixel.map(&decode).clamp(Color::ZERO, Color::ONE));
-        // Non-colour data stays linear.
+        // Data other than colours stays linear.
         let bytes = as_png(image, if is_color { Transfer::Srgb } else { Transfer::Linear })?;
         let path = format!("{path}#{}.png", &Digest::of(&bytes).to_string()[..12]);
         Some(Picture { bytes: PictureBytes::Here(path, bytes), mapping: picture.mapping })
@@ -99,8 +99,8 @@ impl Pictures<'_> {
         }
     }
 
-    /// Makes a linear picture by mapping each texel with `change`; `decode` is the transfer curve
-    /// of the source.
+    /// Creates a linear picture by applying `change` to each texel. `decode` is the transfer
+    /// function of the source.
     pub fn changed(
         &self,
         picture: &Picture,
@@ -119,8 +119,8 @@ impl Pictures<'_> {
         Some(Picture { bytes: PictureBytes::Here(path, bytes), mapping: picture.mapping })
     }
 
-    /// Joins two pictures with equal mapping (or one with itself) texel by texel. Returns the
-    /// colour picture and the factor for its values; `None` if the mappings differ.
+    /// Joins two pictures with the same mapping, or one with itself, texel by texel. Returns the
+    /// colour picture and the factor on its values; `None` if the mappings differ.
     pub fn remade(
         &self,
         [one, other]: [&Picture; 2],
@@ -158,7 +158,7 @@ impl Pictures<'_> {
     }
 }
 
-/// Error for a picture that cannot be decoded.
+/// Returns the error for a picture that cannot be decoded.
 pub(super) fn unusable(name: &str, error: &ImageError) -> Diagnostic {
     let diagnostic = Diagnostic::error(format!("the picture `{name}` cannot be used: {error}")).code("bad-file");
     match error {
@@ -169,7 +169,7 @@ pub(super) fn unusable(name: &str, error: &ImageError) -> Diagnostic {
 
 /// Adds a picture to the scene's assets; returns its asset name.
 pub(super) fn asset(scene: &mut Scene, picture: Picture, span: Span) -> FileName {
-    // The name includes the mapping, because a file can be used with several mappings.
+    // Include the mapping in the name, because a file can be used with several mappings.
     let mapping = Digest::of(format!("{:?}", picture.mapping).as_bytes()).to_string();
     let path = format!("{}#{}", picture.bytes.path(), &mapping[..12]);
     scene.assets.pictures.entry(path.clone()).or_insert(picture);
@@ -177,14 +177,14 @@ pub(super) fn asset(scene: &mut Scene, picture: Picture, span: Span) -> FileName
 }
 
 /// Returns a picture of four texels: `one` at the upper left and lower right, `other` at the other
-/// two. Also returns the factor for its values.
+/// two. Also returns the factor on its values.
 pub(super) fn checkerboard(one: Color, other: Color) -> Option<(PictureBytes, f32)> {
     let (bytes, most) = four([one, other, other, one])?;
     let PictureBytes::Here(_, bytes) = bytes else { return None };
     Some((PictureBytes::Here(format!("checkerboard-{other}-{one}.png"), bytes), most))
 }
 
-/// Returns a picture of four texels, upper row first, and the factor for its values.
+/// Returns a picture of four texels, upper row first, and the factor on its values.
 pub(super) fn four(colors: [Color; 4]) -> Option<(PictureBytes, f32)> {
     let most = colors.iter().fold(1.0, |most: f32, color| most.max(color.max_element()));
     let pixels = colors.map(|color| color / most);

@@ -1,4 +1,4 @@
-//! Reader and writer of Stanford `.ply` meshes: text and binary in both byte orders, with any
+//! Reader and writer of Stanford `.ply` meshes, as text or binary in either byte order, with any
 //! elements and properties.
 
 mod body;
@@ -19,11 +19,11 @@ use values::{AsciiValues, BinaryValues};
 use write::write;
 pub(super) use write::write_whole;
 
-/// The PLY mesh format.
+/// Mesh format entry for PLY.
 pub(super) const FORMAT: MeshFormat =
     MeshFormat { name: "PLY", extensions: &["ply"], recognise, read, known: as_it_is, write, up: Axis::Y };
 
-/// Returns true if a file begins as a PLY file does.
+/// Returns true if a file begins like a PLY file.
 fn recognise(bytes: &[u8]) -> bool {
     matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r', ..])
 }

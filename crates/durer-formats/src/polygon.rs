@@ -1,43 +1,44 @@
 //! Triangulation of polygons.
 //!
-//! A polygon of n corners becomes n - 2 triangles with its winding and without further vertices.
-//! Strictly convex polygons become fans; others are projected onto the coordinate plane of their
-//! largest projected area and cut by ear clipping. Source: Meisters, *Polygons have ears*, 1975;
-//! O'Rourke, *Computational Geometry in C*, chapter 1.
+//! A polygon with n corners becomes n - 2 triangles with the same winding and no additional
+//! vertices. Strictly convex polygons become fans. Others are projected onto the coordinate plane
+//! where their area is largest, and cut by ear clipping. Source: Meisters, *Polygons have ears*,
+//! 1975; O'Rourke, *Computational Geometry in C*, chapter 1.
 
 use durer_scene::math::Vec3;
 use std::collections::VecDeque;
 
-/// Error: the polygons of a file are too large and too irregular to be cut in reasonable time.
+/// Error: the polygons of a file are too large and too irregular to triangulate in reasonable time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct TooComplex;
 
-/// Triangulates the polygons of one file with bounded work. Reuses its buffers.
+/// Triangulator for the polygons of one file, with a limit on the total work. Reuses its buffers.
 #[derive(Default)]
 pub(super) struct Cutter {
     /// Remaining point-in-triangle tests.
     budget: u64,
-    /// Projected corners, counter-clockwise.
+    /// Projected corners in counter-clockwise order.
     points: Vec<[f64; 2]>,
     previous: Vec<u32>,
     next: Vec<u32>,
-    /// True for remaining corners that are not strictly convex: only those can lie in an ear.
+    /// True for remaining corners that are not strictly convex. Only such corners can lie inside an
+    /// ear.
     blocks: Vec<bool>,
     blockers: Vec<u32>,
-    /// Corners that may be ears.
+    /// Corners that might be ears.
     candidates: VecDeque<u32>,
     waiting: Vec<bool>,
 }
 
 impl Cutter {
-    /// Creates a cutter for a file of this many bytes. The limit on work grows with the size of the
-    /// file, and is low enough to end within reasonable time.
+    /// Creates a triangulator for a file of this many bytes. The work limit grows with the file
+    /// size, and is low enough for any file to finish in reasonable time.
     pub fn new(file_bytes: usize) -> Self {
         Cutter { budget: (1 << 28) + 256 * file_bytes as u64, ..Cutter::default() }
     }
 
-    /// Calls `emit` with the three corner indices of each triangle of a polygon with `count`
-    /// corners.
+    /// Triangulates a polygon with `count` corners; calls `emit` with the three corner indices of
+    /// each triangle.
     pub fn cut(
         &mut self,
         count: usize,
@@ -64,10 +65,11 @@ impl Cutter {
         Ok(())
     }
 
-    /// Drops the axis with the largest component of the polygon's normal, such that the projection
-    /// winds counter-clockwise.
+    /// Projects the polygon along the axis with the largest component of its normal, so that the
+    /// projection winds counter-clockwise.
     fn project(&mut self, count: usize, corner: impl Fn(usize) -> Vec3) {
-        // Newell's normal: sum of the signed areas over the edges, relative to the first corner.
+        // Newell's normal: the sum of the signed areas over all edges, relative to the first
+        // corner.
         let origin = corner(0).as_dvec3();
         let from_origin = |i: usize| corner(i).as_dvec3() - origin;
         let normal = (1..count - 1).fold(glam::DVec3::ZERO, |n, i| n + from_origin(i).cross(from_origin(i + 1)));
@@ -102,7 +104,7 @@ impl Cutter {
             let Some(tip) = self.next_ear(left)? else { continue };
             let (before, after) = (self.previous[tip as usize], self.next[tip as usize]);
             emit([before, tip, after].map(|i| i as usize));
-            // Remove the tip from the ring; only its neighbours' corners change.
+            // Remove the tip from the ring. This affects only its two neighbours.
             self.next[before as usize] = after;
             self.previous[after as usize] = before;
             self.next[tip as usize] = u32::MAX;
@@ -137,14 +139,14 @@ impl Cutter {
         }
         self.blockers.clear();
         self.blockers.extend((0..count).filter(|&i| self.blocks[i as usize]));
-        // Every other corner first: cutting neighbouring ears would make slivers.
+        // Start with every other corner: cutting neighbouring ears would create slivers.
         self.candidates.clear();
         self.candidates.extend((0..count).step_by(2).chain((1..count).step_by(2)));
         self.waiting.clear();
         self.waiting.resize(count as usize, true);
     }
 
-    /// Next corner to cut off; `None` if the next candidate is not an ear.
+    /// Returns the next corner to cut off; `None` if the next candidate is not an ear.
     fn next_ear(&mut self, left: u32) -> Result<Option<u32>, TooComplex> {
         let Some(tip) = self.candidates.pop_front() else {
             // Self-intersecting outlines can run out of ears: cut off the least harmful corner.
@@ -182,7 +184,7 @@ impl Cutter {
         Ok(true)
     }
 
-    /// Returns a corner of zero area, else a convex one, else any.
+    /// Returns a corner with zero area, otherwise a convex one, otherwise any corner.
     fn least_harm(&self, left: u32) -> u32 {
         let first = self.any_left();
         let ring = || std::iter::successors(Some(first), |&i| Some(self.next[i as usize])).take(left as usize);
@@ -213,8 +215,8 @@ impl Cutter {
     }
 }
 
-/// Returns true if a quadrilateral is split along the diagonal from its first corner: always,
-/// unless only the other diagonal lies inside.
+/// Returns true if a quadrilateral should be split along the diagonal from its first corner. This
+/// is the case unless only the other diagonal lies inside.
 fn splits_at_first(corners: [Vec3; 4]) -> bool {
     let [a, b, c, d] = corners.map(|p| p.as_dvec3());
     let normal = (c - a).cross(d - b);
@@ -224,7 +226,7 @@ fn splits_at_first(corners: [Vec3; 4]) -> bool {
     first || !second
 }
 
-/// Twice the signed area of a triangle, positive if it is counter-clockwise.
+/// Returns twice the signed area of a triangle; positive if it winds counter-clockwise.
 fn area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }

@@ -1,11 +1,12 @@
 use super::*;
 
-/// Triangulates a polygon in a tilted plane; returns the triangles and twice their areas, signed
-/// relative to the polygon's normal.
+/// Triangulates a polygon in a tilted plane. Returns the triangles and twice their signed areas,
+/// positive on the side of the polygon's normal.
 fn cut(outline: &[[f32; 2]]) -> (Vec<[usize; 3]>, Vec<f64>) {
     let corner = |i: usize| {
         let [x, y] = outline[i];
-        // An affine map of determinant 1 in the xy plane: areas projected along z are unchanged.
+        // An affine map with determinant 1 in the xy plane, so that areas projected along z are
+        // unchanged.
         Vec3::new(x, y, 0.25 * x + 0.5 * y)
     };
     let mut triangles = Vec::new();
@@ -40,7 +41,7 @@ fn concave_outlines_keep_area_and_winding() {
             [x as f32, y as f32]
         })
         .collect();
-    // A square with a square hole, joined by a bridge that is traversed twice.
+    // A square with a square hole; the bridge between them is traversed twice.
     let ring =
         [[0, 0], [4, 0], [4, 4], [0, 4], [0, 0], [1, 1], [1, 3], [3, 3], [3, 1], [1, 1]].map(|p| p.map(|c| c as f32));
     let comb: Vec<[f32; 2]> = (0..200)

@@ -1,5 +1,5 @@
-//! Point lights with a directional distribution, stored as measured light profiles: one for each of
-//! red, green and blue, or one if they are equal.
+//! Point lights with a directional distribution, stored as measured light profiles: one each for
+//! red, green and blue, or a single one if they are equal.
 
 use durer_diag::Span;
 use durer_scene::describe::FileName;
@@ -10,8 +10,8 @@ use durer_scene::scene::{Scene, Spanned};
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
-/// Axes of a profile in the light's own space: the axis of vertical angle 0, the direction of
-/// horizontal angle 0, and the direction of horizontal angle 90 degrees.
+/// Axes of a light profile in the light's own space: the direction of vertical angle 0, of
+/// horizontal angle 0, and of horizontal angle 90 degrees.
 #[derive(Clone, Copy)]
 pub(super) struct Axes {
     pub down: Vec3,
@@ -20,20 +20,20 @@ pub(super) struct Axes {
 }
 
 impl Axes {
-    /// Axes about z, from x towards -y: horizontal angles of profiles grow from front towards front
-    /// × down. A mirroring transform reverses that, and the side flips.
+    /// Returns axes about z, from x towards -y: in profiles, horizontal angles grow from front
+    /// towards front × down. A mirroring transform reverses this, so the side is flipped.
     pub fn about_z(map: &DAffine3) -> Axes {
         let side = if map.matrix3.determinant() < 0.0 { Vec3::Y } else { Vec3::NEG_Y };
         Axes { down: Vec3::Z, front: Vec3::X, side }
     }
 
-    /// Axes about y, from x towards z.
+    /// Returns axes about y, from x towards z. See [`Axes::about_z`].
     pub fn about_y(map: &DAffine3) -> Axes {
         let side = if map.matrix3.determinant() < 0.0 { Vec3::NEG_Z } else { Vec3::Z };
         Axes { down: Vec3::Y, front: Vec3::X, side }
     }
 
-    /// Unit direction of a vertical and a horizontal angle in degrees.
+    /// Returns the unit direction for a vertical and a horizontal angle in degrees.
     fn direction(&self, vertical: f32, horizontal: f32) -> Vec3 {
         let turn = |degrees: f32| fp::sin_cos_degrees(f64::from(degrees));
         let ((sin, cos), (s, c)) = (turn(vertical), turn(horizontal));
@@ -42,17 +42,17 @@ impl Axes {
     }
 }
 
-/// `count` equal steps from 0 to `last`, both included.
+/// Returns the ends of `count` equal steps from 0 to `last`, including both.
 pub(super) fn steps(last: f32, count: u32) -> Vec<f32> {
     (0..=count).map(|i| last * i as f32 / count as f32).collect()
 }
 
-/// Light profiles at one position, each with its colour.
+/// Measured light profiles, each with its colour, that together form one coloured point light.
 pub(super) struct ProfileLights(Vec<(Vec3, Profile)>);
 
 impl ProfileLights {
-    /// Samples `light`, a function of the direction in the light's own space, at vertical and
-    /// horizontal angles in degrees.
+    /// Samples the intensity `light`, a function of the direction in the light's own space, at
+    /// vertical and horizontal angles in degrees.
     pub fn new([vertical, horizontal]: [Vec<f32>; 2], axes: &Axes, light: impl Fn(Vec3) -> Color) -> ProfileLights {
         let mut values = Vec::with_capacity(vertical.len() * horizontal.len());
         for &across in &horizontal {
@@ -75,7 +75,7 @@ impl ProfileLights {
         })
     }
 
-    /// Luminous flux of all profiles together.
+    /// Returns the total luminous flux of all profiles.
     pub fn flux(&self) -> f32 {
         let flux: f64 = self.0.iter().map(|(hue, light)| f64::from(hue.dot(LUMINANCE)) * light.flux()).sum();
         flux as f32

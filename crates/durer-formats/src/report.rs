@@ -1,32 +1,34 @@
-//! Collector of the diagnostics of one file.
+//! Collector for the diagnostics of one file.
 
 use durer_diag::{Diagnostic, Diagnostics, ERROR_LIMIT, Severity, Span};
 use std::ops::Range;
 
-/// Collects the diagnostics of one file and forwards them in the order of their spans.
+/// Collects the diagnostics of one file, and forwards them sorted by their spans.
 ///
 /// Readers may process a file in several passes; sorting hides this from the user.
 pub(super) struct Report {
     file: u32,
     found: Vec<Diagnostic>,
     errors: usize,
-    /// Maximum number of errors.
+    /// Maximum number of errors to collect.
     room: usize,
 }
 
 impl Report {
-    /// Creates an empty report for a file, limited to the errors that `diagnostics` can still take.
+    /// Creates an empty report for a file. Its error limit is the number of errors that
+    /// `diagnostics` can still take.
     pub fn new(file: u32, diagnostics: &Diagnostics) -> Self {
         let room = ERROR_LIMIT.saturating_sub(diagnostics.error_count());
         Report { file, found: Vec::new(), errors: 0, room }
     }
 
-    /// Creates an empty report for a part of the file, to be joined to this one.
+    /// Creates an empty report for a part of the file, to be joined to this report later.
     pub fn part(&self) -> Report {
         Report { file: self.file, found: Vec::new(), errors: 0, room: self.room.saturating_sub(self.errors) }
     }
 
-    /// Appends the report of the next part, up to the limit of errors, as if both were one part.
+    /// Appends the report of the next part, up to the error limit, as if both parts had been read
+    /// as one.
     pub fn join(&mut self, part: Report) {
         for diagnostic in part.found {
             if self.is_full() {
@@ -37,16 +39,18 @@ impl Report {
         }
     }
 
-    /// Adds an error at a byte range. The caller can set labels and help on the returned
+    /// Adds an error at a byte range. The caller can add labels and help to the returned
     /// diagnostic.
     pub fn error(&mut self, at: Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
         self.add(at, Diagnostic::error(message))
     }
 
+    /// Adds a warning at a byte range.
     pub fn warning(&mut self, at: Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
         self.add(at, Diagnostic::warning(message))
     }
 
+    /// Adds a note at a byte range.
     pub fn note(&mut self, at: Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
         self.add(at, Diagnostic::note(message))
     }
@@ -61,8 +65,8 @@ impl Report {
         &mut self.found[index]
     }
 
-    /// Span of a byte range. [`read_mesh`](crate::read_mesh) has checked that the file is small
-    /// enough.
+    /// Returns the span of a byte range. [`read_mesh`](crate::read_mesh) has checked that offsets
+    /// fit into 32 bits.
     pub fn span(&self, at: Range<usize>) -> Span {
         Span { file: self.file, start: at.start as u32, end: at.end as u32 }
     }

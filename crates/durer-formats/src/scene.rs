@@ -1,5 +1,5 @@
-//! Readers of whole scenes, one row of [`SCENE_FORMATS`] each. A mesh file is read as a scene of
-//! one mesh.
+//! Readers of scene files; [`SCENE_FORMATS`] has one entry for each format. A mesh file is read as
+//! a scene with one mesh.
 
 use super::model::SceneFormat;
 pub use super::model::{Input, Output, WriteScene};
@@ -19,8 +19,8 @@ use glam::DVec3;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The scene formats, in the order in which content is tried. Any other file is in the scene
-/// language.
+/// Scene formats, in the order in which a file's content is checked. Any other file is in the
+/// scene language.
 pub const SCENE_FORMATS: &[SceneFormat] = &[
     #[cfg(feature = "gltf")]
     super::gltf::FORMAT,
@@ -37,34 +37,34 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
     alone(&stl::FORMAT),
 ];
 
-/// Scene format of files that contain one mesh.
+/// Returns the scene format for files that contain a single mesh.
 const fn alone(format: &MeshFormat) -> SceneFormat {
     let MeshFormat { name, extensions, recognise, up, .. } = *format;
     SceneFormat { name, extensions, recognise, read: one_mesh, write: None, up, whole: false, light_hint: None }
 }
 
-/// Maximum height in pixels of an environment map that is resampled to another up axis.
+/// Maximum height in pixels of an environment map that is resampled for another up axis.
 const MAX_ROWS: u32 = 2048;
 
-/// Scene format for the extension of a file name.
+/// Returns the scene format for a file name, by its extension.
 pub fn scene_format_for(name: &str) -> Option<&'static SceneFormat> {
     let extension = extension(name);
     SCENE_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
 }
 
-/// Format of a model: by the extension of its name, else by its content. `None`: the file is in the
-/// scene language, or of an unknown format.
+/// Returns the format of a model: by the extension of its name, otherwise by its content. `None` if
+/// the file is in the scene language or of an unknown format.
 pub fn find_scene_format(bytes: &[u8], name: &str) -> Option<&'static SceneFormat> {
     scene_format_for(name).or_else(|| SCENE_FORMATS.iter().find(|format| (format.recognise)(bytes)))
 }
 
-/// Error for a file that is read as one format (`None`: the scene language) while its first bytes
-/// are of another.
+/// Returns an error if a file is to be read as one format (`None`: the scene language) but its
+/// first bytes are of another.
 pub fn other_format(bytes: &[u8], file: u32, name: &str, format: Option<&SceneFormat>) -> Option<Diagnostic> {
     mistaken(bytes, file, name, format.map_or(&[], |format| format.extensions))
 }
 
-/// Reads a model as a scene, and adds the camera, light and material that it lacks.
+/// Reads a model as a scene, and adds a camera, lights and a material if they are missing.
 pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let mut scene = (format.read)(input, diagnostics)?;
     scene.up = Some(input.scene_defaults.up.unwrap_or(format.up));
@@ -93,27 +93,27 @@ fn look(scene: &mut Scene, input: &Input, name: &str, bytes: &Arc<[u8]>, diagnos
     is_sound.then_some(())
 }
 
-/// Refuses a view file: this build has no reader of Radiance's files.
+/// Reports that this build cannot read Radiance's view files.
 #[cfg(not(feature = "radiance"))]
 fn look(_: &mut Scene, _: &Input, name: &str, _: &Arc<[u8]>, diagnostics: &mut Diagnostics) -> Option<()> {
     diagnostics.push(Diagnostic::error(format!("`{name}`: this build cannot read views of Radiance")));
     None
 }
 
-/// Reads a file that an option names, at any path. Returns its name and bytes.
+/// Reads a file named by an option, at any path. Returns its name and bytes.
 fn named(input: &Input, path: &Path, diagnostics: &mut Diagnostics) -> Option<(String, Arc<[u8]>)> {
     let read = input.source.read_user_file(path);
     let refuse = |error: SourceError| diagnostics.push(Diagnostic::error(error.to_string()).code("missing-file"));
     Some((path.display().to_string(), read.map_err(refuse).ok()?))
 }
 
-/// A scene of one mesh without a material.
+/// Reads a mesh file as a scene of one mesh without a material.
 fn one_mesh(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let span = Span { file: input.file, start: 0, end: 0 };
     let data = read_mesh(input.bytes, input.file, input.name, diagnostics)?;
     input.files.borrow_mut().cut(input.file, 0, diagnostics);
     let data = if data.triangles.is_empty() && !data.positions.is_empty() {
-        // A file of vertices without faces is a point cloud.
+        // A file with vertices but no faces is a point cloud.
         let points: Vec<u32> = (0..data.positions.len() as u32).collect();
         let note = Diagnostic::note(sticks::explained(0, points.len())).code("points-and-lines");
         diagnostics.push(note.at(span));
@@ -127,8 +127,8 @@ fn one_mesh(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     Some(scene)
 }
 
-/// Replaces the background and the directional lights with an environment map. The map's upper
-/// border points along `up`.
+/// Replaces the background and the directional lights by an environment map, whose upper edge
+/// points along `up`.
 fn surround(scene: &mut Scene, name: &str, bytes: Arc<[u8]>, up: Axis, memory: u64) -> Result<(), ImageError> {
     scene.background = Background { color: Vec3::ZERO, ..Background::default() };
     let near = |light: &Spanned<Light>| light.value.position().is_some();
@@ -136,7 +136,7 @@ fn surround(scene: &mut Scene, name: &str, bytes: Arc<[u8]>, up: Axis, memory: u
     let decoded = || Encoded::open(&bytes, name).and_then(|encoded| encoded.read(memory, image::decode_srgb));
     let sides = Sides::new(up);
     let turned = |dir: DVec3| DVec3::new(dir.dot(sides.right), dir.dot(sides.up), dir.dot(sides.front));
-    // Compiling the scene reports pictures that cannot be decoded.
+    // If a picture cannot be decoded, compiling the scene reports it.
     if let Some(picture) = (up != Axis::Y).then(decoded).and_then(Result::ok) {
         let light = |dir: DVec3| panorama::looked_up(&picture, turned(dir));
         let memory = panorama::beside([&picture], memory);

@@ -1,10 +1,10 @@
-//! Collector of the diagnostics of a file, shared by the parts of a reader.
+//! Collector for the diagnostics of a file, shared by all parts of a reader.
 
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
-/// Diagnostics, and the messages that are reported once only.
+/// Collector for the diagnostics of a scene file that all parts of its reader share by reference.
 #[derive(Default)]
 pub(crate) struct SharedReport {
     found: RefCell<Diagnostics>,
@@ -25,12 +25,12 @@ impl SharedReport {
         self.found.borrow_mut().extend(others);
     }
 
-    /// Reports an invalid value.
+    /// Reports an error about an invalid value.
     pub fn bad(&self, at: Span, message: impl Into<String>) {
         self.push(Diagnostic::error(message).code("bad-value").at(at));
     }
 
-    /// Reports an invalid value with a suggestion.
+    /// Reports an error about an invalid value, with a suggestion.
     pub fn bad_with(&self, at: Span, message: impl Into<String>, help: Option<String>) {
         self.push(Diagnostic { help, ..Diagnostic::error(message).code("bad-value").at(at) });
     }
@@ -41,12 +41,12 @@ impl SharedReport {
         self.push(Diagnostic::warning(message).code(NO_COUNTERPART).at(at));
     }
 
-    /// Warns as [`SharedReport::other`] does, once per message.
+    /// Warns as [`SharedReport::other`] does, but only once per message.
     pub fn once(&self, at: Span, message: impl Into<String>) {
         self.warn_once(NO_COUNTERPART, at, message);
     }
 
-    /// Warns with a code, once per message.
+    /// Warns with a code, but only once per message.
     pub fn warn_once(&self, code: &'static str, at: Span, message: impl Into<String>) {
         let message = message.into();
         if self.once.borrow_mut().insert(message.clone()) {
@@ -54,12 +54,12 @@ impl SharedReport {
         }
     }
 
-    /// Returns true if no more errors are collected.
+    /// Returns true if no more errors can be added.
     pub fn is_full(&self) -> bool {
         self.found.borrow().is_full()
     }
 
-    /// Returns true if there is an error.
+    /// Returns true if at least one error was reported.
     pub fn has_errors(&self) -> bool {
         self.found.borrow().has_errors()
     }
@@ -70,7 +70,7 @@ impl SharedReport {
     }
 }
 
-/// Help text that suggests a similar word, if there is one.
+/// Returns help text that suggests a similar word, if there is one.
 pub(crate) fn suggest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
     durer_diag::did_you_mean(word, known).map(|suggestion| format!("did you mean `{suggestion}`?"))
 }

@@ -1,9 +1,9 @@
-//! Signatures of file formats: first bytes that identify a file, regardless of its name.
+//! Signatures of file formats: first bytes that identify a file whatever its name.
 
 use durer_diag::{Diagnostic, Span};
 
-/// Signatures: the bytes, the kind of file, and the extension that its name should have, or `None`
-/// if it is not read as a scene.
+/// Signatures: the bytes, the kind of file, and the extension that its name should have. `None` if
+/// Dürer does not read such files as scenes.
 const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
     (b"glTF", "binary glTF", Some("glb")),
     (b"ply\n", "PLY", Some("ply")),
@@ -40,11 +40,11 @@ const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
     (b"#usda", "USD", None),
 ];
 
-/// Photometric file: it describes a light, not a scene.
+/// Kind of a photometric file, which describes a light, not a scene.
 const LUMINAIRE: &str = "a measured luminaire (IES)";
 
-/// Returns an error if a file's signature contradicts its format, whose extensions are
-/// `extensions`.
+/// Returns an error if a file's signature shows that it has another format than the one with these
+/// extensions.
 pub(super) fn mistaken(bytes: &[u8], file: u32, name: &str, extensions: &[&str]) -> Option<Diagnostic> {
     let (start, what, own) = SIGNATURES.iter().find(|(start, ..)| bytes.starts_with(start))?;
     if own.is_some_and(|own| extensions.contains(&own)) {
@@ -52,7 +52,7 @@ pub(super) fn mistaken(bytes: &[u8], file: u32, name: &str, extensions: &[&str])
     }
     let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
     let stem = last.rsplit_once('.').map_or(last, |(stem, _)| stem);
-    let message = format!("`{last}` is {what}, by its first bytes");
+    let message = format!("`{last}` is {what}, according to its first bytes");
     let error = Diagnostic::error(message).code("bad-file").at(Span {
         file,
         start: 0,
@@ -80,7 +80,7 @@ mod tests {
         };
         assert_eq!(
             messages(b"glTF\x02\0\0\0", "a/b.c.obj", &["obj"]).unwrap(),
-            "`b.c.obj` is binary glTF, by its first bytes (rename it to `b.c.glb`)"
+            "`b.c.obj` is binary glTF, according to its first bytes (rename it to `b.c.glb`)"
         );
         assert!(messages(b"ply\r\nformat", "b.stl", &["stl"]).unwrap().contains("`b.stl` is PLY"));
         assert!(messages(b"\x89PNG\r\n", "b", &[]).unwrap().contains("a picture is not a model"));

@@ -1,4 +1,4 @@
-//! Vertex normals for meshes that are smooth but have no normals in their file.
+//! Vertex normals for smooth meshes whose file contains no normals.
 
 use durer_scene::math::{Vec3, fp};
 use durer_scene::shape::MeshData;
@@ -6,11 +6,11 @@ use durer_scene::shape::mesh::NO_INDEX;
 use std::array::from_fn;
 use std::collections::HashMap;
 
-/// Computes normals for the triangles without any: at each vertex the mean of the adjacent face
-/// normals, weighted by the angle of each face there.
+/// Computes normals for the triangles that have none. The normal at a vertex is the mean of the
+/// adjacent face normals, weighted by the angle of each face at the vertex.
 ///
-/// `part(triangle, corner)` separates vertices at the same position: corners share a normal if they
-/// have the same position and part. `None` leaves the triangle as it is.
+/// `part(triangle, corner)` separates vertices at the same position: two corners share a normal if
+/// they have the same position and the same part. `None` leaves the triangle unchanged.
 ///
 /// Source: Thürmer and Wüthrich, *Computing Vertex Normals from Polygonal Facets*, Journal of
 /// Graphics Tools 3(1), 1998.

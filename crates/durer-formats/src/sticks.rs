@@ -1,4 +1,4 @@
-//! Visible geometry for lines and points, which have no surface: sticks and balls.
+//! Visible geometry for lines and points, which have no surface: thin sticks and small balls.
 
 use super::report::counted;
 use durer_scene::math::{Vec3, fp};
@@ -20,20 +20,22 @@ pub(super) fn ball(center: Vec3, radius: f32) -> Node {
     Node::Primitive(Sphere { center, radius }.into())
 }
 
-/// Number of sides of a stick made of triangles.
+/// Number of sides of a tessellated stick.
 const SIDES: u32 = 6;
-/// Radii of lines without one and of points, as fractions of the diagonal of the bounds.
+/// Radii of points, and of lines without a radius, as fractions of the diagonal of the bounding
+/// box.
 const LINE: f32 = 0.006;
 const POINT: f32 = 0.015;
-/// Maximum number of lines, and of points, that become geometry. Of more, every n-th is shown.
+/// Maximum number of lines, and of points, that become geometry. If there are more, every n-th is
+/// shown.
 const MAX: usize = 1 << 21;
 
-/// Step such that one in `step` of `count` items is shown.
+/// Returns n such that at most [`MAX`] items remain if only every n-th of `count` is shown.
 fn step(count: usize) -> usize {
     count.div_ceil(MAX).max(1)
 }
 
-/// Message about lines and points that are shown as sticks and balls.
+/// Message that lines and points are shown as sticks and balls.
 pub(super) fn explained(lines: usize, points: usize) -> String {
     let all =
         [(lines, "line", "lines"), (points, "point", "points")].map(|(count, one, many)| match (count, step(count)) {
@@ -45,14 +47,14 @@ pub(super) fn explained(lines: usize, points: usize) -> String {
     format!("{all} without a surface: thin sticks and small balls are shown")
 }
 
-/// Builds thin sticks for lines between vertices and small balls for single vertices, all of
-/// triangles. Vertices keep their colours and texture coordinates.
+/// Builds a triangle mesh of thin sticks for lines between vertices and small balls for single
+/// vertices. Vertices keep their colours and texture coordinates.
 pub(super) fn thickened(data: &MeshData, lines: &[[u32; 2]], points: &[u32]) -> MeshData {
     let used = || lines.iter().flatten().chain(points).map(|&i| data.positions[i as usize]);
     let low = used().reduce(Vec3::min).unwrap_or_default();
     let size = (used().reduce(Vec3::max).unwrap_or_default() - low).length();
     let size = if size > 0.0 && size.is_finite() { size } else { 1.0 };
-    // Limits the radius so that balls of a dense point cloud just touch their neighbours on a
+    // Limit the radius so that the balls of a dense point cloud just touch their neighbours on a
     // surface.
     let shown_points = points.len().div_ceil(step(points.len()));
     let ball = POINT.min(0.6 / (shown_points as f32).sqrt());
@@ -91,7 +93,8 @@ pub(super) fn thickened(data: &MeshData, lines: &[[u32; 2]], points: &[u32]) -> 
     made
 }
 
-/// Appends a vertex to `mesh`, with the colour and texture coordinates of `other`'s `vertex`.
+/// Appends a vertex to `mesh`, with the colour and texture coordinates of vertex `vertex` of
+/// `other`.
 fn push_vertex(mesh: &mut MeshData, other: &MeshData, vertex: u32, position: Vec3, normal: Vec3) {
     mesh.positions.push(position);
     mesh.normals.push(normal);

@@ -1,8 +1,9 @@
-//! Reader and writer of stereolithography `.stl` meshes: triangles only, as text or binary.
+//! Reader and writer of stereolithography `.stl` meshes, which contain only triangles, as text or
+//! binary.
 //!
-//! Source: *StereoLithography Interface Specification*, 3D Systems, 1989. The order of its corners
-//! determines a facet's normal, so the stored normals are ignored, as are the colours that some
-//! programs put into the last two bytes of a facet.
+//! Source: *StereoLithography Interface Specification*, 3D Systems, 1989. The order of a facet's
+//! corners determines its normal, so the stored normals are ignored, as are the colours that some
+//! programs store in the last two bytes of a facet.
 
 mod text;
 mod write;
@@ -16,21 +17,22 @@ use durer_scene::shape::mesh::{MeshData, place_key};
 use std::collections::HashMap;
 use write::write;
 
-/// Size in bytes of the header of a binary file: free text, and the number of facets.
+/// Size in bytes of the header of a binary file: free text, then the number of facets.
 const HEAD: usize = 84;
 /// Size in bytes of a facet: normal, three corners, two unspecified bytes.
 const FACET: usize = 50;
 
-/// The STL mesh format.
+/// Mesh format entry for STL.
 pub(super) const FORMAT: MeshFormat =
     MeshFormat { name: "STL", extensions: &["stl"], recognise, read, known: as_it_is, write, up: Axis::Z };
 
-/// Returns true if a file begins as an STL file does, or has the size that a binary header implies.
+/// Returns true if a file begins like an STL file, or has the size that follows from a binary
+/// header.
 fn recognise(bytes: &[u8]) -> bool {
     is_text(bytes) || promised(bytes).is_some_and(|count| count > 0 && size_of_facets(count) == bytes.len() as u64)
 }
 
-/// Returns true if a file is text; binary files may begin with the word `solid` too.
+/// Returns true if a file is text. Binary files can begin with the word `solid` too.
 fn is_text(bytes: &[u8]) -> bool {
     let head =
         bytes[..bytes.len().min(1 << 12)].strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes[..bytes.len().min(1 << 12)]);
@@ -41,7 +43,7 @@ fn is_text(bytes: &[u8]) -> bool {
     begins && !exact && !head.contains(&0) && (has(b"facet") || has(b"endsolid") || head.len() < HEAD)
 }
 
-/// Number of facets in the header of a binary file.
+/// Returns the number of facets stated in the header of a binary file.
 fn promised(bytes: &[u8]) -> Option<u32> {
     Some(u32::from_le_bytes(*bytes.get(80..)?.first_chunk()?))
 }
@@ -103,7 +105,8 @@ fn read_binary(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
     }
 }
 
-/// Builds a mesh, merging corners at equal positions: STL has no shared vertices.
+/// Builder of a mesh from STL facets. Merges corners at equal positions, because STL has no shared
+/// vertices.
 #[derive(Default)]
 struct Builder {
     data: MeshData,

@@ -1,4 +1,4 @@
-//! Shared tools for tests of readers: read texts as scenes and collect the findings.
+//! Shared helpers for tests of readers: read texts as scenes and format the diagnostics.
 
 use crate::folder::FolderSource;
 use crate::scene::{Input, find_scene_format, read_model};
@@ -10,8 +10,8 @@ use std::path::Path;
 use std::sync::Arc;
 use tempfile::TempDir;
 
-/// Reads a text as a file in a folder. Returns findings as `file:line:column severity message`, in
-/// order.
+/// Reads a text as a file in a folder. Returns diagnostics as `file:line:column severity message`,
+/// in order.
 pub(super) fn read_in(folder: &Path, name: &str, text: impl AsRef<[u8]>) -> (Option<Scene>, Vec<String>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let path = folder.join(name);
@@ -21,8 +21,8 @@ pub(super) fn read_in(folder: &Path, name: &str, text: impl AsRef<[u8]>) -> (Opt
     (loaded.map(|loaded| loaded.scene), lines(&diagnostics, &files))
 }
 
-/// Reads a model with this crate's own test build, whose size limits are lower than those of the
-/// build that [`read_in`] uses through the crate `durer`.
+/// Reads a model with this crate's own test build, whose size limits are lower. [`read_in`] uses
+/// the crate `durer`, which is linked against the normal build.
 pub(super) fn read_with_low_limits(name: &str, text: &str) -> (Option<Scene>, Vec<String>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let bytes: Arc<[u8]> = text.as_bytes().into();
@@ -35,7 +35,7 @@ pub(super) fn read_with_low_limits(name: &str, text: &str) -> (Option<Scene>, Ve
     (scene, lines(&diagnostics, &files.borrow()))
 }
 
-/// Formats findings as `file:line:column severity message (help)`.
+/// Formats diagnostics as `file:line:column severity message (help)`.
 fn lines(diagnostics: &Diagnostics, files: &Files) -> Vec<String> {
     let line = |found: &Diagnostic| {
         let severity = match found.severity {
@@ -54,7 +54,7 @@ fn lines(diagnostics: &Diagnostics, files: &Files) -> Vec<String> {
     diagnostics.iter().map(line).collect()
 }
 
-/// Creates a temporary folder with some files.
+/// Creates a temporary folder containing some files.
 pub(super) fn folder(files: &[(&str, &[u8])]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in files {

@@ -1,4 +1,4 @@
-//! Tests that apply to all mesh formats, and tools for the tests of each.
+//! Tests of all mesh formats, and helpers for the tests of each format.
 
 use super::*;
 use durer_diag::{Files, Severity};
@@ -6,7 +6,7 @@ use durer_scene::math::random::Random;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Reads bytes as a file of a given name. Returns findings as `line:column severity: message`.
+/// Reads bytes as a file with a given name. Returns diagnostics as `line:column severity: message`.
 pub(super) fn read(bytes: &[u8], name: &str) -> (Option<MeshData>, Vec<String>) {
     let mut files = Files::default();
     let file = files.add(name, bytes.into());
@@ -25,14 +25,14 @@ pub(super) fn read(bytes: &[u8], name: &str) -> (Option<MeshData>, Vec<String>) 
     (mesh, diagnostics.iter().map(line).collect())
 }
 
-/// Reads a file that must have no findings.
+/// Reads a file that must cause no diagnostics.
 pub(super) fn read_clean(bytes: &[u8], name: &str) -> MeshData {
     let (mesh, findings) = read(bytes, name);
     assert_eq!(findings, [""; 0], "{name}");
     mesh.unwrap()
 }
 
-/// Reads all prefixes of a file, and mutated copies of it, to find panics.
+/// Reads all prefixes of a file, and mutated copies of it, to check that no reader panics.
 pub(super) fn abuse(bytes: &[u8], name: &str) {
     let try_it = |bytes: &[u8]| {
         if let Some(mesh) = read(bytes, name).0 {
@@ -49,7 +49,7 @@ pub(super) fn abuse(bytes: &[u8], name: &str) {
             match random(3) {
                 0 => changed[at] ^= 1 << random(8),
                 1 => changed[at] = random(256) as u8,
-                // Bytes from elsewhere in the file make realistic mistakes.
+                // Bytes from elsewhere in the file cause realistic errors.
                 _ => changed[at] = changed[random(changed.len())],
             }
         }
@@ -81,9 +81,9 @@ fn format_follows_from_name_or_content() {
         assert_eq!(read_clean(ply, name), expected);
     }
     assert!(read(obj, "mesh.ply").1[0].contains("expected `ply`"));
-    let known = "known are PLY (.ply), Wavefront OBJ (.obj), STL (.stl)";
+    let known = "known formats are PLY (.ply), Wavefront OBJ (.obj), STL (.stl)";
     assert_eq!(read(b"?", "m").1, [format!("- Error: `m` is not a mesh file of a known format ({known})")]);
-    assert!(read(b"?", "m.objj").1[0].contains("did you mean `.obj`? Known are"));
+    assert!(read(b"?", "m.objj").1[0].contains("did you mean `.obj`? Known formats are"));
     assert!(too_large(u32::MAX as u64, "big.obj").unwrap().message.contains("4294967295 bytes"));
     assert!(too_large(1 << 20, "small.obj").is_none());
     for format in MESH_FORMATS {

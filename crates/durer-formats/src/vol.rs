@@ -1,8 +1,8 @@
-//! Reader and writer of Mitsuba's volume files: densities on a grid.
+//! Reader and writer of Mitsuba's volume files, which contain densities on a grid.
 //!
-//! Layout, little-endian: `VOL`, the version (3), then as 32-bit numbers the type (1: `f32`), the
-//! counts along x, y and z, the channels (1), the six coordinates of the bounds, and the values, x
-//! fastest. Source: Mitsuba 3's documentation, `gridvolume`.
+//! Layout, little-endian: `VOL`, the version (3), then as 32-bit numbers: the type (1 for `f32`),
+//! the counts along x, y and z, the number of channels (1), the six coordinates of the bounds, and
+//! the values with x varying fastest. Source: Mitsuba 3's documentation, `gridvolume`.
 
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_scene::math::{Aabb, Vec3};
@@ -10,12 +10,12 @@ use durer_scene::medium::DensityGrid;
 
 const HEADER: usize = 48;
 
-/// Reads densities that take at most `memory` bytes.
+/// Reads a density grid and its bounds. The densities may take at most `memory` bytes.
 pub fn read(bytes: &[u8], file: u32, memory: u64, diagnostics: &mut Diagnostics) -> Option<(Aabb, DensityGrid)> {
     with_diagnostics(parse(bytes, memory), bytes, file, diagnostics)
 }
 
-/// Returns the mean of a file's values, which have one or three channels.
+/// Returns the mean of a file's values, which can have one or three channels.
 pub fn mean(bytes: &[u8], file: u32, memory: u64, diagnostics: &mut Diagnostics) -> Option<Vec3> {
     let (_, _, channels, values) = with_diagnostics(values(bytes, &[1, 3], memory), bytes, file, diagnostics)?;
     let mut sums = [0.0; 3];
@@ -46,8 +46,8 @@ fn parse(bytes: &[u8], memory: u64) -> Result<(Aabb, DensityGrid), ParseError> {
     grid.map(|grid| (bounds, grid)).ok_or((HEADER, "the densities cannot be used".into()))
 }
 
-/// Bounds, counts along the axes, channels and values of a file. `channels` lists the numbers of
-/// channels that the caller supports.
+/// Reads the bounds, the counts along the axes, the number of channels and the values of a file.
+/// `channels` lists the numbers of channels that the caller supports.
 fn values(bytes: &[u8], channels: &[usize], memory: u64) -> Result<(Aabb, [u32; 3], usize, Vec<f32>), ParseError> {
     if !bytes.starts_with(b"VOL") || bytes.get(3) != Some(&3) {
         return Err((0, "not a Mitsuba volume file: it must begin with `VOL` and version 3".into()));
@@ -93,7 +93,7 @@ fn values(bytes: &[u8], channels: &[usize], memory: u64) -> Result<(Aabb, [u32; 
     Ok((Aabb { min, max }, counts.map(|n| n as u32), channels, values))
 }
 
-/// Encodes a volume file.
+/// Encodes a density grid as a volume file.
 pub fn write(bounds: &Aabb, grid: &DensityGrid) -> Vec<u8> {
     let mut bytes = b"VOL\x03".to_vec();
     let [x, y, z] = grid.counts();
@@ -135,7 +135,7 @@ mod tests {
         assert_eq!(changed(24, f32::NAN.to_le_bytes()), 24);
         assert_eq!(changed(52, (-1.0_f32).to_le_bytes()), 52);
         assert_eq!(parse(&file(), 7).unwrap_err().0, 8);
-        // Counts larger than any file.
+        // Counts larger than any file can contain.
         assert_eq!(changed(8, i32::MAX.to_le_bytes()), file().len());
     }
 }

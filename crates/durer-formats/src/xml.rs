@@ -1,6 +1,6 @@
-//! Pull parser of XML whose elements and attributes have spans.
+//! Pull parser for XML; elements and attributes have spans.
 //!
-//! It rejects two features that scenes do not need: document type declarations, with which a few
+//! Two features that scenes do not need are rejected: document type declarations, with which a few
 //! bytes can expand to gigabytes or include another file, and entities other than the five
 //! predefined ones.
 
@@ -13,11 +13,11 @@ use std::sync::Arc;
 /// Maximum depth of nested elements.
 const DEEPEST: usize = 128;
 
-/// Parser of one text.
+/// Pull parser of one XML text.
 pub(super) struct Xml<'a> {
     text: &'a str,
     file: u32,
-    /// Bytes skipped before the text: a byte order mark.
+    /// Number of bytes skipped before the text: the length of a byte order mark.
     skipped: usize,
     reader: Reader<&'a [u8]>,
     /// Spans of the open elements.
@@ -28,7 +28,7 @@ pub(super) struct Xml<'a> {
     begun: bool,
 }
 
-/// The start of an element.
+/// Start tag of an XML element, with its attributes.
 pub(super) struct Tag<'a> {
     /// Local name, without the namespace prefix.
     pub name: &'a str,
@@ -36,7 +36,7 @@ pub(super) struct Tag<'a> {
     pub attributes: Vec<Attribute<'a>>,
 }
 
-/// An attribute of an element.
+/// Attribute of an XML element.
 pub(super) struct Attribute<'a> {
     /// Local name, without the namespace prefix.
     pub name: &'a str,
@@ -45,7 +45,7 @@ pub(super) struct Attribute<'a> {
     pub at: Span,
 }
 
-/// A parser event.
+/// Event returned by the XML parser: an element begins, an element ends, or the text ends.
 pub(super) enum Piece<'a> {
     Open(Tag<'a>),
     /// The innermost open element ends.
@@ -55,13 +55,13 @@ pub(super) enum Piece<'a> {
 }
 
 impl<'a> Tag<'a> {
-    /// Returns the attribute of a name.
+    /// Returns the attribute with this name.
     pub fn get(&self, name: &str) -> Option<&Attribute<'a>> {
         self.attributes.iter().find(|attribute| attribute.name == name)
     }
 }
 
-/// Returns true if bytes are XML whose first element has one of these names.
+/// Returns true if a file is XML and its root element has one of these names.
 pub(super) fn begins_with(bytes: &[u8], names: &[&str]) -> bool {
     let head = &bytes[..bytes.len().min(1 << 12)];
     let text = match std::str::from_utf8(head) {
@@ -81,7 +81,7 @@ pub(super) fn begins_with(bytes: &[u8], names: &[&str]) -> bool {
     }
 }
 
-/// A name without its namespace prefix.
+/// Removes the namespace prefix of a name.
 fn local(name: &str) -> &str {
     name.rsplit(':').next().unwrap_or(name)
 }
@@ -122,7 +122,7 @@ impl<'a> Xml<'a> {
         Span { file: self.file, start: at(start), end: at(end.max(start)) }
     }
 
-    /// Span of a slice of the text.
+    /// Returns the span of a slice of the text.
     fn place(&self, piece: &str) -> Span {
         let start = piece.as_ptr() as usize - self.text.as_ptr() as usize;
         self.span(start, start + piece.len())
@@ -132,7 +132,7 @@ impl<'a> Xml<'a> {
         Diagnostic::error(message).code("bad-file").at(at)
     }
 
-    /// Returns the next event.
+    /// Returns the next parser event.
     pub fn next(&mut self) -> Result<Piece<'a>, Box<Diagnostic>> {
         if std::mem::take(&mut self.empty) {
             self.open.pop();
@@ -179,10 +179,10 @@ impl<'a> Xml<'a> {
         let whole = inner.find(|c: char| c.is_ascii_whitespace()).map_or(inner, |length| &inner[..length]);
         let at = self.place(whole);
         if self.begun && self.open.is_empty() {
-            return Err(self.wrong(at, "a file has one root element: this is a second").into());
+            return Err(self.wrong(at, "a file can have only one root element, and this is the second").into());
         }
         if self.open.len() >= DEEPEST {
-            return Err(self.wrong(at, format!("elements are nested more than {DEEPEST} deep")).into());
+            return Err(self.wrong(at, format!("elements are nested more than {DEEPEST} levels deep")).into());
         }
         self.begun = true;
         self.open.push(at);
@@ -192,7 +192,7 @@ impl<'a> Xml<'a> {
             let Cow::Borrowed(raw) = found.value else { continue };
             let place = self.place(raw);
             let value = escape::unescape(raw).map_err(|_| {
-                let help = "known are `&lt;`, `&gt;`, `&amp;`, `&apos;`, `&quot;` and character numbers";
+                let help = "known entities are `&lt;`, `&gt;`, `&amp;`, `&apos;`, `&quot;` and character numbers";
                 self.wrong(place, "`&` does not begin a known entity").help(help)
             })?;
             attributes.push(Attribute { name: local(found.key.0), value, at: place });
@@ -236,7 +236,7 @@ impl<'a> Xml<'a> {
 mod tests {
     use super::*;
 
-    /// Returns the elements as `name@place[attribute=value@place]`, and the error that ends
+    /// Returns the elements as `name@offset[attribute=value@offset]`, and the error that ends
     /// parsing.
     fn diagnose(text: &str) -> (Vec<String>, Option<(String, u32)>) {
         let mut all = Vec::new();
@@ -277,7 +277,7 @@ mod tests {
             ("words", 0, "no elements"),
             ("<a><b></a>", 6, "closes an element that is not open"),
             ("<a><b/>", 1, "not closed"),
-            ("<a/><b/>", 5, "a second"),
+            ("<a/><b/>", 5, "the second"),
             ("<a x=1/>", 5, "quotes"),
             ("<a x/>", 4, "`=`"),
             ("<a x='1' x='2'/>", 9, "twice"),

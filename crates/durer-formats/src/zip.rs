@@ -1,27 +1,29 @@
-//! Reader of ZIP archives. It checks the uncompressed size of a part before it allocates memory.
+//! Reader of ZIP archives. It checks the uncompressed size of a part before it allocates memory for
+//! it.
 
 use flate2::read::DeflateDecoder;
 use rawzip::{CompressionMethod, ZipArchive, ZipArchiveEntryWayfinder};
 use std::collections::BTreeMap;
 use std::io::Read;
 
-/// Maximum number of parts of an archive.
+/// Maximum number of parts in an archive.
 const MAX_PARTS: usize = 1 << 16;
-/// Limits against decompression bombs: maximum ratio of all uncompressed bytes to the archive's
-/// size, and bytes that are always allowed. Model text compresses to a tenth, seldom to a fiftieth.
+/// Limits against decompression bombs: the maximum ratio of all uncompressed bytes to the archive's
+/// size, and a number of bytes that is always allowed. Models as text compress to a tenth, rarely
+/// to a fiftieth.
 const MAX_TIMES: u64 = 200;
 const FREE: u64 = 1 << 24;
 
-/// An archive in memory.
+/// ZIP archive in memory, whose parts are decompressed on request.
 pub(super) struct Zip<'a> {
     bytes: &'a [u8],
     /// Parts by name: location, compression method and uncompressed size.
     parts: BTreeMap<String, (ZipArchiveEntryWayfinder, CompressionMethod, u64)>,
-    /// Remaining budget of uncompressed bytes.
+    /// Number of bytes that may still be decompressed.
     left: u64,
 }
 
-/// Returns true if bytes begin as a ZIP archive does.
+/// Returns true if bytes begin like a ZIP archive.
 pub(super) fn recognise(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04")
 }
@@ -45,12 +47,12 @@ impl<'a> Zip<'a> {
         Ok(Zip { bytes, parts, left: FREE + MAX_TIMES * bytes.len() as u64 })
     }
 
-    /// Names of all parts.
+    /// Returns the names of all parts.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.parts.keys().map(String::as_str)
     }
 
-    /// Uncompresses a part; `None` if the archive has no such part.
+    /// Decompresses a part; `None` if the archive has no such part.
     pub fn part(&mut self, name: &str) -> Option<Result<Vec<u8>, String>> {
         let (place, method, size) = *self.parts.get(name)?;
         Some(self.unpacked(place, method, size))
@@ -71,8 +73,8 @@ impl<'a> Zip<'a> {
         let archive = ZipArchive::from_slice(self.bytes).map_err(|error| error.to_string())?;
         let entry = archive.get_entry(place).map_err(|error| error.to_string())?;
         let mut bytes = Vec::new();
-        // The reader verifies size and checksum at the end, so reading one byte more is enough to
-        // detect a wrong size.
+        // The decoder verifies size and checksum at the end of the part, so reading one byte more
+        // than the stated size is enough to detect a wrong size.
         let read = match method {
             CompressionMethod::STORE => entry.verifying_reader(entry.data()).take(size + 1).read_to_end(&mut bytes),
             CompressionMethod::DEFLATE => {

@@ -1,4 +1,4 @@
-//! Sessions of `durer-session` in a Web Worker. Requests arrive as JSON text, and answers leave as
+//! Runs `durer-session` in a Web Worker. Requests arrive as JSON text, and answers are sent as
 //! bytes.
 
 use durer_session::{Clock, Host, Start};
@@ -12,7 +12,8 @@ extern "C" {
     fn now() -> f64;
 }
 
-/// The sessions of a page.
+/// Host of all sessions of a web page; JavaScript creates one in its Web Worker and passes messages
+/// to it.
 #[wasm_bindgen]
 pub struct Engine(Host);
 
@@ -26,12 +27,12 @@ impl Engine {
         Engine(Host::new(Start::default(), clock))
     }
 
-    /// Handles a message and calls `send` with each answer.
+    /// Handles a message, and calls `send` with each answer.
     pub fn receive(&mut self, message: &str, send: &Function) {
         self.0.receive(message, &mut |bytes| call(send, &bytes));
     }
 
-    /// Works for a few milliseconds. Returns true if work is left.
+    /// Works for a few milliseconds. Returns true if work remains.
     pub fn step(&mut self, send: &Function) -> bool {
         self.0.step(&mut |bytes| call(send, &bytes));
         self.0.is_busy()
@@ -39,6 +40,6 @@ impl Engine {
 }
 
 fn call(send: &Function, bytes: &[u8]) {
-    // Ignore exceptions of the callback.
+    // Ignore exceptions thrown by the callback.
     let _ = send.call1(&JsValue::NULL, &Uint8Array::from(bytes));
 }

@@ -1,4 +1,4 @@
-//! Reading of the fields of any described statement.
+//! Reads the fields of any described statement.
 
 use super::lexer::TokenKind;
 use super::reader::{Reader, names};
@@ -9,7 +9,8 @@ use durer_scene::describe::{Constraint, DescribedList, Field, FileName, Kind, Va
 use durer_scene::dialect::{Dialect, DialectSet, Quirk};
 use durer_scene::math::Vec3;
 
-/// Order of the fields that the course's parsers require.
+/// Order in which the fields of a statement must appear: as listed, which the course's parsers
+/// require, or any order.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Order {
     Listed,
@@ -17,8 +18,8 @@ pub(super) enum Order {
 }
 
 impl Reader<'_, '_> {
-    /// Reads `{ field value ... }` into `item`. `extra` handles words that are not fields; it
-    /// returns true if it did.
+    /// Reads `{ field value ... }` into `item`. `extra` is called for words that are not fields; it
+    /// returns true if it handled the word.
     pub(super) fn fields<T: DescribedList>(
         &mut self,
         item: &mut T,
@@ -31,7 +32,7 @@ impl Reader<'_, '_> {
         if !self.open(keyword) {
             return;
         }
-        // For a statement of the Dürer dialect only, report the keyword and not its fields as well.
+        // If only the Dürer dialect has the statement, report the keyword but not its fields too.
         let ours = item.is_ours();
         let fields = item.fields();
         let mut given = vec![None; fields.len()];
@@ -75,24 +76,25 @@ impl Reader<'_, '_> {
                 self.skip_values();
             }
         }
-        // A misspelt word may stand for a field that seems to be missing.
+        // A misspelt word may be the field that seems to be missing.
         if self.errors() > errors || ours && self.options.strict {
             return;
         }
         let dialect = if ours { Dialect::Durer } else { self.options.dialect };
         for (field, _) in fields.iter().zip(&given).filter(|(f, g)| f.required && g.is_none()) {
-            // A field without a word in this dialect has a fixed value, such as the centre of a
+            // A field that has no word in this dialect has a fixed value, such as the centre of a
             // sphere in a node.
             let Some(word) = field.spelling(dialect) else { continue };
             let error = Diagnostic::error(format!("`{name}` has no `{word}`")).code("missing-field").at(keyword);
             self.error(match example(word) {
-                Some(value) => error.help(format!("add it to the block, as in `{word} {value}`")),
+                Some(value) => error.help(format!("add it to the block, for example `{word} {value}`")),
                 None => error,
             });
         }
     }
 
-    /// Index of the field that a word names; if two fields share it, the first without a value.
+    /// Returns the index of the field that a word names. If two fields share the word, this is the
+    /// first one without a value.
     fn field_of(&self, fields: &[Field], given: &[Option<Span>], word: &str) -> Option<usize> {
         let named = |f: &Field| f.spellings.iter().any(|(w, _)| *w == word);
         let native = |f: &Field| f.spelling(self.options.dialect) == Some(word);
@@ -100,7 +102,7 @@ impl Reader<'_, '_> {
         let all =
             |test: &dyn Fn(&Field) -> bool| -> Vec<usize> { (0..fields.len()).filter(|&i| test(&fields[i])).collect() };
         let mut candidates = all(&native);
-        // `attenuation` takes one number in 2020 and three in 2004: the count decides.
+        // `attenuation` takes one number in 2020 and three in 2004, so the count decides.
         let numbers = (0..3).take_while(|&i| self.number_ahead(i)).count();
         let fits = |f: &Field| match f.kind {
             Kind::Float => numbers == 1,
@@ -114,14 +116,14 @@ impl Reader<'_, '_> {
         if candidates.is_empty() {
             candidates = all(&named);
         }
-        // Only fields with equal spellings in all dialects share a word, such as the two
-        // `materialIndex`.
+        // Only fields with equal spellings in all dialects can share a word, as the two
+        // `materialIndex` fields do.
         let first = *candidates.first()?;
         candidates.retain(|&i| fields[i].spellings == fields[first].spellings);
         candidates.iter().copied().find(free).or(candidates.last().copied())
     }
 
-    /// Returns true if the token `count` places ahead is a number.
+    /// Returns true if the token `count` positions ahead is a number.
     fn number_ahead(&self, count: usize) -> bool {
         let token = self.ahead(count).filter(|t| t.kind == TokenKind::Word);
         token.is_some_and(|t| {
@@ -130,7 +132,7 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// Returns true if the same block continues after the nested block or the number that comes
+    /// Returns true if the current block continues after the nested block or the number that comes
     /// next.
     fn goes_on_after(&self, fields: &[Field]) -> bool {
         let mut depth = 0usize;
@@ -156,11 +158,11 @@ impl Reader<'_, '_> {
         let help = self.advice(word, known()).unwrap_or_else(|| {
             let mut words: Vec<&str> = fields.iter().filter_map(|f| f.spelling(self.options.dialect)).collect();
             words.dedup();
-            // A list of seventy words would not help.
+            // A list of seventy words would not help the user.
             let many = words.len() > 24;
             words.retain(|word| !many || !word.ends_with("Texture"));
             match after_path {
-                true => "a path ends at the first blank".into(),
+                true => "a path ends at the first space".into(),
                 false if many => format!("its fields are {}; most also have a `...Texture`", words.join(", ")),
                 false => format!("its fields are {}", words.join(", ")),
             }
@@ -175,7 +177,7 @@ impl Reader<'_, '_> {
         self.skip_value();
     }
 
-    /// Reads a value of a field's kind and checks its rule.
+    /// Reads a value of a field's type, and checks its constraint.
     fn value(&mut self, item: &str, field: &Field, word: &str, keyword: Span) -> Option<Value> {
         let start = self.peek().map_or(keyword, |t| t.span);
         let value = match field.kind {
@@ -201,11 +203,11 @@ impl Reader<'_, '_> {
             let span = start.to(self.last_span());
             if let Some(drawn) = self.any_values().then(|| field.drawn_anyway(item, &value)).flatten() {
                 let warning = Diagnostic::warning(format!("`{word}` {violation}")).code("bad-value").at(span);
-                self.diagnostics.push(warning.effect("rendered anyway, as by the official program"));
+                self.diagnostics.push(warning.effect("rendered anyway, as the official program does"));
                 return Some(drawn);
             }
             let error = Diagnostic::error(format!("`{word}` {violation}")).code("bad-value").at(span);
-            // If only the sign is wrong, the meaning is clear.
+            // If only the sign is wrong, the intended value is clear.
             self.error(match value {
                 Value::Float(x) if x < 0.0 => error.fix(span, self.text(span).trim_start_matches('-')),
                 Value::Vec3(v) if word == "direction" && v == Vec3::ZERO => error.help(
@@ -217,7 +219,7 @@ impl Reader<'_, '_> {
         Some(value)
     }
 
-    /// Reads one of some words.
+    /// Reads a word that must be one of `words`.
     fn one_of(&mut self, field: &str, words: &[&str]) -> Option<String> {
         let text = self.peek_word().unwrap_or_default();
         if words.contains(&text.as_str()) {
@@ -278,7 +280,7 @@ impl Reader<'_, '_> {
         Some(numbers.chunks_exact(width).map(<[f32]>::to_vec).collect())
     }
 
-    /// Reads three numbers.
+    /// Reads three finite numbers.
     pub(super) fn vec3(&mut self, word: &str) -> Option<Vec3> {
         let x = self.number(word, 1, 3)?;
         let y = self.number(word, 2, 3)?;
@@ -298,7 +300,7 @@ impl Reader<'_, '_> {
         value
     }
 
-    /// True with the quirk `any-values`, which accepts invalid values.
+    /// Returns true if the quirk `any-values`, which accepts invalid values, is set.
     pub(super) fn any_values(&self) -> bool {
         self.options.compat & Quirk::AnyValues.bit() != 0
     }
@@ -306,13 +308,13 @@ impl Reader<'_, '_> {
     /// Reads the `i`-th of `count` finite numbers.
     pub(super) fn number(&mut self, word: &str, i: usize, count: usize) -> Option<f32> {
         let text = self.peek_word().unwrap_or_default();
-        // Rust also parses words such as `inf` and `nan`, so require a digit first.
+        // Rust also parses words such as `inf` and `nan`, so require a digit at the start.
         let numeric = text.trim_start_matches(['+', '-', '.']).starts_with(|c: char| c.is_ascii_digit());
         // C's `scanf`, which all years before 2020 use, accepts hexadecimal numbers.
         if let Some(value) = hexadecimal(&text).filter(|_| self.any_values() && self.options.dialect != Dialect::F23) {
             let span = self.advance();
             let warning = Diagnostic::warning(format!("{} is a hexadecimal number", shown(text.as_bytes()))).at(span);
-            self.diagnostics.push(warning.effect(format!("read as {value}, as by the official program")));
+            self.diagnostics.push(warning.effect(format!("interpreted as {value}, as the official program does")));
             return Some(value);
         }
         match text.parse::<f32>() {
@@ -354,7 +356,7 @@ impl Reader<'_, '_> {
             return self.error(error);
         };
         let mut error = error.help(help);
-        // The numbers after it most likely have the same mistake.
+        // The following numbers most likely contain the same mistake.
         let following = (self.at..).map_while(|i| self.ahead(i - self.at)).map_while(|t| {
             let text = self.text(t.span);
             let suggestion = number_help(&text).and_then(|(_, suggestion)| suggestion);
@@ -367,8 +369,8 @@ impl Reader<'_, '_> {
         self.error(error);
     }
 
-    /// Returns an error for a web colour such as `#b38033`, which is a comment in this language, if
-    /// one replaces the numbers before `next`.
+    /// Returns an error if the numbers before `next` were replaced by a web colour such as
+    /// `#b38033`, which is a comment in this language.
     fn commented_color(&self, what: &str, after: &str, next: Span) -> Option<Diagnostic> {
         let last = self.last_span();
         let gap = self.text(Span { start: last.end, end: next.start.max(last.end), ..last });
@@ -392,7 +394,8 @@ impl Reader<'_, '_> {
         Some(error.help(format!("colours are three numbers from 0 to 1: `{numbers}`")).fix(span, numbers))
     }
 
-    /// Reports a word that this dialect lacks: an error if strict, else one warning per word.
+    /// Reports a word that this dialect does not have: an error if strict, otherwise one warning
+    /// per word.
     pub(super) fn foreign(&mut self, word: &str, span: Span, set: DialectSet) {
         let dialect = self.options.dialect;
         if self.options.strict && set == Dialect::Durer as u8 {
@@ -419,22 +422,22 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Returns help for a word in place of a number, and the corrected number if the meaning is clear.
+/// Returns help for a word where a number is expected, and the corrected number if it is clear.
 fn number_help(text: &str) -> Option<(String, Option<String>)> {
     let is_number = |text: &str| !text.is_empty() && text.parse::<f32>().is_ok();
     let bare = text.trim_matches(['(', ')', ',', ';', '<', '>', '[', ']', 'f', 'F']);
     let point = bare.replace(',', ".");
     if is_number(&point) && bare.contains(',') && !bare.contains('.') {
-        let help = "use a decimal point, and only blanks between numbers";
+        let help = "use a decimal point, and only spaces between numbers";
         Some((help.into(), Some(point).filter(|_| bare == text)))
     } else if bare.contains(',') || bare != text && is_number(bare) {
         let parts: Vec<&str> = bare.split(',').filter(|part| !part.is_empty()).collect();
         let clear = parts.iter().all(|part| is_number(part)).then(|| parts.join(" "));
-        Some(("separate numbers by blanks only: `1 0.5 0`".into(), clear))
+        Some(("separate numbers with spaces only: `1 0.5 0`".into(), clear))
     } else if text.starts_with("0x") || text.starts_with("0X") {
         Some(("write numbers in decimal".into(), None))
     } else if text == "=" || text == ":" {
-        let help = format!("separate a word and its value by blanks only: remove the `{text}`");
+        let help = format!("separate a word and its value with spaces only: remove the `{text}`");
         Some((help, Some(String::new())))
     } else if is_number(&text.replace(['O', 'o'], "0")) && text.contains(['O', 'o']) {
         Some(("the word has the letter O in place of a zero".into(), Some(text.replace(['O', 'o'], "0"))))
@@ -447,13 +450,13 @@ fn number_help(text: &str) -> Option<(String, Option<String>)> {
             _ => format!("numbers have no units: remove `{unit}`"),
         };
         let same = ["deg", "°", "px", "m"].contains(&unit);
-        // An exponent without a number is not a unit.
+        // An exponent without digits is not a unit.
         let is_unit = !unit.is_empty() && !unit.eq_ignore_ascii_case("e");
         (is_number(number) && is_unit).then(|| (help(), same.then(|| number.to_string())))
     }
 }
 
-/// Example value of a field, for help texts.
+/// Returns an example value of a field, for help texts.
 fn example(field: &str) -> Option<&'static str> {
     Some(match field {
         "radius" => "1",
@@ -472,7 +475,7 @@ fn example(field: &str) -> Option<&'static str> {
     })
 }
 
-/// Parses a finite hexadecimal number with an optional power of two after `p`, such as `0x1.8p-3`.
+/// Parses a finite hexadecimal number, with an optional power of two after `p`, such as `0x1.8p-3`.
 fn hexadecimal(text: &str) -> Option<f32> {
     let (sign, rest) = match text.strip_prefix(['-', '+']) {
         Some(rest) => (if text.starts_with('-') { -1.0 } else { 1.0 }, rest),

@@ -1,48 +1,49 @@
-//! Guess of a scene's dialect, with reasons.
+//! Guesses the dialect of a scene, and gives reasons.
 
 use super::lexer::{TokenKind, tokens};
 use super::words::dialects_of;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::dialect::{Dialect, DialectSet, set};
 
-/// Evidence for a dialect from outside the file. Ignored if it contradicts the file.
+/// Evidence for the dialect of a scene from outside the file, such as an option. A hint that
+/// contradicts the file is ignored.
 #[derive(Clone, Debug)]
 pub struct Hint {
-    /// Dialects that remain possible.
+    /// Dialects that are possible according to the hint.
     pub set: DialectSet,
     /// Reason, as the end of a sentence.
     pub why: String,
-    /// True for hints that count only if something else distinguishes the years.
+    /// True for a hint that counts only if something else also distinguishes the years.
     pub weak: bool,
 }
 
-/// Guessed dialect, with its reasons.
+/// Result of guessing the dialect of a scene file, with the reasons and the alternatives.
 #[derive(Clone, Debug)]
 pub struct Guess {
     /// Guessed dialect.
     pub dialect: Dialect,
-    /// Reasons that narrowed the choice, as ends of sentences, with their spans.
+    /// Reasons that narrowed down the choice, as ends of sentences, with their spans.
     pub reasons: Vec<(String, Option<Span>)>,
-    /// Other dialects that fit as well.
+    /// Other dialects that fit equally well.
     pub others: Vec<Dialect>,
-    /// Dialects that fit the words and the strong hints, most likely first.
+    /// Dialects that agree with the keywords and with the strong hints, most likely first.
     pub fitting: Vec<Dialect>,
-    /// Dialect suggested by the words alone.
+    /// Dialect suggested by the keywords alone.
     pub by_words: Dialect,
 }
 
 impl Guess {
-    /// Guess for a file that names its dialect.
+    /// Returns the guess for a file that states its dialect.
     pub fn certain(dialect: Dialect) -> Self {
         Guess { dialect, reasons: Vec::new(), others: Vec::new(), fitting: vec![dialect], by_words: dialect }
     }
 
-    /// True if hints changed the dialect that the words alone suggest.
+    /// Returns true if hints changed the dialect that the keywords alone suggest.
     pub fn is_hinted(&self) -> bool {
         self.dialect != self.by_words
     }
 
-    /// Returns the guess as a note for the user.
+    /// Returns the guess as a note to the user.
     pub fn note(&self) -> Diagnostic {
         let reasons: Vec<&str> = self.reasons.iter().map(|r| r.0.as_str()).collect();
         let mut message = format!("read as {}", self.dialect.name());
@@ -57,12 +58,12 @@ impl Guess {
     }
 }
 
-/// Dialects in order of preference, to choose among several that remain.
+/// Dialects in order of preference, used if several remain possible.
 const PREFERENCE: [Dialect; 6] =
     [Dialect::F12a4, Dialect::F04, Dialect::F12a5, Dialect::F16, Dialect::F23, Dialect::F03];
 
-/// Guesses the dialect of a scene from its words. `exists` returns true if a file that the scene
-/// names exists.
+/// Guesses the dialect of a scene from its keywords. `exists` returns true if a file named by the
+/// scene exists.
 pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> bool) -> Guess {
     let mut left = set::ALL & !set::DURER;
     let mut reasons: Vec<(DialectSet, String, Option<Span>)> = Vec::new();
@@ -77,8 +78,8 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
             reasons.push((keep, why, span));
         }
     };
-    // A file can mix words of nodes with words of earlier years: the majority decides, and the
-    // others are foreign.
+    // A file can mix words of the node grammar with words of earlier years. The majority decides,
+    // and the others are treated as foreign.
     let (mut nodes, mut classic) = (0_usize, 0_usize);
     for (i, token) in tokens.iter().enumerate().filter(|(_, token)| token.kind == TokenKind::Word) {
         let _ = token;
@@ -115,8 +116,8 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
             (set::DURER, "only the Dürer dialect names materials".into())
         } else if let Some(set) = dialects_of(&word).filter(|set| match *set {
             set::F23 => is_telling(&word),
-            // A word of the Dürer dialect counts only if a block follows: `top` or `min` may be a
-            // file name.
+            // A word of the Dürer dialect counts only if a block follows, because `top` or `min`
+            // could be a file name.
             set::DURER => braced,
             _ => true,
         }) {
@@ -124,26 +125,26 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         } else {
             continue;
         };
-        // Words of the minority get their own warnings.
+        // Words of the minority are reported by separate warnings.
         if majority == set::F23 && keep & set::F23 == 0 {
             continue;
         }
         narrow(keep, why, Some(token.span));
     }
     if let Some(comment) = tokens.iter().find(|token| token.kind == TokenKind::Comment) {
-        // The Dürer dialect has no nodes, so a file of nodes stays in the dialect of nodes.
+        // The Dürer dialect has no nodes, so a file with nodes stays in the dialect of nodes.
         let nodes = (0..tokens.len()).any(|i| text(i) == "Scene" || text(i).starts_with("Component<"));
         let keep = if nodes { set::F23 } else { 0 };
         narrow(keep, "it has comments, which the course's language lacks".into(), Some(comment.span));
     }
     let first = |left: DialectSet| PREFERENCE.into_iter().find(|d| d.is_in(left));
     let by_words = first(left);
-    // Weak hints come last: the dialects that fit are those that remain before them.
+    // Apply weak hints last: `fitting` has the dialects that remain before them.
     let (weak, strong): (Vec<&Hint>, Vec<&Hint>) = hints.iter().partition(|hint| hint.weak);
     let mut fitting = left;
     for hint in strong.into_iter().chain(weak) {
-        // Ignore a hint that contradicts the file and the hints before it: options may be those of
-        // another year.
+        // Ignore a hint that contradicts the file or an earlier hint, since options may be meant
+        // for another year.
         let keep = left & hint.set;
         if keep != 0 && keep != left && !(hint.weak && reasons.is_empty()) {
             left = keep;

@@ -1,4 +1,4 @@
-//! `include FILE`: replaces these two words by the text of another file.
+//! `include FILE`: replaces these two words with the text of another file.
 
 use super::lexer::{Token, TokenKind, tokens};
 use durer_diag::{Diagnostic, Diagnostics, Files, Span};
@@ -7,23 +7,24 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Limits: depth of nested includes, number of included files, and number of words in all files.
+/// Limits on the depth of nested includes, the number of included files, and the number of words in
+/// all files.
 const DEEPEST: usize = 32;
 const MAX_FILES: usize = 4096;
 const MAX_WORDS: usize = 1 << 26;
 
-/// Result of opening an included file.
+/// Result of opening a file that a scene file includes.
 #[derive(Debug)]
 pub enum IncludedFile {
     /// Index of the file for spans, and its bytes.
     Text(u32, Arc<[u8]>),
     /// The file cannot be read.
     Failed(SourceError),
-    /// The scene has no folder.
+    /// The scene is not in a folder, so it cannot include files.
     Nowhere,
 }
 
-/// Returns a function that opens included files below a folder and registers them.
+/// Returns a function that opens included files in or below a folder, and registers them.
 pub fn below<'a>(source: &'a dyn AssetSource, files: &'a RefCell<Files>) -> impl Fn(&str) -> IncludedFile + 'a {
     move |name| match source.read(name) {
         Ok(bytes) => IncludedFile::Text(files.borrow_mut().add_once(name, &bytes), bytes),
@@ -31,7 +32,7 @@ pub fn below<'a>(source: &'a dyn AssetSource, files: &'a RefCell<Files>) -> impl
     }
 }
 
-/// Texts of a scene: its own, and those that it includes.
+/// Texts of a scene, needed to look up spans: the scene's own file, and the files that it includes.
 pub(super) struct Texts<'a> {
     own: (u32, &'a [u8]),
     others: HashMap<u32, Arc<[u8]>>,
@@ -56,7 +57,8 @@ impl<'a> Texts<'a> {
     }
 }
 
-/// Replaces each `include` by the tokens of its file.
+/// Preprocessor that replaces each `include` in a list of tokens with the tokens of the included
+/// file.
 pub(super) struct Splicer<'o, 't, 'a> {
     pub open: &'o dyn Fn(&str) -> IncludedFile,
     pub texts: &'t mut Texts<'a>,
@@ -68,6 +70,7 @@ pub(super) struct Splicer<'o, 't, 'a> {
 }
 
 impl Splicer<'_, '_, '_> {
+    /// Returns the tokens with each `include` replaced by the tokens of its file.
     pub fn splice(&mut self, written: Vec<Token>) -> Vec<Token> {
         let is_include =
             |texts: &Texts, token: &Token| token.kind == TokenKind::Word && texts.at(token.span) == b"include";
@@ -80,32 +83,32 @@ impl Splicer<'_, '_, '_> {
                 all.push(token);
                 continue;
             }
-            // A comment may precede the name.
+            // A comment can precede the name.
             while rest.next_if(|next| next.kind == TokenKind::Comment).is_some() {}
             match rest.next_if(|next| next.kind == TokenKind::Word) {
                 Some(name) => all.extend(self.file(token.span, name.span)),
                 None => {
                     let error = Diagnostic::error("`include` needs the name of a file").code("missing-value");
-                    self.diagnostics.push(error.at(token.span).help("as in `include light.txt`"));
+                    self.diagnostics.push(error.at(token.span).help("for example `include light.txt`"));
                 }
             }
         }
         all
     }
 
-    /// Returns the tokens of a file.
+    /// Returns the tokens of an included file.
     fn file(&mut self, keyword: Span, at: Span) -> Vec<Token> {
         let name = String::from_utf8_lossy(self.texts.at(at)).into_owned();
         self.files += 1;
         let refused = match () {
             () if self.stack.contains(&name) => Some(format!("`{name}` includes itself")),
-            () if self.stack.len() >= DEEPEST => Some(format!("includes are nested more than {DEEPEST} deep")),
+            () if self.stack.len() >= DEEPEST => Some(format!("includes are nested more than {DEEPEST} levels deep")),
             () if self.files > MAX_FILES => Some(format!("more than {MAX_FILES} files are included")),
             () if self.words > MAX_WORDS => Some("all files together have too many words".to_string()),
             () => None,
         };
         if let Some(message) = refused {
-            // Report the limit of files only once.
+            // Report that there are too many files only once.
             if self.files <= MAX_FILES + 1 {
                 self.diagnostics.push(Diagnostic::error(message).code("include").at(keyword.to(at)));
             }
@@ -143,7 +146,7 @@ impl Splicer<'_, '_, '_> {
         all
     }
 
-    /// Returns true if the braces of a file are balanced; reports an error if not.
+    /// Returns true if the braces of an included file are balanced; reports an error if not.
     fn is_balanced(&mut self, written: &[Token], included: Span) -> bool {
         let mut open: Vec<Span> = Vec::new();
         let mut wrong = None;

@@ -1,26 +1,26 @@
-//! Lexer of the scene language: words, braces and comments.
+//! Lexer for the scene language: words, braces and comments.
 
 use durer_diag::Span;
 
-/// Kind of a token.
+/// Kind of a token of the scene language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TokenKind {
-    /// Run of characters other than blanks and braces: a keyword, a number or a path.
+    /// Run of characters other than whitespace and braces: a keyword, a number or a path.
     Word,
     /// `{`
     Open,
     /// `}`
     Close,
-    /// Comment up to the end of its line.
+    /// Comment, which ends with its line.
     Comment,
 }
 
-/// A token with its span.
+/// Token of a scene file, with its kind and span.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Token {
     pub kind: TokenKind,
     pub span: Span,
-    /// True if the token directly follows the one before it, such as `{` in `Group{`.
+    /// True if the token directly follows the one before it, as `{` does in `Group{`.
     pub touches: bool,
 }
 

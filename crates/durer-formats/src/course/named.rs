@@ -10,7 +10,7 @@ use durer_scene::dialect::set;
 use durer_scene::scene::{Group, Node, Object};
 
 impl Reader<'_, '_> {
-    /// Reads the name of a material, between its keyword and its block.
+    /// Reads the name of a material, which can precede its block.
     pub(super) fn material_name(&mut self) -> Option<(String, Span)> {
         let named = self.peek_word().filter(|_| self.ahead(1).is_some_and(|next| next.kind == TokenKind::Open));
         let name = named.filter(|name| dialects_of(name).is_none())?;
@@ -19,7 +19,7 @@ impl Reader<'_, '_> {
         Some((name, span))
     }
 
-    /// Names the next material.
+    /// Gives the next material a name.
     pub(super) fn name_material(&mut self, (name, span): (String, Span)) {
         if !self.is_name(&name, span) {
             return;
@@ -30,7 +30,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Reads a material's number or name; returns the number.
+    /// Reads the number or the name of a material; returns the number.
     pub(super) fn material_number(&mut self, word: &str) -> Option<u32> {
         let name = self.peek_word().filter(|text| !text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)));
         // A word of the language means that the number is missing.
@@ -46,7 +46,7 @@ impl Reader<'_, '_> {
                 Diagnostic::error(format!("no material `{name}` is defined before this")).code("unknown-word").at(span);
             self.error_once(match near {
                 Some(near) => error.help(format!("did you mean `{near}`?")).fix(span, near),
-                None => error.help("write the name before the material's block, as in `PhongMaterial gold { ... }`"),
+                None => error.help("write the name before the material's block, for example `PhongMaterial gold { ... }`"),
             });
             return None;
         }
@@ -54,7 +54,7 @@ impl Reader<'_, '_> {
         number
     }
 
-    /// Returns true if a word can be a name; reports an error if not.
+    /// Returns true if a word can be used as a name; reports an error if not.
     fn is_name(&mut self, name: &str, span: Span) -> bool {
         let taken = dialects_of(name).is_some();
         let number = name.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
@@ -76,8 +76,8 @@ impl Reader<'_, '_> {
         Some((name, span))
     }
 
-    /// Reads `define NAME object` without adding the object to the scene. Its parts without a
-    /// material take the one that is current at each use.
+    /// Reads `define NAME object`, without adding the object to the scene. Parts without a material
+    /// take the material that is current at each use.
     pub(super) fn define(&mut self, keyword: Span) {
         self.foreign("define", keyword, set::DURER);
         let Some((name, span)) = self.name_after("define") else { return };
@@ -87,7 +87,7 @@ impl Reader<'_, '_> {
         let (outer, used) = (self.material.take(), self.named.used);
         let object = self.object(&word, at);
         self.material = outer;
-        // Uses inside the definition count at each use of the definition.
+        // Uses inside a definition are counted at each use of the definition.
         self.named.used = used;
         let Some(object) = object.filter(|_| sound) else {
             self.named.broken.insert(name);
@@ -131,12 +131,12 @@ impl Reader<'_, '_> {
         if let Some(material) = self.material {
             paint(&mut object, material);
         }
-        // A group of one object cannot have a material.
+        // A group with a single object cannot have a material.
         Some(Node::Group(Group { objects: vec![object] }))
     }
 }
 
-/// Number of objects that an object consists of, itself included.
+/// Returns the number of objects that an object consists of, including itself.
 fn count(object: &Object) -> usize {
     let all = |objects: &[Object]| objects.iter().map(count).fold(0, usize::saturating_add);
     1 + match &object.node {

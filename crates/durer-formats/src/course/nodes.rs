@@ -45,7 +45,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Rules for matrix products, from the requested quirks.
+    /// Returns the rules for matrix products that the quirks imply.
     fn matrix_rules(&self) -> MatrixRules {
         let has = |compat: Quirk| self.options.compat & compat.bit() != 0;
         MatrixRules {
@@ -71,7 +71,7 @@ impl Reader<'_, '_> {
         };
     }
 
-    /// Reads one node: its transform, its components and its child nodes, in any order.
+    /// Reads one node: its transform, components and child nodes, in any order.
     fn node(&mut self, keyword: Span) -> NodeContent {
         const KNOWN: [&str; 5] = ["Node", "Transform", "Component<Material>", "Component<Light>", "Component<Object>"];
         let mut inside = NodeContent::default();
@@ -126,7 +126,7 @@ impl Reader<'_, '_> {
         inside
     }
 
-    /// Reads the parts of a solid, each a node without lights.
+    /// Reads the parts of a solid. Each part is a node without lights.
     fn node_parts(&mut self, keyword: Span) -> Vec<Object> {
         let mut parts = Vec::new();
         if !self.open(keyword) {
@@ -162,7 +162,7 @@ impl Reader<'_, '_> {
                 "y_rotate" => self.number(&word, 1, 1).map(MatrixOp::YRotate),
                 "z_rotate" => self.number(&word, 1, 1).map(MatrixOp::ZRotate),
                 "rotate" => self.vec3(&word).and_then(|axis| Some(MatrixOp::Rotate(axis, self.number(&word, 1, 1)?))),
-                // Operations that nodes lack use the syntax of earlier years.
+                // Operations that nodes lack have the syntax of earlier years.
                 "Matrix4f" => self.matrix(&word, span).flatten(),
                 _ => {
                     self.unknown(&word, span, "in a transform", &KNOWN);
@@ -202,11 +202,10 @@ impl Reader<'_, '_> {
         index
     }
 
-    /// Reads the `type` of a component: one of `known` or `ours`. Leaves its `{` to the reader of
-    /// its fields.
+    /// Reads the `type` of a component: one of `known` or `ours`. The `{` is left for the reader of
+    /// the fields.
     fn component_type(&mut self, keyword: Span, known: &[&str], ours: &[&str]) -> Option<String> {
-        // Peek at the word after `{ type` before any field is read: `type` comes first in every
-        // file.
+        // Look for `{ type` and a word before any field is read: `type` comes first in every file.
         let name = self.text(keyword);
         let at = |reader: &Self, i: usize| reader.ahead(i).map(|t| (reader.text(t.span), t.span));
         let first = at(self, usize::from(self.at_open()));
@@ -274,7 +273,7 @@ impl Reader<'_, '_> {
         Some(Node::Primitive(shape))
     }
 
-    /// Reads the fields of a component; ignores `type`.
+    /// Reads the fields of a component, except `type`.
     fn component_fields<T: DescribedList>(&mut self, item: &mut T, keyword: Span) {
         self.fields(item, keyword, Order::Any, |reader, word, _| {
             let is_type = word == "type";
@@ -286,20 +285,20 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Contents of a node.
+/// Contents of a node of the 2020 to 2023 grammar: its transform, material, objects and lights.
 #[derive(Default)]
 struct NodeContent {
-    /// Matrices of the node; `None` without a `Transform`.
+    /// Matrices of the node; `None` if it has no `Transform`.
     ops: Option<Vec<MatrixOp>>,
     material: Option<u32>,
     objects: Vec<Object>,
-    /// Lights of the node and its child nodes, with their positions in the node's space.
+    /// Lights of the node and of its child nodes, with their positions in the node's space.
     lights: Vec<(Spanned<Light>, DVec3)>,
     has_nodes: bool,
 }
 
 impl NodeContent {
-    /// Returns the node as one object; `None` if it has lights only.
+    /// Converts the node to one object; `None` if it contains only lights.
     fn object(self, span: Span) -> Option<Object> {
         let NodeContent { ops, material, mut objects, lights, has_nodes } = self;
         if objects.is_empty() && !lights.is_empty() {
@@ -317,7 +316,7 @@ impl NodeContent {
     }
 }
 
-/// Sets the material of an object and of its parts that have none.
+/// Sets the material of an object, and of its parts, where they have none.
 pub(super) fn paint(object: &mut Object, material: u32) {
     object.material.get_or_insert(material);
     match &mut object.node {

@@ -1,13 +1,13 @@
-//! Spans of field values in a scene file, for programs that edit it.
+//! Finds the spans of field values in a scene file, for programs that edit the file.
 
 use super::lexer::{Token, TokenKind, tokens};
 use durer_diag::Span;
 
-/// Returns the tokens directly inside the block of a keyword, without nested blocks, and the offset
-/// of the block's end.
+/// Returns the tokens directly inside the block of a keyword, without those of nested blocks, and
+/// the byte offset of the block's end.
 fn inside(bytes: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
     let rest = bytes.get(keyword.start as usize..)?;
-    // Blocks are short: avoid reading the rest of a long file for each of them.
+    // Blocks are short, so avoid tokenizing the rest of a long file for each of them.
     let mut reach = 1 << 10;
     loop {
         let part = &rest[..rest.len().min(reach)];
@@ -19,7 +19,7 @@ fn inside(bytes: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
 }
 
 /// Returns the tokens of a block as [`inside`] does, for a text that begins with the keyword;
-/// `None` if the block does not end in the text.
+/// `None` if the block does not end within the text.
 fn block_of(text: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
     let moved = |token: Token| {
         let Span { file, start, end } = token.span;
@@ -27,7 +27,7 @@ fn block_of(text: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
     };
     let mut rest = tokens(text, keyword.file).into_iter().filter(|token| token.kind != TokenKind::Comment).map(moved);
     rest.next()?;
-    // A name may come between the keyword and its block.
+    // A name can precede the block.
     let next = rest.next()?;
     let open = if next.kind == TokenKind::Word { rest.next()? } else { next };
     if open.kind != TokenKind::Open {
@@ -48,8 +48,8 @@ fn block_of(text: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
     None
 }
 
-/// Span of a field's value: its numbers, or the one word after it. If the field is repeated, its
-/// last value, which takes effect.
+/// Returns the span of a field's value: its numbers, or the one word after the field. If the field
+/// is repeated, this is the last value, which takes effect.
 pub fn value(bytes: &[u8], keyword: Span, field: &str) -> Option<Span> {
     let text = |span: Span| std::str::from_utf8(&bytes[span.start as usize..span.end as usize]).unwrap_or_default();
     let (own, _) = inside(bytes, keyword)?;
@@ -60,13 +60,13 @@ pub fn value(bytes: &[u8], keyword: Span, field: &str) -> Option<Span> {
     Some(first.to(values[numbers.max(1) - 1].span))
 }
 
-/// Span of a whole block, from its keyword to its closing brace.
+/// Returns the span of a complete block, from its keyword to its closing brace.
 pub fn block(bytes: &[u8], keyword: Span) -> Option<Span> {
     inside(bytes, keyword).map(|(_, end)| Span { end, ..keyword })
 }
 
-/// Span of the keyword of a top-level section; the last one, which takes effect. `None` if there is
-/// none.
+/// Returns the span of the keyword of a top-level section; of the last one, which takes effect, if
+/// there are several. `None` if there is none.
 pub fn section(bytes: &[u8], file: u32, keyword: &str) -> Option<Span> {
     let (mut depth, mut found) = (0, None);
     for token in tokens(bytes, file) {
@@ -84,7 +84,7 @@ pub fn section(bytes: &[u8], file: u32, keyword: &str) -> Option<Span> {
     found
 }
 
-/// Spans of the words after each occurrence of a word.
+/// Returns the span of the word after each occurrence of a word.
 pub fn values(bytes: &[u8], file: u32, word: &str) -> Vec<Span> {
     let tokens: Vec<Token> = tokens(bytes, file).into_iter().filter(|token| token.kind != TokenKind::Comment).collect();
     let is_word = |token: &Token| &bytes[token.span.start as usize..token.span.end as usize] == word.as_bytes();

@@ -1,5 +1,5 @@
-//! Random scenes from the descriptions of all statements, for tests and for fuzzing, where the
-//! fuzzer's bytes make the choices.
+//! Random scenes generated from the descriptions of all statements, for tests and for fuzzing. In
+//! fuzzing, the fuzzer's bytes make the choices.
 
 use durer_scene::camera::Camera;
 use durer_scene::describe::{Constraint, DescribedList, Field, FileName, Kind, Value};
@@ -13,27 +13,28 @@ use durer_scene::scene::{
 };
 use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
-/// Source of choices: given bytes, then a linear congruential generator (Knuth's multiplier, upper
-/// half of the state).
+/// Generator of random scenes for tests; makes its choices from given bytes, then from a linear
+/// congruential generator (Knuth's multiplier, upper half of the state).
 pub struct Random {
     state: u64,
     bytes: std::vec::IntoIter<u8>,
-    /// True for scenes that can be rendered: small numbers, and only the files `a.obj` and `a.ppm`.
+    /// True to generate scenes that can be rendered: with small numbers, and only the files `a.obj`
+    /// and `a.ppm`.
     tame: bool,
 }
 
 impl Random {
-    /// Random choices from a seed.
+    /// Creates a generator from a seed.
     pub fn seeded(state: u64) -> Self {
         Random { state, bytes: Vec::new().into_iter(), tame: false }
     }
 
-    /// Choices from bytes, for scenes that can be rendered.
+    /// Creates a generator that makes choices from bytes, for scenes that can be rendered.
     pub fn tame(bytes: &[u8]) -> Self {
         Random { state: 1, bytes: Vec::from(bytes).into_iter(), tame: true }
     }
 
-    /// Number below `n`, which must not be 0.
+    /// Returns a number below `n`, which must not be 0.
     pub fn below(&mut self, n: usize) -> usize {
         // More than 256 choices take two bytes.
         let count = if n > 256 { 2 } else { 1 };
@@ -44,7 +45,7 @@ impl Random {
         (self.state >> 33) as usize % n
     }
 
-    /// Any finite number, including special values.
+    /// Returns any finite number, including special values.
     pub fn float(&mut self) -> f32 {
         if self.tame {
             return self.below(129) as f32 / 16.0 - 4.0;
@@ -65,7 +66,7 @@ impl Random {
         Vec3::new(self.float(), self.float(), self.float())
     }
 
-    /// Valid value of a field; indices of materials are below `materials`.
+    /// Returns a valid value for a field. Material indices are below `materials`.
     fn value(&mut self, field: &Field, materials: usize) -> Value {
         loop {
             let value = match field.kind {
@@ -86,7 +87,8 @@ impl Random {
                     Value::Rows((0..self.below(6)).map(|_| (0..width).map(|_| self.float()).collect()).collect())
                 }
             };
-            // A random number is rarely in the range of a narrow rule, so draw from the range.
+            // A random number is rarely in the range of a narrow constraint, so draw it from that
+            // range.
             let value = match (field.rule, value) {
                 (Constraint::Counts(most), _) => {
                     Value::Vec3(Vec3::from([0; 3].map(|_| 1.0 + self.below(most as usize) as f32)))
@@ -176,7 +178,7 @@ impl Random {
         Object { node, material, span: Default::default() }
     }
 
-    /// Textures with different names.
+    /// Returns textures with different names.
     fn textures(&mut self) -> Assets {
         let mut assets = Assets::default();
         for i in 0..self.below(3) {
@@ -185,7 +187,8 @@ impl Random {
         assets
     }
 
-    /// Scene that the dialect's text can represent, in the form in which reading returns it.
+    /// Returns a scene that text in the dialect can represent, in the form in which it would be
+    /// read back.
     pub fn scene(&mut self, dialect: Dialect) -> Scene {
         let nodes = dialect == Dialect::F23;
         fn spanned<T>(value: T) -> Spanned<T> {
@@ -205,7 +208,7 @@ impl Random {
             }));
         }
         let light = |random: &mut Self| {
-            // Scenes of nodes support only their two kinds of lights.
+            // Scenes with nodes support only two kinds of lights.
             let mut value = loop {
                 let value = random.item::<Light>(0);
                 if !(nodes && value.is_ours()) {
@@ -213,7 +216,7 @@ impl Random {
                 }
             };
             if let (Light::Point(point), true) = (&mut value, nodes) {
-                // A node adds its position to 0, which turns -0 into 0.
+                // The node adds its position to 0, which turns -0 into 0.
                 point.position += Vec3::ZERO;
             }
             Spanned { value, span: Default::default() }

@@ -1,4 +1,4 @@
-//! State of reading a file: its tokens, and the recovery after mistakes.
+//! State of the scene language reader: the tokens of a file, and recovery after errors.
 
 use super::ReadOptions;
 use super::include::{IncludedFile, Splicer, Texts};
@@ -12,14 +12,14 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 /// Maximum depth of nested groups, transforms and nodes.
 const DEEPEST: usize = 200;
 
-/// Named items of the file.
+/// Named materials and objects of a scene file that is being read.
 #[derive(Default)]
 pub(super) struct NamedItems {
     pub materials: BTreeMap<String, u32>,
     pub objects: BTreeMap<String, (Object, usize, Span)>,
-    /// Names of objects with errors, which have already been reported.
+    /// Names of objects that contain errors, which have already been reported.
     pub broken: BTreeSet<String>,
-    /// Number of objects added by `use`.
+    /// Number of objects added so far by `use`.
     pub used: usize,
 }
 
@@ -30,7 +30,7 @@ impl NamedItems {
     }
 }
 
-/// Reader of one file.
+/// Recursive-descent parser of a scene file in the scene language.
 pub(super) struct Reader<'a, 'd> {
     texts: Texts<'a>,
     tokens: Vec<Token>,
@@ -42,14 +42,14 @@ pub(super) struct Reader<'a, 'd> {
     pub depth: usize,
     /// Keywords of the open blocks, outermost first.
     pub blocks: Vec<Span>,
-    /// Token before which a missing `}` was reported. Blocks that end at the same token get one
-    /// report.
+    /// Index of the token before which a missing `}` was reported. Blocks that end at the same
+    /// token are reported only once.
     pub unclosed_at: Option<usize>,
-    /// True once reading has been abandoned: later errors are dropped.
+    /// True after reading was abandoned. Later errors are dropped.
     stopped: bool,
     /// Current material for the objects that follow.
     pub material: Option<u32>,
-    /// Every `MaterialIndex`, checked when all materials are known.
+    /// Every `MaterialIndex`; checked when the number of materials is known.
     pub material_uses: Vec<(u32, Span)>,
     /// Named materials and objects.
     pub named: NamedItems,
@@ -93,7 +93,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         reader
     }
 
-    /// Reports comments and missing blanks that the course's parsers do not accept.
+    /// Reports comments, and missing spaces, that the course's parsers reject.
     fn check_form(&mut self, comments: &[Token]) {
         if !self.options.strict {
             let slashes = comments.iter().find(|c| self.texts.at(c.span).starts_with(b"/"));
@@ -108,15 +108,15 @@ impl<'a, 'd> Reader<'a, 'd> {
         if let Some(comment) = comments.first() {
             self.error(Diagnostic::error("the course's language has no comments").at(comment.span));
         }
-        // The course's parsers read words up to the next blank, but a number ends where it cannot
-        // continue.
+        // The course's parsers read a word up to the next space, but a number only up to the first
+        // character that cannot be part of it.
         for i in 1..self.tokens.len() {
             let (before, token) = (self.tokens[i - 1], self.tokens[i]);
             let ends_number = token.kind == TokenKind::Close && self.text(before.span).parse::<f32>().is_ok();
             if token.touches && !ends_number {
                 let place = if token.kind == TokenKind::Word { before } else { token };
                 let side = if token.kind == TokenKind::Word { "after" } else { "before" };
-                let message = format!("there must be a blank {side} `{}`", self.text(place.span));
+                let message = format!("there must be a space {side} `{}`", self.text(place.span));
                 self.error(Diagnostic::error(message).at(place.span));
             }
             if self.stopped {
@@ -125,7 +125,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
     }
 
-    /// Returns the scene, after the checks that need the whole file.
+    /// Returns the scene after running the checks that need the complete file.
     pub(super) fn finish(self) -> Scene {
         let count = self.scene.materials.len();
         for (index, span) in self.material_uses.iter().filter(|(index, _)| *index as usize >= count) {
@@ -141,11 +141,12 @@ impl<'a, 'd> Reader<'a, 'd> {
         self.scene
     }
 
+    /// Returns the next token without moving past it.
     pub(super) fn peek(&self) -> Option<Token> {
         self.tokens.get(self.at).copied()
     }
 
-    /// Token `count` places ahead.
+    /// Returns the token `count` positions ahead.
     pub(super) fn ahead(&self, count: usize) -> Option<Token> {
         self.tokens.get(self.at + count).copied()
     }
@@ -155,7 +156,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         self.peek().is_some_and(|t| t.kind == TokenKind::Open)
     }
 
-    /// Text of the next token, if it is a word.
+    /// Returns the text of the next token if it is a word.
     pub(super) fn peek_word(&self) -> Option<String> {
         self.peek().filter(|t| t.kind == TokenKind::Word).map(|t| self.text(t.span))
     }
@@ -167,31 +168,34 @@ impl<'a, 'd> Reader<'a, 'd> {
         span
     }
 
-    /// Moves back to the last token, unless reading has been abandoned.
+    /// Moves back by one token, unless reading has been abandoned.
     pub(super) fn step_back(&mut self) {
         if !self.stopped {
             self.at -= 1;
         }
     }
 
+    /// Returns the span of the last token that was read.
     pub(super) fn last_span(&self) -> Span {
         self.tokens.get(self.at.wrapping_sub(1)).map_or(self.end_span(), |t| t.span)
     }
 
+    /// Returns the span of the end of the file.
     pub(super) fn end_span(&self) -> Span {
         self.texts.end()
     }
 
+    /// Returns the text of a span.
     pub(super) fn text(&self, span: Span) -> String {
         String::from_utf8_lossy(self.texts.at(span)).into_owned()
     }
 
-    /// Number of errors so far: a block is checked as a whole only if it has none.
+    /// Returns the number of errors so far. A block is checked as a whole only if it caused none.
     pub(super) fn errors(&self) -> usize {
         self.diagnostics.error_count() + self.repeated
     }
 
-    /// Reports an error about a name once, even if the name occurs at many places.
+    /// Reports an error about a name only once, even if the name occurs in many places.
     pub(super) fn error_once(&mut self, error: Diagnostic) {
         let known = self.diagnostics.error_count();
         if !self.stopped && !self.diagnostics.push_once(error) {
@@ -202,7 +206,8 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
     }
 
-    /// Reports an error, unless reading has been abandoned. Abandons it after too many errors.
+    /// Reports an error, unless reading has been abandoned. After too many errors, abandons
+    /// reading.
     pub(super) fn error(&mut self, error: Diagnostic) {
         if self.stopped {
             return;
@@ -219,10 +224,10 @@ impl<'a, 'd> Reader<'a, 'd> {
         self.at = self.tokens.len();
     }
 
-    /// Enters one level of nesting; reports an error if the limit is reached.
+    /// Enters one more level of nesting; reports an error if the limit is reached.
     pub(super) fn descend(&mut self, what: &str, span: Span) -> bool {
         if self.depth >= DEEPEST {
-            self.error(Diagnostic::error(format!("{what} are nested deeper than {DEEPEST}")).at(span));
+            self.error(Diagnostic::error(format!("{what} are nested more than {DEEPEST} levels deep")).at(span));
             self.stop();
             return false;
         }
@@ -230,8 +235,8 @@ impl<'a, 'd> Reader<'a, 'd> {
         true
     }
 
-    /// Expects the `{` of a block. If it is missing but a word of the block follows, continues
-    /// inside the block.
+    /// Expects the `{` of a block. If it is missing, but a word that belongs in the block follows,
+    /// continues inside the block.
     pub(super) fn open(&mut self, keyword: Span) -> bool {
         let opens = self.at_open();
         let name = self.text(keyword);
@@ -248,7 +253,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         opens || inside
     }
 
-    /// Next word inside the innermost block; `None` after its end.
+    /// Returns the next word inside the innermost block; `None` after the block's end.
     pub(super) fn word_before_close(&mut self) -> Option<(String, Span)> {
         let name = self.blocks.last().map(|&block| self.text(block)).unwrap_or_default();
         loop {
@@ -283,7 +288,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
     }
 
-    /// Returns true if a section begins here, which is possible only at the top of a file.
+    /// Returns true if the next tokens begin a section, which is allowed only at the top of a file.
     fn at_section(&self) -> bool {
         let block = self.ahead(1).is_some_and(|t| t.kind == TokenKind::Open);
         let word = self.peek_word().filter(|_| block).unwrap_or_default();
@@ -294,7 +299,7 @@ impl<'a, 'd> Reader<'a, 'd> {
     }
 }
 
-/// Names of a set of dialects.
+/// Returns the names of the dialects in a set.
 pub(super) fn names(set: DialectSet) -> String {
     let years: Vec<&str> = Dialect::ALL.iter().filter(|d| d.is_in(set)).map(|d| d.name()).collect();
     if years.is_empty() { "no dialect".to_string() } else { years.join(", ") }

@@ -1,4 +1,4 @@
-//! Recovery after a mistake, so that one mistake gives one error.
+//! Recovery after an error, so that one mistake causes only one error.
 
 use super::lexer::TokenKind;
 use super::reader::{Reader, names};
@@ -9,7 +9,7 @@ use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::dialect::Dialect;
 
 impl Reader<'_, '_> {
-    /// Ends the innermost block before the next token, which is not allowed in it.
+    /// Ends the innermost block before the next token, which is not allowed in the block.
     pub(super) fn unclosed(&mut self) {
         let Some(block) = self.blocks.pop() else { return };
         if self.unclosed_at != Some(self.at) {
@@ -23,7 +23,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Reopens the block that the last `}` closed, since this brace is superfluous.
+    /// Reopens the block that was closed by the last `}`, because that brace is superfluous.
     pub(super) fn reopen_block(&mut self, keyword: Span, found: u32) {
         let message = format!("this `}}` ends `{}` after {found} of its elements, but more follow", self.text(keyword));
         let brace = self.last_span();
@@ -48,7 +48,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Skips the rest of a wrong value, up to the next word of the language.
+    /// Skips the rest of an invalid value, up to the next word of the language.
     pub(super) fn skip_values(&mut self) {
         while self.peek_word().is_some_and(|word| dialects_of(&word).is_none()) {
             self.advance();
@@ -74,7 +74,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Reports an unknown word, and skips it with its values and its block.
+    /// Reports an unknown word, and skips its values and its block.
     pub(super) fn unknown(&mut self, word: &str, span: Span, place: &str, known: &[&str]) {
         let message = match word.parse::<f32>() {
             Ok(_) => format!("unexpected number {} {place}", shown(word.as_bytes())),
@@ -97,8 +97,8 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Returns the known word that an unknown one probably stands for. A word of the language is
-    /// taken for another only if they differ in case.
+    /// Returns the valid word that an unknown word probably stands for. A word that exists in the
+    /// language is replaced only if the two differ in case alone.
     fn suggest<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
         let known: Vec<&str> = known.into_iter().collect();
         let there = counterpart(word, self.options.dialect);
@@ -112,7 +112,7 @@ impl Reader<'_, '_> {
         (dialects_of(word).is_none() || near.eq_ignore_ascii_case(word)).then_some(near)
     }
 
-    /// Adds a fix to an error about a word: its replacement by the probable word, if that is clear.
+    /// Adds a fix to an error about a word: replace it with the probable word, if there is one.
     pub(super) fn with_suggestion<'w>(
         &self,
         error: Diagnostic,
@@ -124,7 +124,7 @@ impl Reader<'_, '_> {
         error.fix_at(suggestion.map(|_| span), suggestion.unwrap_or_default())
     }
 
-    /// Returns help on a word in a wrong place.
+    /// Returns help for a word that is not allowed in its place.
     pub(super) fn advice<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<String> {
         let known: Vec<&str> = known.into_iter().collect();
         let year = self.options.dialect.name();

@@ -1,7 +1,7 @@
-//! Reference of the scene language: each keyword with its contents, its dialects and an example.
+//! Reference of the scene language: each keyword with its fields, its dialects and an example.
 //!
-//! Keywords with parameters come from the descriptions of their statements. The table `GRAMMAR`
-//! lists the others, which belong to the grammar itself.
+//! Keywords with parameters are taken from the descriptions of their statements. The table
+//! `GRAMMAR` lists the others, which belong to the grammar itself.
 
 use super::write::write_item;
 use durer_scene::camera::Camera;
@@ -14,10 +14,10 @@ use durer_scene::medium::Fog;
 use durer_scene::scene::{Background, NamedTexture, Operation};
 use durer_scene::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
 
-/// Chapter of the reference.
+/// Chapter of the scene language reference, by which its entries are grouped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Chapter {
-    /// Frame of a scene file: sections, groups, counts.
+    /// Structure of a scene file: sections, groups, counts.
     Structure,
     /// Cameras.
     Cameras,
@@ -59,17 +59,17 @@ impl Chapter {
     }
 }
 
-/// A word with the dialects that have it.
+/// A keyword or field name, with the dialects that spell it this way.
 pub type Spelling = (&'static str, DialectSet);
 
-/// Entry of a keyword.
+/// Entry of the scene language reference: a keyword with its description, fields and example.
 #[derive(Clone, Debug)]
 pub struct Entry {
-    /// Keywords by dialect; the first is the name of the entry.
+    /// Spellings of the keyword by dialect; the first one is the name of the entry.
     pub keywords: Vec<Spelling>,
-    /// Chapter that describes the keyword.
+    /// Chapter that contains the entry.
     pub chapter: Chapter,
-    /// Description.
+    /// Description of the keyword.
     pub doc: String,
     /// Values after a keyword without a block, such as `x y z`.
     pub values: &'static str,
@@ -79,37 +79,37 @@ pub struct Entry {
     pub example: String,
 }
 
-/// Field of a block.
+/// Field of a keyword's block, as listed in the scene language reference.
 #[derive(Clone, Debug)]
 pub struct FieldEntry {
     /// Name of the field in code.
     pub name: &'static str,
-    /// Kind of the value.
+    /// Type of the value.
     pub kind: Kind,
-    /// Words for the field, by dialect.
+    /// Spellings of the field's name, by dialect.
     pub words: Vec<Spelling>,
-    /// Type and range of the value.
+    /// Type and range of the value, as text.
     pub value: String,
     /// True if the field is required.
     pub required: bool,
-    /// Default, if it is a value.
+    /// Default value as text, if there is one.
     pub default: Option<String>,
     /// Meaning and unit.
     pub doc: String,
 }
 
 impl Entry {
-    /// Name of the entry in the reference.
+    /// Returns the name of the entry in the reference.
     pub fn name(&self) -> &'static str {
         self.keywords[0].0
     }
 
-    /// Dialects that have the keyword.
+    /// Returns the dialects that have the keyword.
     pub fn dialects(&self) -> DialectSet {
         self.keywords.iter().fold(0, |all, keyword| all | keyword.1)
     }
 
-    /// Scene that shows the example, if it is visible.
+    /// Returns a scene that shows the example, if the example is something visible.
     pub fn scene(&self) -> Option<String> {
         let example = &self.example;
         Some(match self.chapter {
@@ -172,7 +172,7 @@ Group {
 }
 ";
 
-/// Examples that show more than the defaults of a statement.
+/// Examples that show more than a statement's defaults.
 const EXAMPLES: [(&str, &str); 30] = [
     ("Fog", "Fog { extinction 0.25 color 0.9 0.95 1 }"),
     ("Texture", "Texture { name bark picture bark.png wrapU mirror uvTransform { 4 0 0  0 4 0 } }"),
@@ -298,7 +298,7 @@ const GRAMMAR: &[(&[Spelling], Chapter, &str, &str, &str)] = &[
         "Transform { Matrix { 1 0.6 0 0  0 1 0 -0.4  0 0 1 0  0 0 0 1 } Box { min -0.6 -0.8 -0.6 max 0.6 0.8 0.6 } }"),
 ];
 
-/// Returns the entries of all keywords, by chapter.
+/// Returns the entries of all keywords, sorted by chapter.
 pub fn entries() -> Vec<Entry> {
     let mut all: Vec<Entry> = Vec::new();
     all.extend(of::<Background>(Chapter::Structure));
@@ -338,7 +338,7 @@ pub fn entries() -> Vec<Entry> {
     all
 }
 
-/// Returns the entries of a list of described statements.
+/// Returns the entries for a list of described statements.
 fn of<T: DescribedList>(chapter: Chapter) -> Vec<Entry> {
     let entry = |mut kind: T| {
         let keywords = kind.keywords().to_vec();
@@ -382,7 +382,7 @@ fn field<T: DescribedList>(kind: &T, i: usize, own: DialectSet) -> FieldEntry {
     }
 }
 
-/// Names of a set of dialects; `all dialects` for the full set.
+/// Returns the names of the dialects in a set; `all dialects` for the full set.
 pub fn dialect_names(dialects: DialectSet) -> String {
     if dialects == set::ALL {
         return "all dialects".into();
@@ -391,7 +391,7 @@ pub fn dialect_names(dialects: DialectSet) -> String {
     names.join(", ")
 }
 
-/// Description of the values that a kind and a rule allow.
+/// Describes the values that a type and a constraint allow.
 fn value_of(kind: Kind, rule: Constraint) -> String {
     let kind = match kind {
         Kind::Float => "number".to_string(),
@@ -434,8 +434,8 @@ fn one_line(doc: &str) -> String {
     doc.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Returns every word of the language, including fields and values, sorted. Used by editors and for
-/// suggestions.
+/// Returns every word of the language, including field names and values, sorted. Used by editors
+/// and for suggestions.
 pub fn all_words() -> Vec<&'static str> {
     let mut words: Vec<&'static str> = Vec::new();
     for entry in entries() {

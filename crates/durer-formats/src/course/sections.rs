@@ -1,4 +1,4 @@
-//! Grammar of 2003 to 2019: sections, groups, objects.
+//! Grammar of 2003 to 2019: sections, groups and objects.
 
 use super::fields::Order;
 use super::lexer::TokenKind;
@@ -15,7 +15,7 @@ use durer_scene::medium::Fog;
 use durer_scene::scene::{Background, Group, Material, NamedTexture, Node, Object, Operation, Spanned};
 use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
-/// Words allowed in a group: the first [`OBJECTS`] begin objects.
+/// Words allowed in a group. The first [`OBJECTS`] of them begin objects.
 #[rustfmt::skip]
 pub(super) const IN_GROUP: [&str; OBJECTS + 4] = [
     "Group", "Transform", "use", "Sphere", "Plane", "Triangle", "TriangleMesh",
@@ -24,7 +24,7 @@ pub(super) const IN_GROUP: [&str; OBJECTS + 4] = [
     "MaterialIndex", "numObjects", "Grid", "define",
 ];
 
-/// Number of words of [`IN_GROUP`] that begin an object and are suggested in a transform.
+/// Number of words in [`IN_GROUP`] that begin an object; these are suggested in a transform.
 pub(super) const OBJECTS: usize = 21;
 
 impl Reader<'_, '_> {
@@ -54,7 +54,7 @@ impl Reader<'_, '_> {
         });
     }
 
-    /// Reads sections up to the end of the file; `section` returns true if it knows the word.
+    /// Reads sections up to the end of the file. `section` returns true if it handled the word.
     pub(super) fn top(&mut self, known: &[&str], mut section: impl FnMut(&mut Self, &str, Span) -> bool) {
         let mut seen: Vec<(String, Span)> = Vec::new();
         while let Some(token) = self.peek() {
@@ -71,7 +71,7 @@ impl Reader<'_, '_> {
             } else if !section(self, &word, span) {
                 self.unknown(&word, span, "at the top of a scene", known);
             } else if word != "define" {
-                // A scene has one camera of any kind.
+                // A scene has only one camera, of whatever kind.
                 let kind = if word.ends_with("Camera") { "Camera".to_string() } else { word.clone() };
                 if let Some((_, first)) = seen.iter().find(|(earlier, _)| *earlier == kind) {
                     let message = format!("this is another `{kind}`: only the last is used");
@@ -85,6 +85,7 @@ impl Reader<'_, '_> {
         }
     }
 
+    /// Reads the block of a camera and makes it the scene's camera.
     pub(super) fn camera(&mut self, mut camera: Camera, keyword: Span) {
         self.check_keyword(&camera, keyword);
         self.fields(&mut camera, keyword, Order::Listed, |_, _, _| false);
@@ -92,6 +93,7 @@ impl Reader<'_, '_> {
         self.scene.camera_span = keyword;
     }
 
+    /// Reads the `Background` block.
     pub(super) fn background(&mut self, keyword: Span) {
         let mut background = Background::default();
         self.fields(&mut background, keyword, Order::Any, |_, _, _| false);
@@ -106,14 +108,14 @@ impl Reader<'_, '_> {
         self.scene.fog = Some(Spanned { value: fog, span: keyword });
     }
 
-    /// Warns of a keyword that this dialect lacks.
+    /// Warns about a keyword that this dialect does not have.
     pub(super) fn check_keyword<T: DescribedList>(&mut self, item: &T, keyword: Span) {
         let word = self.text(keyword);
         let set = item.keywords().iter().find(|(w, _)| *w == word).map_or(0, |k| k.1);
         self.foreign(&word, keyword, set);
     }
 
-    /// Reads `{ count n element ... }`. The count must match the number of elements.
+    /// Reads `{ count n element ... }`. The count must equal the number of elements.
     fn counted(&mut self, keyword: Span, count_word: &str, mut element: impl FnMut(&mut Self, &str, Span) -> bool) {
         let errors = self.errors();
         let name = self.text(keyword);
@@ -168,8 +170,8 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Returns true if a superfluous `}` ended a top-level section: the next word belongs in that
-    /// section.
+    /// Returns true if a superfluous `}` ended a top-level section. In that case, the next word
+    /// belongs in that section.
     fn closed_early(&self, name: &str) -> bool {
         let word = self.peek_word().unwrap_or_default();
         self.depth == 0 && !is_section(&word) && home_of(&word) == Some(name)
@@ -184,7 +186,7 @@ impl Reader<'_, '_> {
                 return false;
             };
             reader.check_keyword(&light, span);
-            // Since the last assignment of 2012, point lights may have their fields in any order.
+            // Since the last assignment of 2012, point lights can have their fields in any order.
             let free = matches!(reader.options.dialect, Dialect::F12a5 | Dialect::F16 | Dialect::Durer);
             let order = if free && matches!(light, Light::Point(_)) { Order::Any } else { Order::Listed };
             reader.fields(&mut light, span, order, |_, _, _| false);
@@ -232,7 +234,7 @@ impl Reader<'_, '_> {
         });
     }
 
-    /// Reads a material, if the word begins one.
+    /// Reads a material if the word begins one.
     pub(super) fn material(&mut self, word: &str, span: Span) -> Option<Material> {
         let errors = self.errors();
         if let Some(mut solid) = Solid::from_keyword(word) {
@@ -252,7 +254,7 @@ impl Reader<'_, '_> {
         }
         if let Some(mut principled) = PrincipledMaterial::from_keyword(word) {
             self.check_keyword(&principled, span);
-            // A preset comes first, so that the fields after it change it.
+            // A preset comes first, so that later fields can change it.
             let first = self.ahead(1).filter(|token| self.at_open() && self.text(token.span) == "preset");
             let name = first.and_then(|_| self.ahead(2)).map(|token| self.text(token.span));
             principled = name.as_deref().and_then(presets::named).unwrap_or(principled);
@@ -320,7 +322,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Checks that a solid texture uses only earlier materials, which rules out cycles.
+    /// Checks that a solid texture uses only earlier materials, which prevents cycles.
     fn check_solid(&mut self, solid: &Solid, span: Span) {
         let own = self.scene.materials.len() as u32;
         if let Some(index) = durer_scene::material::Pattern::materials(solid).into_iter().find(|index| *index >= own) {
@@ -329,6 +331,7 @@ impl Reader<'_, '_> {
         }
     }
 
+    /// Reads the block of a group.
     pub(super) fn group(&mut self, keyword: Span) -> Group {
         let mut objects = Vec::new();
         self.counted(keyword, "numObjects", |reader, word, span| {
@@ -347,7 +350,7 @@ impl Reader<'_, '_> {
                     reader.define(span);
                     false
                 }
-                // The dialect of 2003 has materials at their place of use.
+                // The dialect of 2003 defines materials where they are used.
                 "Material" | "PhongMaterial" => {
                     reader.foreign("Material in Group", span, set::F03);
                     if let Some(value) = reader.material(word, span) {
@@ -362,8 +365,8 @@ impl Reader<'_, '_> {
         Group { objects }
     }
 
-    /// Reads a voxel grid: a box of cells and the spheres that fill them. In node files, it is a
-    /// component of that type.
+    /// Reads a voxel grid: a box of cells, and spheres that fill cells. In files with nodes, it is
+    /// a component of type `Grid`.
     pub(super) fn voxels(&mut self, keyword: Span) -> Node {
         let (mut grid, mut balls) = (VoxelGrid::default(), Vec::new());
         self.fields(&mut grid, keyword, Order::Any, |reader, word, span| {
@@ -383,12 +386,13 @@ impl Reader<'_, '_> {
         Node::Voxels(grid, balls)
     }
 
-    /// Reads an object, if the word begins one.
+    /// Reads an object if the word begins one.
     pub(super) fn object(&mut self, word: &str, span: Span) -> Option<Object> {
         if !self.descend("objects", span) {
             return None;
         }
-        // The current material belongs to this object; a group may change it inside.
+        // The current material belongs to this object. If the object is a group, the material can
+        // change inside it.
         let material = self.material;
         let classic = |words: &[(&str, DialectSet)]| words.iter().any(|(w, s)| *w == word && s & set::CLASSIC != 0);
         let node = if word == "Group" {

@@ -1,9 +1,9 @@
-//! Suggestions for words that the language or the dialect lacks.
+//! Suggestions for words that the language, or the file's dialect, does not have.
 
 use super::words::dialects_of;
 use durer_scene::dialect::Dialect;
 
-/// Words of the first grammar and their counterparts in the grammar of nodes.
+/// Words of the first grammar, and their counterparts in the grammar of nodes.
 const COUNTERPARTS: [(&str, &str); 20] = [
     ("angle", "fov"),
     ("ambientLight", "ambient_light"),
@@ -27,8 +27,8 @@ const COUNTERPARTS: [(&str, &str); 20] = [
     ("ZRotate", "z_rotate"),
 ];
 
-/// Common slips: the slip, the words that it may stand for, and a remark. The first of these words
-/// that is known in the block is suggested.
+/// Common mistakes: the wrong word, the words that may be meant, and a remark. The first of these
+/// words that is valid in the block is suggested.
 const SLIPS: [(&str, &[&str], &str); 29] = [
     ("plain", &["Plane", "plane"], ""),
     ("ball", &["Sphere", "sphere"], ""),
@@ -69,7 +69,7 @@ const SLIPS: [(&str, &[&str], &str); 29] = [
     ("material", &["MaterialIndex"], ""),
 ];
 
-/// Word of this dialect's grammar for a word of the other grammar.
+/// Returns the word of this dialect's grammar for a word of the other grammar.
 pub(super) fn counterpart(word: &str, dialect: Dialect) -> Option<&'static str> {
     let nodes = dialect == Dialect::F23;
     let row = COUNTERPARTS.iter().find(|(classic, node)| if nodes { *classic == word } else { *node == word })?;
@@ -77,7 +77,7 @@ pub(super) fn counterpart(word: &str, dialect: Dialect) -> Option<&'static str> 
     dialects_of(there).filter(|set| dialect.is_in(*set) || dialect == Dialect::Durer).map(|_| there)
 }
 
-/// Words with the same meaning in different years of the first grammar.
+/// Pairs of words with the same meaning in different years of the first grammar.
 const YEARS: [(&str, &str); 5] = [
     ("exponent", "shininess"),
     ("falloff", "attenuation"),
@@ -86,14 +86,14 @@ const YEARS: [(&str, &str); 5] = [
     ("Matrix", "Matrix4f"),
 ];
 
-/// Word of this dialect for a word of another year.
+/// Returns the word of this dialect for a word of another year.
 pub(super) fn here(word: &str, dialect: Dialect) -> Option<&'static str> {
     let other = YEARS.iter().find_map(|&(a, b)| (a == word).then_some(b).or((b == word).then_some(a)));
     let known = |word: &&str| dialects_of(word).is_some_and(|set| dialect.is_in(set));
     counterpart(word, dialect).or(other.filter(known))
 }
 
-/// Returns the known word that a slip stands for, with a remark.
+/// Returns the valid word that is meant by a common mistake, with a remark.
 pub(super) fn slip<'w>(word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<(&'w str, &'static str)> {
     let known: Vec<&str> = known.into_iter().collect();
     let row = SLIPS.iter().find(|row| row.0.eq_ignore_ascii_case(word))?;
@@ -101,7 +101,7 @@ pub(super) fn slip<'w>(word: &str, known: impl IntoIterator<Item = &'w str>) -> 
     (*suggestion != word).then_some((suggestion, row.2))
 }
 
-/// Remark on a word of the language in a block that uses another word for it.
+/// Returns a remark on a word that exists in the language, but not in this block.
 pub(super) fn misplaced(word: &str, place: &str) -> Option<&'static str> {
     let within = |block: &str| place.contains(block);
     Some(match word {

@@ -1,4 +1,4 @@
-//! Reading of transforms: matrices, then one object.
+//! Reads transforms: matrices followed by one object.
 
 use super::lexer::TokenKind;
 use super::reader::Reader;
@@ -66,19 +66,19 @@ impl Reader<'_, '_> {
         ops
     }
 
-    /// Reports a matrix that by itself flattens space.
+    /// Reports a matrix that alone flattens space.
     pub(super) fn check_flat(&mut self, op: Option<MatrixOp>, span: Span) {
         if let Some(error) = op.and_then(flat) {
             let at = span.to(self.last_span());
             if self.any_values() {
                 let warning = Diagnostic::warning(error.message).code("flat-transform").at(at);
-                return self.diagnostics.push(warning.effect("applied anyway, as by the official program"));
+                return self.diagnostics.push(warning.effect("applied anyway, as the official program does"));
             }
             self.error(error.at(at));
         }
     }
 
-    /// Reads a matrix, if the word begins one; the inner `None` means an error.
+    /// Reads a matrix if the word begins one. The inner `None` means that there was an error.
     pub(super) fn matrix(&mut self, word: &str, span: Span) -> Option<Option<MatrixOp>> {
         let braces_needed = matches!(word, "Rotate" | "Matrix" | "Matrix4f");
         if !braces_needed && !MatrixOp::words().contains(&word) {
@@ -105,7 +105,7 @@ impl Reader<'_, '_> {
             self.skip_values();
         }
         if opens {
-            // Errors inside the braces were already reported.
+            // Errors inside the braces have already been reported.
             self.close(word, self.errors() == known);
         }
         if self.errors() == errors
@@ -116,14 +116,14 @@ impl Reader<'_, '_> {
         Some(op)
     }
 
-    /// Number of numbers that follow, and the span of the last.
+    /// Returns the number of numbers that follow, and the span of the last one.
     fn numbers_ahead(&self) -> (usize, Span) {
         let number = |i: usize| self.ahead(i).filter(|t| self.text(t.span).parse::<f32>().is_ok());
         let count = (0..17).take_while(|i| number(*i).is_some()).count();
         (count, number(count.saturating_sub(1)).map_or(self.last_span(), |token| token.span))
     }
 
-    /// Reports `Rotate 0 1 0 45` without braces, and skips the numbers.
+    /// Reports `Rotate 0 1 0 45`, which lacks braces, and skips the numbers.
     fn rotate_without_braces(&mut self, word: Span) -> bool {
         let (count, last) = self.numbers_ahead();
         if count != 4 && count != 1 {
@@ -144,10 +144,10 @@ impl Reader<'_, '_> {
         true
     }
 
-    /// Reports `Scale 2` with a single number, and skips it.
+    /// Reports `Scale 2`, which has a single number, and skips it.
     fn scale_by_one(&mut self, word: Span) -> bool {
         let (count, last) = self.numbers_ahead();
-        // Incomplete values and words other than numbers get their own errors.
+        // Incomplete values, and words other than numbers, have their own errors.
         let ends = |text: &str| text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '}');
         if count != 1 || !self.ahead(1).is_some_and(|next| ends(&self.text(next.span))) {
             return false;
@@ -181,7 +181,7 @@ impl Reader<'_, '_> {
                 for (i, value) in rows.iter_mut().enumerate() {
                     *value = self.number(word, i + 1, 16)?;
                 }
-                // `Matrix` of 2003 and 2004 lists rows; `Matrix4f`, and `Matrix` of later years,
+                // `Matrix` of 2003 and 2004 lists rows. `Matrix4f`, and `Matrix` of later years,
                 // list columns.
                 let rows_listed =
                     word == "Matrix" && matches!(self.options.dialect, Dialect::F03 | Dialect::F04 | Dialect::Durer);
@@ -190,8 +190,8 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// Expects `}`, and skips values before it. If a word of the language comes first, `}` is
-    /// missing.
+    /// Expects `}`, skipping any values before it. If a word of the language comes first, the `}`
+    /// is missing.
     fn close(&mut self, block: &str, complain: bool) {
         if complain && self.peek().is_none_or(|t| t.kind != TokenKind::Close) {
             self.expected("`}`", block);
@@ -203,7 +203,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Error for a matrix that flattens space, if it does.
+/// Returns an error if a matrix flattens space.
 pub(crate) fn flat(op: MatrixOp) -> Option<Diagnostic> {
     let flat = match op {
         MatrixOp::Scale(v) => v.to_array().contains(&0.0),
@@ -214,7 +214,7 @@ pub(crate) fn flat(op: MatrixOp) -> Option<Diagnostic> {
     flat.then(|| error.help("use a scale of 1 along axes that keep their size"))
 }
 
-/// Error for a complete matrix with invalid values, if any.
+/// Returns an error if the values of a complete matrix are invalid.
 pub(crate) fn senseless(op: MatrixOp) -> Option<Diagnostic> {
     match op {
         MatrixOp::Rotate(axis, _) if axis == Vec3::ZERO => {

@@ -1,4 +1,4 @@
-//! Table of every word of the language.
+//! Table of all words of the language.
 
 use durer_scene::camera::Camera;
 use durer_scene::describe::DescribedList;
@@ -11,7 +11,7 @@ use durer_scene::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-/// Words of the grammar itself, which are not part of any described statement.
+/// Words of the grammar itself, which belong to no described statement.
 const GRAMMAR: [(&str, DialectSet); 37] = [
     ("include", set::DURER),
     ("define", set::DURER),
@@ -84,7 +84,7 @@ fn list<T: DescribedList>(words: &mut HashMap<&'static str, DialectSet>) {
     }
 }
 
-/// Dialects that have a word; `None` if it is not in the language.
+/// Returns the dialects that have a word; `None` if the word is not in the language.
 pub(super) fn dialects_of(word: &str) -> Option<DialectSet> {
     WORDS.get(word).copied()
 }
@@ -100,7 +100,7 @@ pub(super) fn begins_block(word: &str) -> bool {
     word.starts_with(|c: char| c.is_ascii_uppercase()) && WORDS.contains_key(word)
 }
 
-/// Block to which a misplaced word belongs.
+/// Returns the block in which a misplaced word belongs.
 pub(super) fn home_of(word: &str) -> Option<&'static str> {
     Some(match word {
         "TriangleMesh" | "HeightField" | "Grid" | "Transform" | "MaterialIndex" | "Group" | "use" | "define" => "Group",
@@ -119,10 +119,10 @@ pub(super) fn home_of(word: &str) -> Option<&'static str> {
 /// Top-level sections other than the camera.
 pub(super) const SECTIONS: [&str; 6] = ["Background", "Fog", "Lights", "Textures", "Materials", "Group"];
 
-/// Sections that only the Dürer dialect has.
+/// Sections that exist only in the Dürer dialect.
 pub(super) const OURS: [&str; 2] = ["Fog", "Textures"];
 
-/// Returns the camera that a word begins, in files without nodes.
+/// Returns the camera that a word begins, in files of the grammar without nodes.
 pub(super) fn camera_of(word: &str) -> Option<Camera> {
     Camera::from_keyword(word).filter(|_| word != "Camera")
 }

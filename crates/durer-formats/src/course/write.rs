@@ -8,7 +8,7 @@ use durer_scene::scene::{Group, Material, MatrixOp, Node, Object, Scene};
 use durer_scene::shape::{Sphere, VoxelGrid};
 use std::fmt::Write;
 
-/// Writes a scene in a dialect. Uses words of another year for what the dialect lacks.
+/// Formats a scene in a dialect. Where the dialect lacks a word, uses a word of another year.
 pub fn write(scene: &Scene, dialect: Dialect) -> String {
     let mut writer = Writer { out: String::new(), depth: 0, dialect, material: None };
     match dialect {
@@ -18,13 +18,14 @@ pub fn write(scene: &Scene, dialect: Dialect) -> String {
     writer.out
 }
 
-/// Writes one statement by itself, as [`write`] does.
+/// Formats one statement alone, as [`write`] does.
 pub(super) fn write_item<T: DescribedList>(item: &T, dialect: Dialect) -> String {
     let mut writer = Writer { out: String::new(), depth: 0, dialect, material: None };
     writer.item(item);
     writer.out
 }
 
+/// Writer that appends the text of a scene in one dialect.
 struct Writer {
     out: String,
     depth: usize,
@@ -50,14 +51,14 @@ impl Writer {
 
     fn fields<T: DescribedList>(&mut self, item: &T) {
         let plain = T::from_keyword(item.keywords()[0].0);
-        // Statements of the Dürer dialect only use its words.
+        // Statements of the Dürer dialect use only its own words.
         let ours = item.is_ours();
         let dialect = if ours { Dialect::Durer } else { self.dialect };
         for (i, field) in item.fields().iter().enumerate() {
             let Some(value) = item.get(i) else { continue };
             let (word, text) = (field.spelling(dialect), value_text(&value));
-            // Omit a default value that the dialect has no word for. Compare texts, since they
-            // distinguish 0 from -0.
+            // Omit a default value if the dialect has no word for the field. Compare texts, since
+            // they distinguish 0 from -0.
             let plain_text = plain.as_ref().and_then(|plain| plain.get(i)).map(|value| value_text(&value));
             if word.is_none() && plain_text.as_ref() == Some(&text) {
                 continue;
@@ -233,7 +234,7 @@ impl Writer {
         self.block("Node", |w| match light {
             Light::Point(point) => {
                 w.block("Transform", |w| w.node_matrix(&MatrixOp::Translate(point.position)));
-                // The transform of the node positions the light.
+                // The node's transform places the light.
                 w.component("Light", &Light::Point(PointLight { position: Vec3::ZERO, ..point.clone() }));
             }
             Light::Directional(_) | Light::Spot(_) | Light::Photometric(_) => w.component("Light", light),

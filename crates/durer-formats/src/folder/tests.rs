@@ -139,7 +139,7 @@ fn file_is_read_whole_despite_a_wrong_size() {
     let path = folder.path().join("a");
     fs::write(&path, b"0123456789").unwrap();
     let read = |size, most| all_of(fs::File::open(&path).unwrap(), size, most).unwrap().to_vec();
-    // The file may have grown or shrunk; at most one byte beyond the limit is read.
+    // The file may have grown or shrunk. At most one byte beyond the limit is read.
     for size in [10, 0, 4, 25] {
         assert_eq!(read(size, 100), b"0123456789", "{size}");
     }

@@ -1,12 +1,12 @@
-//! Accessors: numbers of all component types in buffers, with strides, normalization and sparse
-//! replacements.
+//! Reads accessors: numbers of all component types in buffers, with strides, normalization and
+//! sparse values.
 
 use super::Model;
 use super::buffers::View;
 use super::json::JsonRef;
 use rayon::prelude::*;
 
-/// Component type.
+/// Number type of the components of a glTF accessor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Component {
     I8,
@@ -30,6 +30,7 @@ impl Component {
         })
     }
 
+    /// Returns the size of a number in bytes.
     pub fn size(self) -> usize {
         match self {
             Component::I8 | Component::U8 => 1,
@@ -38,8 +39,8 @@ impl Component {
         }
     }
 
-    /// Returns the number at the start of `b`; a normalized one lies between -1 or 0 and 1 (chapter
-    /// 3.11 of the specification).
+    /// Returns the number at the start of `b`. A normalized number is between 0 or -1 and 1
+    /// (chapter 3.11 of the specification).
     fn float(self, b: &[u8], normalized: bool) -> f32 {
         let (value, most) = match self {
             Component::I8 => (f32::from(b[0] as i8), 127.0),
@@ -61,12 +62,12 @@ impl Component {
     }
 }
 
-/// Rows of numbers in a buffer view.
+/// glTF accessor: describes rows of numbers in a buffer view, and reads them.
 #[derive(Clone)]
 pub(super) struct Accessor {
     pub component: Component,
     pub normalized: bool,
-    /// Number of components in a row: 1 to 4, or 4, 9 and 16 for matrices.
+    /// Number of components in a row: 1 to 4, or for matrices 4, 9 or 16.
     pub width: usize,
     pub is_matrix: bool,
     pub count: usize,
@@ -78,6 +79,7 @@ pub(super) struct Accessor {
     pub strided: bool,
 }
 
+/// Sparse part of an accessor: rows that replace those with the given indices.
 #[derive(Clone)]
 struct Sparse {
     count: usize,
@@ -90,6 +92,7 @@ const TYPES: [(&str, usize); 7] =
     [("SCALAR", 1), ("VEC2", 2), ("VEC3", 3), ("VEC4", 4), ("MAT2", 4), ("MAT3", 9), ("MAT4", 16)];
 
 impl Model<'_> {
+    /// Reads all accessors; `None` for each invalid one.
     pub(super) fn accessors(&self, root: &JsonRef) -> Vec<Option<Accessor>> {
         let Some(accessors) = root.get("accessors") else { return Vec::new() };
         accessors.items().map(|accessor| self.accessor_of(&accessor)).collect()
@@ -208,7 +211,8 @@ impl Sparse {
 }
 
 impl Accessor {
-    /// Byte offset of the i-th number in a row. Columns of matrices are aligned to four bytes.
+    /// Returns the byte offset of the i-th number in a row. Matrix columns are aligned to four
+    /// bytes.
     fn place(&self, i: usize) -> usize {
         let size = self.component.size();
         let rows = match self.width {
@@ -219,7 +223,7 @@ impl Accessor {
         (i / rows) * (rows * size).next_multiple_of(4) + (i % rows) * size
     }
 
-    /// Size of a row in bytes.
+    /// Returns the size of a row in bytes.
     fn row(&self) -> usize {
         self.place(self.width - 1) + self.component.size()
     }
@@ -253,7 +257,7 @@ impl Accessor {
         Some(())
     }
 
-    /// Replaces the data by tightly packed numbers of another component type.
+    /// Replaces the data with tightly packed numbers of another component type.
     pub fn fill(&mut self, component: Component, view: View) {
         (self.component, self.view, self.offset, self.sparse, self.strided) = (component, Some(view), 0, None, false);
     }
@@ -265,7 +269,7 @@ impl Accessor {
         }
         let Some(view) = &self.view else { return };
         let (bytes, stride, last) = (&view.bytes()[self.offset..], self.stride(), self.place(self.width - 1));
-        // Fast path for tightly packed data without infinite or NaN values, the usual case.
+        // Fast path for the usual case: tightly packed data without infinities and NaN.
         const EXPONENT: u32 = 0x7f80_0000;
         let is_finite = |number: &[u8; 4]| u32::from_le_bytes(*number) & EXPONENT != EXPONENT;
         let are_finite = |some: &[[u8; 4]]| some.iter().fold(true, |all, number| all & is_finite(number));
@@ -273,7 +277,7 @@ impl Accessor {
         if !dense.is_empty() && dense.as_chunks::<4>().0.par_chunks(1 << 15).all(are_finite) {
             return;
         }
-        // Columns of single-precision matrices have no padding.
+        // Columns of single-precision matrices need no padding.
         let is_sound = |i: &usize| {
             let (numbers, _) = bytes[i * stride..][..last + 4].as_chunks::<4>();
             numbers.iter().all(is_finite)
@@ -293,7 +297,7 @@ impl Accessor {
         }
     }
 
-    /// Returns each row mapped by `of`; missing components are 0.
+    /// Returns all rows, each mapped by `of`. Missing components are 0.
     pub fn rows<const N: usize, T: Send>(&self, of: impl Fn([f32; N]) -> T + Sync + Send) -> Vec<T> {
         let width = self.width.min(N);
         let is_plain = self.component == Component::F32 && !self.is_matrix;
@@ -323,7 +327,7 @@ impl Accessor {
         rows
     }
 
-    /// Returns all rows as unsigned integers.
+    /// Returns the numbers of all rows as unsigned integers.
     pub fn wholes(&self) -> Vec<u32> {
         let mut all: Vec<u32> = match &self.view {
             Some(view) => {

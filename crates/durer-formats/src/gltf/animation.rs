@@ -1,4 +1,4 @@
-//! Animations: transforms of nodes and weights of morph targets at a time.
+//! Evaluates animations: transforms of nodes and weights of morph targets at a given time.
 //!
 //! Source: *glTF 2.0 Specification*, chapter 3.11 and appendix C.
 
@@ -9,7 +9,7 @@ use crate::report::counted;
 use durer_scene::math::fp;
 use glam::{DQuat, DVec3, DVec4};
 
-/// Interpolation between two key frames.
+/// Interpolation between key frames of a glTF animation.
 #[derive(Clone, Copy, PartialEq)]
 enum Interpolation {
     Step,
@@ -17,17 +17,18 @@ enum Interpolation {
     Cubic,
 }
 
-/// Key frames of one channel.
+/// Key frames of a glTF animation sampler: times, values and interpolation.
 struct Track {
     times: Vec<f32>,
-    /// Values of the key frames, row by row. For cubic splines, each key frame has its in-tangent,
-    /// value and out-tangent.
+    /// Values of the key frames, one after the other. For cubic splines, each key frame has its
+    /// in-tangent, value and out-tangent.
     values: Vec<f32>,
     between: Interpolation,
 }
 
 impl Model<'_> {
-    /// Poses the nodes by the first animation at the requested time.
+    /// Sets the transforms and weights of the nodes to those of the first animation at the
+    /// requested time.
     pub(super) fn animate(&self, root: &JsonRef, nodes: &mut [NodeData]) {
         let (at, animations) = match (self.input.scene_defaults.at, root.get("animations")) {
             (Some(at), Some(animations)) => (at, animations),
@@ -76,7 +77,7 @@ impl Model<'_> {
 }
 
 impl Track {
-    /// Number of components of a key frame.
+    /// Returns the number of components per key frame.
     fn width(&self) -> Option<usize> {
         let rows = self.times.len() * if self.between == Interpolation::Cubic { 3 } else { 1 };
         self.values.len().checked_div(rows).filter(|&width| width > 0)
@@ -97,8 +98,8 @@ impl Track {
         (q.length() > 1e-6).then(|| q.normalize())
     }
 
-    /// Returns the key frame before a time, the fraction of the interval to the next, and the
-    /// interval's length in seconds.
+    /// Returns the last key frame before a time, the position of the time within the interval to
+    /// the next one (0 to 1), and the length of the interval in seconds.
     fn around(&self, at: f32) -> (usize, f32, f32) {
         let next = self.times.partition_point(|&time| time <= at);
         match (next.checked_sub(1), self.times.get(next)) {
@@ -106,7 +107,7 @@ impl Track {
                 let length = end - self.times[i];
                 (i, (at - self.times[i]) / length, length)
             }
-            // Clamp before the first and after the last key frame.
+            // Clamp times before the first and after the last key frame.
             (Some(i), None) => (i, 0.0, 0.0),
             (None, _) => (0, 0.0, 0.0),
         }
@@ -127,7 +128,8 @@ impl Track {
         if self.between == Interpolation::Linear {
             return Some(first.iter().zip(second).map(|(a, b)| a + t * (b - a)).collect());
         }
-        // Cubic Hermite spline: out-tangent of the first key frame, in-tangent of the second.
+        // Cubic Hermite spline, with the out-tangent of the first key frame and the in-tangent of
+        // the second.
         let out = self.values.get((3 * i + 2) * width..(3 * i + 3) * width)?;
         let into = self.values.get(3 * (i + 1) * width..(3 * (i + 1) + 1) * width)?;
         let (t2, t3) = (t * t, t * t * t);
@@ -141,7 +143,7 @@ impl Track {
     }
 }
 
-/// Notes that the file has animations if it is shown at rest.
+/// Adds a note that the file has animations but is shown at rest.
 fn at_rest(animations: &JsonRef) {
     let mut all = animations.items();
     let count = all.len();
@@ -155,7 +157,7 @@ fn at_rest(animations: &JsonRef) {
     animations.note("animations", format!("the file has {count} and is shown at rest: `--at 0` shows {moment}"));
 }
 
-/// Spherical linear interpolation along the shorter arc.
+/// Interpolates between quaternions along the shorter arc (slerp).
 fn slerp(a: &[f32], b: &[f32], t: f32) -> Vec<f32> {
     let four = |q: &[f32]| DVec4::new(q[0].into(), q[1].into(), q[2].into(), q[3].into()).normalize_or(DVec4::W);
     let (a, b) = (four(a), four(b));

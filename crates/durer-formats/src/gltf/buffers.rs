@@ -1,4 +1,4 @@
-//! Buffers, buffer views, and resolution of URIs.
+//! Reads buffers and buffer views, and resolves URIs.
 
 use super::Model;
 use super::json::JsonRef;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 const MESHOPT: &str = "EXT_meshopt_compression";
 
-/// Range of shared bytes.
+/// Range of bytes of a file or of decoded data, shared by reference counting.
 #[derive(Clone)]
 pub(super) struct Slice {
     bytes: Arc<[u8]>,
@@ -23,28 +23,30 @@ pub(super) struct Slice {
 }
 
 impl Slice {
+    /// Returns the bytes in the range.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes[self.range.clone()]
     }
 
-    /// Returns a slice of all bytes.
+    /// Returns a slice of all the bytes.
     pub fn whole(bytes: Arc<[u8]>) -> Self {
         Slice { range: 0..bytes.len(), bytes }
     }
 
+    /// Returns a slice of a range of these bytes; `None` if the range is too long.
     pub fn part(&self, range: Range<usize>) -> Option<Slice> {
         let (start, end) = (self.range.start.checked_add(range.start)?, self.range.start.checked_add(range.end)?);
         (start <= end && end <= self.range.end).then(|| Slice { bytes: self.bytes.clone(), range: start..end })
     }
 }
 
-/// Buffer: its declared length, and its bytes if they can be read.
+/// Buffer of a glTF file: its declared length, and its bytes if they can be read.
 pub(super) struct Buffer {
     length: usize,
     pub slice: Option<Slice>,
 }
 
-/// Buffer view: a part of a buffer.
+/// Buffer view of a glTF file: part of a buffer, with an optional stride.
 #[derive(Clone)]
 pub(super) struct View {
     pub length: usize,
@@ -53,29 +55,30 @@ pub(super) struct View {
 }
 
 impl View {
+    /// Returns the bytes of the view; empty if they cannot be read.
     pub fn bytes(&self) -> &[u8] {
         self.slice.as_ref().map_or(&[], Slice::bytes)
     }
 }
 
-/// Resolved URI.
+/// Target of a URI in a glTF file: embedded data, or another file.
 pub(super) enum Target<'a> {
-    /// Embedded data with their media type.
+    /// Embedded data, with its media type.
     Data(&'a str, Arc<[u8]>),
-    /// Path of a file relative to this one.
+    /// Path of a file, relative to the glTF file.
     File(String),
 }
 
-/// Resolves a URI, either a data URI or a relative path.
+/// Resolves a URI, which can be a data URI or a relative path.
 ///
-/// Source: RFC 3986 and RFC 2397. Folder implementations of [`durer_scene::source::AssetSource`]
-/// reject paths that leave the folder.
+/// Source: RFC 3986 and RFC 2397. Implementations of [`durer_scene::source::AssetSource`] that read
+/// folders reject paths that leave the folder.
 pub(super) fn target<'a>(at: &JsonRef<'a>) -> Option<Target<'a>> {
     let uri = at.string()?;
     if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
         let data = uri[5..].split_once(',').and_then(|(kind, data)| {
             let Some(kind) = kind.strip_suffix(";base64") else {
-                // Without `;base64`, the data are percent-encoded text.
+                // Without `;base64`, the data is percent-encoded text.
                 return Some((kind.split(';').next()?, unescaped(data)?.into_bytes()));
             };
             if kind.ends_with(';') {
@@ -109,7 +112,7 @@ pub(super) fn target<'a>(at: &JsonRef<'a>) -> Option<Target<'a>> {
 }
 
 impl Model<'_> {
-    /// Reads the buffers. An unreadable buffer is an error where its data are used.
+    /// Reads the buffers. An unreadable buffer is reported only where its data is used.
     pub(super) fn buffers(&self, root: &JsonRef) -> Vec<Option<Buffer>> {
         let Some(buffers) = root.get("buffers") else { return Vec::new() };
         buffers.items().enumerate().map(|(i, buffer)| self.buffer(i, &buffer)).collect()
@@ -118,7 +121,7 @@ impl Model<'_> {
     fn buffer(&self, number: usize, at: &JsonRef) -> Option<Buffer> {
         at.object()?;
         let length = at.need("byteLength")?.whole(1..)? as usize;
-        // A fallback buffer is only for readers without support for compressed views.
+        // A fallback buffer is only for readers that do not support compressed views.
         let is_fallback = compression(at).is_some_and(|packed| packed["fallback"] == true);
         Some(Buffer { length, slice: if is_fallback { None } else { self.data(number, length, at) } })
     }
@@ -173,6 +176,7 @@ impl Model<'_> {
         }
     }
 
+    /// Reads all buffer views; `None` for each invalid one.
     pub(super) fn views(&self, root: &JsonRef) -> Vec<Option<View>> {
         let Some(views) = root.get("bufferViews") else { return Vec::new() };
         views.items().map(|view| self.view_of(&view)).collect()
@@ -213,7 +217,7 @@ impl Model<'_> {
     }
 }
 
-/// Returns the compression extension of a buffer or view, if present.
+/// Returns the compression extension of a buffer or buffer view, if it has one.
 fn compression<'a>(at: &JsonRef<'a>) -> Option<&'a Value> {
     at.value.get("extensions")?.get(MESHOPT)
 }

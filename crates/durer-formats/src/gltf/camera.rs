@@ -1,4 +1,4 @@
-//! Cameras, and the lights of KHR_lights_punctual.
+//! Reads cameras, and the lights of KHR_lights_punctual.
 
 use super::Model;
 use super::json::JsonRef;
@@ -11,31 +11,34 @@ use durer_scene::scene::{Scene, Spanned};
 use glam::{DAffine3, DVec3};
 use std::f32::consts::PI;
 
-/// A camera as stored in the file.
+/// Camera of a glTF file, before a node places it.
 #[derive(Clone)]
 pub(super) struct CameraData {
     name: String,
     view: Projection,
 }
 
+/// Projection of a glTF camera.
 #[derive(Clone, Copy)]
 enum Projection {
-    /// Vertical field of view in radians, and the aspect ratio.
+    /// Vertical field of view in radians, and the aspect ratio if the file has one.
     Perspective(f32, Option<f32>),
-    /// Half the height.
+    /// Half the height of the view.
     Orthographic(f32),
 }
 
-/// A light as stored in the file.
+/// Light of a glTF file, before a node places it.
 #[derive(Clone)]
 pub(super) struct LightData {
     is_directional: bool,
-    /// Inner and outer angle of a spot light's cone, in degrees from its axis.
+    /// Inner and outer angle of a spot light's cone, in degrees from its axis; `None` if the light
+    /// is not a spot light.
     cone: Option<[f32; 2]>,
     color: Vec3,
 }
 
 impl Model<'_> {
+    /// Reads all cameras; `None` for each invalid one.
     pub(super) fn read_cameras(&self, root: &JsonRef) -> Vec<Option<CameraData>> {
         root.list("cameras", |at| {
             at.object()?;
@@ -66,6 +69,7 @@ impl Model<'_> {
         })
     }
 
+    /// Reads all lights of KHR_lights_punctual; `None` for each invalid one.
     pub(super) fn read_lights(&self, root: &JsonRef) -> Vec<Option<LightData>> {
         let extensions = root.get("extensions");
         let Some(punctual) = extensions.as_ref().and_then(|e| e.get("KHR_lights_punctual")) else { return Vec::new() };
@@ -85,7 +89,7 @@ impl Model<'_> {
         })
     }
 
-    /// Returns the requested camera, or the first of the scene, with its node.
+    /// Returns the requested camera, or the first camera of the scene, and the index of its node.
     pub(super) fn camera(&self, order: &[usize], nodes: &[NodeData], maps: &[DAffine3]) -> Option<(Camera, usize)> {
         let there = order.iter().filter_map(|&i| Some((i, self.cameras[nodes[i].camera?].as_ref()?)));
         let there: Vec<(usize, &CameraData)> = there.collect();
@@ -135,7 +139,7 @@ impl Model<'_> {
         Some((camera, node))
     }
 
-    /// Adds the light of a node, if it has one.
+    /// Adds the light of a node to the scene, if the node has one.
     pub(super) fn light(&self, number: usize, node: &NodeData, map: DAffine3, scene: &mut Scene) {
         let Some(LightData { is_directional, cone, color }) = node.light.and_then(|i| self.lights[i].clone()) else {
             return;

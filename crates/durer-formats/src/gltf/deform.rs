@@ -1,4 +1,4 @@
-//! Deformation of vertices: morph targets and skins.
+//! Deforms vertices by morph targets and skins.
 //!
 //! Source: *glTF 2.0 Specification*, chapters 3.7.2.2 and 3.7.3.
 
@@ -9,7 +9,8 @@ use durer_scene::math::Vec3;
 use durer_scene::shape::MeshData;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 
-/// Deformation data of the vertices of a primitive.
+/// Data that deforms the vertices of a glTF primitive: its morph targets, and the joints and
+/// weights of each vertex.
 #[derive(Clone, Default)]
 pub(super) struct Pose {
     targets: Vec<Target>,
@@ -17,29 +18,30 @@ pub(super) struct Pose {
     weights: Vec<[f32; 4]>,
 }
 
-/// Offsets of positions and normals by one morph target; empty if it has none.
+/// Morph target: offsets of positions and normals, or empty lists if it has none.
 #[derive(Clone, Default)]
 struct Target {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
 }
 
-/// Skin: joints with their inverse bind matrices.
+/// Skin of a glTF file: the nodes that are its joints, and their inverse bind matrices.
 #[derive(Clone)]
 pub(super) struct Skin {
     joints: Vec<usize>,
-    /// Transforms from mesh space to the space of each joint.
+    /// Transforms from mesh space to each joint's space.
     inverse: Vec<DAffine3>,
 }
 
 impl Skin {
-    /// Returns the transforms from mesh space to world space for each joint.
+    /// Returns the transform from mesh space to world space for each joint.
     pub fn bones(&self, maps: &[DAffine3]) -> Vec<DAffine3> {
         self.joints.iter().zip(&self.inverse).map(|(&joint, inverse)| maps[joint] * *inverse).collect()
     }
 }
 
 impl Model<'_> {
+    /// Reads all skins; `None` for each invalid one.
     pub(super) fn read_skins(&self, root: &JsonRef) -> Vec<Option<Skin>> {
         let nodes = root.get("nodes").and_then(|nodes| nodes.value.as_array()).map_or(0, Vec::len);
         root.list("skins", |skin| self.skin(skin, nodes))
@@ -74,7 +76,7 @@ impl Model<'_> {
         Some(Skin { joints, inverse: rows.into_iter().map(map).collect() })
     }
 
-    /// Reads the morph targets and joints of a primitive, if any.
+    /// Reads the morph targets and joints of a primitive, if it has any.
     pub(super) fn pose(&self, primitive: &JsonRef, attributes: &JsonRef, count: usize) -> Option<Pose> {
         let targets = primitive.list("targets", |target| self.target(target, count));
         let joints = attributes.get("JOINTS_0");
@@ -122,7 +124,7 @@ impl Model<'_> {
 }
 
 impl Pose {
-    /// Returns true if the weights of targets, or joints, move vertices.
+    /// Returns true if morph target weights or joints move vertices.
     pub fn moves(&self, weights: &[f32], skinned: bool) -> bool {
         skinned && !self.joints.is_empty() || weights.iter().zip(&self.targets).any(|(weight, _)| *weight != 0.0)
     }
@@ -137,7 +139,7 @@ impl Pose {
         }
     }
 
-    /// Deforms the vertices of the primitive's mesh.
+    /// Deforms the vertices of a mesh, which are those of the primitive.
     pub fn apply(&self, data: &mut MeshData, weights: &[f32], bones: Option<&[DAffine3]>) {
         for (target, &weight) in self.targets.iter().zip(weights) {
             let add = |values: &mut [Vec3], moves: &[Vec3]| {
@@ -159,11 +161,11 @@ impl Pose {
                 }
             }
         }
-        // Joint transforms from the file may overflow.
+        // Joint transforms from the file can overflow.
         data.positions.iter_mut().filter(|p| !p.is_finite()).for_each(|p| *p = Vec3::ZERO);
     }
 
-    /// Returns the weighted mean of the transforms of a vertex's joints.
+    /// Returns the weighted mean of the joint transforms of a vertex.
     fn bone(&self, vertex: usize, bones: &[DAffine3]) -> DAffine3 {
         let (joints, weights) = (self.joints[vertex], self.weights[vertex]);
         let total: f64 = weights.iter().map(|&w| f64::from(w)).sum();
@@ -181,8 +183,8 @@ impl Pose {
     }
 }
 
-/// Matrix that transforms normals: the transposed inverse times a positive factor, which also
-/// exists for singular maps.
+/// Returns the matrix that transforms normals: the transposed inverse times a positive factor. It
+/// also exists for singular maps.
 pub(super) fn of_normals(map: DMat3) -> DMat3 {
     let [x, y, z] = [map.x_axis, map.y_axis, map.z_axis];
     1f64.copysign(map.determinant()) * DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y))

@@ -1,7 +1,7 @@
-//! Primitives with triangles compressed by Draco.
+//! Decodes primitives whose triangles are compressed by Draco.
 //!
 //! Source: *KHR_draco_mesh_compression*, Khronos Group. The accessors of such a primitive describe
-//! the compressed data and have no buffer view; this module gives them the decoded bytes.
+//! the decompressed data but have no buffer view; this module sets their data.
 
 use super::Model;
 use super::accessor::Component;
@@ -13,7 +13,7 @@ use durer_image::panics::caught;
 const DRACO: &str = "KHR_draco_mesh_compression";
 
 impl Model<'_> {
-    /// Decodes all primitives compressed by Draco.
+    /// Decodes all primitives that are compressed by Draco.
     pub(super) fn unpack_primitives(&mut self, root: &JsonRef) {
         let Some(meshes) = root.get("meshes") else { return };
         for mesh in meshes.items() {
@@ -39,7 +39,7 @@ impl Model<'_> {
         let mesh = match decoded(packed.bytes(), self.work.left().min(self.kept.left())) {
             Ok(mesh) => mesh,
             Err(message) => {
-                at.error("compressed-data", format!("the Draco data are damaged: {message}"));
+                at.error("compressed-data", format!("the Draco data is damaged: {message}"));
                 return None;
             }
         };
@@ -68,7 +68,8 @@ impl Model<'_> {
         Some(())
     }
 
-    /// Stores decoded bytes in the accessor that a property names: `count` rows of `width` numbers.
+    /// Stores decoded bytes in the accessor with the index in `at`: `count` rows of `width`
+    /// numbers.
     fn give(
         &mut self,
         at: &JsonRef,
@@ -91,7 +92,7 @@ impl Model<'_> {
     }
 }
 
-/// Decodes points and triangles, within `left` bytes of memory.
+/// Decodes points and triangles, using at most `left` bytes of memory.
 fn decoded(bytes: &[u8], left: u64) -> Result<Mesh, String> {
     let limits =
         DecodeLimits::default().with_max_points(left / 16).with_max_faces(left / 64).with_max_decoded_bytes(left);
@@ -108,7 +109,7 @@ fn decoded(bytes: &[u8], left: u64) -> Result<Mesh, String> {
     }
 }
 
-/// Returns the tightly packed rows of an attribute, one per point; missing data are 0.
+/// Returns the tightly packed rows of an attribute, one for each point. Missing data is 0.
 fn rows(attribute: &PointAttribute, points: usize, size: usize) -> Vec<u8> {
     let (data, stride) = (attribute.buffer().data(), attribute.byte_stride().max(0) as usize);
     let mut all = vec![0; points * size];

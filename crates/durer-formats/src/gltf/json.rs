@@ -1,7 +1,7 @@
-//! JSON of a glTF file with positions: each value knows its JSON pointer, and diagnostics get its
-//! line and column.
+//! Access to the JSON of a glTF file: each value knows its JSON pointer, so that diagnostics can
+//! state line and column.
 //!
-//! Error codes are those of the Khronos validator (its ISSUES.md).
+//! Error codes are those of the Khronos validator (see its ISSUES.md).
 
 mod place;
 
@@ -12,14 +12,15 @@ use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::ops::{Range, RangeBounds};
 
-/// Collector of the diagnostics of one file, shared by its readers.
+/// Collector for the diagnostics of a glTF file, shared by its readers; finds the byte ranges of
+/// JSON values.
 pub(super) struct JsonReport<'a> {
     /// JSON text: the file, or the JSON chunk of a binary file.
     text: &'a [u8],
-    /// Byte offsets of the items of top-level lists.
+    /// Byte offsets of the items of top-level lists, filled in on demand.
     starts: RefCell<HashMap<String, Vec<usize>>>,
     report: RefCell<Report>,
-    /// True if there was an error.
+    /// True if an error was reported.
     failed: Cell<bool>,
 }
 
@@ -28,20 +29,22 @@ impl<'a> JsonReport<'a> {
         JsonReport { text, starts: RefCell::default(), report: RefCell::new(report), failed: Cell::default() }
     }
 
+    /// Returns the report with all diagnostics.
     pub fn finish(self) -> Report {
         self.report.into_inner()
     }
 
+    /// Returns true if an error was reported, even if the report dropped it.
     pub fn has_errors(&self) -> bool {
         self.failed.get() || self.report.borrow().has_errors()
     }
 
-    /// Byte range of a value in the file, or of the nearest value around it.
+    /// Returns the byte range of a value in the file, or of the nearest existing value around it.
     fn range(&self, pointer: &str) -> Range<usize> {
         self.in_list(pointer).unwrap_or_else(|| place::locate(self.text, pointer))
     }
 
-    /// Range of a value inside a top-level list. Each list is scanned once only.
+    /// Returns the range of a value inside a top-level list. Each list is scanned only once.
     fn in_list(&self, pointer: &str) -> Option<Range<usize>> {
         let (list, rest) = pointer.strip_prefix('/')?.split_once('/')?;
         let (number, rest) = rest.split_at(rest.find('/').unwrap_or(rest.len()));
@@ -52,21 +55,24 @@ impl<'a> JsonReport<'a> {
         Some(start + at.start..start + at.end)
     }
 
+    /// Returns the span of the value at a JSON pointer.
     pub fn span(&self, pointer: &str) -> Span {
         self.report.borrow().span(self.range(pointer))
     }
 
-    /// Span of a node by index: of its name, if it has one.
+    /// Returns the span of the node with this index: of its name, if it has one.
     pub fn node(&self, number: usize) -> Span {
         self.span(&format!("/nodes/{number}/name"))
     }
 
-    /// Reports an error, warning or note at a JSON pointer, which the message begins with.
+    /// Reports an error, warning or note about the value at a JSON pointer. The message begins with
+    /// the pointer.
     pub fn say(&self, kind: fn(String) -> Diagnostic, code: &'static str, pointer: &str, message: &str) {
         let is_error = kind(String::new()).severity == Severity::Error;
-        // Record errors even if the report is full and drops them.
+        // Record errors even if the report is full and drops the message.
         self.failed.set(self.failed.get() || is_error);
-        // Skip the search for positions if the report is full: it scans the file for each of them.
+        // Skip the search for byte ranges if the report is full, because each search scans the
+        // file.
         let (full, count) = (self.report.borrow().is_full(), self.report.borrow().count());
         if full || !is_error && count > 256 {
             return;
@@ -76,7 +82,8 @@ impl<'a> JsonReport<'a> {
     }
 }
 
-/// Value of the document, with its path.
+/// JSON value of a glTF file with the path that leads to it, for reading the value and reporting
+/// errors in it.
 #[derive(Clone, Copy)]
 pub(super) struct JsonRef<'a> {
     pub value: &'a Value,
@@ -85,6 +92,7 @@ pub(super) struct JsonRef<'a> {
     step: Step<'a>,
 }
 
+/// Last step of the path to a JSON value: a key in an object, or an index in an array.
 #[derive(Clone, Copy)]
 enum Step<'a> {
     Key(&'a str),
@@ -92,11 +100,12 @@ enum Step<'a> {
 }
 
 impl<'a> JsonRef<'a> {
+    /// Returns the root value of the document.
     pub fn root(value: &'a Value, findings: &'a JsonReport<'a>) -> Self {
         JsonRef { value, findings, parent: None, step: Step::Key("") }
     }
 
-    /// Returns the JSON pointer (RFC 6901) of this value.
+    /// Returns the JSON pointer (RFC 6901) to this value.
     pub fn pointer(&self) -> String {
         let Some(parent) = self.parent else { return String::new() };
         match self.step {
@@ -105,12 +114,13 @@ impl<'a> JsonRef<'a> {
         }
     }
 
+    /// Returns the span of this value.
     pub fn span(&self) -> Span {
         self.findings.span(&self.pointer())
     }
 
-    /// Name of the innermost named value around this one, to follow a noun: a blank and the name in
-    /// backquotes; empty if there is none.
+    /// Returns the name of the innermost named value around this one, to be put after a noun: a
+    /// space and the name in backquotes. Empty if there is none.
     pub fn name(&self) -> String {
         let own = self.value.get("name").and_then(Value::as_str).filter(|name| !name.is_empty());
         match (own, self.parent) {
@@ -120,25 +130,28 @@ impl<'a> JsonRef<'a> {
         }
     }
 
+    /// Reports an error in this value.
     pub fn error(&self, code: &'static str, message: impl AsRef<str>) {
         self.findings.say(Diagnostic::error, code, &self.pointer(), message.as_ref());
     }
 
+    /// Reports a warning about this value.
     pub fn warning(&self, code: &'static str, message: impl AsRef<str>) {
         self.findings.say(Diagnostic::warning, code, &self.pointer(), message.as_ref());
     }
 
+    /// Reports a note about this value.
     pub fn note(&self, code: &'static str, message: impl AsRef<str>) {
         self.findings.say(Diagnostic::note, code, &self.pointer(), message.as_ref());
     }
 
-    /// Returns a property of this object, if present.
+    /// Returns a member of this object, if present.
     pub fn get(&'a self, key: &'a str) -> Option<JsonRef<'a>> {
         let value = self.value.as_object()?.get(key)?;
         Some(JsonRef { value, findings: self.findings, parent: Some(self), step: Step::Key(key) })
     }
 
-    /// Returns a required property.
+    /// Returns a required member; reports an error if it is missing.
     pub fn need(&'a self, key: &'a str) -> Option<JsonRef<'a>> {
         let found = self.get(key);
         if found.is_none() && self.value.is_object() {
@@ -152,7 +165,7 @@ impl<'a> JsonRef<'a> {
         self.error("TYPE_MISMATCH", format!("expected {wanted}, found {}", shown(text.as_bytes())));
     }
 
-    /// Returns this value as an object.
+    /// Returns this value as an object; reports any other value.
     pub fn object(&self) -> Option<&'a Map<String, Value>> {
         let object = self.value.as_object();
         if object.is_none() {
@@ -161,7 +174,7 @@ impl<'a> JsonRef<'a> {
         object
     }
 
-    /// Returns the items of this array, which must not be empty.
+    /// Returns the items of this array, which must not be empty; reports any other value.
     pub fn items(&'a self) -> impl ExactSizeIterator<Item = JsonRef<'a>> {
         let items = match self.value {
             Value::Array(items) => {
@@ -183,7 +196,7 @@ impl<'a> JsonRef<'a> {
         })
     }
 
-    /// Reads each item of an array property; empty if the property is missing.
+    /// Reads each item of an array member; empty if the member is missing.
     pub fn list<T>(&'a self, key: &'a str, mut read: impl FnMut(&JsonRef) -> T) -> Vec<T> {
         match self.get(key) {
             Some(array) => array.items().map(|item| read(&item)).collect(),
@@ -191,6 +204,7 @@ impl<'a> JsonRef<'a> {
         }
     }
 
+    /// Returns this value as a string; reports any other value.
     pub fn string(&self) -> Option<&'a str> {
         let text = self.value.as_str();
         if text.is_none() {
@@ -199,6 +213,7 @@ impl<'a> JsonRef<'a> {
         text
     }
 
+    /// Returns this value as a boolean; reports any other value.
     pub fn boolean(&self) -> Option<bool> {
         let value = self.value.as_bool();
         if value.is_none() {
@@ -207,7 +222,7 @@ impl<'a> JsonRef<'a> {
         value
     }
 
-    /// Returns a number in the range of `f32`.
+    /// Returns this value as an `f32`; reports any other value.
     pub fn number(&self) -> Option<f32> {
         match self.value.as_f64() {
             Some(x) if (x as f32).is_finite() => Some(x as f32),
@@ -222,7 +237,7 @@ impl<'a> JsonRef<'a> {
         }
     }
 
-    /// Returns a number in a range.
+    /// Returns a number, which must be in a range.
     pub fn within(&self, range: impl RangeBounds<f32>) -> Option<f32> {
         let number = self.number()?;
         if range.contains(&number) {
@@ -232,7 +247,7 @@ impl<'a> JsonRef<'a> {
         None
     }
 
-    /// Returns an integer, which may be written as 4.0.
+    /// Returns an integer in a range. It may be written as 4.0.
     pub fn whole(&self, range: impl RangeBounds<u64>) -> Option<u64> {
         let exact = |x: f64| (x.fract() == 0.0 && (0.0..9.0e15).contains(&x)).then_some(x as u64);
         match self.value.as_u64().or_else(|| self.value.as_f64().and_then(exact)) {
@@ -261,7 +276,7 @@ impl<'a> JsonRef<'a> {
         None
     }
 
-    /// Returns an array of exactly `N` numbers.
+    /// Returns the numbers of this array, which must have exactly `N`.
     pub fn numbers<const N: usize>(&'a self) -> Option<[f32; N]> {
         let items = self.items();
         if self.value.is_array() && items.len() != N {
@@ -272,7 +287,7 @@ impl<'a> JsonRef<'a> {
         items.map(|item| item.number()).collect::<Option<Vec<_>>>()?.try_into().ok()
     }
 
-    /// Returns the meaning of one of some words.
+    /// Returns the meaning of this string, which must be one of the given words.
     pub fn word<T: Copy>(&self, words: &[(&str, T)]) -> Option<T> {
         let text = self.string()?;
         let found = words.iter().find(|(word, _)| *word == text).map(|&(_, meaning)| meaning);

@@ -1,7 +1,7 @@
-//! Materials: metallic-roughness and the KHR extensions, as OpenPBR.
+//! Converts materials to OpenPBR: metallic-roughness and the KHR extensions.
 //!
 //! Sources: *glTF 2.0 Specification*, chapter 3.9 and appendix B; the KHR_materials extensions; for
-//! the translation, *OpenPBR Surface specification* 1.1, section on translation of other models.
+//! the conversion, *OpenPBR Surface specification* 1.1, section on translation of other models.
 
 use super::Model;
 use super::json::JsonRef;
@@ -14,17 +14,17 @@ use durer_scene::math::Vec3;
 use durer_scene::texture::{Channel, Mapping};
 use std::f32::consts::TAU;
 
-/// Extensions without a counterpart, with the substitute.
+/// Extensions without a counterpart, and what happens instead.
 const WITHOUT_COUNTERPART: [(&str, &str); 1] = [("KHR_materials_subsurface", "subsurface scattering is left out")];
 
-/// Textures of extensions without a counterpart: extension, key and substitute.
+/// Textures of extensions that have no counterpart: extension, key, and what happens instead.
 const TEXTURES: [(&str, &str, &str); 3] = [
     ("KHR_materials_volume", "thicknessTexture", "the body's actual thickness is used"),
     ("KHR_materials_clearcoat", "clearcoatNormalTexture", "the coat uses the normals of its base"),
     ("KHR_materials_diffuse_transmission", "diffuseTransmissionTexture", "only its factor is used"),
 ];
 
-/// Alpha mode.
+/// Alpha mode of a glTF material.
 #[derive(Clone, Copy, PartialEq)]
 enum Alpha {
     Opaque,
@@ -39,12 +39,13 @@ pub(super) fn needs_tangents(at: &JsonRef) -> bool {
 }
 
 impl Model<'_> {
+    /// Converts all materials.
     pub(super) fn materials(&self, root: &JsonRef) -> Vec<PrincipledMaterial> {
         let Some(materials) = root.get("materials") else { return Vec::new() };
         materials.items().enumerate().map(|(i, material)| self.material(i, &material)).collect()
     }
 
-    /// Returns, for each material, true if some of its vertices have colours.
+    /// Returns a flag for each material: true if some of the vertices that use it have colours.
     pub(super) fn colored(root: &JsonRef) -> Vec<bool> {
         let mut colored = vec![false; root.get("materials").map_or(0, |materials| materials.items().count())];
         let meshes = root.value.get("meshes").and_then(|meshes| meshes.as_array()).into_iter().flatten();
@@ -83,7 +84,7 @@ impl Model<'_> {
         }
         let is_colored = self.colored.get(number) == Some(&true);
         if alpha == Alpha::Mask && is_colored {
-            // The alpha of vertices is multiplied in before the cutoff.
+            // The vertices' alpha is multiplied in before the cutoff is applied.
             self.mask_whole(&mut m, at, cutoff);
         }
         m.normal_texture = at.get("normalTexture").and_then(|texture| {
@@ -103,12 +104,12 @@ impl Model<'_> {
                 m.emission_vertex_colors = Switch::On;
             }
         }
-        // Both sides of a transmissive surface are visible.
+        // Both sides of a transmissive surface are visible anyway.
         let both = at.get("doubleSided").and_then(|both| both.boolean()).unwrap_or(false);
         if m.transmission_weight == 0.0 {
             match both {
                 false => m.backs = Backs::Hidden,
-                // Thin surfaces emit on both sides.
+                // Thin walls emit on both sides.
                 true if m.emission_luminance > 0.0 => m.walls = Walls::Thin,
                 true => {}
             }
@@ -126,7 +127,8 @@ impl Model<'_> {
             pbr.get("metallicRoughnessTexture").and_then(|texture| self.texture(&texture, |_| ()));
     }
 
-    /// Sets up a mask by the product of the alphas of factor, texture and vertices.
+    /// Sets up a mask: the cutoff is applied to the product of the alphas of factor, texture and
+    /// vertices.
     fn mask_whole(&self, m: &mut PrincipledMaterial, at: &JsonRef, cutoff: f32) {
         let extensions = at.get("extensions");
         let old = extensions.as_ref().and_then(|extensions| extensions.get("KHR_materials_pbrSpecularGlossiness"));
@@ -144,9 +146,10 @@ impl Model<'_> {
         }
     }
 
-    /// Reads the base colour texture, and sets the opacity from the alphas of texture and factor.
+    /// Reads the base colour texture, and sets the opacity from the alphas of the texture and of
+    /// the factor.
     fn base(&self, m: &mut PrincipledMaterial, texture: Option<JsonRef>, factor: f32, alpha: Alpha, cutoff: f32) {
-        // The cutoff applies to the texture's alpha times the factor.
+        // The cutoff applies to the product of the texture's alpha and the factor.
         let least = match alpha {
             Alpha::Opaque => Some(0.0),
             Alpha::Mask if factor > 0.0 => Some(cutoff / factor),
@@ -162,8 +165,8 @@ impl Model<'_> {
         };
     }
 
-    /// Reads KHR_materials_pbrSpecularGlossiness, which has a colour for the reflectance at normal
-    /// incidence.
+    /// Reads KHR_materials_pbrSpecularGlossiness, which defines the reflectance at normal incidence
+    /// as a colour.
     fn glossy(&self, m: &mut PrincipledMaterial, old: &JsonRef, alpha: Alpha, cutoff: f32) {
         let factor = old.get("diffuseFactor").and_then(|factor| factor.numbers::<4>()).unwrap_or([1.0; 4]);
         let specular = old.get("specularFactor").and_then(|factor| color(&factor)).unwrap_or(Vec3::ONE);
@@ -184,7 +187,8 @@ impl Model<'_> {
             true => m.base_color_texture = color,
             false => m.specular_color_texture = color,
         }
-        // Roughness is 1 minus glossiness times alpha, so the texture scales a roughness of 1.
+        // Roughness is 1 minus glossiness times alpha, so the texture is applied to a roughness of
+        // 1.
         let glossiness = 1.0 - m.specular_roughness;
         m.specular_roughness = 1.0;
         m.specular_roughness_texture = self.number(&texture, Channel::Alpha, [1.0, 1.0 - glossiness]);
@@ -205,7 +209,7 @@ impl Model<'_> {
             }
         }
         if let Some(e) = extensions.get("KHR_materials_ior") {
-            // 0 stands for an infinite index, which reflects everything.
+            // An index of 0 stands for an infinite index, which reflects all light.
             m.specular_ior = match e.get("ior") {
                 Some(ior) if ior.value.as_f64() == Some(0.0) => 1e4,
                 ior => ior.and_then(|ior| ior.within(1.0..)).unwrap_or(1.5),
@@ -261,8 +265,8 @@ impl Model<'_> {
             m.specular_rotation = turn / TAU;
             let pictured = m.metallic_roughness_texture.is_some() || e.get("anisotropyTexture").is_some();
             if m.specular_anisotropy > 0.0 && !pictured {
-                // Along the highlight, alpha grows towards 1 with the squared strength; across it,
-                // alpha is the squared roughness. With textures this is only approximate.
+                // Along the highlight, alpha increases towards 1 with the squared strength; across
+                // it, alpha is the squared roughness. With textures this is only approximate.
                 let alpha = (m.specular_roughness * m.specular_roughness).max(1e-3);
                 let along = alpha + (1.0 - alpha) * m.specular_anisotropy * m.specular_anisotropy;
                 [m.specular_roughness, m.specular_anisotropy, _] = Ggx::parameters([along, alpha]);
@@ -275,7 +279,7 @@ impl Model<'_> {
             m.thin_film_weight = share(&e, "iridescenceFactor", 0.0);
             m.thin_film_weight_texture = number(&e, "iridescenceTexture", Channel::Red);
             m.thin_film_ior = at_least("iridescenceIor", 1.3, 1.0);
-            // The file uses nanometres, the scene micrometres. Without a texture, the maximum
+            // glTF uses nanometres, the scene uses micrometres. Without a texture, the maximum
             // thickness applies.
             let [thin, thick] = [("iridescenceThicknessMinimum", 100.0), ("iridescenceThicknessMaximum", 400.0)]
                 .map(|(key, or)| at_least(key, or, 0.0));
@@ -285,7 +289,8 @@ impl Model<'_> {
                 texture.and_then(|texture| self.number(&texture, Channel::Green, [thin / thick, 1.0]));
         }
         if let Some(e) = extensions.get("KHR_materials_dispersion") {
-            // Dispersion is 20 / Abbe number; the scene divides the Abbe number by its scale.
+            // Dispersion is 20 / Abbe number; the scene has the Abbe number and a scale that
+            // divides it.
             let dispersion = e.get("dispersion").and_then(|x| x.within(0.0..)).unwrap_or(0.0);
             m.transmission_dispersion_scale = dispersion.min(1.0);
             m.transmission_dispersion_abbe_number = 20.0 / dispersion.max(1.0);
@@ -302,21 +307,21 @@ impl Model<'_> {
     }
 }
 
-/// Removes the effect of KHR_materials_specular on metals: it applies to dielectrics only, but
-/// OpenPBR's specular parameters apply to metals too.
+/// Removes the effect of KHR_materials_specular on metals. The extension applies only to
+/// dielectrics, but OpenPBR's specular parameters apply to metals too.
 fn not_of_metals(m: &mut PrincipledMaterial, clear: bool) {
     let is_metal = m.base_metalness == 1.0 && m.metallic_roughness_texture.is_none();
     if is_metal {
         (m.specular_weight, m.specular_color) = (1.0, Vec3::ONE);
         (m.specular_weight_texture, m.specular_color_texture) = (None, None);
     } else if m.base_metalness > 0.0 && m.specular_weight < 1.0 && !clear {
-        // For opaque dielectrics, a smaller index has the same effect as a smaller weight.
+        // For an opaque dielectric, a smaller index has the same effect as a smaller weight.
         (m.specular_ior, m.specular_weight) = (opaque_ior(m), 1.0);
     }
 }
 
-/// Moves the brightness of the specular colour into the weight. The colour applies at normal
-/// incidence only, and the weight keeps grazing angles unchanged. Transmissive materials ignore the
+/// Moves the brightness of the specular colour into the weight. The colour applies only at normal
+/// incidence, whereas the weight also applies at grazing angles. Transmissive materials ignore the
 /// weight, so their colour is clamped.
 fn weighed_by_brightness(m: &mut PrincipledMaterial, clear: bool) {
     let most = m.specular_color.max_element();
@@ -331,15 +336,15 @@ fn weighed_by_brightness(m: &mut PrincipledMaterial, clear: bool) {
 }
 
 impl Model<'_> {
-    /// Reads KHR_materials_diffuse_transmission: a thin sheet transmits a share of the diffuse
+    /// Reads KHR_materials_diffuse_transmission: a thin sheet transmits a fraction of the diffuse
     /// light, with its own colour.
     fn let_through(&self, m: &mut PrincipledMaterial, e: &JsonRef) {
         let through = share(e, "diffuseTransmissionFactor", 0.0);
         if through == 0.0 || m.walls == Walls::Solid && m.transmission_weight > 0.0 {
             return;
         }
-        // The subsurface lobe with full forward scattering is the transmitted part; the base
-        // diffuse lobe is the reflected part.
+        // The subsurface lobe with full forward scattering is the transmitted part, and the diffuse
+        // base lobe is the reflected part.
         m.walls = Walls::Thin;
         m.subsurface_weight = through;
         m.subsurface_scatter_anisotropy = 1.0 - f32::EPSILON;
@@ -348,20 +353,20 @@ impl Model<'_> {
         m.subsurface_color_texture = picture.and_then(|texture| self.texture(&texture, |_| ()));
     }
 
-    /// Texture whose channel scales a parameter; texel values 0 and 1 map to `range`.
+    /// Reads a texture whose channel scales a parameter. Texel values from 0 to 1 map to `range`.
     fn number(&self, texture: &JsonRef, channel: Channel, range: [f32; 2]) -> Option<FileName> {
         let change = |mapping: &mut Mapping| (mapping.channel, mapping.range) = (Some(channel), range);
-        // One texture may scale several parameters.
+        // One texture can scale several parameters.
         self.texture_as(texture, &format!(":{channel:?}"), change)
     }
 }
 
-/// Reads a factor from 0 to 1.
+/// Reads a factor from 0 to 1; `or` is the default.
 fn share(at: &JsonRef, key: &str, or: f32) -> f32 {
     at.get(key).and_then(|factor| factor.within(0.0..=1.0)).unwrap_or(or)
 }
 
-/// Reads a colour; clamps negative components to 0.
+/// Reads a colour, and clamps negative components to 0.
 fn color(at: &JsonRef) -> Option<Vec3> {
     at.numbers::<3>().map(|rgb| Vec3::from_array(rgb).max(Vec3::ZERO))
 }

@@ -1,14 +1,14 @@
-//! Buffer views compressed by meshoptimizer: attributes, triangles, indices, and filters of
-//! attributes.
+//! Decodes buffer views that were compressed by meshoptimizer: attributes, triangles and indices,
+//! and the filters of attributes.
 //!
-//! Source: *EXT_meshopt_compression*, Khronos Group, appendices A (bitstream) and B (filters);
-//! names follow these.
+//! Source: *EXT_meshopt_compression*, Khronos Group, appendices A (bitstream) and B (filters),
+//! whose names are used here.
 
 use super::Model;
 use super::buffers::Slice;
 use super::json::JsonRef;
 
-/// Kind of compressed data.
+/// Compression mode of a meshopt buffer view: what kind of data it contains.
 #[derive(Clone, Copy, PartialEq)]
 enum Mode {
     Attributes,
@@ -16,7 +16,7 @@ enum Mode {
     Indices,
 }
 
-/// Filter applied to decoded attributes.
+/// Filter that is applied to attributes after meshopt decompression.
 #[derive(Clone, Copy, PartialEq)]
 enum Filter {
     None,
@@ -67,7 +67,7 @@ impl Model<'_> {
             at.error("BUFFER_VIEW_TOO_LONG", format!("{size} bytes from {offset} on do not fit into the buffer"));
             return None;
         };
-        // A byte encodes at most four groups of 16 equal bytes, or a triangle.
+        // A byte encodes at most four groups of 16 equal bytes, or one triangle.
         if size.saturating_mul(64) < length {
             at.error("compressed-data", format!("{size} bytes cannot hold {length}"));
             return None;
@@ -99,7 +99,7 @@ impl Model<'_> {
             }),
             Filter::Exponential => decoded.as_chunks_mut::<4>().0.iter_mut().for_each(|word| {
                 let n = i32::from_le_bytes(*word);
-                // The exponent is from -128 to 127, so its power is a normal number.
+                // The exponent is between -128 and 127, so the power of two is a normal number.
                 let power = f32::from_bits(((n >> 24) + 127).clamp(0, 254) as u32 * (1 << 23));
                 *word = (power * ((n << 8) >> 8) as f32).to_le_bytes();
             }),
@@ -108,7 +108,7 @@ impl Model<'_> {
     }
 }
 
-/// Reader of consecutive bytes.
+/// Cursor over the bytes of a meshopt bitstream.
 struct Reader<'a>(&'a [u8]);
 
 impl<'a> Reader<'a> {
@@ -124,7 +124,7 @@ impl<'a> Reader<'a> {
         Some(some)
     }
 
-    /// Reads an integer of seven bits per byte, least significant first.
+    /// Reads a variable-length integer: seven bits per byte, least significant first.
     fn varint(&mut self) -> Option<u32> {
         let mut value = 0;
         for shift in [0, 7, 14, 21, 28] {
@@ -142,8 +142,8 @@ fn zigzag(v: u32) -> u32 {
     if v & 1 != 0 { !(v >> 1) } else { v >> 1 }
 }
 
-/// Decodes mode 0: blocks of elements, split into byte planes, each byte as its difference from the
-/// previous element.
+/// Decodes mode 0 (attributes): blocks of elements, split into byte planes. Each byte is stored as
+/// the difference from the same byte of the previous element.
 fn attributes(packed: &[u8], count: usize, stride: usize) -> Option<Vec<u8>> {
     let tail = stride.max(32);
     let data = packed.strip_prefix(&[0xa0])?;
@@ -169,8 +169,8 @@ fn attributes(packed: &[u8], count: usize, stride: usize) -> Option<Vec<u8>> {
     reader.0.is_empty().then_some(all)
 }
 
-/// Decodes sixteen differences: all zero, of two or four bits with larger values appended, or of
-/// eight bits.
+/// Decodes sixteen differences: all zero, or two or four bits each with larger values appended, or
+/// eight bits each.
 fn deltas(reader: &mut Reader, mode: u8) -> Option<[u8; 16]> {
     let bits = match mode {
         0 => return Some([0; 16]),
@@ -190,7 +190,7 @@ fn deltas(reader: &mut Reader, mode: u8) -> Option<[u8; 16]> {
     Some(all)
 }
 
-/// Ring buffer of the last sixteen values.
+/// Ring buffer of the last sixteen edges or vertices, which meshopt codes refer to.
 #[derive(Default)]
 struct RecentValues<T> {
     all: [T; 16],
@@ -203,14 +203,14 @@ impl<T: Copy> RecentValues<T> {
         self.next += 1;
     }
 
-    /// Returns the value pushed `back` pushes before the last.
+    /// Returns the value that was pushed `back` pushes before the last one.
     fn get(&self, back: usize) -> T {
         self.all[(self.next + 15 - back) % 16]
     }
 }
 
-/// Decodes mode 1: one byte per triangle that shares an edge with a recent one, more bytes
-/// otherwise.
+/// Decodes mode 1 (triangles). A triangle that shares an edge with a recent one takes one byte;
+/// others take more.
 fn triangles(packed: &[u8], count: usize) -> Option<Vec<u32>> {
     let data = packed.strip_prefix(&[0xe1])?;
     let (data, table) = data.split_at_checked(data.len().checked_sub(16)?)?;
@@ -277,7 +277,7 @@ fn triangles(packed: &[u8], count: usize) -> Option<Vec<u32>> {
     reader.0.is_empty().then_some(all)
 }
 
-/// Decodes mode 2: differences from the last value of one of two sequences.
+/// Decodes mode 2 (indices): differences from the last value of one of two sequences.
 fn indices(packed: &[u8], count: usize) -> Option<Vec<u32>> {
     let data = packed.strip_prefix(&[0xd1])?;
     let mut reader = Reader(data.get(..data.len().checked_sub(4)?)?);
@@ -305,7 +305,7 @@ fn put(row: &mut [u8; 8], values: [i16; 4]) {
     row.as_chunks_mut::<2>().0.iter_mut().zip(values).for_each(|(bytes, value)| *bytes = value.to_le_bytes());
 }
 
-/// Filter 1: decodes an octahedral direction, in units of `most`.
+/// Filter 1: decodes a direction in octahedral encoding; `most` stands for 1.
 fn octahedral([x, y, one]: [f32; 3], most: f32) -> [f32; 3] {
     // A length of 0 is invalid.
     let one = if one == 0.0 { 1.0 } else { one };
@@ -334,7 +334,7 @@ fn quaternion([x, y, z, word]: [i16; 4]) -> [i16; 4] {
 mod tests {
     use super::*;
 
-    /// Sixteen differences of the specification's example, before zigzag decoding.
+    /// Sixteen differences from the specification's example, before zigzag decoding.
     #[test]
     fn deltas_match_the_specification() {
         let packed = [0x17, 0x5f, 0xf0, 0xbc, 0x77, 0xa9, 0x21, 0x00, 0x34, 0xb5];
@@ -370,7 +370,7 @@ mod tests {
 
     #[test]
     fn triangles_share_edges() {
-        // Three new vertices by the table's first pair, then one across the last edge.
+        // Three new vertices encoded by the table's first pair, then one across the last edge.
         let mut packed = vec![0xe1, 0xf0, 0x00];
         packed.extend([0; 16]);
         assert_eq!(triangles(&packed, 6), Some(vec![0, 1, 2, 0, 2, 3]));

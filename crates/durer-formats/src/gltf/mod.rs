@@ -1,8 +1,8 @@
-//! glTF 2.0, as `.gltf` and `.glb`: scenes with nodes, meshes, materials, textures, cameras,
-//! lights, skins and animations.
+//! Reader and writer of glTF 2.0, as `.gltf` and `.glb`: scenes with nodes, meshes, materials,
+//! textures, cameras, lights, skins and animations.
 //!
 //! Source: *glTF 2.0 Specification*, Khronos Group, 2021, and the extensions named in the
-//! submodules. Errors have the codes of the Khronos validator and name the JSON pointer.
+//! submodules. Errors have the codes of the Khronos validator, and state the JSON pointer.
 
 mod accessor;
 mod animation;
@@ -40,7 +40,7 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use write::write;
 
-/// Extensions that a file may require. Readers warn about the parts that they leave out.
+/// Extensions that a file may require. Readers warn about parts of them that they do not support.
 const KNOWN: [&str; 24] = [
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
@@ -68,46 +68,47 @@ const KNOWN: [&str; 24] = [
     "KHR_node_visibility",
 ];
 
-/// State of reading one file.
+/// Contents of a glTF file that is being read: buffers, images, meshes and the other arrays, in
+/// reading order.
 struct Model<'a> {
     input: &'a Input<'a>,
     findings: &'a JsonReport<'a>,
     parts: Parts,
-    /// True if KHR_mesh_quantization allows integer attributes.
+    /// True if the file uses KHR_mesh_quantization, which allows integer attributes.
     quantized: bool,
     buffers: Vec<Option<Buffer>>,
     views: Vec<Option<View>>,
     accessors: Vec<Option<Accessor>>,
     images: Vec<Option<PictureBytes>>,
-    /// Picture, mapping and the span of the picture's name, for each texture.
+    /// Picture, mapping, and span of the picture's name, for each texture.
     textures: Vec<Option<(PictureBytes, Mapping, Span)>>,
-    /// Pictures that materials use, by asset name.
+    /// Pictures used by materials, by asset name.
     pictures: RefCell<BTreeMap<String, Picture>>,
     material_count: usize,
-    /// Index of the selected variant, if the file has variants.
+    /// Index of the selected material variant, if the file has variants.
     variant: Option<usize>,
     /// For each material, true if its alpha makes it translucent.
     blends: Vec<bool>,
-    /// For each material, true if some vertices with it have colours.
+    /// For each material, true if some of the vertices that use it have colours.
     colored: Vec<bool>,
-    /// For each material, true if it requires tangents.
+    /// For each material, true if it needs tangents.
     leans: Vec<bool>,
     meshes: Vec<Primitives>,
-    /// Weights of the morph targets of each mesh.
+    /// Default weights of the morph targets of each mesh.
     weights: Vec<Vec<f32>>,
     skins: Vec<Option<Skin>>,
     cameras: Vec<Option<CameraData>>,
     lights: Vec<Option<LightData>>,
-    /// Amount of decoded data, counted at each use, so that time and memory stay in proportion to
-    /// the file's size.
+    /// Amount of decoded data, counted at each use. Limits time and memory in proportion to the
+    /// file's size.
     work: Growth,
-    /// Number of objects, and bytes of data that is kept.
+    /// Number of objects, and bytes of data that stay in memory.
     kept: Growth,
-    /// Codes of the warnings that were reported.
+    /// Codes of the warnings that have been reported.
     reported: RefCell<BTreeSet<&'static str>>,
 }
 
-/// The glTF format.
+/// Scene format entry for glTF.
 pub(super) const FORMAT: SceneFormat = SceneFormat {
     name: "glTF",
     extensions: &["gltf", "glb"],
@@ -129,7 +130,7 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let text = &input.bytes[parts.json.clone()];
     let mut end = parts.json.end;
     if parts.is_glb {
-        // Report lines and columns of the JSON text inside a binary file.
+        // Report lines and columns of the JSON text inside the binary file.
         report.finish(diagnostics, ());
         let mut files = input.files.borrow_mut();
         let name = files.name(input.file).unwrap_or(input.name).to_string();
@@ -188,7 +189,7 @@ fn scene(input: &Input, parts: Parts, root: JsonRef) -> Option<Scene> {
         kept: Growth::within(input.memory),
         reported: RefCell::default(),
     };
-    // Each step needs the ones before it.
+    // Each step depends on the steps before it.
     model.buffers = model.buffers(&root);
     let slices = model.buffers.iter().flatten().filter_map(|buffer| buffer.slice.as_ref());
     let bytes: u64 = slices.map(|slice| slice.bytes().len() as u64).sum();
@@ -302,19 +303,19 @@ fn required(root: &JsonRef) -> bool {
 }
 
 impl Model<'_> {
-    /// Reports a warning once for the whole file.
+    /// Reports a warning only once for the whole file.
     fn once(&self, code: &'static str, message: &str) {
         self.once_at(code, "", message);
     }
 
-    /// Reports a warning once, at the first place where it applies.
+    /// Reports a warning only once, at the first place where it applies.
     fn once_at(&self, code: &'static str, pointer: &str, message: &str) {
         if self.reported.borrow_mut().insert(code) {
             self.findings.say(Diagnostic::warning, code, pointer, message);
         }
     }
 
-    /// Charges memory to the budget, so that decoded data stay in proportion to the file's size.
+    /// Counts decoded data against the memory budget, which is in proportion to the file's size.
     fn charge(&self, count: usize, size: usize, at: &JsonRef) -> Option<()> {
         self.charge_at(count, size, &|| at.pointer())
     }
@@ -328,12 +329,12 @@ impl Model<'_> {
         counted.ok()
     }
 
-    /// Counts bytes of data that is kept.
+    /// Counts bytes of data that stay in memory.
     fn keep(&self, count: usize, size: usize, at: &JsonRef) -> Option<()> {
         self.told(self.kept.bytes(count, size), &|| at.pointer())
     }
 
-    /// Reports that a limit was exceeded, the first time only.
+    /// Reports that a limit was exceeded, but only the first time.
     fn told(&self, counted: Result<(), TooMuch>, pointer: &dyn Fn() -> String) -> Option<()> {
         let found = counted.map_err(|TooMuch { message, is_first }| {
             if is_first {

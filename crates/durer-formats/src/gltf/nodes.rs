@@ -1,4 +1,4 @@
-//! Node graph: hierarchy, transforms, and the objects of each node.
+//! Reads the node hierarchy: transforms, and the objects of each node.
 
 use super::Model;
 use super::deform::Skin;
@@ -13,7 +13,8 @@ use durer_scene::shape::MeshData;
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use std::sync::Arc;
 
-/// A node as stored in the file.
+/// Node of a glTF file, before it is placed in the scene: its children, its transform and the
+/// indices of its contents.
 #[derive(Clone, Default)]
 pub(super) struct NodeData {
     pub name: String,
@@ -25,11 +26,12 @@ pub(super) struct NodeData {
     pub light: Option<usize>,
     pub weights: Vec<f32>,
     pub local: Local,
-    /// Transforms of instances, relative to the node (EXT_mesh_gpu_instancing).
+    /// Transforms of instances, relative to the node (EXT_mesh_gpu_instancing); `None` if the node
+    /// is not instanced.
     copies: Option<Vec<DAffine3>>,
 }
 
-/// Transform of a node relative to its parent.
+/// Transform of a glTF node relative to its parent: a matrix, or translation, rotation and scale.
 #[derive(Clone, Copy)]
 pub(super) struct Local {
     matrix: Option<DAffine3>,
@@ -51,7 +53,7 @@ impl Local {
     }
 }
 
-/// Mesh with a transform, to be added to the scene.
+/// Mesh of a glTF node with its transform, ready to be added to the scene.
 struct Instance {
     to_world: DAffine3,
     name: String,
@@ -59,7 +61,7 @@ struct Instance {
     span: Span,
 }
 
-/// Returns a map as a transform; `None` if it is singular or beyond the range of numbers.
+/// Returns a map as a matrix operation; `None` if it is singular or its numbers overflow.
 fn matrix_of(map: DAffine3) -> Option<MatrixOp> {
     let op = MatrixOp::Matrix(DMat4::from(map).transpose().to_cols_array().map(|x| x as f32));
     Affine::new(op.matrix()).map(|_| op)
@@ -70,6 +72,7 @@ fn vector(at: &JsonRef) -> Option<DVec3> {
 }
 
 impl Model<'_> {
+    /// Reads all nodes, and checks that they form a forest.
     pub(super) fn read_nodes(&self, root: &JsonRef) -> Vec<NodeData> {
         let Some(list) = root.get("nodes") else { return Vec::new() };
         let count = list.items().len();
@@ -84,7 +87,7 @@ impl Model<'_> {
                 }
             }
         }
-        // A node that no root reaches is part of a cycle or below one.
+        // A node that cannot be reached from a root is part of a cycle, or below one.
         let mut reached = vec![false; count];
         let mut stack: Vec<usize> = (0..count).filter(|&i| nodes[i].parent.is_none()).collect();
         while let Some(i) = stack.pop() {
@@ -165,8 +168,8 @@ impl Model<'_> {
         Some((0..count).map(copy).collect())
     }
 
-    /// Returns the nodes of the shown scene, parents first, and the transforms to world space of
-    /// all nodes. Joints may be nodes outside the shown scene.
+    /// Returns the nodes of the visible scene, parents first, and the transforms from all nodes to
+    /// world space. Joints can be nodes outside the visible scene.
     pub(super) fn placed(&self, root: &JsonRef, nodes: &[NodeData]) -> (Vec<usize>, Vec<DAffine3>) {
         let mut maps = vec![DAffine3::IDENTITY; nodes.len()];
         let mut order = Vec::with_capacity(nodes.len());
@@ -185,8 +188,8 @@ impl Model<'_> {
         (order, maps)
     }
 
-    /// Returns the roots of the shown scene: the default scene, else the first, else all roots if
-    /// the file has no scenes.
+    /// Returns the roots of the visible scene: of the default scene, otherwise of the first scene,
+    /// otherwise all roots if the file has no scenes.
     fn shown(&self, root: &JsonRef, nodes: &[NodeData]) -> Vec<usize> {
         let all = || (0..nodes.len()).filter(|&i| nodes[i].parent.is_none()).collect();
         let Some(scenes) = root.get("scenes") else {
@@ -210,7 +213,7 @@ impl Model<'_> {
         all.into_iter().nth(wanted).unwrap_or_default().into_iter().flatten().collect()
     }
 
-    /// Adds the mesh of a node to the scene, in world space.
+    /// Adds the mesh of a node to the scene, transformed to world space.
     pub(super) fn show(&self, number: usize, nodes: &[NodeData], maps: &[DAffine3], scene: &mut Scene) {
         let node = &nodes[number];
         let Some(mesh) = node.mesh else { return };
@@ -234,7 +237,7 @@ impl Model<'_> {
             if data.triangles.is_empty() {
                 continue;
             }
-            // Joint transforms already include the transform to world space.
+            // The joint matrices already include the transform to world space.
             let here = if bones.is_some() { DAffine3::IDENTITY } else { maps[number] };
             let own = [DAffine3::IDENTITY];
             let copies = node.copies.as_deref().unwrap_or(&own);
@@ -262,13 +265,13 @@ impl Model<'_> {
         }
     }
 
-    /// Counts a copy of a mesh.
+    /// Counts a copy of a mesh against the memory limit.
     fn copied(&self, data: &MeshData, pointer: &dyn Fn() -> String) -> Option<()> {
         self.charge_at(data.bytes(), 1, pointer)?;
         self.told(self.kept.bytes(data.bytes(), 1), pointer)
     }
 
-    /// Reports that a node is left out.
+    /// Warns that a node is left out.
     fn nothing(&self, number: usize, node: &NodeData) {
         let name = if node.name.is_empty() { String::new() } else { format!(" {}", shown(node.name.as_bytes())) };
         let message = format!("node{name} is left out: its transform flattens it to a line or point, or overflows");
@@ -290,8 +293,8 @@ impl Model<'_> {
         Some(Object { node: Node::Transform(vec![op], Box::new(inner)), material, span })
     }
 
-    /// Index of a white material for meshes with vertex colours but without a material. The default
-    /// grey would darken the colours.
+    /// Returns the index of a white material for meshes with vertex colours but without a material.
+    /// The default grey would darken the colours.
     fn white(&self, span: Span, scene: &mut Scene) -> u32 {
         if scene.materials.len() == self.material_count {
             let white = PrincipledMaterial { base_color: Vec3::ONE, ..PrincipledMaterial::default() };

@@ -1,4 +1,4 @@
-//! Mesh primitives: conversion of attributes and indices to triangles.
+//! Converts the attributes and indices of mesh primitives to triangles.
 
 use super::Model;
 use super::accessor::{Accessor, Component};
@@ -13,22 +13,22 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Primitives of a mesh; `None` for those left out.
+/// Primitives of a glTF mesh; `None` for those that are left out.
 pub(super) type Primitives = Vec<Option<Primitive>>;
 
-/// Triangles with a material.
+/// Primitive of a glTF mesh, converted to triangles that share a material.
 #[derive(Clone)]
 pub(super) struct Primitive {
     pub data: Arc<MeshData>,
     pub material: Option<u32>,
-    /// True if the file has vertex normals, which then deform with the positions.
+    /// True if the file has vertex normals, which are then deformed together with the positions.
     pub has_normals: bool,
-    /// Joints and morph targets.
+    /// Joints and morph targets, if the primitive has any.
     pub pose: Option<Arc<Pose>>,
 }
 
 impl Primitive {
-    /// Returns the mesh with deformed vertices.
+    /// Returns the mesh with its vertices deformed.
     pub fn posed(&self, pose: &Pose, weights: &[f32], bones: Option<&[DAffine3]>) -> MeshData {
         let mut data = MeshData::clone(&self.data);
         pose.apply(&mut data, weights, bones);
@@ -37,7 +37,7 @@ impl Primitive {
     }
 }
 
-/// Primitive modes of the specification, chapter 3.7.2.1.
+/// Primitive modes; see chapter 3.7.2.1 of the specification.
 const POINTS: u64 = 0;
 const LINES: u64 = 1;
 const LINE_LOOP: u64 = 2;
@@ -47,6 +47,7 @@ const STRIP: u64 = 5;
 const FAN: u64 = 6;
 
 impl Model<'_> {
+    /// Reads all meshes and converts their primitives to triangles.
     pub(super) fn meshes(&self, root: &JsonRef) -> Vec<Primitives> {
         let Some(meshes) = root.get("meshes") else { return Vec::new() };
         meshes.items().map(|mesh| self.mesh(&mesh)).collect()
@@ -71,12 +72,13 @@ impl Model<'_> {
         primitives.items().map(|primitive| self.primitive(&primitive)).collect()
     }
 
-    /// Returns the accessor that a property names.
+    /// Returns the accessor with the index in this value.
     pub(super) fn accessor(&self, at: &JsonRef) -> Option<&Accessor> {
         self.accessors[at.index(self.accessors.len())?].as_ref()
     }
 
-    /// Returns the accessor of an attribute, if its format is valid for the attribute.
+    /// Returns the accessor of an attribute; reports an error if its format is invalid for the
+    /// attribute.
     fn attribute(&self, at: &JsonRef, name: &str, widths: &[usize], whole: &[Component]) -> Option<&Accessor> {
         let accessor = self.accessor(at)?;
         let quantized = self.quantized && !matches!(accessor.component, Component::U32);
@@ -127,21 +129,21 @@ impl Model<'_> {
         }
         let mut pose = self.pose(at, &attributes, count);
         let order = self.order(at, count)?;
-        // Corners with their normals and texture coordinates. A strip has nearly one triangle per
-        // index.
+        // Account for the corners with their normals and texture coordinates. A strip has almost
+        // one triangle per index.
         let triangles = if mode == TRIANGLES { order.len() / 3 } else { order.len() };
         let lists = 1 + usize::from(has_normals) + usize::from(!data.uvs.is_empty());
         self.keep(triangles, 12 * lists, at)?;
-        // Flags for the vertices in use.
+        // Account for the flags of the vertices in use.
         self.keep(count, 5, at)?;
         data.triangles = match mode {
             TRIANGLES => order.as_chunks::<3>().0.par_iter().copied().collect(),
-            // Every other triangle of a strip has reversed winding.
+            // Every other triangle of a strip has the opposite winding.
             STRIP => order.windows(3).enumerate().map(|(i, t)| [t[0], t[1 + i % 2], t[2 - i % 2]]).collect(),
             FAN => order.windows(2).skip(1).map(|t| [order[0], t[0], t[1]]).collect(),
             _ => return self.thickened(&data, mode, &order, material, at),
         };
-        // Strips are joined by degenerate triangles.
+        // Degenerate triangles only join strips.
         let has_area = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
         if !data.triangles.par_iter().all(has_area) {
             data.triangles.retain(has_area);
@@ -170,7 +172,7 @@ impl Model<'_> {
         let name = at.name();
         let message = format!("points and lines of mesh{name} have no surface: small balls and thin sticks are shown");
         self.once_at("points-and-lines", &at.pointer(), &message);
-        // Each point or line becomes a dozen vertices.
+        // Each point or line becomes about a dozen vertices.
         self.charge(order.len(), 12 * 64, at)?;
         self.keep(order.len(), 12 * 64, at)?;
         let strip = || order.windows(2).map(|pair| [pair[0], pair[1]]);
@@ -185,7 +187,7 @@ impl Model<'_> {
         Some(Primitive { data, material, has_normals: true, pose: None })
     }
 
-    /// Reads an attribute other than the position.
+    /// Reads an attribute other than the positions.
     fn fill(&self, data: &mut MeshData, key: &str, at: &JsonRef) {
         const UNSIGNED: &[Component] = &[Component::U8, Component::U16];
         match key {
@@ -201,7 +203,7 @@ impl Model<'_> {
             }
             "TEXCOORD_0" | "TEXCOORD_1" => {
                 let accessor = self.attribute(at, key, &[2], UNSIGNED);
-                // In the scene, v points up.
+                // In a Dürer scene, v points up.
                 let uvs = accessor.and_then(|accessor| self.rows_as(accessor, at, |[u, v]| Vec2::new(u, 1.0 - v)));
                 let uvs = uvs.unwrap_or_default();
                 *(if key == "TEXCOORD_0" { &mut data.uvs } else { &mut data.second_uvs }) = uvs;
@@ -227,7 +229,7 @@ impl Model<'_> {
         }
     }
 
-    /// Returns the vertex indices of the primitive in order.
+    /// Returns the vertex indices of the primitive in drawing order.
     fn order(&self, at: &JsonRef, count: usize) -> Option<Vec<u32>> {
         let Some(indices) = at.get("indices") else {
             self.keep(count, 4, at)?;
@@ -261,7 +263,7 @@ impl Model<'_> {
     }
 }
 
-/// Removes unused vertices: files often share one vertex list among many primitives.
+/// Removes unused vertices, because many primitives often share one vertex list.
 fn compact(data: &mut MeshData, keep: bool) {
     const UNUSED: u32 = u32::MAX;
     if keep {
@@ -292,8 +294,8 @@ fn compact(data: &mut MeshData, keep: bool) {
     data.triangles.iter_mut().flatten().for_each(|i| *i = numbers[*i as usize]);
 }
 
-/// Sets the indices of normals and texture coordinates to those of the vertices. Without normals in
-/// the file, shading is flat.
+/// Sets the indices of normals and texture coordinates to those of the vertices. If the file has no
+/// normals, shading is flat.
 fn index(data: &mut MeshData, has_normals: bool) {
     data.flat = !has_normals;
     let own = || data.triangles.par_iter().copied().collect();

@@ -1,4 +1,4 @@
-//! Tests against reports of the Khronos validator, of accessors, and of damaged files.
+//! Tests with the reports of the Khronos validator, and tests of accessors and of damaged files.
 
 use crate::folder::FolderSource;
 use crate::scene::{Input, find_scene_format, read_model};
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 mod places;
 mod vertices;
 
-/// Reads bytes as a file of a folder; returns findings with severity, code and message.
+/// Reads bytes as a file in a folder; returns the diagnostics with severity, code and message.
 fn read(bytes: &[u8], folder: &Path, name: &str, at: Option<f32>) -> (Option<Scene>, Vec<(Severity, String)>) {
     staged(bytes, folder, name, &SceneDefaults { at, ..SceneDefaults::default() })
 }
@@ -170,7 +170,7 @@ fn khronos_models_are_read_at_rest_and_animated() {
     }
 }
 
-/// Returns a document with one mesh of one primitive, over a buffer of the given bytes.
+/// Returns a document with one mesh of one primitive and a buffer of the given bytes.
 fn document(views: &str, accessors: &str, primitive: &str, bytes: &[u8]) -> String {
     use base64::Engine;
     let data = base64::engine::general_purpose::STANDARD.encode(bytes);
@@ -193,8 +193,8 @@ const BOUNDS: &str = r#""min":[0,0,0],"max":[9,9,9]"#;
 
 #[test]
 fn accessors_are_strided_normalised_and_sparse() {
-    // Four 16-bit positions in rows of 12 bytes with 8-bit texture coordinates, and one sparse
-    // replacement.
+    // Four 16-bit positions in rows of 12 bytes, with 8-bit texture coordinates, and one row
+    // replaced by a sparse value.
     let mut bytes: Vec<u8> = Vec::new();
     for i in 0..4u16 {
         [i, 2 * i, 3 * i].iter().for_each(|x| bytes.extend(x.to_le_bytes()));
@@ -215,7 +215,7 @@ fn accessors_are_strided_normalised_and_sparse() {
     let at = |x: f32| Vec3::new(x, 2.0 * x, 3.0 * x);
     assert_eq!(data.positions, [at(0.0), at(1.0), Vec3::new(7.0, 8.0, 9.0), at(3.0)]);
     assert_eq!(data.uvs[1], Vec2::new(1.0, 1.0 - 0.2));
-    // Every other triangle of a strip is reversed, and its triangles are flat.
+    // Every other triangle of a strip is reversed, and all of its triangles are flat.
     assert_eq!(data.triangles, [[0, 1, 2], [1, 3, 2]]);
     assert!(data.flat && data.triangle_normals.is_empty());
 }
@@ -342,7 +342,7 @@ fn specular_extension_applies_to_dielectrics_only() {
     assert_eq!(of(0.0, ""), (0.25, 1.5, red));
     // The extension does not affect metals.
     assert_eq!(of(1.0, ""), (1.0, 1.5, Vec3::ONE));
-    // For partial metals, a smaller index replaces the weight: a quarter of 0.04 at normal
+    // For a partial metal, a smaller index replaces the weight: a quarter of 0.04 at normal
     // incidence.
     let (weight, ior, _) = of(0.5, "");
     let root = (ior - 1.0) / (ior + 1.0);
@@ -351,7 +351,7 @@ fn specular_extension_applies_to_dielectrics_only() {
     assert_eq!(of(0.5, r#","KHR_materials_transmission":{"transmissionFactor":1}"#), (0.25, 1.5, red));
 }
 
-/// Reflectance is 0.04 times weight and colour at normal incidence, and 1 at grazing angles.
+/// The reflectance is 0.04 times weight and colour at normal incidence, and 1 at grazing angles.
 #[test]
 fn specular_color_brightness_becomes_the_weight() {
     let of = |weight: f32, color: &str| {
@@ -427,25 +427,26 @@ fn joints_morph_targets_and_key_frames_move_vertices() {
         scene.unwrap_or_else(|| panic!("{findings:?}"))
     };
     let positions = |scene: &Scene| scene.assets.meshes.values().next().unwrap().positions.clone();
-    // The targets move the tip of the triangle by (-1, 1, 0) and by (1, 1, 0); neither applies at
-    // rest and at the start.
+    // The morph targets move the tip of the triangle by (-1, 1, 0) and by (1, 1, 0). At rest and at
+    // the start, both weights are 0.
     let rest = positions(&at("SimpleMorph/glTF/SimpleMorph.gltf", Some(0.0)));
     let moved = positions(&at("SimpleMorph/glTF/SimpleMorph.gltf", Some(2.0)));
     assert_eq!(rest, [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 0.5, 0.0)]);
     assert!(moved[2].y > 1.0 && moved[..2] == rest[..2], "{moved:?}");
-    // After a quarter of its one-second rotation about z, the triangle has turned by 90 degrees.
+    // After a quarter of the rotation about z, which takes one second, the triangle has turned by
+    // 90 degrees.
     let turned = at("AnimatedTriangle/glTF/AnimatedTriangle.gltf", Some(0.25));
     let mut reached = Vec::new();
     durer_scene::scene::extent::points(&turned, &mut |p| reached.push(p.as_vec3()));
     assert!(reached.iter().any(|p| p.abs_diff_eq(Vec3::new(0.0, 1.0, 0.0), 1e-5)), "{reached:?}");
     assert!(reached.iter().any(|p| p.abs_diff_eq(Vec3::new(-1.0, 0.0, 0.0), 1e-5)), "{reached:?}");
-    // A rotating joint moves the upper end of the strip and leaves the lower one.
+    // A rotating joint moves the upper end of the strip but not the lower one.
     let bent = positions(&at("SimpleSkin/glTF/SimpleSkin.gltf", Some(1.0)));
     let straight = positions(&at("SimpleSkin/glTF/SimpleSkin.gltf", Some(0.0)));
     assert!(bent[0].abs_diff_eq(straight[0], 1e-6) && !bent[9].abs_diff_eq(straight[9], 0.1), "{bent:?} {straight:?}");
 }
 
-/// Returns the number of triangles, the bounds and the area of all meshes, in world space.
+/// Returns the number of triangles, the bounds and the area of all meshes in world space.
 fn measures(root: &Path, name: &str) -> (usize, [Vec3; 2], f64) {
     let path = root.join(name);
     let file = path.file_name().unwrap().to_string_lossy().into_owned();
@@ -521,7 +522,7 @@ fn damaged_compressed_data_do_not_panic() {
         const TRIES: usize = 400;
         for i in 0..TRIES {
             let mut changed = sound.clone();
-            // Most of the numbers that matter are in the first bytes.
+            // Most of the important numbers are in the first bytes.
             let at = random(if i % 2 == 0 { changed.len() } else { changed.len().min(64) });
             let end = changed.len().min(at + 1 + random(8));
             match i % 5 {

@@ -1,4 +1,4 @@
-//! Textures: images with samplers and coordinate transforms.
+//! Reads textures: images with samplers and coordinate transforms.
 
 use super::Model;
 use super::buffers::{Target, target};
@@ -9,7 +9,7 @@ use durer_scene::math::fp;
 use durer_scene::scene::{Picture, PictureBytes};
 use durer_scene::texture::{Mapping, Wrap};
 
-/// Returns the wrapping mode for `wrapS` or `wrapT` of a sampler.
+/// Returns the wrap mode for a sampler's `wrapS` or `wrapT`.
 fn wrap(at: &JsonRef) -> Option<Wrap> {
     match at.whole(..)? {
         10497 => Some(Wrap::Repeat),
@@ -23,7 +23,7 @@ fn wrap(at: &JsonRef) -> Option<Wrap> {
 }
 
 impl Model<'_> {
-    /// Returns the bytes or file names of the images.
+    /// Returns the bytes or the file name of each image.
     pub(super) fn images(&self, root: &JsonRef) -> Vec<Option<PictureBytes>> {
         let Some(images) = root.get("images") else { return Vec::new() };
         images.items().map(|image| self.image(&image)).collect()
@@ -62,13 +62,13 @@ impl Model<'_> {
         Some(found)
     }
 
-    /// Reads a `textureInfo` with a change to its mapping; returns the name of the new asset.
+    /// Reads a `textureInfo` and changes its mapping; returns the name of the new asset.
     pub(super) fn texture(&self, at: &JsonRef, change: impl FnOnce(&mut Mapping)) -> Option<FileName> {
         self.texture_as(at, "", change)
     }
 
-    /// Reads a `textureInfo` as [`Model::texture`] does. `role` distinguishes several uses of one
-    /// texture.
+    /// Reads a `textureInfo` as [`Model::texture`] does. `role` distinguishes different uses of the
+    /// same texture.
     pub(super) fn texture_as(&self, at: &JsonRef, role: &str, change: impl FnOnce(&mut Mapping)) -> Option<FileName> {
         at.object()?;
         let number = at.need("index")?.index(self.textures.len())?;
@@ -92,6 +92,7 @@ impl Model<'_> {
         Some(FileName { path, span })
     }
 
+    /// Reads all textures; `None` for each one without a usable image.
     pub(super) fn textures(&self, root: &JsonRef) -> Vec<Option<(PictureBytes, Mapping, Span)>> {
         let samplers = match root.get("samplers") {
             Some(samplers) => samplers.items().map(|sampler| self.sampler(&sampler)).collect(),
@@ -122,7 +123,7 @@ impl Model<'_> {
                 return None;
             };
             let image = source.index(self.images.len())?;
-            // Errors about a picture are reported where the file names it.
+            // Errors in a picture are reported where the file names the picture.
             let span = self.findings.span(&format!("/images/{image}/uri"));
             Some((self.images[image].clone()?, mapping, span))
         };
@@ -132,7 +133,7 @@ impl Model<'_> {
     fn sampler(&self, at: &JsonRef) -> Mapping {
         let mode = |key| at.get(key).and_then(|mode| wrap(&mode)).unwrap_or_default();
         let nearest = at.get("magFilter").and_then(|filter| filter.whole(9728..=9729)) == Some(9728);
-        // Filters with mipmaps.
+        // These filters use mipmaps.
         let mipmaps = at.get("minFilter").is_some_and(|filter| matches!(filter.whole(9728..=9987), Some(9984..)));
         Mapping { wrap: [mode("wrapS"), mode("wrapT")], nearest, mipmaps, ..Mapping::default() }
     }

@@ -1,4 +1,4 @@
-//! KHR_materials_variants: alternative materials of one model.
+//! Selects material variants (KHR_materials_variants).
 
 use super::Model;
 use super::json::JsonRef;
@@ -37,7 +37,8 @@ impl Model<'_> {
         found
     }
 
-    /// Returns the material of a primitive: that of the selected variant, else its own.
+    /// Returns the material of a primitive: for the selected variant if it defines one, otherwise
+    /// its own.
     pub(super) fn material_of(&self, at: &JsonRef) -> Option<Option<u32>> {
         let number = |material: &JsonRef| material.index(self.material_count).map(|number| Some(number as u32));
         if let Some(variant) = self.variant

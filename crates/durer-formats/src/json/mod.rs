@@ -1,5 +1,5 @@
-//! Scenes as JSON: the content of the scene language, for programs. Objects have the keywords of
-//! the Dürer dialect; fields have the names of their statements.
+//! Scenes as JSON: the same content as in the scene language, for programs. Objects have the
+//! keywords of the Dürer dialect, and fields have the names of their statements.
 
 mod read;
 pub mod schema;
@@ -12,14 +12,14 @@ mod write;
 pub use read::Document;
 pub use write::write;
 
-/// File name extension of scenes as JSON, without the dot.
+/// File name extension of JSON scenes, without the dot.
 pub const EXTENSION: &str = "json";
 
-/// Maximum depth of nested objects, as in the scene language.
+/// Maximum depth of nested objects; equal to that of the scene language.
 const DEEPEST: usize = 200;
 
-/// Returns true if a file is a scene as JSON: it has the extension `.json` or begins with `{`,
-/// which no text in the scene language does. glTF is JSON too, but is not a scene of this kind.
+/// Returns true if a file is a JSON scene: its extension is `.json`, or it begins with `{`, as no
+/// text in the scene language does. glTF is JSON too, but is not a scene of this kind.
 pub fn recognise(bytes: &[u8], name: &str) -> bool {
     let head = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let is_json = super::extension(name) == EXTENSION || head.starts_with(b"{");

@@ -15,7 +15,7 @@ use durer_scene::math::Vec3;
 use durer_scene::scene::{Group, Material, MatrixOp, NamedTexture, Node as What, Object, Operation, Scene};
 use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
-/// A parsed JSON file that has not yet been read as a scene.
+/// A parsed JSON file that has not yet been converted to a scene. See [`Document::scene`].
 pub struct Document<'a> {
     text: &'a [u8],
     report: Report,
@@ -23,7 +23,7 @@ pub struct Document<'a> {
 }
 
 impl<'a> Document<'a> {
-    /// Parses the JSON. [`Document::scene`] reports syntax errors.
+    /// Parses the JSON. Syntax errors are reported later, by [`Document::scene`].
     pub fn open(text: &'a [u8], file: u32, diagnostics: &Diagnostics) -> Self {
         let mut report = Report::new(file, diagnostics);
         let root = match text.len() < u32::MAX as usize {
@@ -40,7 +40,8 @@ impl<'a> Document<'a> {
         Document { text, report, root: root.ok() }
     }
 
-    /// Dialect that defines the meaning of the keywords; [`Dialect::Durer`] if the file names none.
+    /// Returns the dialect that defines the meaning of the keywords; [`Dialect::Durer`] if the file
+    /// names none.
     pub fn dialect(&self) -> Dialect {
         let Some(Node { value: Value::Object(members), .. }) = &self.root else { return Dialect::Durer };
         let stated = members.iter().find(|member| member.name == "dialect").map(|member| &member.node.value);
@@ -63,7 +64,7 @@ impl Reader<'_> {
     fn scene(&mut self, root: &Node) -> Scene {
         let mut scene = Scene::default();
         let Some((_, mut members)) = self.typed(root, "scene", &["Scene"]) else { return scene };
-        // Reference to the schema, which editors read.
+        // Reference to the schema, used by editors.
         members.take("$schema");
         if let Some(node) = members.take("dialect") {
             self.one_of(node, "dialect", &Dialect::ALL.map(Dialect::name));
@@ -161,7 +162,7 @@ impl Reader<'_> {
         self.items(node, name).iter().filter_map(|node| self.matrix(node, wrong)).collect()
     }
 
-    /// Reads `{"Translate": [0, 1, 0]}`; `wrong` returns the diagnostic of a senseless operation.
+    /// Reads `{"Translate": [0, 1, 0]}`. `wrong` returns an error for a matrix with invalid values.
     fn matrix(&mut self, node: &Node, wrong: fn(MatrixOp) -> Option<Diagnostic>) -> Option<MatrixOp> {
         let Value::Object(members) = &node.value else {
             self.expected(node, "an object", "matrix");
@@ -210,7 +211,7 @@ impl Reader<'_> {
 
     fn object(&mut self, node: &Node) -> Option<Object> {
         if self.depth >= DEEPEST {
-            self.error(node.head(), "bad-value", format!("objects are nested deeper than {DEEPEST}"), None);
+            self.error(node.head(), "bad-value", format!("objects are nested more than {DEEPEST} levels deep"), None);
             return None;
         }
         self.depth += 1;
@@ -239,7 +240,7 @@ impl Reader<'_> {
             let wrong = |op| senseless(op).or_else(|| flat(op));
             let ops = members.take("matrices").map(|node| self.matrices(node, "matrices", wrong)).unwrap_or_default();
             let inner = self.required(&mut members, "object").and_then(|node| self.object(node));
-            // The transformed object may name its own material.
+            // The object inside a transform may name its own material.
             if let (None, Some(inner)) = (stated, &inner) {
                 material = inner.material;
             }

@@ -1,5 +1,5 @@
-//! JSON Schema (2020-12) of scenes as JSON. It is generated from the statements, as the language
-//! reference is.
+//! JSON Schema (2020-12) of JSON scenes. Like the language reference, it is generated from the
+//! descriptions of the statements.
 
 use super::DEEPEST;
 use durer_scene::camera::Camera;
@@ -12,35 +12,35 @@ use durer_scene::scene::{Background, MatrixOp, NamedTexture, Operation};
 use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 use serde_json::{Map, Value, json};
 
-/// Keywords of the kinds of a described list.
+/// Returns the keywords of all kinds in a described list.
 pub(super) fn keywords<T: DescribedList>() -> Vec<&'static str> {
     T::kinds().iter().map(word).collect()
 }
 
-/// Keyword of a described item in the Dürer dialect.
+/// Returns the keyword of a described item in the Dürer dialect.
 pub(super) fn word<T: DescribedList>(item: &T) -> &'static str {
     item.keyword(Dialect::Durer)
 }
 
-/// Item with default values for a keyword.
+/// Returns the item for a keyword, with default values.
 pub(super) fn of_keyword<T: DescribedList>(keyword: &str) -> Option<T> {
     T::kinds().into_iter().find(|item| word(item) == keyword)
 }
 
-/// Keywords of all materials.
+/// Returns the keywords of all materials.
 pub(super) fn materials() -> Vec<&'static str> {
     let own = [keywords::<PhongMaterial>(), keywords::<PrincipledMaterial>(), keywords::<HairMaterial>()].concat();
     [own, keywords::<Solid>()].concat()
 }
 
-/// Keywords of all objects.
+/// Returns the keywords of all objects.
 pub(super) fn objects() -> Vec<&'static str> {
     let others = [keywords::<TriangleMesh>(), keywords::<HeightField>(), keywords::<VoxelGrid>()].concat();
     let made = ["Group", "Transform"].into_iter().chain(Operation::ALL.map(|row| row.0));
     keywords::<Primitive>().into_iter().chain(others).chain(made).collect()
 }
 
-/// Returns the schema of a whole scene.
+/// Returns the JSON Schema of a complete scene.
 pub fn schema() -> Value {
     let list = |of: &str, about: &str| json!({"type": "array", "items": reference(of), "description": about});
     let members = json!({
@@ -98,17 +98,17 @@ fn one_of(items: Vec<Value>) -> Value {
     json!({ "oneOf": items })
 }
 
-/// A number with the shortest decimal digits of its `f32` value.
+/// Converts an `f32` to a JSON number with the fewest digits that read back to the same value.
 fn number(x: f32) -> Value {
     x.to_string().parse::<f64>().map_or(Value::Null, Value::from)
 }
 
-/// A doc comment joined into one line.
+/// Joins a doc comment into one line.
 fn about(doc: &str) -> String {
     doc.lines().map(str::trim).collect::<Vec<_>>().join(" ").trim().to_string()
 }
 
-/// Schema of a field's value.
+/// Returns the schema of a field's value.
 fn field(field: &Field) -> Value {
     let mut value = match field.kind {
         Kind::Float => json!({"type": "number"}),
@@ -142,7 +142,7 @@ fn field(field: &Field) -> Value {
     value
 }
 
-/// Schema of an object with these members, some of them required.
+/// Returns the schema of an object with these members; those in `required` must be present.
 fn object(doc: &str, members: Value, required: &[&str]) -> Value {
     json!({
         "type": "object",
@@ -153,7 +153,7 @@ fn object(doc: &str, members: Value, required: &[&str]) -> Value {
     })
 }
 
-/// Schema of a described item with further members.
+/// Returns the schema of a described item with further members.
 fn described<T: DescribedList>(item: &T, more: Value, also: &[&'static str]) -> Value {
     let mut members = Map::new();
     if let Value::Object(more) = more {
@@ -165,21 +165,21 @@ fn described<T: DescribedList>(item: &T, more: Value, also: &[&'static str]) -> 
     object(item.doc(), members.into(), &required)
 }
 
-/// Schema of an item that needs no `type`.
+/// Returns the schema of an item without a `type`.
 fn record<T: DescribedList + Default>(more: Value) -> Value {
     described(&T::default(), more, &[])
 }
 
-/// Schema of an item with its `type`.
+/// Returns the schema of an item with its `type`.
 fn named<T: DescribedList>(item: &T, more: &Value) -> Value {
     described(item, with(more, "type", json!({ "const": word(item) })), &["type"])
 }
 
 /// Returns a copy of `members` with one more member.
 ///
-/// Closures that changed a `Value` passed to them and returned it used memory after it was freed
-/// (rustc 1.95, opt-level 2, seen by valgrind; not in a small program of the same form). The code
-/// was safe, so this was probably a miscompilation.
+/// This is not a closure: closures that changed a `Value` passed to them and returned it used
+/// memory after it was freed (rustc 1.95, opt-level 2, detected by valgrind; not reproduced in a
+/// small program of the same form). The code was safe, so this was probably a miscompilation.
 fn with(members: &Value, name: &str, value: Value) -> Value {
     let mut all = members.clone();
     all[name] = value;

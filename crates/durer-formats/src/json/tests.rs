@@ -1,4 +1,4 @@
-//! Tests of scenes as JSON: round trips, positions of errors, and agreement of the schema with the
+//! Tests of JSON scenes: round trips, positions of errors, and agreement between the schema and the
 //! reader.
 
 use super::{Document, schema, write};
@@ -9,7 +9,7 @@ use durer_scene::dialect::Dialect;
 use durer_scene::scene::{Material, Node, Scene};
 use serde_json::{Value, json};
 
-/// Reads a scene; returns the findings as `line:column message`.
+/// Reads a scene; returns the diagnostics as `line:column message`.
 fn read(text: &str) -> (Option<Scene>, Vec<String>) {
     let (mut files, mut found) = (Files::default(), Diagnostics::default());
     let file = files.add("x.json", text.as_bytes().into());
@@ -21,7 +21,7 @@ fn read(text: &str) -> (Option<Scene>, Vec<String>) {
     (scene, messages.collect())
 }
 
-/// Asserts that two scenes are equal bit for bit; `PartialEq` treats 0 and -0 as equal.
+/// Asserts that two scenes are equal bit for bit, since `PartialEq` treats 0 and -0 as equal.
 #[track_caller]
 fn same(a: &Scene, b: &Scene, context: &str) {
     assert_eq!(a, b, "{context}");
@@ -71,7 +71,8 @@ fn handwritten_scene_is_read() {
     let Material::Principled(gold) = &scene.materials[0].value else { panic!() };
     assert_eq!((gold.base_metalness, gold.specular_roughness), (1.0, 0.5));
     let objects = &scene.root.as_ref().unwrap().objects;
-    // An object without a material takes the previous object's, and a transform takes its object's.
+    // An object without a material has that of the previous object; a transform has that of its
+    // object.
     assert_eq!(objects.iter().map(|object| object.material).collect::<Vec<_>>(), [Some(2), Some(1)]);
     let Node::Transform(_, inner) = &objects[1].node else { panic!() };
     let Node::Group(group) = &inner.node else { panic!() };
@@ -159,8 +160,8 @@ fn number_of_errors_and_nesting_are_limited() {
         read(&format!("{{\"type\": \"Scene\", \"objects\": [{open}{}]}}", "]}".repeat(depth)))
     };
     assert!(nested(super::DEEPEST).0.is_some());
-    assert!(nested(super::DEEPEST + 1).1[0].contains("objects are nested deeper than 200"));
-    assert!(nested(1000).1[0].contains("values are nested deeper than 640"));
+    assert!(nested(super::DEEPEST + 1).1[0].contains("objects are nested more than 200 levels deep"));
+    assert!(nested(1000).1[0].contains("values are nested more than 640 levels deep"));
     // A material index out of range is reported, and the scene is still read.
     let (scene, messages) = read(&SMALL.replace("\"material\": 2", "\"material\": 3"));
     assert!(
@@ -258,7 +259,7 @@ fn changed(random: &mut Random, value: &mut Value) {
     }
 }
 
-/// Errors that the reader reports and a JSON Schema cannot express.
+/// Errors that the reader reports but a JSON Schema cannot express.
 const BEYOND: [&str; 7] = [
     "already exists",
     "may use only earlier",
@@ -266,7 +267,7 @@ const BEYOND: [&str; 7] = [
     "last row",
     "has no direction",
     "too long or too short",
-    "nested deeper",
+    "are nested",
 ];
 
 #[test]

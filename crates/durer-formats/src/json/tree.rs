@@ -3,30 +3,30 @@
 
 use std::ops::Range;
 
-/// Maximum depth of nested values: each of the language's 200 levels of objects takes three, an
-/// object, a list and a transform.
+/// Maximum depth of nested values. Each of the language's 200 levels of objects takes three levels
+/// of JSON: an object, a list and a transform.
 const DEEPEST: usize = 640;
 
-/// A value and its byte range.
+/// JSON value with its byte range in the text; node of the tree that [`parse`] returns.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
     pub value: Value,
     pub at: Range<usize>,
 }
 
-/// A JSON value.
+/// Content of a JSON [`Node`]: null, a boolean, a number, a string, an array or an object.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Null,
     Bool,
-    /// A number, whose text is at the node's range.
+    /// A number. Its text is at the node's byte range.
     Number,
     String(String),
     Array(Vec<Node>),
     Object(Vec<Member>),
 }
 
-/// A member of an object.
+/// Member of a JSON object: its name, the byte range of the name, and its value.
 #[derive(Clone, Debug)]
 pub(super) struct Member {
     pub name: String,
@@ -34,12 +34,12 @@ pub(super) struct Member {
     pub node: Node,
 }
 
-/// A syntax error.
+/// Syntax error found while parsing JSON.
 #[derive(Clone, Debug)]
 pub(super) struct Malformed {
     pub at: Range<usize>,
     pub message: String,
-    /// Range of a related place, such as the first of two equal names.
+    /// Range of a related position, such as the first of two equal names.
     pub first: Option<Range<usize>>,
 }
 
@@ -56,7 +56,8 @@ impl Node {
         }
     }
 
-    /// Range to show in messages: the opening bracket of a list or an object, else the whole value.
+    /// Range to show in messages: the opening bracket of a list or an object, otherwise the whole
+    /// value.
     pub fn head(&self) -> Range<usize> {
         match &self.value {
             Value::Array(_) | Value::Object(_) => self.at.start..self.at.start + 1,
@@ -65,7 +66,7 @@ impl Node {
     }
 }
 
-/// Parses a whole text.
+/// Parses a JSON text.
 pub(super) fn parse(text: &[u8]) -> Result<Node, Malformed> {
     // Windows editors may put a byte order mark first.
     let at = if text.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
@@ -78,6 +79,7 @@ pub(super) fn parse(text: &[u8]) -> Result<Node, Malformed> {
     }
 }
 
+/// Recursive-descent parser of a JSON text.
 struct Parser<'a> {
     text: &'a [u8],
     at: usize,
@@ -106,7 +108,7 @@ impl Parser<'_> {
         Err(Malformed { at, message: message.into(), first: None })
     }
 
-    /// Error at the current position, which shows the word found there.
+    /// Returns an error for the word at the current position; `wanted` says what was expected.
     fn unexpected(&self, wanted: &str) -> Malformed {
         let ends = |b: &u8| b.is_ascii_whitespace() || b",:[]{}\"".contains(b);
         let rest = &self.text[self.at..];
@@ -134,7 +136,7 @@ impl Parser<'_> {
 
     fn nested(&mut self, read: fn(&mut Self) -> Result<Value, Malformed>) -> Result<Value, Malformed> {
         if self.depth >= DEEPEST {
-            return self.error(self.at..self.at + 1, format!("values are nested deeper than {DEEPEST}"));
+            return self.error(self.at..self.at + 1, format!("values are nested more than {DEEPEST} levels deep"));
         }
         self.depth += 1;
         self.at += 1;
@@ -256,7 +258,7 @@ impl Parser<'_> {
         String::from_utf8(bytes).or_else(|_| self.error(start..self.at, "this string is not UTF-8"))
     }
 
-    /// Reads an escape and returns its character; on failure, `at` is where it went wrong.
+    /// Reads an escape and returns its character. On failure, `at` is the position of the error.
     fn escaped(&mut self) -> Option<char> {
         self.at += 1;
         let letter = self.peek()?;
@@ -289,7 +291,7 @@ impl Parser<'_> {
     }
 }
 
-/// First duplicate: the earliest member that repeats a name, after the member that it repeats.
+/// Returns the earliest member that repeats a name, preceded by the member with the same name.
 fn repeated(members: &[Member]) -> Option<(&Member, &Member)> {
     let mut sorted: Vec<usize> = (0..members.len()).collect();
     sorted.sort_by_key(|&i| (&members[i].name, i));

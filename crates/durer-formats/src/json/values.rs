@@ -1,4 +1,5 @@
-//! Reading of JSON values into the fields of statements: kinds, constraints, names.
+//! Reads JSON values into the fields of statements, and checks their types, constraints and member
+//! names.
 
 use super::schema;
 use super::tree::{Member, Node, Value};
@@ -11,27 +12,29 @@ use durer_scene::math::Vec3;
 use durer_scene::scene::Spanned;
 use std::ops::Range;
 
-/// State of a reader of one document.
+/// Reader that converts the JSON tree of one document into a scene, and collects the errors.
 pub(super) struct Reader<'a> {
     pub text: &'a [u8],
     pub report: Report,
-    /// Material of the previous object, the default of an object that names none.
+    /// Material of the previous object; used by objects that name no material.
     pub material: Option<u32>,
-    /// Every use of a material index with its place, checked once all materials are read.
+    /// Every use of a material index with its byte range; checked once all materials are read.
     pub uses: Vec<(u32, Range<usize>)>,
     pub depth: usize,
     /// Keywords that an object's `type` may have.
     pub kinds: &'a [&'static str],
 }
 
-/// Members of an object, of which some have been read.
+/// Members of one JSON object that is being read; records which have been read, so that unknown
+/// ones can be reported.
 pub(super) struct Members<'n> {
-    /// Name of the object in messages.
+    /// Name of the object, used in messages.
     pub name: &'n str,
     at: Range<usize>,
     all: &'n [Member],
     taken: Vec<bool>,
-    /// Names passed to [`Members::take`]: in the end, all names that the object may have.
+    /// Names passed to [`Members::take`]. After reading, these are all the names the object may
+    /// have.
     known: Vec<&'static str>,
 }
 
@@ -46,6 +49,7 @@ impl<'n> Members<'n> {
 }
 
 impl Reader<'_> {
+    /// Reports an error at a byte range.
     pub fn error(&mut self, at: Range<usize>, code: &'static str, message: impl Into<String>, help: Option<String>) {
         if !self.report.is_full() {
             let error = self.report.error(at, message);
@@ -59,6 +63,7 @@ impl Reader<'_> {
         self.error(node.head(), "bad-value", message, None);
     }
 
+    /// Converts a byte range to a span.
     pub fn span(&self, at: &Range<usize>) -> Span {
         self.report.span(at.clone())
     }
@@ -76,7 +81,7 @@ impl Reader<'_> {
     pub fn finish(&mut self, members: Members) {
         let Members { name, all, taken, known, .. } = members;
         for (member, _) in all.iter().zip(taken).filter(|(_, taken)| !taken) {
-            // A list of seventy names does not help.
+            // A list of seventy names would not help the user.
             let few = || (known.len() <= 24).then(|| format!("it has {}", known.join(", ")));
             let help = suggest(&member.name, known.iter().copied()).or_else(few);
             let message = format!("`{name}` has no member {}", shown(member.name.as_bytes()));
@@ -84,6 +89,7 @@ impl Reader<'_> {
         }
     }
 
+    /// Returns the items of a list; reports any other value and returns an empty slice.
     pub fn items<'n>(&mut self, node: &'n Node, name: &str) -> &'n [Node] {
         match &node.value {
             Value::Array(items) => items,
@@ -94,6 +100,7 @@ impl Reader<'_> {
         }
     }
 
+    /// Returns a string; reports any other value.
     pub fn string<'n>(&mut self, node: &'n Node, name: &str) -> Option<&'n str> {
         match &node.value {
             Value::String(text) => Some(text),
@@ -117,6 +124,7 @@ impl Reader<'_> {
         word
     }
 
+    /// Reads a finite `f32`; reports any other value.
     pub fn number(&mut self, node: &Node, name: &str) -> Option<f32> {
         if !matches!(node.value, Value::Number) {
             self.expected(node, "a number", name);
@@ -132,6 +140,7 @@ impl Reader<'_> {
         Some(number)
     }
 
+    /// Reads a list of exactly `N` numbers.
     pub fn numbers<const N: usize>(&mut self, node: &Node, name: &str) -> Option<[f32; N]> {
         let items = match &node.value {
             Value::Array(items) if items.len() == N => items,
@@ -153,12 +162,13 @@ impl Reader<'_> {
         Some(numbers)
     }
 
+    /// Reads an integer from 0 to `u32::MAX`.
     pub fn whole(&mut self, node: &Node, name: &str) -> Option<u32> {
         let number = match node.value {
             Value::Number => std::str::from_utf8(&self.text[node.at.clone()]).ok()?.parse::<f64>().ok(),
             _ => None,
         };
-        // Some programs write whole numbers as 3.0.
+        // Some programs write integers as 3.0.
         let whole = number.filter(|n| n.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(n));
         if whole.is_none() {
             let message = format!(
@@ -173,7 +183,7 @@ impl Reader<'_> {
         whole.map(|number| number as u32)
     }
 
-    /// Reads a value of a field's kind and checks its constraint.
+    /// Reads a value of a field's type and checks its constraint.
     fn value(&mut self, node: &Node, name: &str, kind: Kind, rule: Constraint) -> Option<describe::Value> {
         let value = match kind {
             Kind::Float => describe::Value::Float(self.number(node, name)?),
@@ -182,7 +192,7 @@ impl Reader<'_> {
             Kind::Path => {
                 let path = self.string(node, name)?;
                 if !is_word(path) {
-                    let help = "a path has neither blanks nor braces, as in the scene language".to_string();
+                    let help = "a path must not contain spaces or braces, as in the scene language".to_string();
                     let message = format!("`{name}` cannot be {}", shown(path.as_bytes()));
                     self.error(node.at.clone(), "bad-value", message, Some(help));
                     return None;
@@ -219,7 +229,7 @@ impl Reader<'_> {
         Some(rows)
     }
 
-    /// Reads the fields of a described item. The object may have further members.
+    /// Reads the fields of a described item from an object, which may have further members.
     pub fn fields<T: DescribedList>(&mut self, item: &mut T, members: &mut Members) {
         for (i, field) in item.fields().iter().enumerate() {
             match members.take(field.name) {
@@ -237,7 +247,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads a described item whose object has no other members.
+    /// Reads a described item from an object that has no other members.
     pub fn item<T: DescribedList>(&mut self, mut entry: T, node: &Node, name: &str) -> T {
         if let Some(mut members) = self.members(node, name) {
             self.fields(&mut entry, &mut members);
@@ -246,7 +256,7 @@ impl Reader<'_> {
         entry
     }
 
-    /// Returns an object's `type`, which must be one of `known`, and its members.
+    /// Returns an object's members and its `type`, which must be one of `known`.
     pub fn typed<'n>(&mut self, node: &'n Node, what: &'n str, known: &[&str]) -> Option<(&'n str, Members<'n>)> {
         let mut members = self.members(node, what)?;
         let Some(named) = members.take("type") else {
@@ -260,7 +270,7 @@ impl Reader<'_> {
         if !known.contains(&word.as_str()) {
             let message = format!("{} is not a type of `{what}`", shown(word.as_bytes()));
             let near = suggest(word, known.iter().copied());
-            let help = near.unwrap_or_else(|| format!("known are {}", known.join(", ")));
+            let help = near.unwrap_or_else(|| format!("known types are {}", known.join(", ")));
             self.error(named.at.clone(), "unknown-word", message, Some(help));
             return None;
         }
@@ -268,7 +278,7 @@ impl Reader<'_> {
         Some((word, members))
     }
 
-    /// Reads one of the kinds of a described list, chosen by its `type`.
+    /// Reads one kind of a described list, selected by the object's `type`.
     pub fn choice<T: DescribedList>(&mut self, node: &Node, what: &str) -> Option<T> {
         let (word, mut members) = self.typed(node, what, &schema::keywords::<T>())?;
         let mut item = schema::of_keyword::<T>(word)?;
@@ -282,7 +292,7 @@ impl Reader<'_> {
         Some(Spanned { value: read(self)?, span: self.span(&node.head()) })
     }
 
-    /// Returns a required member; reports it if it is missing.
+    /// Returns a required member; reports an error if it is missing.
     pub fn required<'n>(&mut self, members: &mut Members<'n>, name: &'static str) -> Option<&'n Node> {
         let node = members.take(name);
         if node.is_none() {

@@ -6,18 +6,18 @@ use durer_scene::dialect::Dialect;
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Material, MatrixOp, Node, Object, Scene};
 
-/// Maximum columns of a line whose value can be split over several lines.
+/// Maximum width of a line in columns, unless its value cannot be split.
 const WIDTH: usize = 120;
 
-/// A value to write.
+/// JSON value to be written: text that is already formatted, a list, or an object.
 enum Json {
-    /// A number or a string, already as JSON text.
+    /// A number or a string, already formatted as JSON.
     Plain(String),
     List(Vec<Json>),
     Object(Vec<(&'static str, Json)>),
 }
 
-/// Writes a scene as JSON; `dialect` defines the meaning of its keywords.
+/// Formats a scene as JSON text; `dialect` defines the meaning of its keywords.
 pub fn write(scene: &Scene, dialect: Dialect) -> String {
     let mut members = vec![("type", string("Scene"))];
     if dialect != Dialect::Durer {
@@ -139,7 +139,7 @@ fn object(object: &Object) -> Json {
 }
 
 impl Json {
-    /// Writes the value on one line if it fits, else one item a line.
+    /// Writes the value on one line if it fits, otherwise one item per line.
     fn write(&self, out: &mut String, depth: usize) {
         let mut line = String::new();
         if self.fits(&mut line, WIDTH.saturating_sub(4 * depth)) {

@@ -1,4 +1,4 @@
-//! Sensor, film, sampler and integrator.
+//! Reads the sensor, film, sampler and integrator.
 //!
 //! Source: *Mitsuba 3 documentation*, "Sensors", "Films" and "Integrators". A camera looks along
 //! +z; +y is up and +x is to the left.
@@ -15,16 +15,16 @@ use std::rc::Rc;
 
 /// Default size of a film, in pixels.
 const SIZE: [u32; 2] = [768, 576];
-/// Default near and far plane of Mitsuba's cameras.
+/// Default near and far clipping distance of Mitsuba's cameras.
 const NEAR: f32 = 0.01;
 const FAR: f32 = 10_000.0;
-/// Number of bounces of paths without a limit.
+/// Number of bounces used for paths of unlimited length.
 const ENDLESS: u32 = 64;
 
 const KNOWN: [&str; 3] = ["perspective", "thinlens", "orthographic"];
 
 impl Reader<'_> {
-    /// Reads the camera: the sensor chosen by id or number, or the first.
+    /// Reads the camera: the sensor selected by id or number, otherwise the first.
     pub fn camera(&mut self, sensors: &[Rc<Plugin>]) {
         let Some(sensor) = self.chosen(sensors) else { return };
         let report = self.report;
@@ -128,12 +128,12 @@ impl Reader<'_> {
         let report = self.report;
         let half = self.half_view(sensor, size);
         let (right, up, forward) = axes(to_world);
-        // Ignore scale: Mitsuba forbids it in a camera's transform.
+        // Ignore the scale: Mitsuba forbids it in a camera's transform.
         let (center, handedness) = (to_world.translation.as_vec3(), handedness(right, up, forward));
         let angle = ((2.0 * fp::atan_f64(half.max_element())).to_degrees() as f32).clamp(1e-4, 179.99);
         let [direction, up] = [forward, up].map(|v| v.normalize_or(DVec3::Y).as_vec3());
         let offset = |name| f64::from(sensor.number(report, name).unwrap_or(0.0));
-        // Offset in widths and heights of the film; it moves the view right and down.
+        // Offset as a fraction of the film's width and height; it moves the view right and down.
         let offset = 2.0 * DVec2::new(offset("principal_point_offset_x"), offset("principal_point_offset_y"));
         let shift = offset * half / half.max_element();
         let aperture = match sensor.kind.as_str() {
@@ -144,7 +144,7 @@ impl Reader<'_> {
         if sensor.kind == "thinlens" && aperture == 0.0 {
             report.bad(sensor.at, "a `thinlens` needs an `aperture_radius`");
         }
-        // Ignore the default planes, since they clip nothing visible.
+        // Ignore the default clipping planes, since they clip nothing visible.
         let near = sensor.number(report, "near_clip").filter(|near| *near > NEAR).unwrap_or(0.0);
         let far = sensor.positive(report, "far_clip");
         let far = far.filter(|far| *far < FAR);
@@ -167,7 +167,7 @@ impl Reader<'_> {
         ThinLensCamera { shift_right, shift_up, ..lens }.into()
     }
 
-    /// Half width and half height of the view at distance 1.
+    /// Returns half the width and half the height of the view at distance 1.
     pub(super) fn half_view(&self, sensor: &Plugin, size: DVec2) -> DVec2 {
         let report = self.report;
         let aspect = size.x / size.y;
@@ -185,7 +185,7 @@ impl Reader<'_> {
                     let message = format!("expected a length in millimetres such as `50mm`, found `{given}`");
                     report.bad(sensor.place("focal_length"), message);
                 }
-                // Field of view across the diagonal of a 36 x 24 mm film.
+                // The field of view is that across the diagonal of a 36 x 24 mm film.
                 let half = (36f64 * 36.0 + 24.0 * 24.0).sqrt() / 2.0;
                 fov = 2.0 * fp::atan_f64(half / length.unwrap_or(50.0)).to_degrees();
                 axis = "diagonal".into();
@@ -212,7 +212,7 @@ impl Reader<'_> {
         DVec2::new(x, x / aspect)
     }
 
-    /// Reads the integrator. `max_depth` counts path segments: `bounces` is two less.
+    /// Reads the integrator. `max_depth` counts path segments, so `bounces` is two less.
     pub fn integrator(&mut self, plugin: &Plugin, depth: u32) {
         let report = self.report;
         if self.too_deep(depth, plugin.at) {
@@ -224,7 +224,7 @@ impl Reader<'_> {
                 self.scene.render_defaults.bounces = Some(0);
                 plugin.known(&["emitter_samples", "bsdf_samples", "shading_samples"]);
             }
-            // These wrap the integrator that renders the picture.
+            // These integrators wrap the one that renders the picture.
             "aov" | "moment" => {
                 for (_, inner) in self.parts(plugin, Some("integrator")) {
                     self.integrator(&inner, depth + 1);
@@ -257,18 +257,18 @@ impl Reader<'_> {
     }
 }
 
-/// Right, up and forward axes; the length of each is one unit of camera space.
+/// Returns the right, up and forward axes. The length of each is one unit of camera space.
 fn axes(to_world: DAffine3) -> (DVec3, DVec3, DVec3) {
     let m = to_world.matrix3;
     (-m.x_axis, m.y_axis, m.z_axis)
 }
 
-/// Handedness of a picture for a viewer who looks along `forward`.
+/// Returns the handedness of the picture for a viewer who looks along `forward`.
 fn handedness(right: DVec3, up: DVec3, forward: DVec3) -> Handedness {
     if forward.cross(up).dot(right) < 0.0 { Handedness::Left } else { Handedness::Right }
 }
 
-/// Orthographic camera: the view is 2 wide in units of camera space.
+/// Returns an orthographic camera whose view is 2 units of camera space wide.
 fn orthographic(to_world: DAffine3, size: DVec2) -> Camera {
     let (right, up, forward) = axes(to_world);
     let across = 2.0 * right.length();

@@ -1,8 +1,8 @@
-//! Colours of reflectances, lights and indices of refraction.
+//! Reads colours of reflectances and lights, and indices of refraction.
 //!
-//! Source: Mitsuba's RGB variants. A reflectance spectrum is converted under daylight. An emission
-//! spectrum is converted as it is, so the value 1 at all wavelengths is slightly red. An emission
-//! given as a number or a colour is used unchanged.
+//! Conversion as in Mitsuba's RGB variants: a reflectance spectrum is converted under daylight. An
+//! emission spectrum is converted without a white point, so a spectrum of 1 at all wavelengths is
+//! slightly red. An emission written as a number or a colour is used unchanged.
 
 use super::plugin::{Plugin, Property, Value};
 use super::state::Reader;
@@ -11,8 +11,8 @@ use durer_scene::spectrum::black_body::planck;
 use durer_scene::spectrum::{SpectrumSource, radiance};
 
 impl Reader<'_> {
-    /// Colour of a reflectance, transmittance or absorption; `None` if the property is not a
-    /// colour.
+    /// Returns the colour of a reflectance, transmittance or absorption; `None` if the property is
+    /// not a colour.
     pub fn reflectance(&self, property: &Property) -> Option<Color> {
         match &property.value {
             Value::Number(number) => Some(Vec3::splat(*number as f32)),
@@ -23,7 +23,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Colour of a light; `None` if the property is not a colour.
+    /// Returns the colour of a light; `None` if the property is not a colour.
     pub fn emission(&self, property: &Property) -> Option<Color> {
         match &property.value {
             Value::Number(number) => Some(Vec3::splat(*number as f32)),
@@ -37,7 +37,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Colour of a spectrum plugin.
+    /// Returns the colour of a spectrum plugin.
     fn spectrum_plugin(&self, property: &Property, emits: bool) -> Option<Color> {
         let plugin = self.part(property)?;
         let report = self.report;
@@ -66,7 +66,7 @@ impl Reader<'_> {
         Some(color)
     }
 
-    /// Wavelengths and values of the plugins `regular` and `irregular`.
+    /// Returns the wavelengths and values of the plugins `regular` and `irregular`.
     fn listed(&self, plugin: &Plugin) -> Option<Vec<[f32; 2]>> {
         let report = self.report;
         let list = |name| {
@@ -86,7 +86,7 @@ impl Reader<'_> {
             values.iter().enumerate().map(|(i, value)| Some([at(i)? as f32, *value as f32])).collect();
         let curve = curve.filter(|curve| curve.len() > 1 && curve.is_sorted_by(|a, b| a[0] < b[0]));
         if curve.is_none() {
-            let message = format!("a `{}` spectrum needs increasing wavelengths and as many values", plugin.kind);
+            let message = format!("a `{}` spectrum needs increasing wavelengths and one value for each", plugin.kind);
             report.bad(plugin.at, message);
         }
         curve

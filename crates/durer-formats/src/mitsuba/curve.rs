@@ -1,4 +1,4 @@
-//! Curve files: each line is a point and its radius; an empty line ends a curve.
+//! Reader of curve files: each line is a point and its radius, and an empty line ends a curve.
 
 use crate::files::named_bytes;
 use crate::model::Input;
@@ -10,12 +10,12 @@ use durer_scene::shape::tessellate::tube::{Piece, add_tube, of_spline, places, r
 use glam::DVec4;
 use std::ops::Range;
 
-/// Maximum number of segments of all curves, and the number from which they have fewer sides. Low
-/// in tests, which build them all.
+/// Maximum number of segments of all curves, and the number from which tubes have fewer sides. The
+/// maximum is low in tests, which build all of them.
 const MAX_PIECES: usize = if cfg!(test) { 1 << 12 } else { 1 << 19 };
 const MANY: usize = 1 << 12;
 
-/// Tubes around the curves of a file, which are B-splines or polylines.
+/// Builds tubes around the curves of a file, which are B-splines or polylines.
 pub(super) fn tubes(
     input: &Input,
     report: &SharedReport,
@@ -47,8 +47,8 @@ pub(super) fn tubes(
     Some(data)
 }
 
-/// Ranges of segments of a curve that make one tube. Where joints are rounded, a sharp bend starts
-/// a new tube.
+/// Splits a curve into ranges of segments, each of which becomes one tube. Where joints are
+/// rounded, a sharp bend starts a new tube.
 fn runs(pieces: &[Piece], is_round: bool) -> Vec<Range<usize>> {
     let along = |i: usize| (pieces[i][3] - pieces[i][0]).truncate().normalize_or_zero();
     let ends = (1..pieces.len()).filter(|&i| is_round && along(i - 1).dot(along(i)) < STRAIGHT).chain([pieces.len()]);
@@ -56,13 +56,13 @@ fn runs(pieces: &[Piece], is_round: bool) -> Vec<Range<usize>> {
     ends.map(|end| std::mem::replace(&mut start, end)..end).collect()
 }
 
-/// Cosine of the smallest bend that starts a new tube.
+/// Cosine of the smallest bend angle that starts a new tube.
 const STRAIGHT: f64 = 0.99;
 
-/// Place and message of an error.
+/// Byte range and message of an error.
 type ParseError = (Range<usize>, String);
 
-/// Segments of each curve.
+/// Parses a curve file; returns the segments of each curve.
 fn parse(bytes: &[u8], is_spline: bool) -> Result<Vec<Vec<Piece>>, ParseError> {
     let (mut curves, mut points, mut start) = (Vec::new(), Vec::<DVec4>::new(), 0);
     for line in bytes.split_inclusive(|byte| *byte == b'\n').chain([&b""[..]]) {

@@ -1,4 +1,4 @@
-//! Results of plugins: materials, emission and infinite lights.
+//! Results of reading plugins: materials, emission and infinite lights.
 
 use super::plugin::Key;
 use durer_diag::Span;
@@ -10,25 +10,26 @@ use durer_scene::texture::Sky;
 use glam::DAffine3;
 use std::rc::Rc;
 
-/// Material as declared.
+/// Material read from a Mitsuba BSDF plugin, before it gets an index in the scene.
 pub(super) enum MaterialDef {
     Layers(Box<PrincipledMaterial>),
     Hair(HairMaterial),
-    /// Mix of two materials, with the share of the first and a picture that multiplies it.
+    /// Mix of two materials: the share of the first, and a picture that multiplies the share.
     Mix(Rc<MaterialDef>, Rc<MaterialDef>, f32, Option<FileName>),
     /// One material on the front and another on the back.
     Sides(Rc<MaterialDef>, Rc<MaterialDef>),
-    /// Material of a surface that is not rendered.
+    /// Material of a surface that is not rendered (`null`).
     Nothing,
 }
 
 impl MaterialDef {
-    /// Matte grey. 0.5 is the default material of shapes.
+    /// Returns a matte grey material. Shapes without a material use 0.5.
     pub fn matte(grey: f32) -> MaterialDef {
         MaterialDef::Layers(Box::new(matte(Vec3::splat(grey))))
     }
 
-    /// Number of materials it consists of, counting repeated ones each time; stops at `most + 1`.
+    /// Returns the number of materials it consists of, counting repeated ones each time; stops at
+    /// `most + 1`.
     pub fn count(&self, most: usize) -> usize {
         match self {
             MaterialDef::Mix(a, b, ..) | MaterialDef::Sides(a, b) => {
@@ -39,7 +40,7 @@ impl MaterialDef {
         }
     }
 
-    /// Copy with `change` applied to all layers.
+    /// Returns a copy with `change` applied to each `PrincipledMaterial` in it.
     pub fn changed(&self, change: &impl Fn(&mut PrincipledMaterial)) -> MaterialDef {
         match self {
             MaterialDef::Layers(layers) => {
@@ -59,12 +60,12 @@ impl MaterialDef {
     }
 }
 
-/// Diffuse material without a specular boundary.
+/// Returns a diffuse material without a specular boundary.
 pub(super) fn matte(base_color: Color) -> PrincipledMaterial {
     PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
 }
 
-/// Emission of a shape: radiance, and a picture that multiplies it.
+/// Emission of a shape, from its `area` emitter: radiance, and a picture that multiplies it.
 pub(super) struct AreaEmitter {
     pub color: Color,
     pub picture: Option<Picture>,
@@ -74,7 +75,8 @@ pub(super) struct AreaEmitter {
     pub key: Key,
 }
 
-/// Infinite light. A Mitsuba scene has at most one.
+/// Light from infinitely far away: constant, an environment map, or a sky. A Mitsuba scene has at
+/// most one.
 pub(super) enum InfiniteLight {
     Even(Color, Span),
     Picture {
@@ -83,7 +85,7 @@ pub(super) enum InfiniteLight {
         scale: f32,
         to_world: DAffine3,
     },
-    /// Clear sky with y up, and its transform to world space.
+    /// Clear sky with y up, and the transform from its axes to world space.
     Sky {
         sky: Sky,
         at: Span,
@@ -93,6 +95,7 @@ pub(super) enum InfiniteLight {
 }
 
 impl InfiniteLight {
+    /// Returns the span of the light.
     pub fn at(&self) -> Span {
         let (InfiniteLight::Even(_, at) | InfiniteLight::Picture { at, .. } | InfiniteLight::Sky { at, .. }) = self;
         *at

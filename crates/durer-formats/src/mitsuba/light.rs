@@ -1,4 +1,4 @@
-//! Point, distant, infinite and area lights. Values are radiance.
+//! Converts point, distant, infinite and area lights. Values are radiance.
 //!
 //! Source: *Mitsuba 3 documentation*, "Emitters".
 
@@ -20,21 +20,21 @@ use glam::{DAffine3, DVec2, DVec3};
 use std::f32::consts::PI;
 use std::rc::Rc;
 
-/// Number of rows of the picture of a clear sky.
+/// Height in pixels of the picture of a clear sky.
 const SKY_ROWS: u32 = 512;
 
-/// Number of steps of the vertical and horizontal angles of projected pictures.
+/// Number of steps of the vertical and the horizontal angle in the profile of a projected picture.
 const STEPS: [u32; 2] = [360, 720];
 
-/// Minimum number of rows of a picture that is used without resampling. Mitsuba puts the first and
-/// the last row at the poles; from this height on the difference is negligible.
+/// Minimum height in pixels of a picture that is used without resampling. Mitsuba places the first
+/// and the last row at the poles; from this height on, the difference is negligible.
 const FINE_ROWS: u32 = 256;
 
-/// Maximum number of rows of a resampled environment.
+/// Maximum height in pixels of a resampled environment map.
 const MAX_ROWS: u32 = 2048;
 
 impl Reader<'_> {
-    /// Colour of a light.
+    /// Returns the colour of a light.
     fn strength(&self, plugin: &Plugin, name: &'static str) -> Color {
         let Some(property) = plugin.get(name) else { return Vec3::ONE };
         let color = self.emission(property).unwrap_or_else(|| self.color(plugin, name, Vec3::ONE));
@@ -50,7 +50,8 @@ impl Reader<'_> {
         let to_world = plugin.map(report, "to_world");
         let place = |name| plugin.vector(report, name).unwrap_or(to_world.translation).as_vec3();
         let along = |local: DVec3| to_world.transform_vector3(local).normalize_or(DVec3::Z).as_vec3();
-        // A light's colour here is the radiance of a white diffuse surface: illuminance over pi.
+        // A light's colour in Dürer is the radiance of a white diffuse surface that it illuminates:
+        // illuminance over pi.
         let value: Light = match plugin.kind.as_str() {
             "point" => {
                 let color = self.strength(plugin, "intensity") / PI;
@@ -101,8 +102,8 @@ impl Reader<'_> {
         self.scene.lights.get_or_insert_default().push(Spanned { value, span: plugin.at });
     }
 
-    /// Spotlight. With falloff or a picture, it is added as a measured light with that directional
-    /// distribution, and `None` is returned.
+    /// Reads a spotlight. If it has a falloff or a picture, it is added as a measured light with
+    /// that directional distribution, and `None` is returned.
     fn spot(&mut self, plugin: &Plugin, to_world: DAffine3) -> Option<SpotLight> {
         let report = self.report;
         let angle = plugin.positive(report, "cutoff_angle").unwrap_or(20.0);
@@ -148,8 +149,8 @@ impl Reader<'_> {
         None
     }
 
-    /// Adds a projector as a measured light with the distribution of its picture on the plane at
-    /// distance 1.
+    /// Adds a projector as a measured light, whose distribution is that of its picture on the plane
+    /// at distance 1.
     fn projector(&mut self, plugin: &Plugin, to_world: DAffine3) {
         let report = self.report;
         let image = self.named_part(plugin, "irradiance").and_then(|texture| self.thrown(&texture));
@@ -168,13 +169,13 @@ impl Reader<'_> {
             if dir.z <= 0.0 || place.abs().max_element() > 1.0 {
                 return Vec3::ZERO;
             }
-            // As seen by a camera: +x is to the left, +y up.
+            // As seen by a camera: +x is left, and +y is up.
             between(&image, 0.5 - 0.5 * place) / (dir.z * dir.z * dir.z)
         });
         lights.add(&mut self.scene, self.input.name, (to_world, axes), Vec3::splat(PI * scale), plugin.at);
     }
 
-    /// Picture that a light projects.
+    /// Returns the picture that a light projects.
     fn thrown(&self, texture: &Plugin) -> Option<Image> {
         if texture.kind != "bitmap" {
             self.report
@@ -189,6 +190,7 @@ impl Reader<'_> {
         self.pictures().decoded(&self.loader.path(&name), texture.place("filename"), decode)
     }
 
+    /// Sets the infinite light; reports an error if there is a second one.
     pub(super) fn far(&mut self, light: InfiniteLight) {
         if let Some(first) = &self.infinite {
             let error = Diagnostic::error("a scene may have only one infinite light").code("bad-value");
@@ -197,7 +199,7 @@ impl Reader<'_> {
         self.infinite = Some(light);
     }
 
-    /// Emission of a shape.
+    /// Reads the area light of a shape.
     pub fn area_light(&mut self, plugin: &Plugin) -> Option<AreaEmitter> {
         if plugin.kind != "area" {
             self.report
@@ -223,7 +225,7 @@ impl Reader<'_> {
         Some(AreaEmitter { color, picture, both: false, at: plugin.at, key: plugin.key() })
     }
 
-    /// Sets the scene's environment from the infinite light.
+    /// Converts the infinite light to the scene's environment.
     pub fn surround(&mut self) {
         let background = &mut self.scene.background;
         (background.color, background.ambient_light) = (Vec3::ZERO, Vec3::ZERO);
@@ -248,7 +250,7 @@ impl Reader<'_> {
                 let is_fine = picture.height >= FINE_ROWS;
                 let rows = picture.height.clamp(FINE_ROWS, MAX_ROWS);
                 let y = to_world.matrix3.y_axis;
-                // The middle of Mitsuba's pictures is +z; that of ours is -z.
+                // The middle of an environment map is +z in Mitsuba and -z in Dürer.
                 if is_fine && y.x == 0.0 && y.z == 0.0 && y.y > 0.0 && to_world.matrix3.determinant() > 0.0 {
                     let z = to_world.matrix3.z_axis.as_vec3();
                     let degrees = 180.0 - fp::atan2(z.x, z.z).to_degrees();

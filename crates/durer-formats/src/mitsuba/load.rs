@@ -1,7 +1,7 @@
-//! Conversion of XML to plugins: variables, included files and values.
+//! Converts XML to plugins; handles variables, included files and values.
 //!
 //! Source: *Mitsuba 3 documentation*, section "Scene XML file format", 2022 to 2025. Names of
-//! Mitsuba 0.6 (`toWorld`) are read as current names (`to_world`).
+//! Mitsuba 0.6 (`toWorld`) are converted to current names (`to_world`).
 
 use super::plugin::{Plugin, Property, Value};
 use crate::growth::Growth;
@@ -18,14 +18,14 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Limits: depth of includes, number of files, number of elements.
+/// Limits on the depth of includes, the number of files and the number of elements.
 const DEEPEST: usize = 15;
 const MAX_FILES: usize = 4096;
 const MAX_ELEMENTS: usize = 1 << 22;
 /// Maximum size in bytes of a value after variable substitution.
 const MAX_VALUE: usize = 1 << 20;
 
-/// Tags of plugins; `camera` is from Mitsuba 0.6.
+/// Element names of plugins; `camera` is from Mitsuba 0.6.
 const CLASSES: [&str; 14] = [
     "scene",
     "sensor",
@@ -42,7 +42,7 @@ const CLASSES: [&str; 14] = [
     "volume",
     "camera",
 ];
-/// Other tags.
+/// Names of other elements.
 const OTHERS: [&str; 15] = [
     "float",
     "integer",
@@ -61,16 +61,16 @@ const OTHERS: [&str; 15] = [
     "path",
 ];
 
-/// State shared by a file and those that it includes.
+/// Loader that converts the XML of a Mitsuba scene, and of the files that it includes, to plugins.
 pub(super) struct Loader<'a> {
     input: &'a Input<'a>,
     report: &'a SharedReport,
     variables: BTreeMap<String, String>,
     /// Plugins by id.
     pub plugins: BTreeMap<String, Rc<Plugin>>,
-    /// More folders in which files are searched.
+    /// Additional folders in which files are searched.
     pub folders: Vec<String>,
-    /// Names of the files being read.
+    /// Names of the files being read, outermost first.
     open: Vec<String>,
     files: usize,
     elements: usize,
@@ -79,7 +79,7 @@ pub(super) struct Loader<'a> {
     pub(super) is_old: bool,
 }
 
-/// Signals that reading cannot continue; the error has been reported.
+/// Error type of the loader: loading cannot continue, and the error has already been reported.
 pub(super) struct ErrorReported;
 
 /// Converts a name to snake case: `toWorld` to `to_world`, `intIOR` to `int_ior`.
@@ -96,7 +96,7 @@ fn today(name: &str) -> String {
     words
 }
 
-/// Numbers separated by whitespace or commas.
+/// Parses numbers separated by whitespace or commas.
 pub(super) fn numbers(text: &str) -> Option<Vec<f64>> {
     let words = text.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty());
     words.map(|word| word.parse::<f64>().ok().filter(|x| (*x as f32).is_finite())).collect()
@@ -118,7 +118,8 @@ impl<'a> Loader<'a> {
         }
     }
 
-    /// Reads the scene of the file. Another root element becomes the only child of a scene.
+    /// Loads the scene of the main file. A root element other than `<scene>` becomes the only child
+    /// of a scene.
     pub fn scene(&mut self) -> Result<Plugin, ErrorReported> {
         let at = Span { file: self.input.file, start: 0, end: 0 };
         let mut scene = Plugin::new("scene", String::new(), at);
@@ -148,7 +149,7 @@ impl<'a> Loader<'a> {
         Ok(())
     }
 
-    /// Next element, or `None` at the end of the open element.
+    /// Returns the next child element, or `None` at the end of the open element.
     fn next<'x>(&mut self, xml: &mut Xml<'x>) -> Result<Option<Tag<'x>>, ErrorReported> {
         self.elements += 1;
         match xml.next() {
@@ -167,7 +168,7 @@ impl<'a> Loader<'a> {
         }
     }
 
-    /// Skips the content of an element; reports any child.
+    /// Skips the content of an element; reports child elements.
     fn leaf(&mut self, xml: &mut Xml, of: &str) -> Result<(), ErrorReported> {
         while let Some(tag) = self.next(xml)? {
             self.report.bad(tag.at, format!("a `{of}` must have no child elements"));
@@ -219,7 +220,7 @@ impl<'a> Loader<'a> {
                 }
             }
             class if CLASSES.contains(&class) => return self.plugin(xml, tag, parent),
-            // A spectrum is a number, a list or a plugin.
+            // A spectrum is a number, a list of numbers or a plugin.
             "spectrum" if tag.get("type").is_some() => return self.plugin(xml, tag, parent),
             kind if OTHERS.contains(&kind) => {
                 if let (Some(name), Some((value, at))) = (self.name(tag), self.value(tag)) {
@@ -275,7 +276,7 @@ impl<'a> Loader<'a> {
         }
     }
 
-    /// Adds a property; reports a second one of the same name.
+    /// Adds a property; reports a second one with the same name.
     fn give(&self, parent: &mut Plugin, name: String, value: Value, at: Span) {
         if let Some(other) = parent.properties.iter().find(|other| !name.is_empty() && other.name == name) {
             let error = Diagnostic::error(format!("`{name}` is given twice")).code("bad-value").at(at);
@@ -288,7 +289,7 @@ impl<'a> Loader<'a> {
         let (Some((name, _)), Some((value, _))) = (self.attribute(tag, "name"), self.attribute(tag, "value")) else {
             return;
         };
-        // The first value counts: the including file overrides the included file.
+        // The first value counts, so that an including file can override the included file.
         self.variables.entry(name).or_insert(value);
     }
 
@@ -298,7 +299,7 @@ impl<'a> Loader<'a> {
         let refused = if self.open.contains(&name) {
             Some(format!("`{name}` includes itself"))
         } else if self.open.len() > DEEPEST {
-            Some(format!("includes are nested more than {DEEPEST} deep"))
+            Some(format!("includes are nested more than {DEEPEST} levels deep"))
         } else if self.files > MAX_FILES {
             Some(format!("too many files: more than {MAX_FILES} are included"))
         } else {
@@ -330,14 +331,14 @@ impl<'a> Loader<'a> {
         self.report.push(Diagnostic { help, ..Diagnostic::error(error.to_string()).code("missing-file").at(at) });
     }
 
-    /// Path of a file: in the scene's folder, or in one given by `<path>`.
+    /// Returns the path of a file: in the scene's folder, or in a folder added by `<path>`.
     pub fn path(&self, name: &str) -> String {
         let source = self.input.source;
         let others = self.folders.iter().map(|folder| format!("{folder}/{name}"));
         others.into_iter().find(|path| !source.contains(name) && source.contains(path)).unwrap_or(name.into())
     }
 
-    /// Required attribute, with variables replaced.
+    /// Returns a required attribute with its variables replaced.
     pub fn attribute(&self, tag: &Tag, name: &str) -> Option<(String, Span)> {
         match tag.get(name) {
             Some(attribute) => Some((self.substituted(attribute)?, attribute.at)),
@@ -352,8 +353,8 @@ impl<'a> Loader<'a> {
         self.attribute(tag, "name").map(|(name, _)| today(&name))
     }
 
-    /// Value with its variables replaced; the longest matching name counts. Reports an undefined
-    /// variable and returns `None`.
+    /// Returns a value with its variables replaced; the longest matching name counts. Reports an
+    /// undefined variable and returns `None`.
     pub fn substituted(&self, attribute: &Attribute) -> Option<String> {
         let mut made = String::new();
         let mut rest: &str = &attribute.value;
@@ -387,7 +388,7 @@ impl<'a> Loader<'a> {
         Some(made + rest)
     }
 
-    /// `N` numbers of an attribute.
+    /// Parses the `N` numbers of an attribute.
     pub fn numbers<const N: usize>(&self, (text, at): &(String, Span)) -> Option<[f64; N]> {
         let found = numbers(text).and_then(|all| <[f64; N]>::try_from(all).ok());
         if found.is_none() {
@@ -397,7 +398,7 @@ impl<'a> Loader<'a> {
         found
     }
 
-    /// Coordinates by `x`, `y` and `z`, or all three by `value`.
+    /// Reads three coordinates: `x`, `y` and `z`, or all three as `value`.
     pub fn triple(&self, tag: &Tag, usual: f64) -> Option<DVec3> {
         if let Some(value) = tag.get("value") {
             return self.numbers(&(self.substituted(value)?, value.at)).map(DVec3::from_array);
@@ -422,7 +423,7 @@ impl<'a> Loader<'a> {
             let lines: Vec<&str> = text.lines().map(|line| line.split('#').next().unwrap_or("")).collect();
             let all = numbers(&lines.join(" ")).filter(|all| all.len() > 1 && all.len() % 2 == 0);
             let Some(all) = all else {
-                self.report.bad(at, format!("`{name}` must hold pairs of wavelength and value"));
+                self.report.bad(at, format!("`{name}` must contain pairs of wavelength and value"));
                 return None;
             };
             return self.curve(all, at).map(|curve| (curve, at));
@@ -506,11 +507,12 @@ impl<'a> Loader<'a> {
         self.report.bad_with(at, message, help);
     }
 
+    /// Warns that something in an element has no exact counterpart.
     pub fn warn(&self, at: Span, message: &str) {
         self.report.once(at, message);
     }
 
-    /// Next element of a transform; consumes its end too.
+    /// Returns the next element of a transform, and consumes its end tag too.
     pub fn next_leaf<'x>(&mut self, xml: &mut Xml<'x>) -> Result<Option<Tag<'x>>, ErrorReported> {
         let Some(tag) = self.next(xml)? else { return Ok(None) };
         self.leaf(xml, tag.name)?;

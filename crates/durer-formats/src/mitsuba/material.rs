@@ -1,6 +1,6 @@
-//! Materials, converted to OpenPBR's parameters.
+//! Converts materials to OpenPBR parameters.
 //!
-//! Source: *Mitsuba 3 documentation*, "BSDFs". GGX's alpha is the square of our roughness.
+//! Source: *Mitsuba 3 documentation*, "BSDFs". GGX's alpha is the square of Dürer's roughness.
 
 use super::defs::{AreaEmitter, MaterialDef, matte};
 use super::metals;
@@ -48,11 +48,11 @@ const KNOWN: [&str; 18] = [
 /// Index of refraction of air.
 const AIR: f32 = 1.000277;
 
-/// Maximum number of materials in one material, counting repeated ones each time.
+/// Maximum number of materials that one material may consist of, counting repeated ones each time.
 const MAX_PARTS: usize = 4096;
 
 impl Reader<'_> {
-    /// Material of a plugin.
+    /// Converts the material of a plugin. Each plugin is converted only once.
     pub fn material(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<MaterialDef> {
         let key = (plugin.key(), self.inside_out);
         if let Some(known) = self.materials.get(&key) {
@@ -70,11 +70,11 @@ impl Reader<'_> {
         made
     }
 
-    /// Returns true if a material has few enough parts to be copied.
+    /// Returns true if a material has few enough parts to be copied; reports an error if not.
     fn has_room_for(&self, made: &MaterialDef, at: Span) -> bool {
         let count = made.count(MAX_PARTS);
         if count > MAX_PARTS {
-            self.report.bad(at, format!("a material of more than {MAX_PARTS} others is too large"));
+            self.report.bad(at, format!("this material is too large: it consists of more than {MAX_PARTS} materials"));
         }
         count <= MAX_PARTS && self.loader.growth.has_bytes(count, size_of::<PrincipledMaterial>(), self.report, at)
     }
@@ -99,7 +99,7 @@ impl Reader<'_> {
                 return match parts.as_slice() {
                     [(_, front), (_, back)] => {
                         let sides = [front, back].map(|side| both(&self.material(side, depth + 1)));
-                        // The front of an inverted sphere is the back of ours.
+                        // The front of an inverted sphere is the back in Dürer.
                         let [front, back] = sides;
                         Rc::new(if self.inside_out {
                             MaterialDef::Sides(back, front)
@@ -135,12 +135,12 @@ impl Reader<'_> {
                 let message = format!("the material `{other}` has no counterpart: diffuse grey is used");
                 let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(plugin.at);
                 self.report.push(Diagnostic { help: suggest(other, KNOWN), ..warning });
-                // Do not report its properties: they were not read.
+                // Do not report its properties as unused: they were not read.
                 plugin.properties.iter().for_each(|property| property.used.set(true));
                 return Rc::new(MaterialDef::matte(0.5));
             }
         }
-        // Other materials than glass are black from behind unless they are `twosided`.
+        // Materials other than glass are black from behind unless they are `twosided`.
         let is_open = m.transmission_weight > 0.0 || m.walls == Walls::Thin || m.transmission_weight_texture.is_some();
         if !is_open && !self.inside_out {
             m.backs = Backs::Black;
@@ -148,7 +148,7 @@ impl Reader<'_> {
         Rc::new(MaterialDef::Layers(Box::new(m)))
     }
 
-    /// Reads hair given by absorption or by melanin.
+    /// Reads a hair material, defined by absorption or by melanin.
     fn hair(&self, plugin: &Plugin) -> MaterialDef {
         let usual = HairMaterial::default();
         let number = |name| plugin.number(self.report, name);
@@ -168,7 +168,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Material that another material wraps.
+    /// Returns the material that another material wraps.
     fn inner(&mut self, plugin: &Plugin, depth: u32) -> Rc<MaterialDef> {
         match self.parts(plugin, Some("bsdf")).first() {
             Some((_, part)) => self.material(part, depth + 1),
@@ -212,7 +212,7 @@ impl Reader<'_> {
         Rc::new(inner.changed(&|m| (m.normal_texture, m.normal_bending) = (Some(name.clone()), Switch::Off)))
     }
 
-    /// Index of refraction: a number or the name of a material.
+    /// Reads an index of refraction: a number or the name of a material.
     fn index(&self, plugin: &Plugin, name: &'static str, usual: f32) -> f32 {
         let Some(property) = plugin.get(name) else { return usual };
         if let Value::Text(text) = &property.value {
@@ -229,12 +229,12 @@ impl Reader<'_> {
         plugin.positive(self.report, name).unwrap_or(usual)
     }
 
-    /// Interior index over exterior index.
+    /// Returns the interior index divided by the exterior index.
     fn relative_index(&self, plugin: &Plugin, usual: f32) -> f32 {
         self.index(plugin, "int_ior", usual) / self.index(plugin, "ext_ior", AIR)
     }
 
-    /// Sets roughness, anisotropy and rotation from GGX's alpha along both directions.
+    /// Sets roughness, anisotropy and rotation from GGX's alpha along u and v.
     fn roughness(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
         m.energy_compensation = Switch::Off;
         if !plugin.kind.starts_with("rough") {
@@ -280,7 +280,7 @@ impl Reader<'_> {
         let index = self.relative_index(plugin, 1.5046);
         let is_thin = plugin.kind == "thindielectric";
         m.specular_ior = if self.inside_out && !is_thin { 1.0 / index } else { index };
-        // `ext_ior` replaces the index of any surrounding medium.
+        // `ext_ior` replaces the index of refraction of any surrounding medium.
         m.surroundings = Surroundings::Ignored;
         self.tint(plugin, m);
         (m.transmission_color, m.transmission_color_texture) = self.colored(plugin, "specular_transmittance", 1.0);
@@ -309,7 +309,7 @@ impl Reader<'_> {
                 .map(|(name, usual)| SpectrumSource::Rgb(self.color(plugin, name, Vec3::from_array(usual))));
             conductor_colors(&eta, &k, self.index(plugin, "ext_eta", 1.0))
         };
-        // The tint applies at all angles, so it is part of the reflectance at 82 degrees too.
+        // The tint applies at all angles, so the reflectance at 82 degrees includes it too.
         let over = |tint: Vec3| f82 * tint / schlick_82(f0 * tint).max(Vec3::splat(1e-6));
         let (tint, picture) = self.colored(plugin, "specular_reflectance", 1.0);
         let at = plugin.place("specular_reflectance");
@@ -336,13 +336,13 @@ impl Reader<'_> {
             let beckmann = plugin.text(self.report, "distribution").is_none_or(|distribution| distribution != "ggx");
             let boundary = Boundary::new(index, m.specular_roughness, beckmann);
             m.base_color = match m.base_color_texture.is_some() {
-                // If the colour is a picture, use middle grey.
+                // If the colour is a picture, assume middle grey.
                 true => m.base_color * boundary.below(nonlinear.then_some(0.5)),
                 false => m.base_color.map(|color| boundary.base(color, nonlinear)),
             };
         }
         if nonlinear {
-            // Diffuse light between base and boundary becomes a coat's darkening.
+            // Light reflected between base and boundary corresponds to a coat's darkening.
             (m.coat_weight, m.coat_ior, m.coat_roughness) = (1.0, index, m.specular_roughness);
             m.coat_roughness_texture = m.specular_roughness_texture.take();
             m.specular_weight = 0.0;
@@ -360,8 +360,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Index in the scene of a material with emission and an interior medium; `None` for a material
-    /// that is not rendered.
+    /// Returns the scene index of a material with emission and an interior medium; `None` for a
+    /// material that is not rendered.
     pub fn number(
         &mut self,
         bsdf: Option<&Rc<Plugin>>,
@@ -375,7 +375,7 @@ impl Reader<'_> {
         if let Some(known) = self.numbers.get(&key) {
             return *known;
         }
-        // An emitter without a material does not scatter.
+        // An emitter without a material does not scatter light.
         let grey = if emitter.is_some() { 0.0 } else { 0.5 };
         let mut made = bsdf.map_or_else(|| Rc::new(MaterialDef::matte(grey)), |bsdf| self.material(bsdf, 0));
         if let Some((medium, _)) = inside {
@@ -435,7 +435,7 @@ impl Reader<'_> {
     }
 }
 
-/// Material filled with a medium.
+/// Returns the material with its interior filled by a medium.
 fn filled(made: &MaterialDef, medium: &Medium) -> MaterialDef {
     match made {
         MaterialDef::Nothing => {

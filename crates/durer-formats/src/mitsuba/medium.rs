@@ -1,4 +1,4 @@
-//! Participating media: homogeneous, or with the density of a volume.
+//! Participating media: homogeneous, or with a volume as density.
 
 use super::plugin::{Key, Plugin};
 use super::state::Reader;
@@ -13,7 +13,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 impl Reader<'_> {
-    /// Medium with its key; `None` for a medium without a counterpart.
+    /// Reads a medium; returns it with the key of its plugin, or `None` if it has no counterpart.
     pub fn medium(&mut self, plugin: &Rc<Plugin>) -> Option<(Medium, Key)> {
         let report = self.report;
         if !matches!(plugin.kind.as_str(), "homogeneous" | "heterogeneous") {
@@ -28,8 +28,8 @@ impl Reader<'_> {
             // Parameters from Mitsuba 0.6.
             true => (color("sigma_a", Vec3::ZERO), color("sigma_s", Vec3::ZERO)),
             false => {
-                // If the extinction is a volume, it becomes the density of a medium with extinction
-                // 1.
+                // If the extinction is a volume, it becomes the density of a medium with an
+                // extinction of 1.
                 let extinction = if density.is_some() { Vec3::ONE } else { color("sigma_t", Vec3::ONE) };
                 let albedo = color("albedo", Vec3::splat(0.75)).min(Vec3::ONE);
                 (extinction * (Vec3::ONE - albedo), extinction * albedo)
@@ -52,7 +52,7 @@ impl Reader<'_> {
         Some((medium, plugin.key()))
     }
 
-    /// Colour that may be a volume; the mean of a grid.
+    /// Returns a colour that may be a volume; for a grid, its mean.
     fn volume_color(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Color {
         let volume = self.named_part(plugin, name).filter(|volume| volume.kind.ends_with("volume"));
         let Some(volume) = volume else {
@@ -62,7 +62,7 @@ impl Reader<'_> {
             "constvolume" => self.color(&volume, "value", usual),
             _ => {
                 let at = volume.at;
-                self.report.once(at, format!("a `{name}` that varies has no counterpart: its mean is used"));
+                self.report.once(at, format!("a spatially varying `{name}` has no counterpart: its mean is used"));
                 let bytes = volume.text(self.report, "filename");
                 let bytes = bytes.and_then(|path| named_bytes(self.input, self.report, "the volume", &path, at));
                 let mean = bytes.and_then(|(bytes, file)| {
@@ -76,7 +76,7 @@ impl Reader<'_> {
         color
     }
 
-    /// Runs a reader that reports to diagnostics, and passes these on.
+    /// Runs a reader that pushes to a `Diagnostics`, and adds its diagnostics to the report.
     fn collect_diagnostics<T>(&self, read: impl FnOnce(&mut Diagnostics) -> T) -> T {
         let mut found = Diagnostics::default();
         let made = read(&mut found);
@@ -84,7 +84,7 @@ impl Reader<'_> {
         made
     }
 
-    /// Density of a medium whose extinction is a `gridvolume`.
+    /// Reads the density of a medium whose extinction is a `gridvolume`.
     fn density(&mut self, plugin: &Plugin) -> Option<Density> {
         let volume = self.named_part(plugin, "sigma_t").filter(|volume| volume.kind == "gridvolume")?;
         let report = self.report;

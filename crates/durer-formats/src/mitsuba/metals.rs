@@ -1,6 +1,6 @@
-//! Indices of refraction of metals and of transparent materials, by name.
+//! Named indices of refraction of metals and of transparent materials.
 
-/// Complex indices of refraction of metals: real and imaginary part for red, green and blue.
+/// Complex indices of refraction of metals: real and imaginary parts for red, green and blue.
 ///
 /// Source: the spectra of Palik, *Handbook of Optical Constants of Solids*, 1985, and of the SOPRA
 /// and Luxpop collections, as Mitsuba 3.9 converts them to RGB.
@@ -56,22 +56,22 @@ const CLEAR: [(&str, f32); 23] = [
     ("amber", 1.55), ("pet", 1.575), ("diamond", 2.419),
 ];
 
-/// Real and imaginary index of a metal.
+/// Returns the real and imaginary index of a metal.
 pub(super) fn metal(name: &str) -> Option<[[f32; 3]; 2]> {
     METALS.iter().find(|row| row.0.eq_ignore_ascii_case(name)).map(|row| [row.1, row.2])
 }
 
-/// Names of metals, for suggestions.
+/// Returns the names of metals, for suggestions.
 pub(super) fn metal_names() -> impl Iterator<Item = &'static str> {
     METALS.iter().map(|row| row.0).chain(["none"])
 }
 
-/// Index of a transparent material.
+/// Returns the index of a transparent material.
 pub(super) fn clear(name: &str) -> Option<f32> {
     CLEAR.iter().find(|row| row.0.eq_ignore_ascii_case(name)).map(|row| row.1)
 }
 
-/// Names of transparent materials, for suggestions.
+/// Returns the names of transparent materials, for suggestions.
 pub(super) fn clear_names() -> impl Iterator<Item = &'static str> {
     CLEAR.iter().map(|row| row.0)
 }

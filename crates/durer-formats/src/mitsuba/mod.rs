@@ -1,8 +1,8 @@
-//! Scenes of Mitsuba 3 in XML, and Mitsuba 0.6 scenes that use the same plugins.
+//! Reader of Mitsuba 3 scenes in XML, and of Mitsuba 0.6 scenes that use the same plugins.
 //!
-//! Source: *Mitsuba 3 documentation*, "Plugin reference", 2022 to 2025. A scene holds plugins
-//! (shapes, materials, lights), which hold properties and other plugins. A pixel of value 1 shows
-//! radiance 1.
+//! Source: *Mitsuba 3 documentation*, "Plugin reference", 2022 to 2025. A scene consists of plugins
+//! (shapes, materials, lights), which contain properties and other plugins. A pixel value of 1 is a
+//! radiance of 1.
 
 mod camera;
 mod color;

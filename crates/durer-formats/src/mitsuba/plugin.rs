@@ -1,4 +1,4 @@
-//! Plugin: a type, and properties by name.
+//! Mitsuba plugins: a type and named properties.
 
 use crate::shared_report::{SharedReport, suggest};
 use durer_diag::Span;
@@ -7,32 +7,32 @@ use glam::{DAffine3, DVec3};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
-/// Place of a plugin in the files: file index and byte offset.
+/// Identifies a plugin by its position: file index and byte offset.
 pub(super) type Key = (u32, u32);
 
-/// Element with a `type`, such as `<shape type="sphere">`.
+/// Mitsuba plugin: an element with a `type`, such as `<shape type="sphere">`, and its properties.
 pub(super) struct Plugin {
-    /// Tag of the element.
+    /// Name of the element, such as `shape`.
     pub class: String,
     /// Value of `type`; empty for the scene.
     pub kind: String,
-    /// Place of the type, or of the tag.
+    /// Span of the type, or of the tag.
     pub at: Span,
     pub properties: Vec<Property>,
-    /// Names of the known properties.
+    /// Property names that the reader has asked for; all others are reported as unknown.
     queried: RefCell<Vec<&'static str>>,
 }
 
-/// Property. Nested plugins may have no name.
+/// Property of a Mitsuba plugin: a name and a value. Nested plugins may have no name.
 pub(super) struct Property {
     pub name: String,
     pub value: Value,
-    /// Place of the value.
+    /// Span of the value.
     pub at: Span,
     pub used: Cell<bool>,
 }
 
-/// Value of a property.
+/// Value of a Mitsuba property: a number, text, vector, spectrum, transform or plugin.
 #[derive(Clone)]
 pub(super) enum Value {
     Number(f64),
@@ -40,13 +40,13 @@ pub(super) enum Value {
     Text(String),
     Vector(DVec3),
     Rgb(Vec3),
-    /// Constant spectrum.
+    /// Spectrum with the same value at all wavelengths.
     Even(f32),
-    /// Wavelengths in nanometres, ascending, with values.
+    /// Wavelengths in nanometres, in ascending order, with values.
     Curve(Vec<[f32; 2]>),
     Map(DAffine3),
     Plugin(Rc<Plugin>),
-    /// `id` of a plugin.
+    /// Reference to a plugin by its `id`.
     Ref(String),
 }
 
@@ -71,29 +71,29 @@ impl Plugin {
         Plugin { class: class.into(), kind, at, properties: Vec::new(), queried }
     }
 
-    /// Key that is unique to the plugin.
+    /// Returns a key that is unique to the plugin.
     pub fn key(&self) -> Key {
         (self.at.file, self.at.start)
     }
 
-    /// Marks properties as known, so that they are not reported.
+    /// Marks properties as known, so that they are not reported as unknown.
     pub fn known(&self, names: &[&'static str]) {
         self.queried.borrow_mut().extend(names);
     }
 
-    /// Property by name; marks it as used.
+    /// Returns a property by name, and marks it as used.
     pub fn get(&self, name: &'static str) -> Option<&Property> {
         self.known(&[name]);
         let found = self.properties.iter().find(|property| property.name == name);
         found.inspect(|property| property.used.set(true))
     }
 
-    /// Place of a property's value, or of the plugin without such a property.
+    /// Returns the span of a property's value, or of the plugin if it has no such property.
     pub fn place(&self, name: &'static str) -> Span {
         self.get(name).map_or(self.at, |property| property.at)
     }
 
-    /// Property of one type; reports an error for another type.
+    /// Returns the value of a property if it has the expected type; reports an error if not.
     fn typed<T>(
         &self,
         report: &SharedReport,
@@ -109,6 +109,7 @@ impl Plugin {
         value
     }
 
+    /// Returns a number; reports an error for a value of another type.
     pub fn number(&self, report: &SharedReport, name: &'static str) -> Option<f32> {
         self.typed(report, name, "a number", |value| match value {
             Value::Number(number) => Some(*number as f32),
@@ -117,7 +118,7 @@ impl Plugin {
         })
     }
 
-    /// Number that must be more than 0.
+    /// Returns a number, which must be more than 0.
     pub fn positive(&self, report: &SharedReport, name: &'static str) -> Option<f32> {
         let number = self.number(report, name)?;
         if number <= 0.0 {
@@ -126,6 +127,7 @@ impl Plugin {
         Some(number).filter(|number| *number > 0.0)
     }
 
+    /// Returns a boolean; reports an error for a value of another type.
     pub fn truth(&self, report: &SharedReport, name: &'static str) -> Option<bool> {
         self.typed(report, name, "`true` or `false`", |value| match value {
             Value::Truth(truth) => Some(*truth),
@@ -133,6 +135,7 @@ impl Plugin {
         })
     }
 
+    /// Returns a string; reports an error for a value of another type.
     pub fn text(&self, report: &SharedReport, name: &'static str) -> Option<String> {
         self.typed(report, name, "a string", |value| match value {
             Value::Text(text) => Some(text.clone()),
@@ -140,6 +143,7 @@ impl Plugin {
         })
     }
 
+    /// Returns a vector or point; reports an error for a value of another type.
     pub fn vector(&self, report: &SharedReport, name: &'static str) -> Option<DVec3> {
         self.typed(report, name, "a vector or point", |value| match value {
             Value::Vector(vector) => Some(*vector),
@@ -147,7 +151,7 @@ impl Plugin {
         })
     }
 
-    /// Transform; the identity if it is not given.
+    /// Returns a transform; the identity if the property is missing.
     pub fn map(&self, report: &SharedReport, name: &'static str) -> DAffine3 {
         let map = self.typed(report, name, "a transform", |value| match value {
             Value::Map(map) => Some(*map),
@@ -156,7 +160,7 @@ impl Plugin {
         map.unwrap_or(DAffine3::IDENTITY)
     }
 
-    /// Warns of properties that have no counterpart; `instead` names the substitute.
+    /// Warns about properties that have no counterpart in Dürer; `instead` names the substitute.
     pub fn left_out(&self, report: &SharedReport, names: &[&'static str], instead: &str) {
         for name in names {
             if let Some(property) = self.get(name) {
@@ -165,7 +169,7 @@ impl Plugin {
         }
     }
 
-    /// Warns of unknown properties.
+    /// Warns about properties that are unknown or not used.
     pub fn finish(&self, report: &SharedReport) {
         let queried = self.queried.borrow();
         for property in &self.properties {

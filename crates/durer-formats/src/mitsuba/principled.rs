@@ -1,4 +1,4 @@
-//! Disney's material, Mitsuba's `principled`.
+//! Converts Disney's material, which is Mitsuba's `principled`.
 //!
 //! Source: Burley, *Physically-Based Shading at Disney*, SIGGRAPH 2012, and *Extending the Disney
 //! BRDF to a BSDF*, 2015, with the parameters of *Mitsuba 3 documentation*.
@@ -12,7 +12,7 @@ use durer_scene::material::principled::{Surroundings, Switch, Walls};
 use durer_scene::math::{LUMINANCE, Vec3};
 
 impl Reader<'_> {
-    /// Layers of `principled` and `principledthin`.
+    /// Converts `principled` and `principledthin`.
     pub fn principled(&mut self, plugin: &Plugin) -> PrincipledMaterial {
         let thin = plugin.kind == "principledthin";
         let (base_color, base_color_texture) = self.colored(plugin, "base_color", 0.5);
@@ -20,7 +20,7 @@ impl Reader<'_> {
         let (roughness, roughness_texture) = self.pictured(plugin, "roughness", 0.5, whole);
         let (metalness, metalness_texture) = self.pictured(plugin, "metallic", 0.0, whole);
         let share = |name, usual: f32| self.value(plugin, name, usual).clamp(0.0, 1.0);
-        // Disney's alpha is the square of the roughness, stretched by the aspect.
+        // Disney's alpha is the square of the roughness, stretched by the aspect ratio.
         let aspect = (1.0 - 0.9 * share("anisotropic", 0.0)).sqrt();
         let [u, v] = [roughness * roughness / aspect, roughness * roughness * aspect];
         let luminance = base_color.dot(LUMINANCE).max(1e-6);
@@ -35,7 +35,7 @@ impl Reader<'_> {
         };
         let clear = share("spec_trans", 0.0);
         let metallic = if thin { 0.0 } else { metalness };
-        // If the roughness is a picture, use a medium roughness.
+        // If the roughness is a picture, assume a medium roughness.
         let rough = if roughness_texture.is_some() { 0.5 } else { roughness };
         let matte = match (thin, &metalness_texture) {
             (true, _) => disney::matte_mean(rough) * base_color,
@@ -44,7 +44,7 @@ impl Reader<'_> {
         };
         let sheen = share("sheen", 0.0);
         let fuzz_weight = if sheen > 0.0 { sheen * disney::sheen_of_fuzz() } else { 0.0 };
-        // 0: all on the lit side; 2: all on the other side.
+        // 0: all diffuse light leaves on the lit side; 2: all of it on the other side.
         let through = if thin { self.value(plugin, "diff_trans", 0.0).clamp(0.0, 2.0) } else { 0.0 };
         let m = PrincipledMaterial {
             base_color: matte,
@@ -67,7 +67,7 @@ impl Reader<'_> {
             transmission_weight: clear,
             // Disney's glass takes the square root of the colour at each of two surfaces.
             transmission_color: if thin { base_color } else { base_color.map(f32::sqrt) }.clamp(Vec3::ZERO, Vec3::ONE),
-            // The coat has a quarter of the weight and an index of 1.5.
+            // The coat has a quarter of the weight, and an index of 1.5.
             coat_weight: if thin { 0.0 } else { 0.25 * share("clearcoat", 0.0) },
             coat_ior: 1.5,
             coat_darkening: 0.0,
@@ -85,8 +85,8 @@ impl Reader<'_> {
     }
 }
 
-/// Index of a thin pane that reflects at normal incidence as much as one surface of index `ior`:
-/// `principledthin` has no second surface.
+/// Returns the index of a thin pane that reflects as much at normal incidence as one surface of
+/// index `ior`, because `principledthin` has no second surface.
 fn one_sided(ior: f32) -> f32 {
     let root = (ior - 1.0) / (ior + 1.0);
     let r0 = root * root;

@@ -1,28 +1,31 @@
-//! Transmittance of Mitsuba's rough boundaries, which lose the light that bounces between facets.
+//! Transmittance of Mitsuba's rough boundaries, which lose the light that bounces between
+//! microfacets.
 
 use crate::disney::passing;
 use durer_scene::bsdf::albedo::single_means;
 use durer_scene::bsdf::fresnel;
 use durer_scene::math::{Vec3, fp};
 
-/// Rough boundary of a plastic.
+/// Rough dielectric boundary of a `roughplastic`: mean transmittance and reflectance in Mitsuba and
+/// in Dürer, for matching the base colour.
 pub(super) struct Boundary {
     index: f32,
-    /// Mean transmittance from outside and mean reflectance from inside, rough and smooth.
+    /// Mean transmittance from outside and mean reflectance from inside, in Mitsuba, of the rough
+    /// boundary. `smooth` has those of a smooth one.
     rough: [f32; 2],
     smooth: [f32; 2],
-    /// Mean transmittance to the base and out again in Dürer.
+    /// Mean transmittance to the base and back out, in Dürer.
     passing: f32,
     /// Mean reflectance in Dürer minus that in Mitsuba.
     lost: f32,
 }
 
 impl Boundary {
-    /// `roughness` is the square root of alpha and not 0.
+    /// Computes the means. `roughness` is the square root of alpha, and must not be 0.
     pub fn new(index: f32, roughness: f32, beckmann: bool) -> Boundary {
         let theirs = |index: f32| means(index, roughness * roughness, beckmann);
         let ([reflected, all], [inside, _]) = (theirs(index), theirs(1.0 / index));
-        // Mitsuba sums 64 cosines from 0 to 1, with both ends at full weight.
+        // Mitsuba sums over 64 cosines from 0 to 1, with full weight at both ends.
         let straight = (index - 1.0) / (index + 1.0);
         let inside = (63.0 * inside + straight * straight) / 64.0;
         let ([mirrored, sum], [within, _]) = (single_means(index, 0.0), single_means(1.0 / index, 0.0));
@@ -36,28 +39,29 @@ impl Boundary {
         }
     }
 
-    /// Colour of a diffuse base that has the same look below this boundary as `color` has in
-    /// Mitsuba. If `fades`, light reflected between base and boundary is tinted again each time.
+    /// Returns the colour of a diffuse base that looks below this boundary as `color` does in
+    /// Mitsuba. If `fades`, the base tints light again at each reflection between base and
+    /// boundary.
     pub fn base(&self, color: f32, fades: bool) -> f32 {
         let below = color * self.below(fades.then_some(color));
         if fades { below } else { (below - self.lost / self.passing).max(0.0) }
     }
 
-    /// Mean radiance of a diffuse base through the boundary in Mitsuba, divided by that in Dürer.
-    /// Mitsuba loses light on the way in and on the way out. `left` is the share that remains after
-    /// each bounce, if bounces change the colour.
+    /// Returns the mean radiance of a diffuse base through the boundary in Mitsuba, divided by that
+    /// in Dürer. Mitsuba loses light both on the way in and on the way out. `left` is the share of
+    /// light that remains after each bounce, if bounces change the colour.
     pub fn below(&self, left: Option<f32>) -> f32 {
         let shown = |[through, inside]: [f32; 2]| {
             let through = through / self.index;
             through * through / (1.0 - inside * left.unwrap_or(1.0))
         };
-        // A smooth coat darkens the base as Mitsuba's does.
+        // A smooth coat darkens the base as Mitsuba's coat does.
         shown(self.rough) / if left.is_some() { shown(self.smooth) } else { self.passing }
     }
 }
 
-/// Mean albedos as in [`single_means`], with Mitsuba's separable masking, which hides more than
-/// height-correlated masking.
+/// Computes the mean albedos of [`single_means`], but with Mitsuba's separable masking, which masks
+/// more than height-correlated masking does.
 ///
 /// Source: Walter, Marschner, Li and Torrance, *Microfacet Models for Refraction through Rough
 /// Surfaces*, EGSR 2007, with their fit of Beckmann's masking.
@@ -75,7 +79,8 @@ fn means(eta: f32, alpha: f32, beckmann: bool) -> [f32; 2] {
     for (i, j, k) in (0..STEPS.pow(3)).map(|n| (n % STEPS, n / STEPS % STEPS, n / (STEPS * STEPS))) {
         let z = step(i).sqrt();
         let wo = Vec3::new((1.0 - z * z).sqrt(), 0.0, z);
-        // Sample microfacets by their distribution; half a turn is enough by symmetry.
+        // Sample microfacets according to their distribution. Half a turn is enough because of
+        // symmetry.
         let u = step(j);
         let slope = alpha * alpha * if beckmann { -fp::ln(1.0 - u) } else { u / (1.0 - u) };
         let cosine = 1.0 / (1.0 + slope).sqrt();
@@ -119,7 +124,7 @@ mod tests {
                 let of = |roughness: f32| below(roughness, beckmann, left);
                 assert!(of(0.3) > of(0.5) && of(0.5) > of(0.8) && of(0.8) > 0.2, "{beckmann} {left:?}");
             }
-            // Beckmann's facets are less steep.
+            // Beckmann's microfacets are less steep.
             assert!(below(0.6, true, left) > below(0.6, false, left));
         }
     }

@@ -1,10 +1,10 @@
-//! Meshes in `.serialized` files, each of which may hold several.
+//! Reader of `.serialized` files, each of which can contain several meshes.
 //!
-//! All values are little-endian. Each mesh begins with the mark 0x041C and the version (3 or 4), 16
-//! bits each, followed by a zlib stream: flags, a zero-terminated name (version 4 only), the
-//! numbers of vertices and triangles, then lists of positions, normals, texture coordinates,
-//! colours and vertex indices. The file ends with the offsets of the meshes and their number.
-//! Source: Mitsuba 3's documentation, `serialized`.
+//! All values are little-endian. Each mesh begins with the number 0x041C and the version (3 or 4),
+//! 16 bits each. A zlib stream follows: flags, a zero-terminated name (version 4 only), the numbers
+//! of vertices and triangles, then lists of positions, normals, texture coordinates, colours and
+//! vertex indices. The file ends with the offsets of the meshes and their number. Source: Mitsuba
+//! 3's documentation, `serialized`.
 
 use crate::files::named_bytes;
 use crate::model::Input;
@@ -16,31 +16,31 @@ use flate2::bufread::ZlibDecoder;
 use std::io::{ErrorKind, Read};
 
 const MARK: u16 = 0x041c;
-/// Size of the mark and the version in bytes.
+/// Size in bytes of the header of a mesh: the number 0x041C and the version.
 const HEAD: usize = 4;
 
-/// Flags of a mesh: lists that are present, and numbers of 64 bits.
+/// Flags of a mesh: which lists are present, and whether numbers have 64 bits.
 const NORMALS: u32 = 0x0001;
 const UVS: u32 = 0x0002;
 const COLORS: u32 = 0x0008;
 const DOUBLE: u32 = 0x2000;
 
 const LONGEST_NAME: usize = 1 << 12;
-/// Maximum number of unpacked bytes per byte of the file, and for the smallest file. Meshes rarely
-/// compress to less than a tenth.
+/// Maximum ratio of decompressed bytes to the size of the file, and number of bytes that even the
+/// smallest file may take. Meshes rarely compress to less than a tenth.
 const MAX_TIMES: u64 = 200;
 const FREE: u64 = 1 << 24;
 
 /// Byte offset and message of an error.
 type ParseError = (usize, String);
 
-/// Reads a mesh of a file by its index.
+/// Reads the mesh with a given index from a file.
 pub(super) fn mesh(input: &Input, report: &SharedReport, (path, at): (&str, Span), number: u32) -> Option<MeshData> {
     let (bytes, file) = named_bytes(input, report, "the mesh", path, at)?;
     let report_error = |(place, message): ParseError| {
         let place = place.min(bytes.len()) as u32;
         let error = Diagnostic::error(message).code("bad-file").at(Span { file, start: place, end: place });
-        report.push(error.related(at, "asked for here"));
+        report.push(error.related(at, "used here"));
     };
     let data = parse(&bytes, number, input.memory).map_err(report_error).ok()?;
     if data.triangles.is_empty() {
@@ -65,14 +65,14 @@ fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, ParseError>
     let size = if has(DOUBLE) { 8 } else { 4 };
     let lists = [(true, 3), (has(NORMALS), 3), (has(UVS), 2), (has(COLORS), 3)];
     let row = lists.iter().filter(|(there, _)| *there).map(|(_, width)| size * width).sum::<u64>();
-    // Indices have 64 bits only for more vertices than this.
+    // Indices have 64 bits only if there are more vertices than this.
     if vertices > u64::from(u32::MAX) {
         return Err((unpacked.place(), format!("{vertices} vertices are more than 32-bit indices allow")));
     }
     let wanted = triangles.saturating_mul(12).saturating_add(vertices * row);
     if wanted > budget {
         let message =
-            format!("{vertices} vertices and {triangles} triangles are more than a file of this size may hold");
+            format!("{vertices} vertices and {triangles} triangles are more than a file of this size can contain");
         return Err((unpacked.place(), message));
     }
     let mut list = |what: &str, there: bool, width: u64| match there {
@@ -82,12 +82,12 @@ fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, ParseError>
     let positions = list("positions", true, 3)?;
     let normals = list("normals", has(NORMALS), 3)?;
     let uvs = list("texture coordinates", has(UVS), 2)?;
-    // Mitsuba 3 does not use these colours.
+    // Mitsuba 3 ignores these colours.
     list("colours", has(COLORS), 3)?;
     let corners = unpacked.bytes("corners", triangles * 12)?;
     let corners: Vec<u32> = corners.as_chunks().0.iter().map(|four| u32::from_le_bytes(*four)).collect();
     if let Some(i) = corners.iter().position(|corner| u64::from(*corner) >= vertices) {
-        let message = format!("triangle {} has the vertex {}, but there are only {vertices}", i / 3, corners[i]);
+        let message = format!("triangle {} uses vertex {}, but there are only {vertices}", i / 3, corners[i]);
         return Err((unpacked.place(), message));
     }
     let triangles = corners.as_chunks().0.to_vec();
@@ -104,13 +104,13 @@ fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, ParseError>
     })
 }
 
-/// Offset of a mesh, and the file's version.
+/// Finds a mesh by its index; returns its offset and the file's version.
 fn found(bytes: &[u8], number: u32) -> Result<(usize, u16), ParseError> {
     let begins = |at: usize| {
         let found =
             at.checked_add(HEAD).and_then(|end| bytes.get(at..end)).filter(|head| head[..2] == MARK.to_le_bytes());
         let found = found.map(|head| u16::from_le_bytes([head[2], head[3]]));
-        found.ok_or((at, "expected a mesh of Mitsuba, which begins with the bytes 1C 04".to_string()))
+        found.ok_or((at, "expected a Mitsuba mesh, which begins with the bytes 1C 04".to_string()))
     };
     let version = begins(0)?;
     if !matches!(version, 3 | 4) {
@@ -139,7 +139,7 @@ fn found(bytes: &[u8], number: u32) -> Result<(usize, u16), ParseError> {
     }
 }
 
-/// Stream of a mesh while it is decompressed.
+/// Zlib stream of one mesh in a `.serialized` file, decompressed as its values are read.
 struct ZlibReader<'a> {
     inner: ZlibDecoder<&'a [u8]>,
     /// Offset of the compressed data in the file.
@@ -147,12 +147,12 @@ struct ZlibReader<'a> {
 }
 
 impl ZlibReader<'_> {
-    /// Offset in the file up to which data was read.
+    /// Returns the offset in the file up to which data was read.
     fn place(&self) -> usize {
         self.start + self.inner.total_in() as usize
     }
 
-    /// Reads `count` bytes. Allocates only for bytes that exist.
+    /// Reads `count` bytes. Allocates memory only for bytes that exist.
     fn bytes(&mut self, what: &str, count: u64) -> Result<Vec<u8>, ParseError> {
         let mut bytes = Vec::new();
         let read = (&mut self.inner).take(count).read_to_end(&mut bytes);
@@ -179,7 +179,7 @@ impl ZlibReader<'_> {
         Err((self.place(), format!("the name of the mesh is too long: more than {LONGEST_NAME} bytes")))
     }
 
-    /// Reads `count` numbers of 32 or 64 bits.
+    /// Reads `count` finite numbers of 32 or 64 bits.
     fn numbers(&mut self, what: &str, count: u64, double: bool) -> Result<Vec<f32>, ParseError> {
         let bytes = self.bytes(what, count * if double { 8 } else { 4 })?;
         let numbers: Vec<f32> = match double {
@@ -201,7 +201,7 @@ pub(super) mod tests {
     use flate2::write::ZlibEncoder;
     use std::io::Write;
 
-    /// Uncompressed mesh of two triangles with the lists of `flags`.
+    /// Returns an uncompressed mesh of two triangles, with the lists in `flags`.
     pub fn stream(version: u16, flags: u32) -> Vec<u8> {
         let mut bytes = flags.to_le_bytes().to_vec();
         if version == 4 {
@@ -226,7 +226,7 @@ pub(super) mod tests {
         bytes
     }
 
-    /// File of several meshes.
+    /// Returns a file with several meshes.
     pub fn file(version: u16, streams: &[Vec<u8>]) -> Vec<u8> {
         let (mut bytes, mut places) = (Vec::new(), Vec::new());
         for stream in streams {
@@ -257,11 +257,11 @@ pub(super) mod tests {
             assert!(at <= bytes.len() && messages.contains(message), "{at} {messages}"); // prose: keep
             at
         };
-        assert_eq!(refused(b"ply\n", 0, MEMORY, "expected a mesh"), 0);
+        assert_eq!(refused(b"ply\n", 0, MEMORY, "expected a Mitsuba mesh"), 0);
         assert_eq!(refused(b"\x1c\x04\x05\x00", 0, MEMORY, "version 5 of `.serialized` files is not supported"), 2);
         assert_eq!(refused(&good, 2, MEMORY, "the file has no mesh 2: it has 2"), good.len() - 4);
         refused(b"\x1c\x04\x04\x00\x09\x00\x00\x00", 5, MEMORY, "too short for the offsets of 9");
-        refused(&good, 1, 100, "more than a file of this size may hold");
+        refused(&good, 1, 100, "more than a file of this size can contain");
         // Excessive counts, indices out of range, numbers that are not finite.
         let changed = |at: usize, byte: u8, message: &str| {
             let mut inner = stream(3, 0x1000);
@@ -269,10 +269,10 @@ pub(super) mod tests {
             refused(&file(3, &[inner]), 0, u64::MAX, message);
         };
         changed(8, 1, "4294967300 vertices are more than 32-bit indices allow");
-        changed(19, 1, "more than a file of this size may hold");
-        changed(7, 128, "more than a file of this size may hold");
+        changed(19, 1, "more than a file of this size can contain");
+        changed(7, 128, "more than a file of this size can contain");
         changed(4, 5, "the mesh ends within its corners");
-        changed(68, 9, "triangle 0 has the vertex 9, but there are only 4");
+        changed(68, 9, "triangle 0 uses vertex 9, but there are only 4");
         let mut inner = stream(3, 0x1000);
         inner[24..28].copy_from_slice(&f32::NAN.to_le_bytes());
         refused(&file(3, &[inner]), 0, MEMORY, "number 1 of the positions must be finite");
@@ -296,7 +296,7 @@ pub(super) mod tests {
                     }
                 }
             };
-            // Half of the meshes are changed before compression.
+            // Half of the meshes are damaged before compression.
             if round % 4 < 2 {
                 change(&mut inner);
             }

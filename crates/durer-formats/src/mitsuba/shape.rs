@@ -1,4 +1,4 @@
-//! Shapes.
+//! Converts shapes to objects.
 //!
 //! Source: *Mitsuba 3 documentation*, "Shapes".
 
@@ -38,7 +38,7 @@ const KNOWN: [&str; 13] = [
 ];
 
 impl Reader<'_> {
-    /// Adds the objects of a shape plugin to a list.
+    /// Converts a shape plugin to objects and appends them to a list.
     pub fn shape(&mut self, plugin: &Rc<Plugin>, objects: &mut Vec<Object>, depth: u32) {
         if self.too_deep(depth, plugin.at) {
             return;
@@ -46,7 +46,7 @@ impl Reader<'_> {
         let (report, at) = (self.report, plugin.at);
         let map = plugin.map(report, "to_world");
         let found = match plugin.kind.as_str() {
-            // Instances show shape groups.
+            // Shape groups are only shown by instances.
             "shapegroup" => return,
             "instance" => self.instance(plugin, map, objects, depth),
             "merge" => {
@@ -86,7 +86,7 @@ impl Reader<'_> {
                 None => {}
             }
         } else if !matches!(plugin.kind.as_str(), "instance" | "merge") {
-            // The shape was reported; do not report its materials as unused too.
+            // The shape has been reported, so do not also report its materials as unused.
             for class in ["bsdf", "emitter", "medium"] {
                 self.parts(plugin, Some(class));
             }
@@ -119,7 +119,7 @@ impl Reader<'_> {
                 made
             }
         };
-        // Count the instance itself too: its content may be empty.
+        // Count the instance itself too, since its content may be empty.
         if self.room_for(count + 1, property.at) {
             let inner = Object { node: Node::Group((*group).clone()), material: None, span: plugin.at };
             objects.push(inner.placed(map));
@@ -127,26 +127,27 @@ impl Reader<'_> {
         None
     }
 
-    /// Medium inside a shape.
+    /// Reads the medium inside a shape.
     fn inside(&mut self, plugin: &Plugin) -> Option<(Medium, Key)> {
         let media = self.parts(plugin, Some("medium"));
-        // Ignore `exterior`: it is the interior of another shape, or around the camera.
+        // Ignore `exterior`: it is either the interior of another shape or the medium around the
+        // camera.
         let (_, medium) = media.into_iter().find(|(property, _)| property.name == "interior")?;
         self.medium(&medium)
     }
 
-    /// Returns true if a shape has a picture.
+    /// Returns true if a shape has a picture in its material or emitter.
     fn is_pictured(&self, plugin: &Plugin) -> bool {
         self.has_texture(plugin, &["bitmap", "checkerboard"])
     }
 
-    /// Returns true if a shape has a texture of one of the kinds.
+    /// Returns true if a shape has a texture of one of these types.
     fn has_texture(&self, plugin: &Plugin, kinds: &[&str]) -> bool {
         let parts = self.reachable(plugin, &["texture", "bsdf", "emitter"]);
         parts.iter().any(|part| part.class == "texture" && kinds.contains(&part.kind.as_str()))
     }
 
-    /// Returns true if a shape has an anisotropic material, for which the direction of u matters.
+    /// Returns true if a shape has an anisotropic material. If so, the direction of u matters.
     fn is_brushed(&self, plugin: &Plugin) -> bool {
         let words = ["alpha_u", "alpha_v", "anisotropic"];
         let parts = self.reachable(plugin, &["bsdf"]);
@@ -171,7 +172,8 @@ impl Reader<'_> {
         }
         let map = map * DAffine3::from_translation(center);
         let (center, map) = match self.is_pictured(plugin) || self.is_brushed(plugin) {
-            // Mitsuba's poles are on z and u begins at x; ours are on y and u = 1/2 is at -z.
+            // Mitsuba's poles are on the z axis, and u begins at x. In Dürer the poles are on the y
+            // axis, and u = 1/2 is at -z.
             true => {
                 let turned = DMat3::from_cols(DVec3::NEG_Y, DVec3::Z, DVec3::X);
                 (Vec3::ZERO, map * DAffine3::from_mat3(turned))
@@ -183,7 +185,7 @@ impl Reader<'_> {
     }
 
     fn disk(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
-        // Discs in Dürer have different texture coordinates.
+        // Discs have different texture coordinates in Dürer.
         if self.is_pictured(plugin) || self.is_brushed(plugin) || self.is_leaning(plugin) {
             return self.mesh(plugin, "disk", map, || Some(solid::with_tangents(solid::disk())));
         }
@@ -207,7 +209,7 @@ impl Reader<'_> {
         self.mesh(plugin, &format!("cylinder-{radius}"), map, || Some(solid::with_tangents(solid::cylinder(radius))))
     }
 
-    /// Name of the shape's file and its place in the scene.
+    /// Returns the path of the shape's file, and its span in the scene.
     fn path(&self, plugin: &Plugin) -> Option<(String, Span)> {
         let Some(name) = plugin.text(self.report, "filename") else {
             self.report.bad(plugin.at, format!("the shape `{}` needs a `filename`", plugin.kind));
@@ -216,7 +218,7 @@ impl Reader<'_> {
         Some((self.loader.path(&name), plugin.place("filename")))
     }
 
-    /// Index of the shape's mesh in its file.
+    /// Returns the index of the shape's mesh within its file.
     fn shape_index(&self, plugin: &Plugin) -> Option<u32> {
         let number = plugin.number(self.report, "shape_index").unwrap_or(0.0);
         if !(0.0..=16_777_216.0).contains(&number) || number.fract() != 0.0 {
@@ -235,7 +237,7 @@ impl Reader<'_> {
         };
         let flat = plugin.truth(report, "face_normals").unwrap_or(false);
         let is_obj = plugin.kind == "obj";
-        // Mitsuba flips v of OBJ files, whose v points up as in Dürer, but not v of PLY files.
+        // Mitsuba flips v in OBJ files, where it points up as in Dürer, but not in PLY files.
         let over = plugin.truth(report, "flip_tex_coords").unwrap_or(is_obj);
         let mirrored = map.matrix3.determinant() < 0.0;
         let input = self.input;
@@ -258,17 +260,17 @@ impl Reader<'_> {
             if flat {
                 (data.normals, data.triangle_normals) = (Vec::new(), Vec::new());
             }
-            // Faces without normals are oriented by their corners in world space.
+            // Faces without normals are oriented by the winding of their corners in world space.
             if mirrored && data.triangle_normals.is_empty() {
                 data = data.oriented(true);
             }
             if !flat && data.triangle_normals.is_empty() {
-                // Vertices at one position with different texture coordinates are not merged.
+                // Vertices at the same position with different texture coordinates are not merged.
                 let uvs = std::mem::take(&mut data.triangle_uvs);
                 smoothed(&mut data, |i, k| Some(uvs.get(i).map_or(0, |uvs| uvs[k])));
                 data.triangle_uvs = uvs;
             }
-            // Keep vertex colours only if a texture reads them. Convert those of PLY to sRGB.
+            // Keep vertex colours only if a texture uses them. Convert those of PLY files to sRGB.
             let number = |x: f32| f32::from(Transfer::Srgb.encode(x)) / 255.0;
             data.colors
                 .iter_mut()
@@ -284,7 +286,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Tubes of a curve file.
+    /// Builds tubes for a curve file.
     fn curves(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
         let report = self.report;
         let (path, at) = self.path(plugin)?;
@@ -293,7 +295,7 @@ impl Reader<'_> {
         self.mesh(plugin, &key, map, || curve::tubes(input, report, (&path, at), is_spline))
     }
 
-    /// Mesh with v downwards and its transform.
+    /// Returns a mesh with v downwards, and its transform.
     fn mesh(
         &mut self,
         plugin: &Plugin,

@@ -1,4 +1,4 @@
-//! Conversion of plugins to a scene.
+//! Converts plugins to a scene.
 
 use super::defs::{InfiniteLight, MaterialDef};
 use super::load::Loader;
@@ -18,21 +18,22 @@ use std::sync::Arc;
 /// Maximum depth of nested plugins, counting references.
 pub(super) const DEEPEST: u32 = 32;
 
-/// Reader of a scene's plugins.
+/// Reader that converts the plugins of a Mitsuba scene to a Dürer scene.
 pub(super) struct Reader<'a> {
     pub input: &'a Input<'a>,
     pub report: &'a SharedReport,
     pub loader: Loader<'a>,
-    /// Materials by their plugin, and whether their shape is turned inside out.
+    /// Converted materials by plugin; the flag is true if their shape is turned inside out.
     pub materials: BTreeMap<(Key, bool), Rc<MaterialDef>>,
-    /// Indices in the scene of materials, by plugins of the material, light and interior medium,
-    /// and whether the shape is turned inside out.
+    /// Material indices in the scene, by the plugins of the material, the light and the interior
+    /// medium. The flag is true if the shape is turned inside out.
     pub numbers: BTreeMap<([Option<Key>; 3], bool), Option<u32>>,
-    /// Meshes by file name and the changes made to them.
+    /// Meshes by file name and by the changes made to them.
     pub meshes: BTreeMap<String, Option<Arc<MeshData>>>,
     /// Contents of shape groups, with their number of objects.
     pub groups: BTreeMap<Key, (Rc<Group>, usize)>,
-    /// True if the current shape is turned inside out: the interior index of its glass is outside.
+    /// True if the current shape is turned inside out, so that the interior index of its glass is
+    /// on the outside.
     pub inside_out: bool,
     pub infinite: Option<InfiniteLight>,
     /// True if scattered light is not rendered (`max_depth` below 2).
@@ -57,7 +58,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Converts the plugins to a scene.
+    /// Converts all plugins to a scene.
     pub fn read(mut self, all: &Plugin) -> Scene {
         let mut sensors = Vec::new();
         for (property, plugin) in self.parts(all, None) {
@@ -74,7 +75,8 @@ impl<'a> Reader<'a> {
                 "emitter" => self.emitter(&plugin),
                 "sensor" => sensors.push(plugin),
                 "integrator" => self.integrator(&plugin, 0),
-                // Ignore plugins without a place, such as materials: shapes refer to them.
+                // Ignore plugins that have no effect on their own, such as materials. Shapes refer
+                // to them.
                 _ => {}
             }
         }
@@ -92,8 +94,8 @@ impl<'a> Reader<'a> {
         self.scene
     }
 
-    /// Plugins of the given classes that are reachable from a plugin through such plugins, each
-    /// once. Reports nothing and marks nothing as used.
+    /// Returns each plugin of the given classes that can be reached from a plugin through plugins
+    /// of these classes. Reports nothing, and does not mark anything as used.
     pub fn reachable(&self, plugin: &Plugin, classes: &[&str]) -> Vec<Rc<Plugin>> {
         let part = |property: &Property| match &property.value {
             Value::Plugin(part) => Some(part.clone()),
@@ -114,11 +116,12 @@ impl<'a> Reader<'a> {
         found
     }
 
+    /// Returns a reader for pictures that the scene names.
     pub fn pictures(&self) -> Pictures<'a> {
         Pictures { input: self.input, report: self.report }
     }
 
-    /// Child plugins in their order, of one class or of any.
+    /// Returns the child plugins in file order; `class` selects one class.
     pub fn parts<'p>(&self, plugin: &'p Plugin, class: Option<&str>) -> Vec<(&'p Property, Rc<Plugin>)> {
         let found = plugin.properties.iter().filter_map(|property| {
             let part = self.part(property)?;
@@ -127,12 +130,12 @@ impl<'a> Reader<'a> {
         found.inspect(|(property, _)| property.used.set(true)).collect()
     }
 
-    /// Plugin of a named property.
+    /// Returns the plugin that is the value of a named property.
     pub fn named_part(&self, plugin: &Plugin, name: &'static str) -> Option<Rc<Plugin>> {
         plugin.get(name).and_then(|property| self.part(property))
     }
 
-    /// Plugin of a property.
+    /// Returns the plugin that is the value of a property.
     pub fn part(&self, property: &Property) -> Option<Rc<Plugin>> {
         match &property.value {
             Value::Plugin(plugin) => Some(plugin.clone()),
@@ -151,11 +154,11 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reports nesting beyond [`DEEPEST`], for example of plugins that refer to each other in a
-    /// circle.
+    /// Returns true and reports an error if plugins are nested more than [`DEEPEST`] levels deep,
+    /// for example because they refer to each other in a cycle.
     pub fn too_deep(&self, depth: u32, at: Span) -> bool {
         if depth > DEEPEST {
-            self.report.bad(at, format!("plugins are nested more than {DEEPEST} deep: does one refer to itself?"));
+            self.report.bad(at, format!("plugins are nested more than {DEEPEST} levels deep: does one refer to itself?"));
         }
         depth > DEEPEST
     }

@@ -1,4 +1,5 @@
-//! Tests of the Mitsuba reader: syntax, conventions against closed forms, and places of errors.
+//! Tests of the Mitsuba reader: syntax, conventions compared with closed forms, and positions of
+//! errors.
 
 mod bright;
 mod conventions;
@@ -14,20 +15,20 @@ fn read(text: &str) -> (Option<Scene>, Vec<String>) {
     read_in(&std::env::temp_dir(), "scene.xml", text)
 }
 
-/// Reads elements inside a scene and expects no diagnostics.
+/// Reads elements inside a scene, which must cause no diagnostics.
 fn clean(inner: &str) -> Scene {
     let (scene, messages) = read(&format!("<scene version='3.0.0'>{inner}</scene>"));
     assert_eq!(messages, [""; 0], "{inner}");
     scene.unwrap()
 }
 
-/// Objects with a shape, in order.
+/// Returns the objects with a shape, in order.
 fn objects(scene: &Scene) -> Vec<&Object> {
     fn gather<'a>(object: &'a Object, all: &mut Vec<&'a Object>) {
         match &object.node {
             Node::Group(group) => group.objects.iter().for_each(|object| gather(object, all)),
             Node::Transform(_, inner) => gather(inner, all),
-            // Ground of the default scene setup.
+            // Skip the ground of the default scene setup.
             Node::Primitive(Primitive::Plane(_)) => {}
             _ => all.push(object),
         }
@@ -37,7 +38,7 @@ fn objects(scene: &Scene) -> Vec<&Object> {
     all
 }
 
-/// Material of the first object.
+/// Returns the material of the first object.
 fn material(scene: &Scene) -> &Material {
     &scene.materials[objects(scene)[0].material.unwrap() as usize].value
 }
@@ -68,7 +69,7 @@ fn variables_includes_and_old_names_are_read() {
 
 #[test]
 fn diagnostics_have_their_place() {
-    // Scene, text at whose last occurrence the diagnostic is, and the diagnostic.
+    // Scene, text at whose last occurrence the diagnostic is expected, and the diagnostic.
     for (inner, there, expected) in [
         ("<shape type='sphere'><float name='radius' value='x'/></shape>", "x'/>", "error expected a number, found `x`"),
         ("<shape type='sphere'><float name='radius' value='-1'/></shape>", "-1", "error `radius` must be more than 0"),

@@ -1,4 +1,4 @@
-//! Textures: a constant or a picture.
+//! Reads textures, which become a constant or a picture.
 
 use super::plugin::{Plugin, Property};
 use super::state::Reader;
@@ -12,22 +12,22 @@ use durer_scene::scene::{Picture, PictureBytes};
 use durer_scene::texture::{Mapping, Wrap};
 use glam::DAffine3;
 
-/// Texture: a constant or a picture.
+/// Value of a Mitsuba texture plugin: a constant colour or a picture.
 #[derive(Clone)]
 pub(super) enum Texture {
     Even(Color),
-    /// Picture, its factor, and true if its bytes are linear (`raw`).
+    /// Picture, the factor on its values, and true if its bytes are linear (`raw`).
     Picture(Picture, Color, bool),
 }
 
 impl Reader<'_> {
-    /// Value of a property that may be a texture.
+    /// Returns the value of a property that may be a texture; `usual` is the default.
     pub fn texture(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Texture {
         plugin.get(name).map_or(Texture::Even(usual), |property| self.texture_of(property, usual))
     }
 
-    /// Value of a property that may be a picture brighter than 1; the picture is divided by its
-    /// greatest value. See [`Reader::texture`].
+    /// Returns the value of a property that may be a picture with values above 1. Such a picture is
+    /// divided by its maximum. See [`Reader::texture`].
     pub fn bright_texture(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Texture {
         let bitmap = self.named_part(plugin, name).filter(|part| part.kind == "bitmap");
         let Some(bitmap) = bitmap else { return self.texture(plugin, name, usual) };
@@ -37,7 +37,7 @@ impl Reader<'_> {
         picture.map_or(Texture::Even(usual), |(picture, scale)| Texture::Picture(picture, Vec3::splat(scale), raw))
     }
 
-    /// Picture with an sRGB curve; converts the picture if its bytes are linear (`raw`).
+    /// Returns the picture with sRGB encoding; converts it if its bytes are linear (`raw`).
     pub fn without_curve(&self, picture: Picture, raw: bool, at: Span) -> Picture {
         if raw { self.pictures().recoded(&picture, at, true, |x| x).unwrap_or(picture) } else { picture }
     }
@@ -76,7 +76,7 @@ impl Reader<'_> {
         made.unwrap_or(Texture::Even(usual))
     }
 
-    /// Colour of a property, and the picture that it multiplies.
+    /// Returns the colour of a property, and the picture that it multiplies.
     pub fn colored(&mut self, plugin: &Plugin, name: &'static str, usual: f32) -> (Color, Option<FileName>) {
         match self.texture(plugin, name, Vec3::splat(usual)) {
             Texture::Even(color) => {
@@ -92,7 +92,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Number that may be a texture: `change` of the number, or 1 and the changed picture.
+    /// Returns a number that may be a texture: `change` applied to the number, or 1 and the changed
+    /// picture.
     pub fn pictured(
         &mut self,
         plugin: &Plugin,
@@ -106,12 +107,12 @@ impl Reader<'_> {
         }
     }
 
-    /// Picture of a property with `change` applied to its luminance; `None` if the property is not
-    /// a picture.
+    /// Returns the picture of a property with `change` applied to its luminance; `None` if the
+    /// property is not a picture.
     pub fn numbers(&mut self, property: &Property, change: impl Fn(f32) -> f32) -> Option<FileName> {
         let fields = self.part(property).filter(|part| part.class == "texture" && part.kind == "checkerboard");
         let texture = match fields {
-            // Mitsuba swaps the fields when it reads a number.
+            // Mitsuba swaps the two colours of a checkerboard when it is used as a number.
             Some(fields) => {
                 let made = self.checkerboard(&fields, [("color1", 0.2), ("color0", 0.4)]);
                 fields.finish(self.report);
@@ -121,19 +122,19 @@ impl Reader<'_> {
         };
         let Texture::Picture(picture, scale, raw) = texture else { return None };
         let decode = if raw { decode_linear } else { decode_srgb };
-        // A colour converted to a number is its luminance.
+        // A colour is converted to a number by its luminance.
         let number = |p: Color| change(scale.x * p.dot(LUMINANCE));
         let picture = self.pictures().changed(&picture, property.at, decode, number)?;
         Some(asset(&mut self.scene, picture, property.at))
     }
 
-    /// Number that may be a texture; the mean of a picture.
+    /// Returns a number that may be a texture; for a picture, its mean.
     pub fn value(&self, plugin: &Plugin, name: &'static str, usual: f32) -> f32 {
         let color = self.color(plugin, name, Vec3::splat(usual));
         color.dot(LUMINANCE)
     }
 
-    /// Colour that may be a texture; the mean of a picture.
+    /// Returns a colour that may be a texture; for a picture, its mean.
     pub fn color(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Color {
         match self.texture(plugin, name, usual) {
             Texture::Even(color) => color,
@@ -145,13 +146,13 @@ impl Reader<'_> {
         }
     }
 
-    /// Picture of a `bitmap` texture.
+    /// Reads the picture of a `bitmap` texture.
     pub fn bitmap(&self, texture: &Plugin) -> Option<Picture> {
         let eight_bits = |name: &str, at| Some((self.pictures().eight_bits(name, at)?, 1.0));
         self.bitmap_as(texture, eight_bits).map(|(picture, _)| picture)
     }
 
-    /// Picture of a `bitmap` texture and its factor; `make` reads the file.
+    /// Reads the picture of a `bitmap` texture and its factor; `make` reads the file.
     fn bitmap_as(
         &self,
         texture: &Plugin,
@@ -185,13 +186,14 @@ impl Reader<'_> {
             }
         };
         texture.known(&["raw", "accel", "format"]);
-        // A picture's alpha does not cut holes in Mitsuba; `mask` does.
+        // In Mitsuba, a picture's alpha does not cut holes; only `mask` does.
         mapping.cutoff = Some(0.0);
         let (bytes, scale) = make(&self.loader.path(&name), texture.place("filename"))?;
         Some((Picture { bytes, mapping }, scale))
     }
 
-    /// Mapping of a texture. In Mitsuba v grows downwards from the upper edge, as in our pictures.
+    /// Reads the mapping of a texture. In Mitsuba, v grows downwards from the upper edge, as in
+    /// Dürer's pictures.
     fn mapping(&self, texture: &Plugin) -> Mapping {
         let report = self.report;
         let mut map = texture.map(report, "to_uv");
@@ -204,8 +206,8 @@ impl Reader<'_> {
         Mapping { transform: [[x.x, y.x, t.x], [x.y, y.y, t.y]], ..Mapping::default() }
     }
 
-    /// Checkerboard with fields of half a unit, as a picture of 2 x 2 texels; the first field is at
-    /// the origin.
+    /// Returns a checkerboard with squares of half a unit, as a picture of 2 x 2 texels. The first
+    /// square is at the origin.
     fn checkerboard(&self, texture: &Plugin, fields: [(&'static str, f32); 2]) -> Texture {
         let mapping = Mapping { nearest: true, ..self.mapping(texture) };
         let [one, other] = fields.map(|(name, usual)| {

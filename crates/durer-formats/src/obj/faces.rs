@@ -1,4 +1,4 @@
-//! Reader of the faces of a Wavefront file, after all vertices are read.
+//! Reads the faces of a Wavefront file after all vertices have been read.
 
 use super::{Counts, Statement, Switches, counts, statement, words::Words};
 use crate::number::parse_integer;
@@ -9,24 +9,24 @@ use durer_scene::shape::mesh::{MeshData, NO_INDEX};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Indices of a corner: position, texture coordinate and normal.
+/// Indices of a face corner: position, texture coordinate and normal.
 type Corner = [u32; 3];
 
-/// Names of what a corner's indices refer to, in their order: singular, plural, keyword.
+/// Names of the items that a corner's indices refer to: singular, plural and keyword.
 const KINDS: [(&str, &str, &str); 3] =
     [("vertex", "vertices", "v"), ("texture coordinate", "texture coordinates", "vt"), ("normal", "normals", "vn")];
 
-/// Faces of one part of a file.
+/// Triangles read from one part of a Wavefront file, with the state changes and diagnostics.
 struct Faces {
     mesh: MeshData,
     switches: Switches,
-    /// Range of the first face that names a vertex twice, and the number of such faces.
+    /// Byte range of the first face that uses a vertex twice, and the number of such faces.
     degenerate: Option<(Range<usize>, usize)>,
     report: Report,
 }
 
-/// Reads the faces in parallel and triangulates them. Repeated corners are kept, since they are
-/// harmless. `before` has the number of vertices of each kind before each part.
+/// Reads the faces in parallel and triangulates them. Repeated corners are harmless, so they are
+/// kept. `before` contains the number of vertices of each kind before each part.
 pub(super) fn read_faces(
     bytes: &[u8],
     parts: &[Range<usize>],
@@ -42,8 +42,8 @@ pub(super) fn read_faces(
     for part in read {
         let first = mesh.triangles.len();
         mesh.triangles.extend(part.mesh.triangles);
-        // Once a triangle has texture coordinates or normals, every triangle has an entry, so pad
-        // the entries of those before.
+        // If any triangle has texture coordinates or normals, every triangle needs an entry, so pad
+        // the entries before the first such triangle.
         for (all, own) in
             [(&mut mesh.triangle_uvs, part.mesh.triangle_uvs), (&mut mesh.triangle_normals, part.mesh.triangle_normals)]
         {
@@ -69,12 +69,12 @@ pub(super) fn read_faces(
         }
     }
     if let Some((first, count)) = degenerate {
-        let verb = if count == 1 { "names" } else { "name" };
+        let verb = if count == 1 { "uses" } else { "use" };
         report.note(first, format!("{} {verb} a vertex twice; the first is here", counted(count, "face", "faces")));
     }
 }
 
-/// Reads the faces of one part.
+/// Reads the faces of one part of the file.
 fn faces(bytes: &[u8], part: Range<usize>, so_far: Counts, whole: &MeshData, report: Report) -> Faces {
     let mut reader = FaceReader {
         bytes,
@@ -112,7 +112,7 @@ fn faces(bytes: &[u8], part: Range<usize>, so_far: Counts, whole: &MeshData, rep
     reader.found
 }
 
-/// Returns the rest of a statement as one range, since names may contain blanks.
+/// Returns the rest of a statement as one range, since names may contain spaces.
 pub(super) fn rest_of(words: &mut Words, end: usize) -> Range<usize> {
     match words.next_word() {
         Some(first) => first.start..words.skip_rest().unwrap_or(first.end),
@@ -120,11 +120,12 @@ pub(super) fn rest_of(words: &mut Words, end: usize) -> Range<usize> {
     }
 }
 
+/// Reads the `f` statements of one part of a Wavefront file.
 struct FaceReader<'a> {
     bytes: &'a [u8],
-    /// Number of vertices, texture coordinates and normals in the file.
+    /// Number of vertices, texture coordinates and normals in the whole file.
     total: Counts,
-    /// Number of them before the current statement.
+    /// Number of each before the current statement.
     so_far: Counts,
     positions: &'a [Vec3],
     corners: Vec<Corner>,
@@ -156,14 +157,14 @@ impl FaceReader<'_> {
         }
     }
 
-    /// Reads `a`, `a/t`, `a//n` or `a/t/n`.
+    /// Parses a corner of the form `a`, `a/t`, `a//n` or `a/t/n`.
     fn corner(&mut self, word: Range<usize>) -> Option<Corner> {
         let mut corner = [NO_INDEX; 3];
         let mut start = word.start;
         for (part, slot) in corner.iter_mut().enumerate() {
             let rest = &self.bytes[start..word.end];
             let end = start + rest.iter().position(|&byte| byte == b'/').unwrap_or(rest.len());
-            // All indices but the position may be empty.
+            // All indices except the position may be empty.
             if end > start || part == 0 {
                 let counts = [self.total[part], self.so_far[part]];
                 *slot = index(self.bytes, start..end, part, counts, &mut self.found.report)?;
@@ -180,7 +181,7 @@ impl FaceReader<'_> {
     }
 
     fn note_degenerate(&mut self, place: &Range<usize>) {
-        // Checks neighbours only: outlines with holes pass a vertex twice on purpose.
+        // Compare only neighbouring corners: outlines with holes pass a vertex twice on purpose.
         let last = self.corners.len() - 1;
         let repeats = |i: usize| self.corners[i][0] == self.corners[if i == last { 0 } else { i + 1 }][0];
         if (0..=last).any(repeats) {
@@ -202,14 +203,15 @@ impl FaceReader<'_> {
         if cut.is_err() {
             self.found
                 .report
-                .error(place, format!("this face of {} corners is too complex to triangulate", corners.len()))
+                .error(place, format!("this face is too complex to triangulate ({} vertices)", corners.len()))
                 .help = Some("triangulate it in a modelling program".into());
         }
     }
 }
 
-/// Reads an index that counts from 1 or, if negative, back from the last statement of its kind.
-/// `total` and `so_far` are the numbers of such statements in the file and before this one.
+/// Reads an index, which counts from 1 or, if negative, backwards from the last statement of its
+/// kind. `total` and `so_far` are the numbers of such statements in the whole file and before this
+/// statement.
 pub(super) fn index(
     bytes: &[u8],
     at: Range<usize>,
@@ -242,7 +244,8 @@ pub(super) fn index(
     None
 }
 
-/// Appends indices; the list starts, padded, at the first triangle that has some.
+/// Appends the indices of a triangle. The list stays empty until a triangle has indices; then it is
+/// padded for the triangles before.
 fn push_optional(list: &mut Vec<[u32; 3]>, before: usize, indices: [u32; 3]) {
     if !list.is_empty() || indices != [NO_INDEX; 3] {
         list.resize(before, [NO_INDEX; 3]);

@@ -1,7 +1,7 @@
-//! Reader of Wavefront `.mtl` files; `written.rs` translates the materials.
+//! Reader of Wavefront `.mtl` files; `mtl.rs` converts the materials.
 //!
-//! Sources: *The MTL material format*, Alias|Wavefront, 1995; the extension for physically based
-//! materials of Clara.io (Pr, Pm, Pc, Pcr, Ps, Ke, norm).
+//! Sources: *The MTL material format*, Alias|Wavefront, 1995; Clara.io's extension for physically
+//! based rendering (Pr, Pm, Pc, Pcr, Ps, Ke, norm).
 
 use super::mtl::MtlMaterial;
 use super::words::Words;
@@ -20,14 +20,15 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Materials by name, and their textures.
+/// Material library of a Wavefront scene: materials by name, and the textures that they use.
 #[derive(Default)]
 pub(super) struct Library {
     pub materials: BTreeMap<String, PrincipledMaterial>,
     pub pictures: BTreeMap<String, Picture>,
 }
 
-/// Reads the files of an `mtllib` statement: one file whose name has blanks, or several files.
+/// Reads the files of an `mtllib` statement, which names one file with spaces in its name, or
+/// several files.
 pub(super) fn read_files(
     input: &Input,
     names: &Range<usize>,
@@ -39,7 +40,7 @@ pub(super) fn read_files(
     let all = unquoted(&all).to_string();
     let files = match found(input, &all, span) {
         Some(whole) => vec![(all.clone(), Some(whole))],
-        // Some programs escape blanks within a name by a backslash.
+        // Some programs escape spaces within a name with a backslash.
         None => {
             let names = all.replace("\\ ", "\0");
             let names = names.split_whitespace().map(|name| name.replace('\0', " "));
@@ -62,7 +63,7 @@ pub(super) fn read_files(
     }
 }
 
-/// Texture statements and their fields. A parameter without a value counts as 1.
+/// Texture statements, and the field that each sets. A parameter without a value counts as 1.
 type Field = fn(&mut PrincipledMaterial) -> &mut Option<FileName>;
 const MAPS: [(&str, Field); 12] = [
     ("map_ks", |m| &mut m.specular_color_texture),
@@ -79,19 +80,20 @@ const MAPS: [(&str, Field); 12] = [
     ("map_bump", |m| &mut m.bump_texture),
 ];
 
-/// Height of white in a bump map with `-bm 1`, as a fraction of the diagonal of the model's bounds:
-/// the format defines no unit.
+/// Height of white in a bump map with `-bm 1`, as a fraction of the diagonal of the model's
+/// bounding box, because the format defines no unit.
 const BUMP: f32 = 0.002;
 
-/// Statements without a counterpart, with the value at which they have no effect.
+/// Statements without a counterpart, and the value at which each has no effect.
 const WITHOUT_EFFECT: [(&str, f32); 2] = [("anisor", 0.0), ("sharpness", 60.0)];
 
-/// A word and its span.
+/// Word of an `.mtl` statement with its span.
 struct Word {
     text: String,
     at: Span,
 }
 
+/// Reads the statements of one `.mtl` file into a [`Library`].
 struct Reader<'a, 'i> {
     input: &'a Input<'i>,
     /// Index of the file.
@@ -137,7 +139,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Applies a statement to a material; an error comes with its span.
+    /// Applies a statement to a material. Errors are returned with a span.
     fn word(
         &mut self,
         keyword: &Word,
@@ -155,7 +157,7 @@ impl Reader<'_, '_> {
             parse_f32(text).map(Some).map_err(problem)
         };
         let color = || -> Result<Option<Vec3>, (Span, String)> {
-            // A colour in CIE XYZ or as a spectrum is preceded by a word.
+            // A colour in CIE XYZ or as a spectrum begins with a word.
             let is_xyz = rest.first().is_some_and(|word| word.text == "xyz");
             match numbers(&rest[usize::from(is_xyz)..])[..] {
                 [x, y, z, ..] if is_xyz => {
@@ -198,7 +200,7 @@ impl Reader<'_, '_> {
                             rest.iter().position(|word| word.text == "-bm").map(|at| numbers(&rest[at + 1..]));
                         let strength = strength.and_then(|numbers| numbers.first().copied());
                         m.pictures.bump_height = BUMP * strength.unwrap_or(1.0);
-                        // Many programs write normal maps where bump maps belong.
+                        // Many programs write normal maps with the statement for bump maps.
                         if names_normals(rest) {
                             field = |m| &mut m.normal_texture;
                         }
@@ -216,7 +218,7 @@ impl Reader<'_, '_> {
         self.left_out.entry(word.to_string()).or_insert(at);
     }
 
-    /// Reads a texture: options that begin with `-`, then a file name, which may contain blanks.
+    /// Reads a texture: options that begin with `-`, then a file name, which may contain spaces.
     fn map(
         &mut self,
         keyword: &Word,
@@ -256,16 +258,16 @@ impl Reader<'_, '_> {
                 "-imfchan" => {
                     mapping.channel = next.and_then(|word| match word {
                         "m" => Some(Channel::Alpha),
-                        // Luminance and depth; in grey pictures any channel gives these.
+                        // Luminance and depth. In a grey picture, every channel has these.
                         word => Channel::from_word(word),
                     });
                     1
                 }
-                // -blendu, -blendv, -boost, -bm, -cc, -texres, -type, -colorspace.
+                // -blendu, -blendv, -boost, -bm, -cc, -texres, -type, -colorspace have one value.
                 _ => 1,
             };
         }
-        // Texture coordinates have v upwards; the picture's rows go down.
+        // Texture coordinates have v upwards, but the picture's rows go down.
         mapping.transform = [[scale[0], 0.0, offset[0]], [0.0, scale[1], 1.0 - scale[1] - offset[1]]];
         // Some programs write options after the name.
         let named = rest.get(at..).unwrap_or_default();
@@ -288,7 +290,7 @@ impl Reader<'_, '_> {
         Some(FileName { path, span })
     }
 
-    /// Adds a material to the library, unless it already has one of this name.
+    /// Adds a material to the library, unless it already contains one with this name.
     fn finish(&mut self, mut written: MtlMaterial) {
         if written.loses_filter() {
             self.leave_out("Tf", written.filter_at);
@@ -298,7 +300,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Removes the quotes around a name.
+/// Removes quotes around a name.
 fn unquoted(name: &str) -> &str {
     let name = name.trim();
     ['"', '\''].into_iter().find_map(|quote| name.strip_prefix(quote)?.strip_suffix(quote)).unwrap_or(name)
@@ -317,14 +319,14 @@ fn numbers(words: &[Word]) -> Vec<f32> {
     words.iter().map_while(|word| parse_f32(word.text.as_bytes()).ok()).collect()
 }
 
-/// Returns true if the file name at the end of a statement suggests a normal map.
+/// Returns true if the file name at the end of a statement looks like that of a normal map.
 fn names_normals(rest: &[Word]) -> bool {
     let name = rest.last().map(|name| name.text.to_lowercase()).unwrap_or_default();
     let stem = name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem);
     ["normal", "_nrm", "_ddn", "_norm"].iter().any(|word| stem.contains(word)) || stem.ends_with("_n")
 }
 
-/// Finds a file of the scene: its path as written, or its bare name in the scene's folder.
+/// Finds a file of the scene: at the path as written, or by its file name in the scene's folder.
 fn found(input: &Input, path: &str, span: Span) -> Option<FileName> {
     let portable = path.replace('\\', "/");
     let last = portable.rsplit('/').next().unwrap_or_default();

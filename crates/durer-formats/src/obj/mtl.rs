@@ -1,4 +1,4 @@
-//! Statements of a material in an `.mtl` file, and their translation into OpenPBR parameters.
+//! Statements of a material in an `.mtl` file, and their conversion to OpenPBR parameters.
 
 use durer_diag::Span;
 use durer_scene::bsdf::layers::opaque_ior;
@@ -6,7 +6,8 @@ use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::Vec3;
 
-/// Values of a material's statements.
+/// Material from an `.mtl` file: the values of its statements, before they are converted to OpenPBR
+/// parameters.
 #[derive(Default)]
 pub(super) struct MtlMaterial {
     pub name: String,
@@ -27,14 +28,14 @@ pub(super) struct MtlMaterial {
     pub coat_roughness: Option<f32>,
     pub anisotropy: Option<f32>,
     pub diffuse_map: Option<FileName>,
-    /// True if the material has a `map_Kd` statement, even if its file is missing.
+    /// True if the material has a `map_Kd` statement, even if the file is missing.
     pub pictured: bool,
-    /// The other textures and the bump height; all other fields have default values.
+    /// The other textures and the bump height; all other fields have their defaults.
     pub pictures: PrincipledMaterial,
 }
 
 impl MtlMaterial {
-    /// Returns true if the material uses the extension for physically based materials.
+    /// Returns true if the material uses the extension for physically based rendering.
     fn is_physical(&self) -> bool {
         let pictured = |picture: &Option<FileName>| picture.is_some();
         let pictures = [&self.pictures.specular_roughness_texture, &self.pictures.base_metalness_texture];
@@ -45,9 +46,9 @@ impl MtlMaterial {
         self.model.unwrap_or(2.0) as i32
     }
 
-    /// Fraction of light that is transmitted. In a physically based material it is `Tf`, as Blender
-    /// writes and reads it; else it follows from the illumination model, of which 4, 6, 7 and 9 are
-    /// glass.
+    /// Returns the fraction of light that is transmitted. In a physically based material it is
+    /// `Tf`, as Blender reads and writes it. Otherwise it follows from the illumination model: 4,
+    /// 6, 7 and 9 are glass.
     fn transmission(&self) -> f32 {
         let opacity = self.opacity();
         match (self.filter, self.model()) {
@@ -62,28 +63,28 @@ impl MtlMaterial {
         self.opacity.unwrap_or(1.0).clamp(0.0, 1.0)
     }
 
-    /// Returns true if transmitted light should be tinted, but the translation cannot do it.
+    /// Returns true if transmitted light should be tinted but the conversion cannot express it.
     pub fn loses_filter(&self) -> bool {
         let filters = self.filter.is_some_and(|filter| filter != Vec3::ONE);
         filters && !self.is_physical() && self.transmission() == 0.0 && self.opacity() < 1.0
     }
 
-    /// Translates the statements into OpenPBR parameters.
+    /// Converts the statements to OpenPBR parameters.
     pub fn layers(self) -> PrincipledMaterial {
         let (physical, model) = (self.is_physical(), self.model());
         let (transmission, opacity) = (self.transmission(), self.opacity());
-        // A texture without `Kd` is not darkened.
+        // A texture without `Kd` is shown with its full brightness.
         let usual = if self.diffuse_map.is_some() { Vec3::ONE } else { Vec3::splat(0.8) };
         let mut m = PrincipledMaterial { base_color: self.diffuse.unwrap_or(usual), ..self.pictures };
         m.base_color_texture = self.diffuse_map;
-        // Programs that mean the texture alone often write a black `Kd`.
+        // Programs that use only the texture often write a black `Kd`.
         if self.pictured && m.base_color == Vec3::ZERO {
             m.base_color = Vec3::ONE;
         }
         let pictured = |picture: &Option<FileName>| if picture.is_some() { 1.0 } else { 0.0 };
         let specular = self.specular.unwrap_or(Vec3::splat(pictured(&m.specular_color_texture)));
-        // Roughness of a highlight as wide as Blinn's with this exponent: alpha^2 = 2 / (n + 2),
-        // roughness^2 = alpha.
+        // Choose the roughness whose highlight is as wide as Blinn's with this exponent: alpha^2 =
+        // 2 / (n + 2) and roughness^2 = alpha.
         let exponent = self.exponent.unwrap_or(if specular == Vec3::ZERO { 0.0 } else { 50.0 }).max(0.0);
         let rough = m.specular_roughness_texture.is_some();
         let by_exponent = if rough { 1.0 } else { (2.0 / (exponent + 2.0)).sqrt().sqrt() };
@@ -95,34 +96,34 @@ impl MtlMaterial {
             // These models have no highlights.
             0 | 1 => 0.0,
             _ if !physical => level,
-            // In a physically based material `Ks` is Disney's `specular`, where 0.5 stands for the
+            // In a physically based material, `Ks` is Disney's `specular`, where 0.5 stands for the
             // reflectance given by the index, as in Blender.
             _ if self.specular.is_some() || m.specular_color_texture.is_some() => 2.0 * level,
             _ => 1.0,
         };
         if physical && m.base_metalness > 0.0 {
-            // The specular weight only applies to the dielectric part.
+            // The specular weight applies only to the dielectric part.
             (m.specular_ior, m.specular_weight) = (opaque_ior(&m), 1.0);
         }
-        // Models 3 and 8 are mirrors: a black base colour with a mirror is a metal.
+        // Models 3 and 8 are mirrors. A mirror with a black base colour is a metal.
         if matches!(model, 3 | 8) && m.base_color.max_element() < 0.05 && specular != Vec3::ZERO {
             (m.base_color, m.base_metalness, m.specular_weight) = (specular.min(Vec3::ONE), 1.0, 1.0);
         }
         let by_filter = physical && self.filter.is_some();
         match transmission > 0.0 && !by_filter {
             true => m.specular_weight = 1.0,
-            // In other models, `d` is the opacity.
+            // In other models, `d` is an opacity.
             false => m.opacity = opacity,
         }
         m.transmission_weight = transmission;
         if let Some(filter) = self.filter.filter(|_| transmission > 0.0) {
             let (tint, picture) = match by_filter {
-                // The maximum of `Tf` is the fraction; transmitted light is tinted by the base
-                // colour too.
+                // The maximum of `Tf` is the fraction. Transmitted light is also tinted by the base
+                // colour.
                 true => (m.base_color * filter / filter.max_element(), m.base_color_texture.clone()),
                 false => (filter.min(Vec3::ONE), None),
             };
-            // Light crosses the surface twice, as it enters and as it leaves.
+            // Light crosses the surface twice, on entering and on leaving.
             m.transmission_color = Vec3::from_array(tint.to_array().map(f32::sqrt));
             m.transmission_color_texture = picture;
         }

@@ -1,11 +1,11 @@
-//! Compatibility with the course programs' readers of Wavefront files.
+//! Imitates the course programs' readers of Wavefront files.
 
 use super::{Statement, statement, words::Words};
 use durer_scene::dialect::{Quirk, QuirkSet};
 use std::borrow::Cow;
 
-/// Returns the file with blanks in place of what programs with these quirks ignore, so that byte
-/// offsets stay the same.
+/// Returns the file without the parts that programs with these quirks ignore. Corners are
+/// overwritten with spaces, so that byte offsets stay valid; a last line is cut off.
 ///
 /// The quirks are [`Quirk::LostLastLine`] and [`Quirk::ThreeCorners`].
 pub fn known(bytes: &[u8], quirks: QuirkSet) -> Cow<'_, [u8]> {

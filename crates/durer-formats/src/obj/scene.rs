@@ -1,4 +1,4 @@
-//! Reader of a Wavefront file as a scene: one mesh for each material that it names.
+//! Reads a Wavefront file as a scene, with one mesh for each material that it uses.
 
 use super::faces::rest_of;
 use super::materials::{self, Library};
@@ -18,11 +18,11 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The Wavefront scene format.
+/// Scene format entry for Wavefront files.
 pub(crate) const FORMAT: SceneFormat = SceneFormat {
     name: super::FORMAT.name,
     extensions: super::FORMAT.extensions,
-    // The first word is not distinctive; only the extension identifies the format.
+    // The first word is not distinctive, so only the extension identifies the format.
     recognise: |_| false,
     read,
     write: None,
@@ -61,7 +61,7 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     wires.found.retain(|wires| !wires.lines.is_empty() || !wires.points.is_empty());
     let alone = data.triangles.is_empty() && wires.found.is_empty() && !data.positions.is_empty();
     if alone && !report.has_errors() {
-        // A file that only has vertices is a point cloud.
+        // A file with only vertices is a point cloud.
         let points = (0..data.positions.len() as u32).collect();
         wires.found.push(Wires { points, ..Wires::default() });
     }
@@ -107,13 +107,14 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     Some(scene)
 }
 
-/// Pairs each switch with the range of triangles that it applies to; the last ends at `count`.
+/// Pairs each switch with the range of triangles that it applies to; the last range ends at
+/// `count`.
 fn runs<T>(switches: &[Switch<T>], count: usize) -> impl Iterator<Item = (Range<usize>, &T)> {
     let ends = switches.iter().skip(1).map(|switch| switch.0).chain([count]);
     switches.iter().zip(ends).map(|((start, what), end)| (*start..end, what))
 }
 
-/// Computes normals for the triangles of smoothing groups that have none in the file.
+/// Computes normals for triangles of smoothing groups that have none in the file.
 fn smooth(data: &mut MeshData, switches: &[Switch<u32>]) {
     if switches.iter().all(|&(_, group)| group == 0) {
         return;
@@ -123,8 +124,8 @@ fn smooth(data: &mut MeshData, switches: &[Switch<u32>]) {
     smoothed(data, |triangle, _| (groups[triangle] > 0).then(|| groups[triangle]));
 }
 
-/// Splits a mesh by material name, in the order of first use; each part comes with a range in which
-/// its name is mentioned.
+/// Splits a mesh by material name, in the order of first use. Each part comes with a byte range
+/// where its name occurs.
 fn parts(data: &MeshData, bytes: &[u8], switches: &[Switch<Range<usize>>]) -> Vec<(MeshData, Range<usize>)> {
     let runs = runs(switches, data.triangles.len()).map(|(run, at)| (run, at.clone()));
     let before = 0..switches.first().map_or(data.triangles.len(), |switch| switch.0);
@@ -145,7 +146,7 @@ fn parts(data: &MeshData, bytes: &[u8], switches: &[Switch<Range<usize>>]) -> Ve
     }
 }
 
-/// Copies some of the triangles with the vertices that they use.
+/// Copies a subset of the triangles, with the vertices that they use.
 fn part(data: &MeshData, runs: &[Range<usize>]) -> MeshData {
     let mut part = MeshData::default();
     let pick = |list: &[[u32; 3]]| -> Vec<[u32; 3]> {
@@ -172,7 +173,7 @@ fn part(data: &MeshData, runs: &[Range<usize>]) -> MeshData {
     part
 }
 
-/// Renumbers the used indices from 0; returns the old indices.
+/// Renumbers the used indices from 0; returns the corresponding old indices.
 fn renumber(list: &mut [[u32; 3]]) -> Vec<u32> {
     let mut used: Vec<u32> = list.iter().flatten().copied().filter(|&i| i != NO_INDEX).collect();
     used.sort_unstable();

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-/// Returns the findings of a square's vertices, which take four lines, followed by more text.
+/// Returns the diagnostics for a square's vertices, which take four lines, followed by more text.
 fn findings(more: &str) -> Vec<String> {
     read(format!("{SQUARE}{more}").as_bytes(), "m.obj").1
 }
@@ -90,7 +90,7 @@ fn wrong_numbers() {
     for (text, expected) in cases {
         assert_eq!(findings(text), [expected], "{text}");
     }
-    // An invalid vertex still counts, so that faces that use it are not reported too.
+    // An invalid vertex still counts, so that faces that use it are not reported as well.
     assert_eq!(findings("v 1 2\nf 1 2 5\nf 1 2 9\n").len(), 2);
 }
 
@@ -137,7 +137,7 @@ fn warnings_and_notes() {
     let unknown =
         "5:1+6 Warning: 2 statements not understood and left out; the first is `usemlt` (did you mean `usemtl`?)";
     assert_eq!(findings("usemlt a\nf 1 2 3\ncurv2 1 2\n"), [unknown]);
-    assert_eq!(findings("f 1 2 2\nf 1 2 3 1\n"), ["5:1+7 Note: 2 faces name a vertex twice; the first is here"]);
+    assert_eq!(findings("f 1 2 2\nf 1 2 3 1\n"), ["5:1+7 Note: 2 faces use a vertex twice; the first is here"]);
 }
 
 #[test]
@@ -148,7 +148,7 @@ fn nothing_panics() {
     abuse(text.replace("vt 1.#INF\n", "").as_bytes(), "m.obj");
 }
 
-/// Returns name, number of triangles and number of vertices of each mesh of a scene.
+/// Returns the name, the number of triangles and the number of vertices of each mesh in a scene.
 fn meshes(scene: &Scene) -> Vec<(String, usize, usize)> {
     let count = |(name, data): (&String, &Arc<MeshData>)| (name.clone(), data.triangles.len(), data.positions.len());
     scene.assets.meshes.iter().map(count).collect()
@@ -203,19 +203,19 @@ fn smoothing_group_smooths_its_faces() {
         assert_eq!(messages, [""; 0], "{faces}");
         let scene = scene.unwrap();
         let data = scene.assets.meshes.values().next().unwrap();
-        // Normal of each face's first corner, which is the origin.
+        // The normal of each face's first corner, which is the origin.
         let normal = |triangle: usize| data.normals[data.triangle_normals[triangle][0] as usize];
         data.triangle_normals.first().map(|_| [normal(0), normal(2)])
     };
     let half = (Vec3::Z + Vec3::Y).normalize();
     let [one, other] = of("s 1\nf 1 2 3 4\nf 1 6 5 2\n").unwrap();
-    // Two triangles meet at a corner of a square and are weighted by their angles.
+    // Two triangles that meet at a corner of a square are weighted by their angles.
     assert!((one - half).length() < 1e-6 && one == other, "{one} {other}");
-    // Each of two groups has its own normals.
+    // Each of the two groups has its own normals.
     assert_eq!(of("s 1\nf 1 2 3 4\ns 2\nf 1 6 5 2\n").unwrap(), [Vec3::Z, Vec3::Y]);
     assert_eq!(of("s off\nf 1 2 3 4\nf 1 6 5 2\n"), None);
     assert_eq!(of("f 1 2 3 4\nf 1 6 5 2\n"), None);
-    // Normals of the file are kept.
+    // Normals in the file are kept.
     let [one, other] = of("vn 0 1 0\ns 1\nf 1//1 2//1 3//1 4//1\nf 1 6 5 2\n").unwrap();
     assert_eq!([one, other], [Vec3::Y, Vec3::Y]);
 }

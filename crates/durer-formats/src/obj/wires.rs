@@ -1,4 +1,4 @@
-//! Lines and points of a Wavefront file, which have no surface.
+//! Reads lines and points of a Wavefront file, which have no surface.
 
 use super::Statement;
 use super::faces::index;
@@ -7,22 +7,22 @@ use crate::report::Report;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Lines and points of one material.
+/// Lines and points of a Wavefront file that share one material.
 #[derive(Default)]
 pub(super) struct Wires {
-    /// Range of a mention of the material's name; empty if there is none.
+    /// Byte range where the material's name occurs; empty if there is no material.
     pub(super) material: Range<usize>,
     /// Pairs of vertex indices.
     pub(super) lines: Vec<[u32; 2]>,
     pub(super) points: Vec<u32>,
 }
 
-/// Reader of the statements `l` and `p`.
+/// Reader of the line and point statements `l` and `p` of a Wavefront file.
 pub(super) struct WireReader<'a> {
     pub(super) bytes: &'a [u8],
-    /// Number of vertices in the file, and number of those before the current statement.
+    /// Number of vertices in the whole file, and number of vertices before the current statement.
     pub(super) vertices: [usize; 2],
-    /// Range of the current material's name.
+    /// Byte range of the current material's name.
     pub(super) material: Range<usize>,
     /// Lines and points by material, in order of first use.
     pub(super) found: Vec<Wires>,
@@ -30,11 +30,12 @@ pub(super) struct WireReader<'a> {
 }
 
 impl<'a> WireReader<'a> {
+    /// Creates a reader for a file with this many vertices.
     pub(super) fn new(bytes: &'a [u8], vertices: usize) -> Self {
         WireReader { bytes, vertices: [vertices, 0], material: 0..0, found: Vec::new(), numbers: BTreeMap::new() }
     }
 
-    /// Reads the vertices of a line or of points.
+    /// Reads the vertices of an `l` or `p` statement.
     pub(super) fn read(&mut self, kind: Statement, words: &mut Words, report: &mut Report) {
         let number = *self.numbers.entry(&self.bytes[self.material.clone()]).or_insert_with(|| {
             self.found.push(Wires { material: self.material.clone(), ..Wires::default() });
@@ -43,7 +44,7 @@ impl<'a> WireReader<'a> {
         let wires = &mut self.found[number];
         let mut last = None;
         while let Some(word) = words.next_word() {
-            // Ignores a texture coordinate: a stick has none.
+            // Ignore the texture coordinate: a stick has none.
             let length = self.bytes[word.clone()].iter().position(|&byte| byte == b'/').unwrap_or(word.len());
             let at = word.start..word.start + length;
             let Some(vertex) = index(self.bytes, at, 0, self.vertices, report) else { return };

@@ -1,12 +1,12 @@
-//! Tokenizer of Wavefront files, statement by statement.
+//! Tokenizer for Wavefront files: splits a file into statements, and statements into words.
 
 use crate::number::is_not_finite_tail;
 use std::ops::Range;
 
-/// Cursor over the words of a file, one statement after the other.
+/// Cursor over the words of a Wavefront file, one statement after the other.
 ///
 /// A statement ends with its line, unless the line ends in a backslash. `#` starts a comment, which
-/// always ends with the line. Words are byte ranges, so nothing is copied.
+/// always ends with the line. Words are returned as byte ranges, so nothing is copied.
 #[derive(Clone)]
 pub(super) struct Words<'a> {
     bytes: &'a [u8],
@@ -14,7 +14,7 @@ pub(super) struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
-    /// Starts at the beginning of a file, after a byte order mark.
+    /// Starts at the beginning of a file, after a byte order mark if there is one.
     pub fn new(bytes: &'a [u8]) -> Self {
         Words { bytes, at: if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 } }
     }
@@ -62,7 +62,7 @@ impl<'a> Words<'a> {
             let ends = match byte {
                 b' ' | b'\t' | 0x0b | 0x0c | b'\n' | b'\r' => true,
                 b'\\' => self.continuation() > 0,
-                // `#` starts a comment, unless it is within `1.#INF`.
+                // `#` starts a comment, unless it is part of `1.#INF`.
                 b'#' => !is_not_finite_tail(&self.bytes[self.at..]),
                 _ => false,
             };
@@ -74,7 +74,7 @@ impl<'a> Words<'a> {
         Some(start..self.at)
     }
 
-    /// Skips the rest of the statement; returns the end of its last word, if there was a word left.
+    /// Skips the rest of the statement; returns the end of its last word if words were left.
     pub fn skip_rest(&mut self) -> Option<usize> {
         std::iter::from_fn(|| self.next_word()).last().map(|word| word.end)
     }
@@ -89,7 +89,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Length in bytes of the line continuation at the cursor, or 0.
+    /// Returns the length in bytes of a line continuation at the cursor; 0 if there is none.
     fn continuation(&self) -> usize {
         match self.bytes[self.at..] {
             [b'\\', b'\r', b'\n', ..] => 3,
@@ -100,8 +100,8 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Splits a file into parts of about a megabyte that end between statements. The result does not
-/// depend on the machine.
+/// Splits a file into parts of about a megabyte that end between statements, for parallel reading.
+/// The result does not depend on the number of processors.
 pub(super) fn parts(bytes: &[u8]) -> Vec<Range<usize>> {
     const SIZE: usize = 1 << 20;
     let mut all = Vec::new();

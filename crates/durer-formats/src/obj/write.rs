@@ -1,10 +1,12 @@
-//! Writer of meshes as Wavefront files: all but second texture coordinates and tangents.
+//! Writer of Wavefront files: all attributes of a mesh except second texture coordinates and
+//! tangents.
 
 use durer_scene::shape::MeshData;
 use durer_scene::shape::mesh::NO_INDEX;
 use std::fmt::Write;
 
-/// Writes a mesh. Numbers have as few digits as read back to the same value.
+/// Formats a mesh as a Wavefront file. Numbers have the fewest digits that read back to the same
+/// value.
 pub(crate) fn write(mesh: &MeshData) -> Vec<u8> {
     // Writing to a String cannot fail.
     let mut out = String::new();

@@ -1,4 +1,4 @@
-//! Film, camera, sampler and integrator.
+//! Reads the film, camera, sampler and integrator.
 
 use super::language::Language;
 use super::params::Params;
@@ -11,12 +11,12 @@ use durer_scene::camera::{
 use durer_scene::math::fp;
 use glam::{DAffine3, DVec2, DVec3};
 
-/// Default resolution of a film in pbrt-v4 and in pbrt-v3.
+/// Default resolution of a film, in pbrt-v4 and in pbrt-v3.
 const SIZE: (u32, u32) = (1280, 720);
 const OLD_SIZE: (u32, u32) = (640, 480);
 
-/// Camera in world space: its position and its right, up and forward axes. The length of an axis is
-/// one unit of camera space.
+/// Position and axes (right, up and forward) of a pbrt camera in world space. The length of an axis
+/// is one unit of camera space.
 struct CameraFrame {
     center: DVec3,
     axes: [DVec3; 3],
@@ -28,19 +28,20 @@ impl CameraFrame {
         CameraFrame { center: to_world.translation, axes: [m.x_axis, m.y_axis, m.z_axis] }
     }
 
-    /// Handedness of a picture for a viewer who looks along `forward`.
+    /// Returns the handedness of the picture for a viewer who looks along `forward`.
     fn handedness(right: DVec3, up: DVec3, forward: DVec3) -> Handedness {
         if forward.cross(up).dot(right) < 0.0 { Handedness::Left } else { Handedness::Right }
     }
 }
 
-/// First column, first row, number of columns and number of rows.
+/// Part of a film in pixels: first column, first row, number of columns and number of rows.
 type Part = (u32, u32, u32, u32);
 
-/// Crop window of a film.
+/// Reads the crop window of a film.
 ///
-/// Source: *Physically Based Rendering*, 4th edition, section 5.4.2: `pixelbounds` in pixels or
-/// `cropwindow` in fractions, rounded up; x from, to, y from, to. The ends are excluded.
+/// Source: *Physically Based Rendering*, 4th edition, section 5.4.2: `pixelbounds` in pixels, or
+/// `cropwindow` in fractions, which are rounded up. Both list the first and last x, then the first
+/// and last y; the last ones are excluded.
 fn crop(params: &Params, (width, height): (u32, u32)) -> Option<Part> {
     let sides = [width, width, height, height].map(f64::from);
     let mut part = [0.0, sides[0], 0.0, sides[2]];
@@ -63,7 +64,7 @@ fn crop(params: &Params, (width, height): (u32, u32)) -> Option<Part> {
     given.map(|_| (left, top, right - left, bottom - top))
 }
 
-/// Visible part of the plane in front of the camera, y up.
+/// Screen window of a pbrt camera: the visible part of the plane in front of it, with y up.
 struct Window {
     middle: DVec2,
     half: DVec2,
@@ -112,7 +113,7 @@ impl Reader<'_> {
         self.scene.camera_span = directive.at;
     }
 
-    /// Resolution of the film and its crop window.
+    /// Returns the resolution of the film and its crop window.
     fn film_size(&self) -> ((u32, u32), Option<Part>) {
         let third = self.language == Language::Third;
         let usual = if third { OLD_SIZE } else { SIZE };
@@ -151,8 +152,8 @@ impl Reader<'_> {
         ((width, height), crop)
     }
 
-    /// Factor from radiance to pixel values: shutter time times ISO / 100 in pbrt-v4, `scale` of
-    /// the film in pbrt-v3.
+    /// Returns the factor from radiance to pixel values: shutter time times ISO / 100 in pbrt-v4,
+    /// or the film's `scale` in pbrt-v3.
     ///
     /// Source: *Physically Based Rendering*, 4th edition, section 5.4.2, and 3rd edition, section
     /// 7.9.
@@ -169,7 +170,7 @@ impl Reader<'_> {
         (open.unwrap_or(1.0) * film.unwrap_or(100.0) / 100.0).max(0.0)
     }
 
-    /// Screen window, in units of half the picture's shorter side.
+    /// Reads the screen window, in units of half the picture's shorter side.
     fn window(&self, params: &Params, (width, height): (u32, u32)) -> Window {
         let aspect = params.positive("frameaspectratio").unwrap_or(width as f32 / height as f32);
         let aspect = f64::from(aspect);
@@ -189,8 +190,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Half the larger side, and the offset of the middle as a fraction of it. Warns of pixels that
-    /// are not square.
+    /// Returns half the larger side, and the offset of the middle as a fraction of it. Warns if
+    /// pixels are not square.
     fn larger(&self, window: &Window, (width, height): (u32, u32), params: &Params) -> (f64, DVec2) {
         let (x, y) = (window.half.x / f64::from(width), window.half.y / f64::from(height));
         if (x / y - 1.0).abs() > 2e-3 {
@@ -203,8 +204,8 @@ impl Reader<'_> {
         (half, window.middle / half)
     }
 
-    /// Perspective camera. `half` is half the shorter side at distance 1 and replaces the field of
-    /// view.
+    /// Reads a perspective camera. If `half` is given, it is half the shorter side at distance 1,
+    /// and replaces the field of view.
     fn perspective(&self, placed: &CameraFrame, params: &Params, size: (u32, u32), half: Option<f64>) -> Camera {
         let [a, b, c] = placed.axes;
         let (usual, mut window) = (half.map_or(90.0, |_| 90.0), self.window(params, size));
@@ -260,7 +261,7 @@ impl Reader<'_> {
         Some(camera.into())
     }
 
-    /// Spherical camera. The middle of the picture is the direction -x.
+    /// Reads a spherical camera. The middle of the picture is the direction -x.
     fn spherical(&self, placed: &CameraFrame, params: &Params) -> Camera {
         let [a, b, c] = placed.axes;
         if self.language == Language::Third {
@@ -278,7 +279,8 @@ impl Reader<'_> {
         .into()
     }
 
-    /// Reads the integrator. `maxdepth` counts the first scattering too; `bounces` does not.
+    /// Reads the integrator. `maxdepth` counts the first scattering event too; Dürer's `bounces`
+    /// does not.
     pub fn integrator(&mut self, directive: &DeferredDirective) {
         const OLD: [&str; 9] =
             ["path", "volpath", "bdpt", "mlt", "sppm", "ambientocclusion", "ao", "directlighting", "whitted"];
@@ -320,6 +322,7 @@ impl Reader<'_> {
         params.finish("this integrator");
     }
 
+    /// Reads the sampler, which sets the number of samples per pixel.
     pub fn sampler(&mut self, directive: &DeferredDirective) {
         const KNOWN: [&str; 8] =
             ["halton", "independent", "paddedsobol", "pmj02bn", "sobol", "stratified", "zsobol", "mlt"];

@@ -1,4 +1,4 @@
-//! Curves with a width: tubes and ribbons, tessellated into triangles.
+//! Curves with a width, tessellated as tubes and ribbons.
 //!
 //! Source: *Physically Based Rendering*, 4th edition, section 6.7, and 3rd edition, section 3.7.
 
@@ -11,7 +11,7 @@ use glam::{DVec3, DVec4};
 /// Maximum number of control points of a curve.
 const MAX_POINTS: usize = 1 << 14;
 
-/// Tessellates a curve; with fewer sides if `many`.
+/// Tessellates a curve. It has fewer sides if the scene has `many` triangles already.
 pub(super) fn mesh(params: &Params, reversed: bool, many: bool) -> Option<MeshData> {
     let report = params.report;
     params.known(&["splitdepth"]);
@@ -57,7 +57,7 @@ pub(super) fn mesh(params: &Params, reversed: bool, many: bool) -> Option<MeshDa
     Some(data.oriented(reversed))
 }
 
-/// Segments of a curve as cubic Bézier curves.
+/// Splits a curve into cubic Bézier segments.
 fn pieces(params: &Params) -> Option<Vec<[DVec3; 4]>> {
     let report = params.report;
     let Some(points) = params.triples("P") else {

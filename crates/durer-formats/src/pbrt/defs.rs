@@ -1,4 +1,4 @@
-//! Results of directives: materials, textures, media and lights.
+//! Results of executing directives: materials, textures and lights.
 
 use durer_diag::Span;
 use durer_scene::describe::FileName;
@@ -7,11 +7,12 @@ use durer_scene::math::Color;
 use durer_scene::scene::Picture;
 use glam::DAffine3;
 
-/// Material as declared.
+/// Material defined in a pbrt file, before a shape uses it and it gets an index in the scene.
 pub(super) enum MaterialDef {
     Layers(Box<PrincipledMaterial>, Span),
     Hair(HairMaterial, Span),
-    /// Mix of two materials by index, with the share of the first.
+    /// Mix of two materials, which are indices into the reader's list; `share` is that of the
+    /// first.
     Mix {
         parts: [usize; 2],
         share: f32,
@@ -21,31 +22,31 @@ pub(super) enum MaterialDef {
         pictured: bool,
         at: Span,
     },
-    /// Material of a surface that is not rendered.
+    /// Material of a surface that is not rendered (`interface`).
     Nothing,
 }
 
-/// Opacity of a shape: a constant share, and a picture that multiplies it.
+/// Opacity of a shape, from its `alpha` parameter: a constant, and a picture that multiplies it.
 #[derive(Debug)]
 pub(super) struct Opacity {
     pub share: f32,
     pub picture: Option<FileName>,
 }
 
-/// Texture: a constant or a picture.
+/// Value of a pbrt texture: a constant colour or a picture.
 #[derive(Clone)]
 pub(super) enum Texture {
     Even(Color),
-    /// Picture and its factor.
+    /// Picture, and the factor on its values.
     Picture(Picture, Color),
 }
 
-/// Area light.
+/// Area light of pbrt that applies to the shapes after it.
 #[derive(Clone, Debug)]
 pub(super) struct AreaLight {
-    /// Radiance; the colour of the power if `power` is given.
+    /// Radiance; only the colour of the light if `power` is given.
     pub radiance: Color,
-    /// Flux of each shape or triangle, in lumens.
+    /// Luminous flux of each shape or triangle in lumens.
     pub power: Option<f32>,
     pub two_sided: bool,
     /// Name of a picture that multiplies the radiance.
@@ -53,28 +54,28 @@ pub(super) struct AreaLight {
     pub at: Span,
 }
 
-/// Mapping of directions to a picture.
+/// Mapping between directions and positions in an environment map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Map {
-    /// Equal-area square of pbrt-v4.
+    /// Equal-area square mapping of pbrt-v4.
     EqualArea,
-    /// Longitude and latitude of pbrt-v3, z up.
+    /// Longitude and latitude (equirectangular) mapping of pbrt-v3, with z up.
     Longitude,
 }
 
-/// Infinite light.
+/// Infinite light of pbrt: constant, or an environment map.
 pub(super) enum InfiniteLight {
     /// Constant radiance.
     Even(Color),
     Picture {
         name: String,
         at: Span,
-        /// Factor on the picture's values.
+        /// Factor on the values of the environment map.
         scale: Color,
         map: Map,
-        /// Map from world space to the picture's space.
+        /// Transform from world space to the axes of the environment map.
         to_light: DAffine3,
-        /// Illuminance that the upper half is scaled to.
+        /// Illuminance to which the upper half of the map is scaled.
         illuminance: Option<f32>,
     },
 }

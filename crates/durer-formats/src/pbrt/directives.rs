@@ -1,4 +1,4 @@
-//! Execution of directives, in the order of the file.
+//! Executes directives in file order.
 
 use super::language::Language;
 use super::lexer::{Lexer, Token};
@@ -14,7 +14,7 @@ use durer_scene::spectrum::space::RgbSpace;
 use glam::{DAffine3, DVec3};
 use std::rc::Rc;
 
-/// Directives; true if a string follows.
+/// Names of the directives; true if a string follows.
 pub(super) const DIRECTIVES: [(&str, bool); 44] = [
     ("Accelerator", true),
     ("ActiveTransform", false),
@@ -63,7 +63,7 @@ pub(super) const DIRECTIVES: [(&str, bool); 44] = [
     ("Renderer", true),
 ];
 
-/// Directives allowed only after `WorldBegin`, and only before it.
+/// Directives allowed only after `WorldBegin`; then those allowed only before it.
 const OF_WORLD: [&str; 10] = [
     "AreaLightSource",
     "LightSource",
@@ -82,13 +82,13 @@ const BEFORE_WORLD: [&str; 8] =
 /// Targets of `Attribute`, in the order of [`State::attributes`](super::state::State).
 const TARGETS: [&str; 5] = ["shape", "light", "material", "medium", "texture"];
 
-/// Limits: number of included files, depth of includes, depth of scopes.
+/// Limits on the number of included files, the depth of includes and the depth of scopes.
 const MAX_FILES: usize = 1 << 16;
 const DEEPEST_FILES: usize = 64;
 const DEEPEST_SCOPES: usize = 1 << 12;
 
 impl Reader<'_> {
-    /// Reads the whole file and returns the scene. Errors are in the reader's report.
+    /// Reads the whole file and returns the scene. Errors are added to the reader's report.
     pub fn read(mut self) -> Scene {
         while !self.report.is_full() {
             let report = self.report;
@@ -144,7 +144,7 @@ impl Reader<'_> {
         }
     }
 
-    /// String after a directive, with its place.
+    /// Reads the string after a directive; returns it with its span.
     fn name(&mut self, directive: Span) -> Option<(String, Span)> {
         let report = self.report;
         let text = self.text();
@@ -211,7 +211,7 @@ impl Reader<'_> {
             "ReverseOrientation" => self.state.reversed = !self.state.reversed,
             "WorldBegin" => self.world_begin(at),
             "WorldEnd" if self.language == Language::Third => {}
-            "WorldEnd" => report.once(at, "`WorldEnd` is of pbrt-v3 and is ignored"),
+            "WorldEnd" => report.once(at, "`WorldEnd` belongs to pbrt-v3 and is ignored"),
             "ObjectEnd" => self.close(Scope::Object, at),
             _ => return self.named(word, at),
         }
@@ -301,8 +301,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Skips the value of an `Option`, whose string is its parameter. Options have no effect in
-    /// Dürer.
+    /// Skips the value of an `Option`, whose string has the form of a parameter. Options have no
+    /// effect in Dürer.
     fn skip_value(&mut self) {
         let report = self.report;
         let text = self.text();
@@ -345,7 +345,7 @@ impl Reader<'_> {
 
     fn open(&mut self, scope: Scope, at: Span) {
         if self.stack.len() >= DEEPEST_SCOPES {
-            self.report.bad(at, format!("scopes are nested more than {DEEPEST_SCOPES} deep"));
+            self.report.bad(at, format!("scopes are nested more than {DEEPEST_SCOPES} levels deep"));
             return;
         }
         self.stack.push((scope, self.state.clone(), at));
@@ -417,7 +417,7 @@ impl Reader<'_> {
             return self.report.bad(at, format!("too many files: more than {MAX_FILES} are included"));
         }
         if self.texts.len() >= DEEPEST_FILES {
-            return self.report.bad(at, format!("includes are nested more than {DEEPEST_FILES} deep"));
+            return self.report.bad(at, format!("includes are nested more than {DEEPEST_FILES} levels deep"));
         }
         let bytes = match read_unpacked(self.input.source, &name) {
             Ok(bytes) => bytes,

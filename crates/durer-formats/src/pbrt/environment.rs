@@ -1,5 +1,5 @@
-//! Infinite lights: constant, or pictures of all directions. They are merged into one picture of
-//! longitude and latitude.
+//! Infinite lights: constant, or environment maps. They are merged into one equirectangular
+//! environment map.
 
 use super::defs::{InfiniteLight, Map};
 use super::state::Reader;
@@ -11,10 +11,11 @@ use durer_scene::math::{Color, LUMINANCE, Vec2, Vec3, fp};
 use glam::{DAffine3, DVec3};
 use std::f32::consts::{FRAC_2_PI, PI, TAU};
 
-/// Maximum number of rows of the merged picture.
+/// Maximum height in pixels of the merged environment map.
 const MAX_ROWS: u32 = 2048;
 
-/// Picture of an infinite light with its transform and scale.
+/// Environment map of one infinite light, with its transform and scale; merged with others into the
+/// scene's environment.
 struct Source {
     image: Image,
     to_light: DAffine3,
@@ -23,7 +24,7 @@ struct Source {
 }
 
 impl Reader<'_> {
-    /// Merges the infinite lights into the scene's environment.
+    /// Merges all infinite lights into the scene's environment map.
     pub fn surround(&mut self) {
         let mut even = Color::ZERO;
         let mut sources = Vec::new();
@@ -45,8 +46,8 @@ impl Reader<'_> {
         }
         (self.scene.background.color, self.scene.background.ambient_light) = (even, Color::ZERO);
         let Some((name, at)) = first else { return };
-        // Double the rows of a longitude picture: its fine detail near the poles lies elsewhere in
-        // the result.
+        // Double the rows for an equirectangular source: its fine detail near the poles is at other
+        // directions in the result.
         let finer = |source: &Source| source.image.height * if source.map == Map::Longitude { 2 } else { 1 };
         let rows = sources.iter().map(finer).max().unwrap_or(1).min(MAX_ROWS);
         let light = |dir: DVec3| even + sources.iter().map(|source| source.at(dir)).sum::<Color>();
@@ -56,7 +57,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads a picture of all directions and its mapping.
+    /// Reads an environment map and determines its mapping.
     fn environment(&self, name: &str, at: Span, map: Map, memory: u64) -> Option<(Image, Map)> {
         let bytes = match self.input.source.read(name) {
             Ok(bytes) => bytes,
@@ -65,7 +66,7 @@ impl Reader<'_> {
                 return None;
             }
         };
-        // pbrt-v3 reads the bytes of a light's picture as linear values.
+        // pbrt-v3 reads the bytes of an environment map as linear values.
         let decode = if map == Map::Longitude { image::decode_linear } else { image::decode_srgb };
         let read = Encoded::open(&bytes, name).and_then(|encoded| encoded.read(memory, decode));
         match read {
@@ -91,8 +92,8 @@ impl Reader<'_> {
 }
 
 impl Source {
-    /// Radiance from a direction in world space: the nearest texel as in pbrt-v4, bilinear as in
-    /// pbrt-v3.
+    /// Returns the radiance from a direction in world space: of the nearest texel as in pbrt-v4, or
+    /// bilinearly interpolated as in pbrt-v3.
     fn at(&self, dir: DVec3) -> Color {
         let dir = self.to_light.transform_vector3(dir).normalize_or(DVec3::Z).as_vec3();
         let (width, height) = (self.image.width, self.image.height);
@@ -113,7 +114,7 @@ impl Source {
     }
 }
 
-/// Position of a unit vector in the unit square of the equal-area mapping.
+/// Returns the position of a unit vector in the unit square of the equal-area mapping.
 ///
 /// Source: Petrik Clarberg, *Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD*, Journal of
 /// Graphics Tools 13(3), 2008.
@@ -127,7 +128,7 @@ pub(super) fn equal_area(dir: Vec3) -> Vec2 {
     0.5 * (Vec2::new(place.x.copysign(dir.x), place.y.copysign(dir.y)) + 1.0)
 }
 
-/// Unit vector of a position in the square of the equal-area mapping.
+/// Returns the unit vector for a position in the square of the equal-area mapping.
 pub(super) fn of_equal_area(place: Vec2) -> Vec3 {
     let place = 2.0 * place - 1.0;
     let across = place.abs();
@@ -139,7 +140,8 @@ pub(super) fn of_equal_area(place: Vec2) -> Vec3 {
     Vec3::new((fp::cos(turn) * flat).copysign(place.x), (fp::sin(turn) * flat).copysign(place.y), z)
 }
 
-/// Illuminance from the upper half (z > 0) of a picture on a surface facing +z.
+/// Returns the illuminance of a surface facing +z, lit by the upper half (z > 0) of an environment
+/// map.
 fn upper_illuminance(image: &Image, map: Map) -> f32 {
     let mut sum = 0.0_f64;
     let (width, height) = (image.width, image.height);

@@ -1,4 +1,5 @@
-//! Goniometric lights and projectors, as measured point lights: one each for red, green and blue.
+//! Goniometric lights and projectors, converted to measured point lights: one each for red, green
+//! and blue.
 //!
 //! Source: *Physically Based Rendering*, 3rd edition, sections 12.3.2 and 12.3.3, and 4th edition,
 //! sections 12.2.2 and 12.2.3.
@@ -15,14 +16,14 @@ use durer_scene::math::{Color, Vec2, Vec3, fp};
 use glam::DAffine3;
 use std::f32::consts::{PI, TAU};
 
-/// Maximum number of steps of an angle.
+/// Maximum number of steps of an angle in a profile.
 const STEPS: u32 = 720;
 
-/// Number of steps of a projector's vertical and horizontal angles.
+/// Number of steps of the vertical and horizontal angles in a projector's profile.
 const PROJECTED: [u32; 2] = [360, 720];
 
-/// Directional distribution of a light, and the vertical and horizontal angles in degrees at which
-/// it is sampled.
+/// Directional distribution of a goniometric or projection light, with the vertical and horizontal
+/// angles in degrees at which it is sampled.
 struct Pattern {
     axes: Axes,
     angles: [Vec<f32>; 2],
@@ -31,7 +32,7 @@ struct Pattern {
 
 impl Reader<'_> {
     /// Adds a light at the origin of the current space; `color` is its intensity where the picture
-    /// is 1.
+    /// has the value 1.
     pub fn pictured_light(&mut self, kind: &str, params: &Params, map: DAffine3, (color, power): (Color, Option<f32>)) {
         let third = self.language == Language::Third;
         let fov = if kind == "projection" { Some(self.fov(params, third)) } else { None };
@@ -59,7 +60,7 @@ impl Reader<'_> {
         lights.add(&mut self.scene, self.input.name, (map, axes), color * strength, params.at);
     }
 
-    /// Field of view of a projector across the shorter side of its picture, in degrees.
+    /// Reads the field of view of a projector across the shorter side of its picture, in degrees.
     fn fov(&self, params: &Params, third: bool) -> f32 {
         let fov = params.float("fov").unwrap_or(if third { 45.0 } else { 90.0 });
         if !(fov > 0.0 && fov < 180.0) {
@@ -68,7 +69,7 @@ impl Reader<'_> {
         fov.clamp(1e-2, 179.0)
     }
 
-    /// Picture of a light; white if pbrt-v3 gives none.
+    /// Reads the picture of a light; white if a pbrt-v3 light has none.
     fn light_picture(&self, kind: &str, params: &Params, third: bool) -> Option<Image> {
         let name = if third { "mapname" } else { "filename" };
         let Some(file) = params.text(name).filter(|file| !file.is_empty()).map(str::to_string) else {
@@ -101,7 +102,7 @@ impl Reader<'_> {
     }
 }
 
-/// Half extent of a projector's picture on the plane at distance 1.
+/// Rectangle on the plane at distance 1 onto which a projector projects its picture.
 struct Screen {
     half: Vec2,
 }
@@ -113,12 +114,13 @@ impl Screen {
         Screen { half: short * Vec2::new(aspect.max(1.0), (1.0 / aspect).max(1.0)) }
     }
 
-    /// Angle between the axis and a corner, in degrees.
+    /// Returns the angle between the axis and a corner, in degrees.
     fn widest(&self) -> f32 {
         fp::atan2(self.half.length(), 1.0).to_degrees()
     }
 
-    /// Value of a direction. The first row of the picture is at the least y, as in pbrt.
+    /// Returns the picture's value in a direction. As in pbrt, the first row of the picture is at
+    /// the lowest y.
     fn at(&self, image: &Image, dir: Vec3) -> Color {
         let place = Vec2::new(dir.x, dir.y) / (dir.z * self.half);
         if dir.z <= 0.0 || place.abs().max_element() > 1.0 {
@@ -128,14 +130,15 @@ impl Screen {
     }
 }
 
-/// Value of a direction in a picture of longitude, from x towards z, and of the polar angle from y.
+/// Returns the value in a direction of a picture whose columns are longitudes, from x towards z,
+/// and whose rows are polar angles from y.
 fn of_angles(image: &Image, dir: Vec3) -> Color {
     let turn = fp::atan2(dir.z, dir.x) / TAU;
     let down = fp::atan2((dir.x * dir.x + dir.z * dir.z).sqrt(), dir.y) / PI;
     between(image, Vec2::new(turn - turn.floor(), down))
 }
 
-/// Grey value of a direction in a square equal-area picture: the mean of its channels.
+/// Returns the grey value in a direction of a square equal-area picture: the mean of its channels.
 fn of_areas(image: &Image, dir: Vec3) -> Color {
     let place = equal_area(dir);
     let texel = |share: f32, count: u32| ((share * count as f32) as u32).min(count - 1);

@@ -1,4 +1,4 @@
-//! Detection of the pbrt version. A file does not state it; the words in it decide.
+//! Detects the pbrt version. Files do not state it, so it is inferred from their words.
 //!
 //! Sources: *Input File Format* of pbrt-v3 and of pbrt-v4, pbrt.org/fileformat-v3 and
 //! pbrt.org/fileformat-v4.
@@ -9,28 +9,29 @@ use crate::packed::read_unpacked;
 use crate::shared_report::SharedReport;
 use durer_diag::Span;
 
-/// Version of pbrt that a file is written for.
+/// Version of pbrt that a scene file is written for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Language {
     Third,
     Fourth,
 }
 
-/// Detected language and the word that decided it; `by` is `None` by default or if the word is in
-/// an included file.
+/// Result of detecting the pbrt version, with the word that decided it. `by` is `None` if no word
+/// did, or if the word is in an included file.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DetectedLanguage {
     pub language: Language,
     pub by: Option<Span>,
 }
 
-/// Directives only in pbrt-v3.
+/// Directives that only pbrt-v3 has.
 const OLD_DIRECTIVES: [&str; 4] = ["Renderer", "SurfaceIntegrator", "VolumeIntegrator", "WorldEnd"];
 
-/// Directives only in pbrt-v4.
+/// Directives that only pbrt-v4 has.
 const NEW_DIRECTIVES: [&str; 4] = ["Attribute", "ColorSpace", "Import", "Option"];
 
-/// Names after a directive: the directives, names only in pbrt-v3, names only in pbrt-v4.
+/// Types that may follow a directive: the directives, types that only pbrt-v3 has, and types that
+/// only pbrt-v4 has.
 const NAMES: [(&[&str], &[&str], &[&str]); 9] = [
     (&["Film"], &["image"], &["rgb", "gbuffer", "spectral"]),
     (&["Camera"], &["environment"], &["spherical"]),
@@ -65,7 +66,7 @@ const OLD_MATERIALS: [&str; 11] = [
     "uber",
 ];
 
-/// Materials only in pbrt-v4.
+/// Materials that only pbrt-v4 has.
 pub(super) const NEW_MATERIALS: [&str; 9] = [
     "coatedconductor",
     "coateddiffuse",
@@ -78,15 +79,16 @@ pub(super) const NEW_MATERIALS: [&str; 9] = [
     "thindielectric",
 ];
 
-/// Parameter names and types only in pbrt-v3.
+/// Parameter names and types that only pbrt-v3 has.
 const OLD_PARAMETERS: [&str; 8] = ["Kd", "Ks", "Kr", "Kt", "bumpmap", "mapname", "namedmaterial1", "namedmaterial2"];
 const OLD_TYPES: [&str; 2] = ["color", "xyz"];
 
-/// Maximum number of included files searched, and maximum depth of includes.
+/// Maximum number of included files that are searched, and maximum depth of includes.
 const MAX_FILES: usize = 64;
 const DEEPEST: usize = 8;
 
-/// Decides by the first word that only one of the two languages has.
+/// Detects the version by the first word that only one of the two languages has; without one, it is
+/// pbrt-v4.
 pub(super) fn decide(input: &Input) -> DetectedLanguage {
     let mut left = MAX_FILES;
     let found = search(Lexer::new(input.bytes.clone(), input.file), input, &mut left, 0);
@@ -94,13 +96,13 @@ pub(super) fn decide(input: &Input) -> DetectedLanguage {
     DetectedLanguage { language, by }
 }
 
-/// Finds the deciding word, and its place if it is in the first file. Included files have no index
-/// yet.
+/// Finds the deciding word, and its span if it is in the first file. Included files have no file
+/// index yet.
 fn search(mut text: Lexer, input: &Input, left: &mut usize, depth: usize) -> Option<(Language, Option<Span>)> {
     // Ignore errors here: they are reported when the file is read.
     let report = SharedReport::default();
-    // Current directive, number of strings after it, and last string that is a parameter's type and
-    // name.
+    // Current directive, number of strings after it, and the last string that is the type and name
+    // of a parameter.
     let (mut directive, mut names, mut head) = (String::new(), 0, String::new());
     while let Some(found) = text.next(&report) {
         let here = (depth == 0).then_some(found.at);
@@ -145,8 +147,8 @@ fn search(mut text: Lexer, input: &Input, left: &mut usize, depth: usize) -> Opt
     None
 }
 
-/// Language implied by string number `number` after a directive; `head` is the preceding
-/// parameter's type and name.
+/// Returns the language implied by string number `number` after a directive. `head` is the type and
+/// name of the preceding parameter.
 fn language_of(directive: &str, number: usize, head: &str, text: &str) -> Option<Language> {
     let mut words = text.split_ascii_whitespace();
     if let (Some(kind), Some(name), None) = (words.next(), words.next(), words.next()) {

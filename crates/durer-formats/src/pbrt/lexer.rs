@@ -1,4 +1,4 @@
-//! Tokens of a scene file: words (directives and numbers), quoted strings, brackets. `#` begins a
+//! Lexer for pbrt files: words (directives and numbers), quoted strings and brackets. `#` begins a
 //! comment.
 
 use crate::report::shown;
@@ -6,7 +6,7 @@ use crate::shared_report::SharedReport;
 use durer_diag::{Diagnostic, Span};
 use std::sync::Arc;
 
-/// Kind of a token.
+/// Token of a pbrt scene file: a word, a quoted string or a bracket.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Token {
     /// A directive, a number, `true` or `false`.
@@ -19,14 +19,14 @@ pub(super) enum Token {
     Close,
 }
 
-/// Token with its place.
+/// Token of a pbrt scene file with its span.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct SpannedToken {
     pub token: Token,
     pub at: Span,
 }
 
-/// Lexer with one token of lookahead.
+/// Lexer for the tokens of one pbrt file, with one token of lookahead.
 pub(super) struct Lexer {
     bytes: Arc<[u8]>,
     file: u32,
@@ -35,23 +35,23 @@ pub(super) struct Lexer {
 }
 
 impl Lexer {
-    /// Makes a lexer of a file's bytes, fewer than 2^32. Skips a byte order mark.
+    /// Creates a lexer for a file of less than 4 GiB. Skips a byte order mark.
     pub fn new(bytes: Arc<[u8]>, file: u32) -> Self {
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         Lexer { bytes, file, at, peeked: None }
     }
 
-    /// Bytes of a token.
+    /// Returns the bytes of a token.
     pub fn bytes(&self, at: Span) -> &[u8] {
         &self.bytes[at.start as usize..at.end as usize]
     }
 
-    /// Text of a token; empty if it is not UTF-8.
+    /// Returns the text of a token; empty if it is not UTF-8.
     pub fn word(&self, at: Span) -> &str {
         std::str::from_utf8(self.bytes(at)).unwrap_or_default()
     }
 
-    /// Text of a token as shown in messages.
+    /// Returns the text of a token, quoted for messages.
     pub fn shown(&self, at: Span) -> String {
         shown(self.bytes(at))
     }
@@ -96,7 +96,7 @@ impl Lexer {
         Some(SpannedToken { token, at: self.span(start, self.at) })
     }
 
-    /// Reads a quoted string. Its span excludes the quotes. A string must end on its line.
+    /// Reads a quoted string, which must end on the same line. Its span excludes the quotes.
     fn text(&mut self, start: usize, report: &SharedReport) -> SpannedToken {
         let mut text = Vec::new();
         self.at = start + 1;
@@ -121,7 +121,7 @@ impl Lexer {
                             b'\\'
                         }
                     });
-                    // Skip the backslash and the next byte, also after an unknown escape.
+                    // Skip the backslash and the next byte, even if the escape is unknown.
                     self.at = (self.at + 2).min(self.bytes.len());
                 }
                 Some(b'\n') | None => {

@@ -1,5 +1,5 @@
-//! Point, distant, infinite and area lights. Values are radiance: a pixel of value 1 shows radiance
-//! 1.
+//! Converts point, distant, infinite and area lights. Values are radiance: a pixel value of 1 is a
+//! radiance of 1.
 //!
 //! Source: *Physically Based Rendering*, 4th edition, chapter 12. A spectrum has luminance 1 times
 //! `scale`; `power` is luminous flux. In pbrt-v3 (3rd edition, chapter 12) values are absolute and
@@ -18,7 +18,7 @@ use glam::DVec3;
 use std::f32::consts::PI;
 use std::rc::Rc;
 
-/// Colour of a light from the parameter `name`, times `scale`.
+/// Returns the colour of a light: the parameter `name` times `scale`.
 fn color(params: &Params, name: &'static str) -> Color {
     if params.language == Language::Third {
         return params.spectrum(name).map_or(Vec3::ONE, |spectrum| spectrum.plain()) * colored_scale(params);
@@ -27,7 +27,7 @@ fn color(params: &Params, name: &'static str) -> Color {
     color * params.float("scale").unwrap_or(1.0).max(0.0)
 }
 
-/// `scale` of pbrt-v3, a colour. A number is ignored, as in pbrt-v3.
+/// Returns the `scale` of a pbrt-v3 light, a colour. A number is ignored, as in pbrt-v3.
 fn colored_scale(params: &Params) -> Color {
     match params.get("scale") {
         Some(param) if param.kind == Kind::Float => {
@@ -39,6 +39,7 @@ fn colored_scale(params: &Params) -> Color {
 }
 
 impl Reader<'_> {
+    /// Executes a `LightSource` directive.
     pub fn light(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
         let params = self.params(list, Some(LIGHT), at);
         let (map, exposure) = (self.map(at), self.exposure());
@@ -56,7 +57,8 @@ impl Reader<'_> {
         let third = self.language == Language::Third;
         let flux = || params.float("power").filter(|power| *power > 0.0);
         let power = if third { None } else { flux() };
-        // A light's colour here is the radiance of a white diffuse surface: illuminance over pi.
+        // A light's colour in Dürer is the radiance of a white diffuse surface that it illuminates:
+        // illuminance over pi.
         let value: Light = match kind {
             "goniometric" | "projection" => {
                 let color = color(&params, "I") * exposure;
@@ -152,6 +154,7 @@ impl Reader<'_> {
         self.infinite.push(infinite);
     }
 
+    /// Executes an `AreaLightSource` directive.
     pub fn area_light(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
         let third = self.language == Language::Third;
         if kind != "diffuse" && !(third && kind == "area") {

@@ -1,7 +1,7 @@
-//! Participating media: inside shapes and around the camera.
+//! Reads participating media, inside shapes and around the camera.
 //!
-//! Source, also of the default coefficients: *Physically Based Rendering*, 4th edition, chapter 11.
-//! Coefficients are per unit of world space.
+//! Coefficients are per unit of world space. Source, including the default coefficients:
+//! *Physically Based Rendering*, 4th edition, chapter 11.
 
 use super::defs::MaterialDef;
 use super::language::Language;
@@ -41,13 +41,13 @@ const MEASURED: [(&str, [f32; 3], [f32; 3]); 12] = [
 /// Default absorption and scattering coefficients.
 const USUAL: [[f32; 3]; 2] = [[0.0011, 0.0024, 0.014], [2.55, 3.21, 3.77]];
 
-/// Medium of `sigma_a`, `sigma_s`, `g` and `scale`, or of a measured preset named by the parameter
-/// `preset`.
+/// Returns the medium defined by `sigma_a`, `sigma_s`, `g` and `scale`, or a measured medium named
+/// by the parameter `preset`.
 pub(super) fn medium_of(params: &Params, preset: &'static str) -> Medium {
     with(params, preset, USUAL)
 }
 
-/// Medium with the given default absorption and scattering. See [`medium_of`].
+/// Returns the medium for the given default absorption and scattering. See [`medium_of`].
 fn with(params: &Params, preset: &'static str, [usual_a, usual_s]: [[f32; 3]; 2]) -> Medium {
     let scale = params.float("scale").unwrap_or(1.0).max(0.0);
     if let Some(name) = params.text(preset).filter(|name| !name.is_empty()) {
@@ -77,6 +77,7 @@ fn with(params: &Params, preset: &'static str, [usual_a, usual_s]: [[f32; 3]; 2]
 }
 
 impl Reader<'_> {
+    /// Executes `MakeNamedMedium`.
     pub fn make_named_medium(&mut self, name: String, at: Span, list: Vec<Rc<Param>>) {
         let params = self.params(list, Some(super::state::MEDIUM), at);
         let kind = params.text("type").unwrap_or("homogeneous").to_string();
@@ -102,7 +103,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Medium whose density is a grid of values at cell centres.
+    /// Reads a medium whose density is a grid of values at cell centres.
     fn grid(&mut self, name: &str, params: &Params) -> Option<Medium> {
         let usual = match params.language {
             Language::Third => USUAL,
@@ -132,7 +133,7 @@ impl Reader<'_> {
             self.report.bad(place, format!("density {} is {}: it must be 0 or more", bad + 1, densities[bad]));
             return None;
         }
-        // Surround the grid with zeros: the density is 0 outside.
+        // Surround the grid with zeros, since the density outside is 0.
         let [nx, ny, nz] = counts.map(|n| n as usize);
         let mut values = vec![0.0; (nx + 2) * (ny + 2) * (nz + 2)];
         for (i, row) in densities.chunks_exact(nx).enumerate() {
@@ -149,7 +150,7 @@ impl Reader<'_> {
         Some(Medium { density: Some(Density { name: FileName { path, span: place }, placed }), ..medium })
     }
 
-    /// Sets the media inside and outside shapes; they must be defined.
+    /// Sets the media inside and outside of shapes, which must be defined.
     pub fn medium_interface(&mut self, names: &[String; 2], at: Span) {
         for name in names.iter().filter(|name| !name.is_empty() && !self.media.contains_key(*name)) {
             let help = suggest(name, self.media.keys().map(String::as_str));
@@ -159,7 +160,7 @@ impl Reader<'_> {
         (self.state.inside, self.state.outside) = (inside, outside);
     }
 
-    /// Index of the current material, filled with the medium inside the shape.
+    /// Returns the index of the current material filled with the medium inside the shape.
     pub fn filled(&mut self) -> usize {
         let plain = self.state.material;
         let Some(name) = self.state.inside.clone() else { return plain };

@@ -1,4 +1,4 @@
-//! Meshes whose vertices are in the scene file.
+//! Reads meshes whose vertices are in the scene file.
 
 use super::params::Params;
 use durer_scene::math::{Vec2, Vec3};
@@ -7,10 +7,11 @@ use durer_scene::shape::tessellate::net::{self, Patches};
 use durer_scene::shape::tessellate::revolution;
 use durer_scene::shape::tessellate::subdivision::loop_surface;
 
-/// Maximum number of triangles of a subdivided surface. Low in tests, which build them all.
+/// Maximum number of triangles of a subdivided surface. Low in tests, which build all of them.
 const MAX_TRIANGLES: usize = if cfg!(test) { 1 << 14 } else { 1 << 20 };
 
-/// Vertex attributes and faces of a mesh; each face has `size` indices.
+/// Vertices and faces of a mesh as listed in a pbrt file. All faces have the same number of
+/// corners.
 struct MeshArrays {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
@@ -18,8 +19,8 @@ struct MeshArrays {
     faces: Vec<Vec<u32>>,
 }
 
-/// Reads vertices and faces of `size` corners. Without `indices`, `usual` are the corners of the
-/// only face.
+/// Reads vertices and faces with `size` corners each. If `indices` is missing, there is one face,
+/// whose corners are `usual`.
 fn written(params: &Params, size: usize, usual: &[u32]) -> Option<MeshArrays> {
     let report = params.report;
     let Some(positions) = params.triples("P") else {
@@ -74,7 +75,8 @@ pub(super) fn triangles(params: &Params, reversed: bool) -> Option<MeshData> {
     Some(data.oriented(reversed))
 }
 
-/// Reads a `bilinearmesh`: patches of four corners at (u, v) = (0, 0), (1, 0), (0, 1) and (1, 1).
+/// Reads a `bilinearmesh`, whose patches have corners at (u, v) = (0, 0), (1, 0), (0, 1) and (1,
+/// 1).
 pub(super) fn bilinear(params: &Params, reversed: bool) -> Option<MeshData> {
     params.left_out(&["emissionfilename"], "the patch emits evenly");
     let MeshArrays { positions, normals, uvs, faces } = written(params, 4, &[0, 1, 2, 3])?;
@@ -82,7 +84,7 @@ pub(super) fn bilinear(params: &Params, reversed: bool) -> Option<MeshData> {
     Some(net::bilinear(&Patches { positions, normals, uvs, faces }).oriented(reversed))
 }
 
-/// Reads a `loopsubdiv` and subdivides it into at most `left` triangles.
+/// Reads a `loopsubdiv`, and subdivides it into at most `left` triangles.
 pub(super) fn subdivided(params: &Params, reversed: bool, left: usize) -> Option<MeshData> {
     params.known(&["scheme"]);
     let levels = params.whole("levels").or_else(|| params.whole("nlevels")).unwrap_or(3);
@@ -100,7 +102,7 @@ pub(super) fn subdivided(params: &Params, reversed: bool, left: usize) -> Option
     Some(data.oriented(reversed))
 }
 
-/// Open cylinder as flat strips with the normals of the round surface.
+/// Reads a cylinder as flat strips with the normals of the round surface. It has no caps.
 pub(super) fn cylinder(params: &Params, reversed: bool) -> Option<MeshData> {
     let radius = params.positive("radius").unwrap_or(1.0);
     let (low, high) = (params.float("zmin").unwrap_or(-1.0), params.float("zmax").unwrap_or(1.0));

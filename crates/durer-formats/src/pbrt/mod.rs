@@ -1,5 +1,5 @@
-//! Scenes of pbrt-v4 and pbrt-v3. Every directive is parsed; features without a counterpart here
-//! are reported.
+//! Reader of pbrt-v4 and pbrt-v3 scenes. Every directive is parsed, and features without a
+//! counterpart in Dürer are reported.
 //!
 //! Sources: *Input File Format*, pbrt.org/fileformat-v4 and pbrt.org/fileformat-v3; Pharr, Jakob
 //! and Humphreys, *Physically Based Rendering*, 4th edition, 2023, and 3rd edition, 2016.
@@ -53,8 +53,8 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     ),
 };
 
-/// Returns true if a file begins with a directive that only pbrt has. `Transform` and `Material`
-/// also begin files in the course's format.
+/// Returns true if a file begins with a directive that only pbrt has. Files in the course's format
+/// can also begin with `Transform` or `Material`.
 fn recognise(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(1 << 12)];
     let (mut text, report) = (Lexer::new(head.into(), 0), SharedReport::default());

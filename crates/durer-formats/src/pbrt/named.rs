@@ -1,12 +1,12 @@
-//! Named spectra of pbrt, as RGB or by chromaticity.
+//! Named spectra of pbrt, as RGB values or chromaticities.
 
 use durer_scene::math::Vec3;
 use durer_scene::spectrum::SpectrumSource;
 use durer_scene::spectrum::space::color_of_chromaticity;
 
-/// Complex indices of refraction of metals (eta, k) for red, green and blue. Chosen so that the
-/// reflectance at 0 and at 82 degrees has the colour of the spectral reflectance under D65, to
-/// 0.002; the red of gold, which linear sRGB cannot hold, to 0.03.
+/// Complex indices of refraction of metals (eta, k) for red, green and blue. They are chosen so
+/// that the reflectances at 0 and 82 degrees have the colour of the spectral reflectance under D65,
+/// within 0.002. Gold's red is outside of linear sRGB and differs by 0.03.
 ///
 /// Source of the spectra: Palik, *Handbook of Optical Constants of Solids*, 1985, and the SOPRA
 /// collection, as distributed with pbrt-v4.
@@ -55,7 +55,7 @@ const ILLUMINANTS: [(&str, [f64; 2]); 16] = [
     ("illum-acesD60", [0.32168, 0.33767]),
 ];
 
-/// Spectrum of a name.
+/// Returns the spectrum with a name.
 pub(super) fn spectrum(name: &str) -> Option<SpectrumSource> {
     if let Some((metal, which)) = name.strip_prefix("metal-").and_then(|rest| rest.rsplit_once('-')) {
         let (_, eta, k) = METALS.iter().find(|row| row.0 == metal)?;
@@ -71,7 +71,7 @@ pub(super) fn spectrum(name: &str) -> Option<SpectrumSource> {
     ILLUMINANTS.iter().find(|row| row.0 == name).map(|row| SpectrumSource::Illuminant(color_of_chromaticity(row.1)))
 }
 
-/// Names of spectra, for suggestions in messages.
+/// Returns the names of all spectra, for suggestions in messages.
 pub(super) fn names() -> impl Iterator<Item = &'static str> {
     const METAL_NAMES: [&str; 14] = [
         "metal-Ag-eta",

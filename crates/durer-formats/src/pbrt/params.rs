@@ -1,4 +1,4 @@
-//! Parameter lists, such as `"float radius" [ 2 ]`.
+//! Reads parameter lists, such as `"float radius" [ 2 ]`.
 
 use super::language::Language;
 use super::lexer::{Lexer, SpannedToken, Token};
@@ -11,7 +11,7 @@ use durer_scene::spectrum::space::RgbSpace;
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
-/// The type of a parameter.
+/// Declared type of a pbrt parameter, such as `float` or `rgb`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Integer,
@@ -29,7 +29,7 @@ pub(super) enum Kind {
     Spectrum,
 }
 
-/// Type names; `color` and `xyz` are from pbrt-v3.
+/// Type names, and the type that each stands for; `color` and `xyz` are from pbrt-v3.
 const KINDS: [(&str, Kind); 18] = [
     ("integer", Kind::Integer),
     ("float", Kind::Float),
@@ -51,7 +51,7 @@ const KINDS: [(&str, Kind); 18] = [
     ("xyz", Kind::Xyz),
 ];
 
-/// Values of a parameter.
+/// Values of a pbrt parameter: numbers, strings or booleans.
 #[derive(Clone, Debug)]
 pub(super) enum Values {
     Numbers(Vec<f64>),
@@ -60,7 +60,7 @@ pub(super) enum Values {
 }
 
 impl Values {
-    /// Number of values with their kind, for messages.
+    /// Returns the number of values with their type, for messages.
     fn counted(&self) -> String {
         let (one, many) = match self {
             Values::Numbers(_) => ("number", "numbers"),
@@ -79,21 +79,21 @@ impl Values {
     }
 }
 
-/// Parameter of a directive.
+/// Parameter of a pbrt directive: its type, name and values.
 #[derive(Debug)]
 pub(super) struct Param {
     pub kind: Kind,
     pub name: String,
     pub values: Values,
-    /// Place of its type and name.
+    /// Span of its type and name.
     pub at: Span,
-    /// Place of its values.
+    /// Span of its values.
     pub values_at: Span,
     used: Cell<bool>,
 }
 
 impl Param {
-    /// First number; 0 if there is none.
+    /// Returns the first number; 0 if there is none.
     pub fn number(&self) -> f32 {
         match &self.values {
             Values::Numbers(all) => all.first().copied().unwrap_or_default() as f32,
@@ -101,12 +101,12 @@ impl Param {
         }
     }
 
-    /// Every number; empty for other values.
+    /// Returns all numbers; empty if the values are not numbers.
     pub fn numbers(&self) -> &[f64] {
         if let Values::Numbers(all) = &self.values { all } else { &[] }
     }
 
-    /// First string; empty if there is none.
+    /// Returns the first string; empty if there is none.
     pub fn text(&self) -> &str {
         match &self.values {
             Values::Texts(all) => all.first().map_or("", String::as_str),
@@ -114,28 +114,28 @@ impl Param {
         }
     }
 
-    /// Numbers in rows of three.
+    /// Returns the numbers in rows of three.
     pub fn triples(&self) -> Vec<Vec3> {
         self.numbers().chunks_exact(3).map(|p| Vec3::new(p[0] as f32, p[1] as f32, p[2] as f32)).collect()
     }
 }
 
-/// Parameters of a directive, followed by those set by `Attribute`.
+/// Parameters of a pbrt directive, followed by those set by `Attribute`; tracks which are used.
 pub(super) struct Params<'s> {
     list: Vec<Rc<Param>>,
     /// Number of the directive's own parameters.
     own: usize,
-    /// Place of the directive's word, or of the string after it.
+    /// Span of the directive's word, or of the string after it.
     pub at: Span,
     pub report: &'s SharedReport,
     pub input: &'s Input<'s>,
-    /// Colour space of RGB values.
+    /// Colour space of RGB parameters.
     pub space: RgbSpace,
     pub language: Language,
     queried: RefCell<Vec<&'static str>>,
 }
 
-/// Reads parameters while strings follow.
+/// Reads parameters as long as strings follow.
 pub(super) fn read(text: &mut Lexer, language: Language, report: &SharedReport) -> Vec<Rc<Param>> {
     let mut list: Vec<Rc<Param>> = Vec::new();
     while !report.is_full() {
@@ -155,7 +155,7 @@ pub(super) fn read(text: &mut Lexer, language: Language, report: &SharedReport) 
     list
 }
 
-/// Type and name of a parameter such as `"float radius"`.
+/// Parses the type and name of a parameter, such as `"float radius"`.
 fn declared(head: &str, at: Span, language: Language, report: &SharedReport) -> Option<(Kind, String)> {
     let mut words = head.split_ascii_whitespace();
     let (Some(kind), Some(name), None) = (words.next(), words.next(), words.next()) else {
@@ -169,10 +169,10 @@ fn declared(head: &str, at: Span, language: Language, report: &SharedReport) -> 
     let found = KINDS.iter().find(|row| row.0 == kind);
     if found.is_none() {
         let help = suggest(kind, KINDS.iter().map(|row| row.0));
-        report.bad_with(at, format!("`{kind}` is not a type of a parameter"), help);
+        report.bad_with(at, format!("`{kind}` is not a parameter type"), help);
     }
     if kind == "xyz" && language == Language::Fourth {
-        report.bad_with(at, "`xyz` colours are only in pbrt-v3", Some("write `rgb`".into()));
+        report.bad_with(at, "only pbrt-v3 has `xyz` colours", Some("write `rgb`".into()));
         return None;
     }
     Some((found?.1, name.to_string()))
@@ -250,7 +250,7 @@ fn values(text: &mut Lexer, head: Span, report: &SharedReport) -> Option<(Values
     })
 }
 
-/// Parses a word as a number.
+/// Parses a word as a finite number.
 pub(super) fn number(text: &Lexer, at: Span, report: &SharedReport) -> Option<f64> {
     let word = text.word(at);
     match word.parse::<f64>() {
@@ -307,7 +307,7 @@ fn fits(kind: Kind, name: &str, values: &Values, at: Span, report: &SharedReport
 }
 
 impl<'s> Params<'s> {
-    /// Combines a directive's own parameters with those that `Attribute` set; its own come first.
+    /// Combines a directive's own parameters with those set by `Attribute`; its own come first.
     pub fn new(
         own: Vec<Rc<Param>>,
         others: &[Rc<Param>],
@@ -320,7 +320,7 @@ impl<'s> Params<'s> {
         Params { list, own: count, at, report, input, space, language, queried: RefCell::default() }
     }
 
-    /// Parameter by name; marks it as used.
+    /// Returns a parameter by name, and marks it as used.
     pub fn get(&self, name: &'static str) -> Option<&Param> {
         self.queried.borrow_mut().push(name);
         let found = self.list.iter().find(|param| param.name == name)?;
@@ -328,7 +328,8 @@ impl<'s> Params<'s> {
         Some(found)
     }
 
-    /// Parameter by name with at least one value; reports an error for a type not in `kinds`.
+    /// Returns a parameter that has at least one value; reports an error if its type is not in
+    /// `kinds`.
     pub(super) fn of(&self, name: &'static str, kinds: &[Kind], wanted: &str) -> Option<&Param> {
         let found = self.get(name)?;
         if !kinds.contains(&found.kind) {
@@ -342,16 +343,17 @@ impl<'s> Params<'s> {
         Some(found)
     }
 
-    /// Place of a parameter, or of the directive.
+    /// Returns the span of a parameter, or of the directive if it has no such parameter.
     pub fn place(&self, name: &'static str) -> Span {
         self.get(name).map_or(self.at, |param| param.at)
     }
 
+    /// Returns a `float` parameter.
     pub fn float(&self, name: &'static str) -> Option<f32> {
         self.of(name, &[Kind::Float, Kind::Integer], "a float").map(Param::number)
     }
 
-    /// Value that must be more than 0.
+    /// Returns a `float` parameter, which must be more than 0.
     pub fn positive(&self, name: &'static str) -> Option<f32> {
         let value = self.float(name)?;
         if value <= 0.0 {
@@ -361,19 +363,23 @@ impl<'s> Params<'s> {
         Some(value)
     }
 
+    /// Returns an `integer` parameter.
     pub fn whole(&self, name: &'static str) -> Option<i64> {
         self.of(name, &[Kind::Integer], "an integer").map(|param| param.numbers()[0] as i64)
     }
 
+    /// Returns all values of an `integer` parameter.
     pub fn wholes(&self, name: &'static str) -> Option<Vec<i64>> {
         let param = self.of(name, &[Kind::Integer], "integers")?;
         Some(param.numbers().iter().map(|&x| x as i64).collect())
     }
 
+    /// Returns all values of a `float` parameter.
     pub fn floats(&self, name: &'static str) -> Option<&[f64]> {
         self.of(name, &[Kind::Float, Kind::Integer], "floats").map(Param::numbers)
     }
 
+    /// Returns a `bool` parameter.
     pub fn truth(&self, name: &'static str) -> Option<bool> {
         self.of(name, &[Kind::Bool], "`true` or `false`").map(|param| match &param.values {
             Values::Bools(all) => all[0],
@@ -381,29 +387,34 @@ impl<'s> Params<'s> {
         })
     }
 
+    /// Returns a `string` parameter.
     pub fn text(&self, name: &'static str) -> Option<&str> {
         self.of(name, &[Kind::Text], "a string").map(Param::text)
     }
 
+    /// Returns a parameter with rows of two numbers.
     pub fn pairs(&self, name: &'static str) -> Option<Vec<Vec2>> {
         let param = self.of(name, &[Kind::Pair, Kind::Float], "rows of two numbers")?;
         Some(param.numbers().chunks_exact(2).map(|p| Vec2::new(p[0] as f32, p[1] as f32)).collect())
     }
 
+    /// Returns a parameter with rows of three numbers.
     pub fn triples(&self, name: &'static str) -> Option<Vec<Vec3>> {
         self.of(name, &[Kind::Triple], "rows of three numbers").map(Param::triples)
     }
 
+    /// Returns the first three numbers of a parameter.
     pub fn triple(&self, name: &'static str) -> Option<Vec3> {
         self.triples(name).map(|all| all[0])
     }
 
-    /// Marks parameters that have no counterpart here as known.
+    /// Marks parameters that have no counterpart in Dürer as known, so that they are not reported.
     pub fn known(&self, names: &[&'static str]) {
         names.iter().for_each(|name| _ = self.get(name));
     }
 
-    /// Marks parameters as known, and warns of each one given; `what` names the substitute.
+    /// Marks parameters as known, and warns about those that are present; `what` names the
+    /// substitute.
     pub fn left_out(&self, names: &[&'static str], what: &str) {
         for name in names {
             if let Some(param) = self.get(name) {
@@ -412,7 +423,7 @@ impl<'s> Params<'s> {
         }
     }
 
-    /// Warns of unknown parameters.
+    /// Warns about unknown parameters. `what` names the directive.
     pub fn finish(&self, what: &str) {
         for param in self.list[..self.own].iter().filter(|param| !param.used.get()) {
             let warning = Diagnostic::warning(format!("{what} has no parameter `{}`: it is ignored", param.name));

@@ -1,4 +1,4 @@
-//! Parameters of partial quadrics.
+//! Reads the parameters of partial quadrics.
 //!
 //! Source: *Physically Based Rendering*, 3rd edition, chapter 3.
 
@@ -7,7 +7,7 @@ use durer_scene::shape::MeshData;
 use durer_scene::shape::tessellate::revolution;
 use glam::DVec3;
 
-/// Sweep about the z axis in degrees, `phimax`; (0, 360], default 360.
+/// Reads `phimax`, the sweep about the z axis in degrees; from 0 to 360, by default 360.
 pub(super) fn turn(params: &Params) -> f32 {
     let degrees = params.float("phimax").unwrap_or(360.0);
     if degrees <= 0.0 {
@@ -20,13 +20,14 @@ fn degrees(params: &Params) -> f64 {
     f64::from(turn(params))
 }
 
-/// Ends along z, `zmin` and `zmax` in ascending order. The defaults are `low` and `high`.
+/// Reads `zmin` and `zmax`, the ends along z, in ascending order. The defaults are `low` and
+/// `high`.
 pub(super) fn ends(params: &Params, [low, high]: [f32; 2]) -> [f32; 2] {
     let given = [params.float("zmin").unwrap_or(low), params.float("zmax").unwrap_or(high)];
     [given[0].min(given[1]), given[0].max(given[1])]
 }
 
-/// Part of a sphere between two heights.
+/// Returns the part of a sphere between two heights.
 pub(super) fn sphere(params: &Params, radius: f32, [low, high]: [f32; 2], flipped: bool) -> Option<MeshData> {
     let (low, high, radius) = (low.max(-radius), high.min(radius), f64::from(radius));
     if low >= high {
@@ -36,20 +37,20 @@ pub(super) fn sphere(params: &Params, radius: f32, [low, high]: [f32; 2], flippe
     Some(revolution::sphere(radius, [low, high], degrees(params)).oriented(flipped))
 }
 
-/// Part of a disc or of a ring; v grows inwards.
+/// Returns a sector of a disc or of a ring; v grows inwards.
 pub(super) fn disk(params: &Params, [inner, outer]: [f32; 2], height: f32, flipped: bool) -> MeshData {
     let [inner, outer, height] = [inner, outer, height].map(f64::from);
     revolution::ring([inner, outer], height, degrees(params)).oriented(flipped)
 }
 
-/// Cone without a base; the base is at z = 0.
+/// Returns an open cone with its base at z = 0.
 pub(super) fn cone(params: &Params, flipped: bool) -> MeshData {
     let radius = f64::from(params.positive("radius").unwrap_or(1.0));
     let height = f64::from(params.positive("height").unwrap_or(1.0));
     revolution::cone(radius, height, degrees(params)).oriented(flipped)
 }
 
-/// Paraboloid that reaches its radius at `zmax`.
+/// Returns a paraboloid that reaches its radius at `zmax`.
 pub(super) fn paraboloid(params: &Params, flipped: bool) -> Option<MeshData> {
     let radius = f64::from(params.positive("radius").unwrap_or(1.0));
     let [low, high] = ends(params, [0.0, 1.0]).map(f64::from);
@@ -60,7 +61,7 @@ pub(super) fn paraboloid(params: &Params, flipped: bool) -> Option<MeshData> {
     Some(revolution::paraboloid(radius, [low, high], degrees(params)).oriented(flipped))
 }
 
-/// Surface swept by the line from `p1` to `p2` about z.
+/// Returns the surface swept by the line from `p1` to `p2` about the z axis.
 pub(super) fn hyperboloid(params: &Params, flipped: bool) -> Option<MeshData> {
     let end = |name: &'static str, usual: DVec3| params.triple(name).map_or(usual, |p| p.as_dvec3());
     let (from, to) = (end("p1", DVec3::ZERO), end("p2", DVec3::ONE));

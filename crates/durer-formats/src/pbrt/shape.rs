@@ -1,4 +1,4 @@
-//! Shapes and their lights.
+//! Converts shapes and their area lights.
 
 use super::defs::{AreaLight, Opacity};
 use super::language::Language;
@@ -17,28 +17,31 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 /// Maximum number of triangles of all tessellated shapes together, and the number from which curves
-/// have fewer sides. Low in tests, which build them all.
+/// have fewer sides. The maximum is low in tests, which build all of them.
 const MAX_GROWN: usize = if cfg!(test) { 1 << 18 } else { 1 << 24 };
 const MANY: usize = 1 << 20;
 
-/// Shape before it has a material.
+/// Geometry of a pbrt shape, before it gets a material and is added to the scene.
 struct MaterialDef {
     node: Node,
-    /// Total area in world space, and the number of lights that it counts as.
+    /// Total area in world space, and the number of area lights that it counts as.
     area: f32,
     lights: usize,
-    /// Map from object space to world space.
+    /// Transform from object space to world space.
     map: DAffine3,
-    /// True if pbrt's normals point inwards and ours outwards.
+    /// True if normals point inwards in pbrt but outwards in Dürer.
     inside_out: bool,
 }
 
 impl Reader<'_> {
+    /// Executes a `Shape` directive: adds the shape to the scene, with the current material and
+    /// area light.
     pub fn shape(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
         let params = self.params(list, Some(SHAPE), at);
         let opacity = self.opacity(&params);
         let map = self.map(at);
-        // The side of a quadric is defined in object space, that of a triangle in world space.
+        // The orientation of a quadric is defined in object space, that of a triangle in world
+        // space.
         let flipped = self.state.reversed != (map.matrix3.determinant() < 0.0);
         let third = self.language == Language::Third;
         let made = match kind {
@@ -91,7 +94,7 @@ impl Reader<'_> {
                 }
                 let mut help = suggest(other, known);
                 if ["cone", "hyperboloid", "paraboloid", "heightfield", "nurbs"].contains(&other) {
-                    help = Some("this shape is of pbrt-v3, not of pbrt-v4".into());
+                    help = Some("this shape belongs to pbrt-v3, not to pbrt-v4".into());
                 }
                 return self.report.bad_with(at, format!("unknown shape `{other}`"), help);
             }
@@ -151,7 +154,8 @@ impl Reader<'_> {
         }
         let world = radius * map.transform_vector3(DVec3::X).length() as f32;
         let (center, map) = match map.matrix3 == DAffine3::IDENTITY.matrix3 {
-            // pbrt's poles are on z and u begins at x; ours are on y and u = 1/2 is at -z.
+            // In pbrt, the poles are on the z axis and u begins at x. In Dürer, the poles are on
+            // the y axis and u = 1/2 is at -z.
             _ if self.is_pictured() || params.get("alpha").is_some_and(|param| param.kind == Kind::Texture) => {
                 let turned = DMat3::from_cols(DVec3::NEG_Y, DVec3::Z, DVec3::X);
                 (Vec3::ZERO, map * DAffine3::from_mat3(turned))
@@ -182,7 +186,7 @@ impl Reader<'_> {
         Some(MaterialDef { node, area, lights: 1, map, inside_out: false })
     }
 
-    /// Tessellated mesh. All of them together have at most `MAX_GROWN` triangles.
+    /// Returns a tessellated shape. Together, they may have at most `MAX_GROWN` triangles.
     fn grown(&mut self, data: MeshData, map: DAffine3, at: Span) -> Option<MaterialDef> {
         self.grown = self.grown.saturating_add(data.triangles.len());
         if self.grown > MAX_GROWN {
@@ -194,14 +198,14 @@ impl Reader<'_> {
         self.mesh(None, Arc::new(data), map, at)
     }
 
-    /// Mesh with a name shared by shapes, or with a new name.
+    /// Returns a mesh with a name shared by several shapes, or with a new name.
     fn mesh(&mut self, name: Option<String>, data: Arc<MeshData>, map: DAffine3, at: Span) -> Option<MaterialDef> {
         if data.triangles.is_empty() {
             return None;
         }
         let corner = |i: u32| map.transform_point3(data.positions[i as usize].as_dvec3());
         let twice = |[a, b, c]: &[u32; 3]| (corner(*b) - corner(*a)).cross(corner(*c) - corner(*a)).length();
-        // The area is only needed for a light with a power.
+        // The area is needed only for a light with a power.
         let has_power = self.state.area.as_ref().is_some_and(|light| light.power.is_some());
         let area = if has_power { 0.5 * data.triangles.iter().map(twice).sum::<f64>() as f32 } else { 1.0 };
         let name = name.unwrap_or_else(|| format!("{}#{}", self.input.name, self.scene.assets.meshes.len()));
@@ -233,8 +237,8 @@ impl Reader<'_> {
     }
 }
 
-/// Radiance of an area light. A power is divided over the shape's lights; a mesh has one per
-/// triangle.
+/// Returns the radiance of an area light. Its power is divided among the shape's lights; a mesh has
+/// one for each triangle.
 fn radiance(light: &AreaLight, made: &MaterialDef) -> Color {
     let Some(power) = light.power else { return light.radiance };
     let sides = if light.two_sided { 2.0 } else { 1.0 };

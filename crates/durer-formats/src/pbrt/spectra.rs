@@ -1,4 +1,4 @@
-//! Spectra of parameters: RGB, XYZ, blackbody, sampled values, a name or a file.
+//! Reads spectra of parameters: RGB, XYZ, blackbody, sampled values, a name or a file.
 
 use super::language::Language;
 use super::named;
@@ -12,14 +12,14 @@ use durer_scene::spectrum::SpectrumSource;
 use durer_scene::spectrum::space::color_of_xyz;
 
 impl Params<'_> {
-    /// Spectrum of a parameter that is not a texture.
+    /// Returns the spectrum of a parameter that is not a texture.
     pub fn spectrum(&self, name: &'static str) -> Option<SpectrumSource> {
         let kinds = [Kind::Rgb, Kind::Xyz, Kind::Blackbody, Kind::Spectrum];
         spectrum_of(self.of(name, &kinds, "rgb, a spectrum or a blackbody")?, self)
     }
 }
 
-/// Spectrum of a parameter; as RGB in pbrt-v3.
+/// Returns the spectrum of a parameter; in pbrt-v3, as RGB.
 fn spectrum_of(param: &Param, params: &Params) -> Option<SpectrumSource> {
     let found = written(param, params)?;
     if params.language == Language::Fourth {
@@ -73,7 +73,7 @@ fn rising(mut curve: Vec<[f32; 2]>, at: Span, params: &Params) -> Option<Spectru
     Some(SpectrumSource::Curve(curve))
 }
 
-/// Spectrum by name: a named spectrum of pbrt-v4, or a file of wavelengths and values.
+/// Returns a spectrum by name: a named spectrum of pbrt-v4, or a file of wavelengths and values.
 fn named(name: &str, at: Span, params: &Params) -> Option<SpectrumSource> {
     if params.language == Language::Fourth
         && let Some(known) = named::spectrum(name)
@@ -109,7 +109,7 @@ fn named(name: &str, at: Span, params: &Params) -> Option<SpectrumSource> {
                     let word_at = Span { file, start: place as u32, end: (place + word.len()) as u32 };
                     let found = crate::report::shown(word);
                     let error = Diagnostic::error(format!("expected a number, found {found}"));
-                    params.report.push(error.code("bad-file").at(word_at).related(at, "asked for here"));
+                    params.report.push(error.code("bad-file").at(word_at).related(at, "used here"));
                     return None;
                 }
             }
@@ -117,7 +117,7 @@ fn named(name: &str, at: Span, params: &Params) -> Option<SpectrumSource> {
         start += line.len();
     }
     if numbers.is_empty() || numbers.len() % 2 != 0 {
-        params.report.bad(at, format!("`{name}` must hold pairs of wavelength and value"));
+        params.report.bad(at, format!("`{name}` must contain pairs of wavelength and value"));
         return None;
     }
     rising(numbers.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect(), at, params)

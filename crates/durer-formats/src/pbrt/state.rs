@@ -1,4 +1,4 @@
-//! State of the reader: the graphics state that directives change, and the scene built so far.
+//! State of the pbrt reader: the graphics state that directives change, and the scene built so far.
 
 use super::defs::{AreaLight, InfiniteLight, MaterialDef, Texture};
 use super::language::{DetectedLanguage, Language};
@@ -25,7 +25,8 @@ pub(super) const MATERIAL: usize = 2;
 pub(super) const MEDIUM: usize = 3;
 pub(super) const TEXTURE: usize = 4;
 
-/// Graphics state, saved by `AttributeBegin`.
+/// Graphics state of pbrt, such as the current transformation and material; saved by
+/// `AttributeBegin`.
 #[derive(Clone, Default)]
 pub(super) struct State {
     pub transforms: Transforms,
@@ -33,15 +34,16 @@ pub(super) struct State {
     /// Index of the current material.
     pub material: usize,
     pub area: Option<Rc<AreaLight>>,
-    /// Names of the media inside and outside shapes.
+    /// Names of the media inside and outside of shapes.
     pub inside: Option<String>,
     pub outside: Option<String>,
-    /// Parameters from `Attribute` for shapes, lights, materials, media and textures.
+    /// Parameters set by `Attribute` for shapes, lights, materials, media and textures.
     pub attributes: [Vec<Rc<Param>>; 5],
     pub space: RgbSpace,
 }
 
-/// Kind of an open scope; determines the directive that closes it.
+/// Kind of a scope that a directive such as `AttributeBegin` has opened; determines the directive
+/// that closes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scope {
     Attribute,
@@ -51,7 +53,7 @@ pub(super) enum Scope {
     Import,
 }
 
-/// Directive that is evaluated after the file is read.
+/// Camera, film or other directive that is kept to be evaluated after the whole file has been read.
 pub(super) struct DeferredDirective {
     pub kind: String,
     pub list: Vec<Rc<Param>>,
@@ -60,22 +62,22 @@ pub(super) struct DeferredDirective {
     pub space: RgbSpace,
 }
 
-/// File being read.
+/// File that is being read: the main file, or a file included or imported by a directive.
 pub(super) struct OpenFile {
     pub text: Lexer,
     pub name: String,
-    /// Place of the directive that includes it.
+    /// Span of the directive that includes it.
     pub at: Span,
-    /// True if the file is imported: its end closes every scope that it opened.
+    /// True if the file is imported, so that its end closes every scope that it opened.
     pub imported: bool,
 }
 
-/// Reader of a scene file.
+/// Reader that executes the directives of a pbrt scene file and builds the scene.
 pub(super) struct Reader<'a> {
     pub input: &'a Input<'a>,
     pub report: &'a SharedReport,
     pub language: Language,
-    /// Word that decided the language.
+    /// Span of the word that decided the language.
     pub decided_by: Option<Span>,
     pub texts: Vec<OpenFile>,
     pub state: State,
@@ -83,24 +85,24 @@ pub(super) struct Reader<'a> {
     pub systems: BTreeMap<String, [DAffine3; 2]>,
     pub materials: Vec<MaterialDef>,
     pub named_materials: BTreeMap<String, usize>,
-    /// Indices in the scene of the materials as used by shapes, with emission and opacity.
+    /// Material indices in the scene, by material, emission and opacity as used by shapes.
     pub numbers: BTreeMap<(usize, String), Option<u32>>,
     pub textures: BTreeMap<(bool, String), Texture>,
     /// Media by name; `None` for a medium without a counterpart.
     pub media: BTreeMap<String, Option<Medium>>,
-    /// Indices of materials filled with a medium.
+    /// Indices of materials filled with a medium, by material and medium.
     pub filled: BTreeMap<(usize, String), usize>,
     pub objects: BTreeMap<String, Rc<Group>>,
-    /// Object being defined.
+    /// Name and content of the object being defined.
     pub defining: Option<(String, Group)>,
     pub growth: Growth,
-    /// Number of triangles tessellated from compact shapes so far.
+    /// Number of triangles so far that were tessellated from compact shapes.
     pub grown: usize,
     /// Number of files included so far.
     pub included: usize,
     pub camera: Option<DeferredDirective>,
     pub film: Option<DeferredDirective>,
-    /// First directive before `WorldBegin` that must come after it.
+    /// First directive before `WorldBegin` that is allowed only after it.
     pub early: Option<Span>,
     pub in_world: bool,
     pub infinite: Vec<InfiniteLight>,
@@ -145,13 +147,13 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Parameters of a directive, with those that `Attribute` sets for its kind.
+    /// Returns the parameters of a directive, including those set by `Attribute` for its kind.
     pub fn params(&self, list: Vec<Rc<Param>>, attributes: Option<usize>, at: Span) -> Params<'a> {
         let attributes = attributes.map_or(&[][..], |kind| &self.state.attributes[kind]);
         Params::new(list, attributes, at, (self.input, self.report), (self.language, self.state.space))
     }
 
-    /// Parameters of a deferred directive.
+    /// Returns the parameters of a deferred directive.
     pub fn params_of(&self, directive: &DeferredDirective) -> Params<'a> {
         Params::new(
             directive.list.clone(),
@@ -162,7 +164,7 @@ impl<'a> Reader<'a> {
         )
     }
 
-    /// Map from the current space to world space when the shutter opens.
+    /// Returns the map from the current space to world space at shutter open; warns about motion.
     pub fn map(&self, at: Span) -> DAffine3 {
         if self.state.transforms.moves() {
             self.report.once(at, "motion has no counterpart: everything stays where it is when the shutter opens");

@@ -1,4 +1,5 @@
-//! Tests of the pbrt reader: syntax, conventions against closed forms, and places of errors.
+//! Tests of the pbrt reader: syntax, conventions compared with closed forms, and positions of
+//! errors.
 
 mod conventions;
 mod language;
@@ -22,14 +23,14 @@ fn read(text: &str) -> (Option<Scene>, Vec<String>) {
     read_in(&std::env::temp_dir(), text)
 }
 
-/// Reads a scene and expects no diagnostics.
+/// Reads a scene, which must cause no diagnostics.
 fn clean(text: &str) -> Scene {
     let (scene, messages) = read(text);
     assert_eq!(messages, [""; 0], "{text}");
     scene.unwrap()
 }
 
-/// Layers and diagnostics of a sphere's material.
+/// Returns the layers and the diagnostics of a sphere's material.
 fn material(text: &str) -> (PrincipledMaterial, Vec<String>) {
     let (scene, messages) = read(&format!("Camera \"perspective\" WorldBegin {text} Shape \"sphere\""));
     let scene = scene.unwrap_or_else(|| panic!("{text}: {messages:?}")); // prose: keep

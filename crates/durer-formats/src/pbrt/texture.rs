@@ -1,4 +1,4 @@
-//! Textures: a constant or a picture.
+//! Reads textures, which become a constant or a picture.
 
 use super::defs::Texture;
 use super::language::Language;
@@ -22,12 +22,14 @@ impl Texture {
         }
     }
 
+    /// Returns the colour if the texture is constant.
     pub fn even(&self) -> Option<Color> {
         if let Texture::Even(color) = self { Some(*color) } else { None }
     }
 }
 
 impl Reader<'_> {
+    /// Executes a `Texture` directive.
     pub fn texture(
         &mut self,
         name: String,
@@ -141,7 +143,7 @@ impl Reader<'_> {
         self.textures.insert((is_color, name), made);
     }
 
-    /// Value of a parameter that may be a texture.
+    /// Returns the value of a parameter that may be a texture; `usual` is the default.
     pub fn pattern(&self, params: &Params, name: &'static str, is_color: bool, usual: Color) -> Texture {
         let Some(param) = params.get(name) else { return Texture::Even(usual) };
         if param.kind == Kind::Texture {
@@ -160,7 +162,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Value of a float parameter that may be a texture; the mean of a picture.
+    /// Returns a float parameter that may be a texture; for a picture, its mean.
     pub fn value(&self, params: &Params, name: &'static str, usual: f32) -> f32 {
         match self.pattern(params, name, false, Vec3::splat(usual)) {
             Texture::Even(color) => color.x,
@@ -170,15 +172,15 @@ impl Reader<'_> {
         }
     }
 
-    /// Mean of the picture of a parameter for which only a number has a counterpart.
+    /// Returns the mean of a picture, for a parameter that can only be a number in Dürer.
     pub fn mean_of(&self, params: &Params, name: &'static str, picture: &Picture) -> Option<f32> {
         let at = params.place(name);
         self.report.once(at, format!("a picture for `{name}` has no counterpart: its mean is used"));
         self.pictures().mean(picture, at)
     }
 
-    /// Picture of a parameter with `change` applied to its values; `None` if the parameter is not a
-    /// picture.
+    /// Returns the picture of a parameter with `change` applied to its values; `None` if the
+    /// parameter is not a picture.
     pub fn changed(
         &mut self,
         params: &Params,
@@ -193,7 +195,8 @@ impl Reader<'_> {
         Some(self.asset(picture, at))
     }
 
-    /// Float parameter that may be a picture: `change` of the value, or 1 and the changed picture.
+    /// Returns a float parameter that may be a picture: `change` applied to the value, or 1 and the
+    /// changed picture.
     pub fn pictured(
         &mut self,
         params: &Params,
@@ -207,7 +210,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Colour parameter that may be a picture: the colour, or the colour factor and the picture's
+    /// Returns a colour parameter that may be a picture: the colour, or a factor and the picture's
     /// name.
     pub fn colored(&mut self, params: &Params, name: &'static str, usual: f32) -> (Color, Option<FileName>) {
         match self.pattern(params, name, true, Vec3::splat(usual)) {
@@ -225,7 +228,7 @@ impl Reader<'_> {
         Pictures { input: self.input, report: self.report }
     }
 
-    /// Returns a file as a picture of 8 bits per channel. Converts other formats.
+    /// Returns a file as a picture with 8 bits per channel; other formats are converted.
     pub fn eight_bits(&self, name: &str, at: Span) -> Option<PictureBytes> {
         self.pictures().eight_bits(name, at)
     }
@@ -252,7 +255,7 @@ impl Reader<'_> {
         mapping.nearest = params.text("filter") == Some("point");
         mapping.mipmaps = matches!(params.text("filter"), Some("trilinear" | "ewa" | "EWA"));
         if self.language == Language::Third {
-            // Ignore the mipmap settings of pbrt-v3: sampling needs no mipmaps.
+            // Ignore pbrt-v3's mipmap settings: sampling needs no mipmaps.
             params.known(&["trilinear", "maxanisotropy"]);
             let scale = Vec3::splat(params.float("scale").unwrap_or(1.0));
             let plain = params.truth("gamma") == Some(false);
@@ -277,7 +280,8 @@ impl Reader<'_> {
         Some(Texture::Picture(recoded.unwrap_or(picture), scale))
     }
 
-    /// Exponent that decodes the picture's values to linear; `None` for the sRGB curve.
+    /// Returns the exponent that decodes the picture's values to linear ones; `None` for the sRGB
+    /// curve.
     fn encoding(&self, params: &Params) -> Option<f32> {
         let text = params.text("encoding").filter(|encoding| *encoding != "sRGB")?;
         if text == "linear" {
@@ -300,12 +304,12 @@ impl Reader<'_> {
         let number = |name: &'static str, usual: f32| params.float(name).unwrap_or(usual);
         let (su, sv) = (number("uscale", 1.0), number("vscale", 1.0));
         let (du, dv) = (number("udelta", 0.0), number("vdelta", 0.0));
-        // v grows upwards in both; a picture's rows go down.
+        // v grows upwards in pbrt and in Dürer, but a picture's rows go down.
         Mapping { transform: [[su, 0.0, du], [0.0, sv, 1.0 - sv - dv]], ..Mapping::default() }
     }
 
-    /// Bilinear interpolation of the values at (u, v) = (0, 0), (0, 1), (1, 0) and (1, 1), as a
-    /// picture of 2 x 2 texels.
+    /// Returns the bilinear interpolation of the values at (u, v) = (0, 0), (0, 1), (1, 0) and (1,
+    /// 1), as a picture of 2 x 2 texels.
     fn corners(&self, [v00, v01, v10, v11]: [Color; 4], params: &Params) -> Texture {
         let mut mapping = self.mapping(params);
         // Map [0, 1] to the range between texel centres; rows go down.
@@ -318,7 +322,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Combines two textures texel by texel; `None` for pictures with different mappings.
+    /// Combines two textures texel by texel; `None` if their pictures have different mappings.
     fn together(&self, textures: [&Texture; 2], at: Span, join: impl Fn(Color, Color) -> Color) -> Option<Texture> {
         let pictures = self.pictures();
         let (picture, most) = match textures {
@@ -332,10 +336,10 @@ impl Reader<'_> {
         Some(Texture::Picture(picture, Vec3::splat(most)))
     }
 
-    /// Checkerboard as a picture of 2 x 2 texels.
+    /// Returns a checkerboard as a picture of 2 x 2 texels.
     fn checkerboard(&self, even: Color, odd: Color, params: &Params) -> Texture {
         let mut mapping = self.mapping(params);
-        // One texel covers one unit of uv; the origin is the lower left corner of an even texel.
+        // One texel covers one unit of uv. The origin is the lower left corner of an even texel.
         let [[su, _, du], [_, sv, _]] = mapping.transform;
         let dv = params.float("vdelta").unwrap_or(0.0);
         mapping.transform = [[0.5 * su, 0.0, 0.5 * du], [0.0, 0.5 * sv, 1.0 - 0.5 * sv - 0.5 * dv]];

@@ -7,12 +7,12 @@ use durer_diag::{Diagnostic, Span};
 use durer_scene::math::fp;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 
-/// Maps from the current space to world space, when the shutter opens and when it closes. Before
-/// `WorldBegin`: from world space to camera space.
+/// Current transformation matrices of pbrt: from the current space to world space, at shutter open
+/// and at shutter close. Before `WorldBegin`: from world space to camera space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Transforms {
     pub maps: [DAffine3; 2],
-    /// Maps that directives change.
+    /// Which of the two maps directives change, as set by `ActiveTransform`.
     pub active: [bool; 2],
 }
 
@@ -23,11 +23,12 @@ impl Default for Transforms {
 }
 
 impl Transforms {
-    /// Multiplies from the right: the last directive applies first.
+    /// Multiplies by `map` from the right, so that the last directive in the file is applied first.
     pub fn apply(&mut self, map: DAffine3) {
         self.change(|now| now * map);
     }
 
+    /// Changes the active maps.
     pub fn change(&mut self, change: impl Fn(DAffine3) -> DAffine3) {
         for (map, active) in self.maps.iter_mut().zip(self.active) {
             if active {
@@ -36,7 +37,7 @@ impl Transforms {
         }
     }
 
-    /// Returns true if the two maps differ: objects move while the shutter is open.
+    /// Returns true if the two maps differ, so that objects move while the shutter is open.
     pub fn moves(&self) -> bool {
         self.maps[0] != self.maps[1]
     }
@@ -68,7 +69,7 @@ pub(super) fn numbers<const N: usize>(text: &mut Lexer, directive: Span, report:
     Some(all)
 }
 
-/// Affine map of a matrix of 16 numbers in column-major order.
+/// Returns the affine map for a matrix of 16 numbers in column-major order.
 pub(super) fn matrix(m: [f64; 16], at: Span, report: &SharedReport) -> Option<DAffine3> {
     let matrix = DMat4::from_cols_array(&m);
     let [a, b, c, d] = [m[3], m[7], m[11], m[15]];
@@ -80,7 +81,7 @@ pub(super) fn matrix(m: [f64; 16], at: Span, report: &SharedReport) -> Option<DA
     sound(map, at, report)
 }
 
-/// Returns an invertible map, or reports it as singular.
+/// Returns a map if it is invertible; reports an error if it is singular.
 pub(super) fn sound(map: DAffine3, at: Span, report: &SharedReport) -> Option<DAffine3> {
     let determinant = map.matrix3.determinant();
     if determinant == 0.0 || !determinant.is_finite() || !map.inverse().is_finite() {
@@ -94,7 +95,7 @@ pub(super) fn sound(map: DAffine3, at: Span, report: &SharedReport) -> Option<DA
     Some(map)
 }
 
-/// Rotation by an angle in degrees about an axis of any length.
+/// Returns the rotation by an angle in degrees about an axis of any length.
 pub(super) fn rotation([degrees, x, y, z]: [f64; 4]) -> Option<DAffine3> {
     let axis = DVec3::new(x, y, z).try_normalize()?;
     let (sin, cos) = fp::sin_cos_degrees(degrees);
@@ -102,8 +103,8 @@ pub(super) fn rotation([degrees, x, y, z]: [f64; 4]) -> Option<DAffine3> {
     Some(DAffine3::from_mat3(DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z))))
 }
 
-/// Map from world space to the space of a camera at `e`, which looks along +z at `l`; +x is to the
-/// right (left-handed).
+/// Returns the map from world space to the space of a camera at `e` that looks along +z towards
+/// `l`; +x is right (left-handed).
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 3.9.7.
 pub(super) fn look_at([ex, ey, ez, lx, ly, lz, ux, uy, uz]: [f64; 9]) -> Option<DAffine3> {

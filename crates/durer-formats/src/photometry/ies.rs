@@ -1,15 +1,16 @@
-//! Reader and writer of IES files: light distributions of luminaires, ANSI/IES LM-63 of 1986 to
-//! 2019.
+//! Reader and writer of IES files, which contain light distributions of luminaires: ANSI/IES LM-63
+//! of 1986 to 2019.
 //!
-//! A file has lines of text, the last of them `TILT=`, then numbers: counts of angles, the angles,
-//! and the candela values.
+//! A file has lines of text, of which `TILT=` is the last, then numbers: the counts of angles, the
+//! angles, and the candela values.
 
 use durer_diag::{Diagnostic, Diagnostics, Severity, Span};
 use durer_scene::light::photometric::{Profile, ProfileKind};
 
-/// Limit on the number of angles, above what any photometer has.
+/// Maximum number of angles; more than any photometer measures.
 const MAX_ANGLES: f64 = 4_000.0;
 
+/// Cursor over the numbers of an IES file.
 struct Numbers<'t> {
     text: &'t str,
     at: usize,
@@ -22,8 +23,8 @@ impl Numbers<'_> {
         Box::new(Diagnostic::error(message).code("bad-file").at(span))
     }
 
-    /// Reads the next number; `what` names it in errors. Commas separate numbers too, as in some
-    /// real files.
+    /// Reads the next number; `what` names it in errors. Some files in circulation also separate
+    /// numbers by commas.
     fn next(&mut self, what: &str) -> Result<(f64, usize), Box<Diagnostic>> {
         let rest = &self.text[self.at..];
         let between = |c: char| c.is_whitespace() || c == ',';
@@ -59,7 +60,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// Reads ascending angles from -360 to 360 degrees.
+    /// Reads angles from -360 to 360 degrees, in ascending order.
     fn angles(&mut self, count: usize, what: &str) -> Result<Vec<f32>, Box<Diagnostic>> {
         let mut angles: Vec<f32> = Vec::with_capacity(count);
         for _ in 0..count {
@@ -76,6 +77,7 @@ impl Numbers<'_> {
     }
 }
 
+/// Reads an IES file. Returns `None` after pushing errors to the diagnostics.
 pub fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<Profile> {
     let (profile, odd) = parse(text, file).map_err(|error| diagnostics.push(*error)).ok()?;
     odd.into_iter().for_each(|warning| diagnostics.push(warning));
@@ -104,7 +106,7 @@ fn parse(text: &str, file: u32) -> Result<(Profile, Vec<Diagnostic>), Box<Diagno
     match tilt.as_str() {
         "NONE" => {}
         "INCLUDE" => {
-            // Skip the factors for tilted luminaires: they have no effect in the usual position.
+            // Skip the factors for tilted luminaires, which have no effect in the usual position.
             numbers.next("tilt geometry")?;
             let pairs = numbers.count("number of tilt angles")?;
             numbers.angles(pairs, "tilt angle")?;
@@ -136,7 +138,7 @@ fn parse(text: &str, file: u32) -> Result<(Profile, Vec<Diagnostic>), Box<Diagno
         numbers.next(what)?;
     }
     let ballast = numbers.factor("ballast factor")?;
-    // A photometric factor in the standard of 1986; reserved in later ones, and 1.
+    // A photometric factor in the standard of 1986. It is reserved in later standards, and 1.
     let (reserved, _) = numbers.next("reserved number")?;
     numbers.next("watts")?;
     let vertical = numbers.angles(verticals, "vertical angle")?;
@@ -169,7 +171,8 @@ fn parse(text: &str, file: u32) -> Result<(Profile, Vec<Diagnostic>), Box<Diagno
     };
     let (first, last) = (horizontal[0], horizontal[horizontals - 1]);
     if kind == ProfileKind::C && horizontals > 1 && first == 0.0 && last > 180.0 && last < 360.0 {
-        // The file leaves the rest undefined: close the circle with the first values.
+        // The file leaves the remaining angles undefined, so close the circle with the first
+        // values.
         warn(angles.clone(), "the horizontal angles end before 360: the gap is interpolated linearly");
         horizontal.push(360.0);
         candela.extend_from_within(..verticals);
@@ -183,7 +186,7 @@ fn parse(text: &str, file: u32) -> Result<(Profile, Vec<Diagnostic>), Box<Diagno
     Ok((Profile { kind, vertical, horizontal, candela }, odd))
 }
 
-/// Writes a profile as a file that reads back bit for bit.
+/// Encodes a profile as an IES file that reads back bit for bit.
 pub fn write(profile: &Profile) -> Vec<u8> {
     let Profile { kind, vertical, horizontal, candela } = profile;
     let kind = match kind {
@@ -194,7 +197,7 @@ pub fn write(profile: &Profile) -> Vec<u8> {
     let mut text = String::from("IESNA:LM-63-2002\nTILT=NONE\n");
     text += &format!("1 -1 1 {} {} {kind} 2 0 0 0\n1 1 0\n", vertical.len(), horizontal.len());
     for values in [vertical, horizontal, candela] {
-        // Lines may have at most 256 characters.
+        // A line may have at most 256 characters.
         for line in values.chunks(10) {
             let words: Vec<String> = line.iter().map(f32::to_string).collect();
             text += &(words.join(" ") + "\n");
@@ -221,7 +224,8 @@ mod tests {
 
     #[test]
     fn flux_matches_closed_form() {
-        // I = 1000 cos over the lower half: pi 1000 lm. 100 cd everywhere: 4 pi 100 lm.
+        // I = 1000 cos over the lower half gives pi 1000 lm. 100 cd in all directions gives 4 pi
+        // 100 lm.
         let angles: Vec<f64> = (0..=36).map(|i| 2.5 * f64::from(i)).collect();
         let cosine: Vec<String> = angles.iter().map(|a| format!("{}", 1000.0 * fp_cos(*a))).collect();
         let angles: Vec<String> = angles.iter().map(f64::to_string).collect();

@@ -1,6 +1,7 @@
-//! Reader of EULUMDAT files (`.ldt`): light distributions of luminaires, common in Europe.
+//! Reader of EULUMDAT files (`.ldt`), which contain light distributions of luminaires and are
+//! common in Europe.
 //!
-//! A file has one value per line in a fixed order: the type of luminaire, the symmetry of its
+//! A file has one value per line, in a fixed order: the type of luminaire, the symmetry of its
 //! planes, its light sources and their flux, the angles, and intensities in candela per 1000 lumens
 //! of that flux.
 //!
@@ -11,24 +12,25 @@
 use durer_diag::{Diagnostic, Diagnostics, Severity, Span};
 use durer_scene::light::photometric::{Profile, ProfileKind};
 
-/// Limits of the format: number of planes, and number of angles in each.
+/// Limits of the format: number of planes, and number of angles in each plane.
 const MAX_PLANES: usize = 721;
 const MAX_ANGLES: usize = 361;
 
-/// Symmetry of the light distribution.
+/// Symmetry of a EULUMDAT light distribution, which determines the half-planes that the file lists.
 #[derive(Clone, Copy)]
 enum Symmetry {
     None,
-    /// Rotational symmetry: all planes are equal.
+    /// Rotational symmetry: all half-planes are equal.
     Axis,
-    /// Mirror symmetry about the plane C = 0 and 180 degrees.
+    /// Mirror symmetry about the plane of C = 0 and 180 degrees.
     C0,
-    /// Mirror symmetry about the plane C = 90 and 270 degrees.
+    /// Mirror symmetry about the plane of C = 90 and 270 degrees.
     C90,
-    /// Symmetry about both planes.
+    /// Mirror symmetry about both planes.
     Both,
 }
 
+/// Cursor over the lines of a EULUMDAT file.
 struct Lines<'t> {
     text: &'t str,
     at: usize,
@@ -43,7 +45,7 @@ impl<'t> Lines<'t> {
         Box::new(Diagnostic::error(message).code("bad-file").at(span))
     }
 
-    /// Returns the next line, trimmed, and its offset.
+    /// Returns the next line without surrounding whitespace, and its offset.
     fn next(&mut self, what: &str) -> LdtResult<(&'t str, usize)> {
         if self.at >= self.text.len() {
             return Err(self.error(self.at, self.at, format!("the file ends where the {what} should be")));
@@ -85,7 +87,7 @@ impl<'t> Lines<'t> {
         Ok(number)
     }
 
-    /// Reads ascending angles from 0 to `most` degrees.
+    /// Reads angles from 0 to `most` degrees, in ascending order.
     fn angles(&mut self, count: usize, what: &str, most: f64) -> LdtResult<Vec<f32>> {
         let mut angles: Vec<f32> = Vec::with_capacity(count);
         for _ in 0..count {
@@ -102,14 +104,15 @@ impl<'t> Lines<'t> {
     }
 }
 
-/// Returns true if a text begins as an EULUMDAT file does: the type of luminaire and the symmetry
-/// are whole numbers in the second and third line.
+/// Returns true if a text begins like a EULUMDAT file: the second and the third line, type of
+/// luminaire and symmetry, are integers.
 pub(super) fn recognise(text: &str) -> bool {
     let mut lines = text.lines().map(str::trim).skip(1);
     let mut is_whole = || lines.next().is_some_and(|line| line.parse::<u32>().is_ok());
     is_whole() && is_whole()
 }
 
+/// Reads a EULUMDAT file. Returns `None` after pushing errors to the diagnostics.
 pub fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<Profile> {
     parse(text, file, diagnostics).map_err(|error| diagnostics.push(*error)).ok()
 }
@@ -134,7 +137,7 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<Prof
     let factor = lines.not_negative("conversion factor")?;
     lines.skip(1, "tilt")?;
     let sets = lines.whole("number of sets of light sources", 1, 20)?;
-    // The sets are alternatives; the first one is used.
+    // The sets are alternatives; use the first one.
     lines.skip(2, "number and type of the light sources")?;
     let flux = lines.not_negative("flux of the light sources")?;
     lines.skip(3 + 6 * (sets - 1), "colour and watts of the light sources")?;
@@ -166,7 +169,8 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<Prof
             profile.horizontal.push(360.0);
             profile.candela.extend_from_within(..verticals);
         }
-        // The file lists 270 over 0 to 90 degrees; a profile lists 90 to 270, as IES files do.
+        // EULUMDAT lists half-planes from C = 270 over 0 to 90 degrees; profiles list 90 to 270, as
+        // IES files do.
         Symmetry::C90 => turned(&mut profile),
         _ => {}
     }
@@ -179,7 +183,7 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<Prof
 }
 
 impl Lines<'_> {
-    /// Selects the planes that the file has intensities for.
+    /// Selects the half-planes for which the file has intensities.
     fn kept(&self, symmetry: Symmetry, planes: Vec<f32>, at: std::ops::Range<usize>) -> LdtResult<Vec<f32>> {
         let within = |from: f32, to: f32| planes.iter().copied().filter(|c| (from..=to).contains(c)).collect();
         let (kept, ends): (Vec<f32>, _) = match symmetry {
@@ -187,13 +191,13 @@ impl Lines<'_> {
             Symmetry::None => (planes, [0.0, f32::NAN]),
             Symmetry::C0 => (within(0.0, 180.0), [0.0, 180.0]),
             Symmetry::C90 => {
-                // The planes run from 270 to 360, then from 0 to 90.
+                // Half-planes are listed from 270 to 360, then from 0 to 90 degrees.
                 let below = planes.iter().filter(|c| **c >= 270.0 && **c < 360.0).map(|c| c - 360.0);
                 (below.chain(within(0.0, 90.0)).collect(), [-90.0, 90.0])
             }
             Symmetry::Both => (within(0.0, 90.0), [0.0, 90.0]),
         };
-        // Without symmetry the last plane is arbitrary.
+        // Without symmetry, the last half-plane can be at any angle.
         let [first, last] = ends;
         if kept.first() == Some(&first) && (last.is_nan() || kept.last() == Some(&last)) {
             return Ok(kept);
@@ -205,7 +209,7 @@ impl Lines<'_> {
     }
 }
 
-/// Mirrors the half circle from -90 to 90 degrees to the other half.
+/// Replaces the half-planes from -90 to 90 degrees by their mirror images, from 90 to 270 degrees.
 fn turned(profile: &mut Profile) {
     let verticals = profile.vertical.len();
     profile.horizontal = profile.horizontal.iter().rev().map(|c| 180.0 - c).collect();
@@ -218,8 +222,9 @@ mod tests {
     use durer_diag::Files;
     use durer_scene::math::{Vec3, fp};
 
-    /// Returns a test file with a symmetry, a number of planes around the circle, a flux, and
-    /// intensities by plane and gamma angle; only the planes in `written` are in the file.
+    /// Returns a test file with the given symmetry, number of half-planes around the circle, flux,
+    /// and intensities as a function of C and gamma. Only the half-planes in `written` are in the
+    /// file.
     fn file(symmetry: u32, count: usize, flux: &str, written: &[f64], value: impl Fn(f64, f64) -> f64) -> String {
         let gammas: Vec<f64> = (0..=36).map(|i| 5.0 * f64::from(i)).collect();
         let planes = (0..count).map(|i| 360.0 / count as f64 * i as f64);
@@ -253,7 +258,7 @@ mod tests {
 
     #[test]
     fn every_symmetry_fills_the_circle() {
-        // Candela per 1000 lumens, of 2000 lumens; each function has the symmetry of its row.
+        // Candela per 1000 lumens of 2000 lumens. Each function has the symmetry of its row.
         let cos = |degrees: f64| fp::sin_cos_degrees(degrees).1;
         let sin = |degrees: f64| fp::sin_cos_degrees(degrees).0;
         let all: Vec<f64> = (0..24).map(|i| 15.0 * f64::from(i)).collect();
@@ -277,7 +282,7 @@ mod tests {
                     let dir = Vec3::new((flat * cos(c)) as f32, (flat * sin(c)) as f32, cos(g) as f32);
                     let expected = 2.0 * value(cos(c), sin(c)) * (1.0 + cos(g));
                     let found = f64::from(profile.at(dir));
-                    // Values between planes are interpolated linearly.
+                    // Values between half-planes are interpolated linearly.
                     assert!(
                         (found - expected).abs() < 0.006 * expected,
                         "{symmetry}, {c}, {g}: {found}, not {expected}"

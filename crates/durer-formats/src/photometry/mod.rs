@@ -1,4 +1,4 @@
-//! Readers and writer of measured light distributions.
+//! Readers and a writer of measured light distributions.
 
 mod ies;
 mod ldt;
@@ -7,10 +7,10 @@ use durer_diag::Diagnostics;
 use durer_scene::light::photometric::Profile;
 pub use ies::write;
 
-/// Reads a profile in either format; errors have spans.
+/// Reads a light profile in IES or EULUMDAT format; errors have spans.
 pub fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<Profile> {
-    // Manufacturers' names may be in any encoding; the rest is ASCII. Replacing bytes one by one
-    // keeps offsets.
+    // Names of manufacturers can be in any encoding; all other text is ASCII. Replacing bytes one
+    // by one preserves offsets.
     let text: String = bytes.iter().map(|&b| if b.is_ascii() { char::from(b) } else { '?' }).collect();
     match ldt::recognise(&text) {
         true => ldt::read(&text, file, diagnostics),

@@ -1,4 +1,4 @@
-//! Reader of the rows of a PLY file: decides which elements to read, and in which order.
+//! Reads the rows of a PLY file; decides which elements to read, and in which order.
 
 use super::header::{Element, Property};
 use super::values::{ValueError, Values};
@@ -8,10 +8,10 @@ use crate::report::{Report, counted, shown};
 use durer_scene::shape::mesh::MeshData;
 use std::ops::Range;
 
-/// Signals that reading cannot continue; the error has been reported.
+/// Error type of the PLY reader: reading cannot continue, and the error has already been reported.
 pub(super) struct ErrorReported;
 
-/// Reader of the rows of all elements.
+/// Reader that converts the rows of all elements of a PLY file to a mesh.
 pub(super) struct Body<'a, 'r, V> {
     pub bytes: &'a [u8],
     pub report: &'r mut Report,
@@ -36,7 +36,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
 
     fn read_elements(&mut self, elements: &[Element]) -> Result<(), ErrorReported> {
         let mut has_vertices = false;
-        // Faces that precede the vertices are skipped and read at the end.
+        // Faces that precede the vertices are skipped here and read at the end.
         let mut later: Vec<(&Element, V)> = Vec::new();
         for element in elements {
             self.check_rows(element)?;
@@ -68,7 +68,8 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
             self.read_faces(element)?;
         }
         let MeshData { uvs, normals, triangles, triangle_uvs, triangle_normals, .. } = &mut self.mesh;
-        // Each vertex has its own texture coordinates and normal.
+        // Texture coordinates and normals are stored for each vertex, so their indices are those of
+        // the vertices.
         if !uvs.is_empty() {
             triangle_uvs.clone_from(triangles);
         }
@@ -78,7 +79,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         Ok(())
     }
 
-    /// Reports an element whose rows exceed the rest of the file.
+    /// Reports an element that has more rows than the rest of the file can contain.
     fn check_rows(&mut self, element: &Element) -> Result<(), ErrorReported> {
         let sizes = element.properties.iter().map(|p| p.count.map_or(V::fixed_size(p.scalar), |_| None));
         let Some(size) = sizes.sum::<Option<usize>>() else { return Ok(()) };
@@ -97,16 +98,17 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         Ok(())
     }
 
-    /// Number of promised rows, limited by the size of the file. Used to reserve memory.
+    /// Returns the number of promised rows, limited by the size of the file. Used to reserve
+    /// memory.
     pub fn likely_rows(&self, element: &Element) -> usize {
-        // An empty list still has a length; a text value takes at least a digit and a blank.
+        // Even an empty list has a length, and a text value takes at least one digit and one space.
         let smallest = |p: &Property| V::fixed_size(p.count.unwrap_or(p.scalar)).unwrap_or(2);
         let row = element.properties.iter().map(smallest).sum::<usize>().max(1);
         element.rows.min((self.values.remainder().len() / row + 1) as u64) as usize
     }
 
     fn skip_rows(&mut self, element: &Element) -> Result<(), ErrorReported> {
-        // Rows without properties take no bytes, so the header may promise any number of them.
+        // Rows without properties take no bytes, so any number of them could be promised.
         if element.properties.is_empty() {
             return Ok(());
         }
@@ -118,6 +120,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         Ok(())
     }
 
+    /// Skips the value or list of a property in one row.
     pub fn skip_property(&mut self, element: &Element, row: u64, property: &Property) -> Result<(), ErrorReported> {
         let count = match property.count {
             Some(_) => self.list_length(element, row, property)?,
@@ -126,7 +129,8 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         self.values.skip(property.scalar, count).map_err(|error| self.fail(error, element, row))
     }
 
-    /// Reads the length of a list, which never exceeds the values that can follow.
+    /// Reads the length of a list, and checks that the rest of the file can contain that many
+    /// values.
     pub fn list_length(&mut self, element: &Element, row: u64, property: &Property) -> Result<usize, ErrorReported> {
         let Some(scalar) = property.count else { return Ok(1) };
         let length = self.values.integer(scalar).map_err(|error| self.fail(error, element, row))?;
@@ -145,7 +149,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         }
     }
 
-    /// Reports a missing or invalid value. The caller must stop, unless it can skip the value.
+    /// Reports a missing or invalid value. The caller must stop unless it can skip the value.
     pub fn fail(&mut self, error: ValueError, element: &Element, row: u64) -> ErrorReported {
         let at = self.values.last();
         match error {
@@ -161,7 +165,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         ErrorReported
     }
 
-    /// Reports an invalid value and continues, unless the file ended or the report is full.
+    /// Reports an invalid value and continues, unless the file has ended or the report is full.
     pub fn tolerate(&mut self, error: ValueError, element: &Element, row: u64) -> Result<(), ErrorReported> {
         let stop = self.fail(error, element, row);
         if error == ValueError::End || self.report.is_full() { Err(stop) } else { Ok(()) }

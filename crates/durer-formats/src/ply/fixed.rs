@@ -1,6 +1,6 @@
-//! Fast reader of binary rows of one size, as nearly all large files have.
+//! Fast reader of binary rows with a fixed size, which nearly all large files have.
 //!
-//! It leaves rows that are invalid or differ in size to the reader of single rows, which reports
+//! Rows that are invalid or vary in size are left to the reader of single rows, which reports
 //! errors.
 
 use super::body::Body;
@@ -10,11 +10,11 @@ use super::values::Values;
 use durer_scene::math::{Vec2, Vec3};
 use rayon::prelude::*;
 
-/// Rows of a task. They stay in the cache of a core while their columns are read one after the
-/// other.
+/// Number of rows in a parallel task. They stay in a core's cache while their columns are read one
+/// by one.
 const BLOCK: usize = 1 << 11;
 
-/// Binary rows of one size.
+/// Binary rows of one PLY element, all of the same size.
 struct Rows<'a> {
     bytes: &'a [u8],
     /// Size of a row in bytes.
@@ -22,7 +22,7 @@ struct Rows<'a> {
     big_endian: bool,
 }
 
-/// Visits a column of numbers of one type; true if all are valid.
+/// Visits a column of numbers of one type; returns true if all are valid.
 macro_rules! column {
     ($rows:expr, $at:expr, $number:ty, |$i:ident, $value:ident| $is_good:expr) => {{
         let (rows, mut good) = ($rows, true);
@@ -51,7 +51,7 @@ impl Rows<'_> {
         sound.all(|sound| sound).then_some(all)
     }
 
-    /// Reads `N` numbers of each row; an empty list if the rows lack one of the columns.
+    /// Reads `N` numbers of each row; returns an empty list if the rows lack one of the columns.
     fn all<const N: usize>(&self, places: &[Option<NumberLayout>]) -> Option<Vec<[f32; N]>> {
         let places: Option<Vec<NumberLayout>> = places.iter().copied().collect();
         match places.and_then(|places| places.try_into().ok()) {
@@ -60,7 +60,7 @@ impl Rows<'_> {
         }
     }
 
-    /// Passes one number of each row to `put`; true if all are finite.
+    /// Passes one number of each row to `put`; returns true if all are finite.
     fn each(&self, (scalar, at): NumberLayout, mut put: impl FnMut(usize, f32)) -> bool {
         macro_rules! read {
             ($number:ty) => {
@@ -83,8 +83,8 @@ impl Rows<'_> {
         }
     }
 
-    /// Reads three corners of each row, whose list starts at a given place; `None` if a list has
-    /// another length or a corner is not below `vertices`.
+    /// Reads three vertex indices of each row from the list at the given position; `None` if a list
+    /// has another length or an index is not below `vertices`.
     fn triangles(&self, count: NumberLayout, corners: Scalar, vertices: usize) -> Option<Vec<[u32; 3]>> {
         let mut all = vec![[0; 3]; self.bytes.len() / self.size];
         let first = count.1 + count.0.size();
@@ -102,7 +102,7 @@ impl Rows<'_> {
         sound.all(|sound| sound).then_some(all)
     }
 
-    /// Passes one whole number of each row to `is_good`; true if all are good.
+    /// Passes one integer of each row to `is_good`; returns true if all are accepted.
     fn whole(&self, (scalar, at): NumberLayout, mut is_good: impl FnMut(usize, i64) -> bool) -> bool {
         macro_rules! read {
             ($number:ty) => {
@@ -122,7 +122,7 @@ impl Rows<'_> {
 }
 
 impl<V: Values> Body<'_, '_, V> {
-    /// The rows of an element of `size` bytes each, if the file contains all of them.
+    /// Returns the rows of an element, of `size` bytes each, if the file contains all of them.
     fn rows(&self, element: &Element, size: usize) -> Option<Rows<'_>> {
         let big_endian = V::BIG_ENDIAN?;
         let left = &self.bytes[self.values.remainder()];
@@ -130,7 +130,7 @@ impl<V: Values> Body<'_, '_, V> {
         Some(Rows { bytes: left.get(..length).filter(|_| size > 0)?, size, big_endian })
     }
 
-    /// Reads all vertices at once; `None` if they must be read one by one.
+    /// Reads all vertices at once; `None` if they must be read row by row.
     pub(super) fn fixed_vertices(&mut self, element: &Element, columns: &[Option<usize>]) -> Option<()> {
         let mut places = [None; COLUMNS.len()];
         let mut size = 0;
@@ -143,7 +143,7 @@ impl<V: Values> Body<'_, '_, V> {
             }
             size += property.scalar.size();
         }
-        // Colours need decoding and clamping, which the reader of single rows does.
+        // Colours need decoding and clamping; the reader of single rows does this.
         if places[8..12].iter().any(Option::is_some) {
             return None;
         }
@@ -162,7 +162,7 @@ impl<V: Values> Body<'_, '_, V> {
         self.values.skip(Scalar::U8, length).ok()
     }
 
-    /// Reads all faces at once if they are triangles; `None` if they must be read one by one.
+    /// Reads all faces at once if they are triangles; `None` if they must be read row by row.
     pub(super) fn fixed_faces(&mut self, element: &Element, list: usize) -> Option<()> {
         let mut size = 0;
         let mut found = None;

@@ -5,7 +5,7 @@ use crate::report::{Report, shown};
 use durer_diag::did_you_mean;
 use std::ops::Range;
 
-/// Encoding of the rows.
+/// Encoding of the rows of a PLY file: text, or binary in either byte order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
     Ascii,
@@ -19,7 +19,7 @@ const ENCODINGS: [(&str, Encoding); 3] = [
     ("binary_big_endian", Encoding::BigEndian),
 ];
 
-/// Type of a single value.
+/// Number type of a single value in a PLY file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scalar {
     I8,
@@ -32,7 +32,7 @@ pub(super) enum Scalar {
     F64,
 }
 
-/// Old and new name of each type.
+/// Old and new name of each number type.
 const SCALARS: [(&str, &str, Scalar); 8] = [
     ("char", "int8", Scalar::I8),
     ("uchar", "uint8", Scalar::U8),
@@ -55,8 +55,8 @@ impl Scalar {
         }
     }
 
-    /// Value of full intensity in a colour of this type: the maximum of an integer type, 1 for
-    /// floats.
+    /// Value that stands for full intensity in a colour of this type: the maximum of an integer
+    /// type, or 1 for floats.
     pub fn greatest(self) -> f32 {
         match self {
             Scalar::I8 => 127.0,
@@ -69,22 +69,23 @@ impl Scalar {
         }
     }
 
+    /// Returns true if the type is an integer type.
     pub fn is_integer(self) -> bool {
         !matches!(self, Scalar::F32 | Scalar::F64)
     }
 }
 
-/// A column of an element.
+/// Property of a PLY element: the name and type of one column of its rows.
 pub(super) struct Property {
     /// Byte range of the name.
     pub name: Range<usize>,
-    /// Type of the value, or of a list's values.
+    /// Type of the value, or of the values in a list.
     pub scalar: Scalar,
-    /// Type of the length if the property is a list.
+    /// Type of the length, if the property is a list.
     pub count: Option<Scalar>,
 }
 
-/// A table of rows.
+/// Element declared in a PLY header, such as `vertex` or `face`: a table with a number of rows.
 pub(super) struct Element {
     /// Byte range of the name.
     pub name: Range<usize>,
@@ -93,7 +94,7 @@ pub(super) struct Element {
     pub properties: Vec<Property>,
 }
 
-/// The header of a PLY file.
+/// Parsed header of a PLY file.
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
@@ -109,7 +110,7 @@ const KEYWORDS: [&str; 6] = ["format", "element", "property", "comment", "obj_in
 /// Value of `obj_info` that sets [`Header::flat`].
 pub(super) const FLAT: &[u8] = b"flat";
 
-/// Reads a header. Returns `None` after reporting errors.
+/// Reads the header of a PLY file. Returns `None` after reporting errors.
 pub(super) fn read_header(bytes: &[u8], report: &mut Report) -> Option<Header> {
     let mut lines = Lines { bytes, at: 0 };
     let first = lines.next_line().unwrap_or(0..0);
@@ -139,6 +140,7 @@ pub(super) fn read_header(bytes: &[u8], report: &mut Report) -> Option<Header> {
     None
 }
 
+/// Parser of a PLY header, with the elements found so far.
 struct HeaderReader<'a, 'r> {
     bytes: &'a [u8],
     report: &'r mut Report,
@@ -170,7 +172,7 @@ impl<'a> HeaderReader<'a, '_> {
         match ENCODINGS.iter().find(|(name, _)| *name == self.text(encoding)) {
             Some(&(_, known)) => self.encoding = Some(known),
             None => {
-                // Continue, to report further errors.
+                // Continue, so that further errors are reported.
                 self.encoding = Some(Encoding::Ascii);
                 let names = ENCODINGS.map(|(name, _)| name);
                 self.unknown(&format!("one of `{}`", names.join("`, `")), encoding.clone(), names);
@@ -234,7 +236,7 @@ impl<'a> HeaderReader<'a, '_> {
     }
 }
 
-/// Iterator over the lines of the header, without their line ends.
+/// Iterator over the lines of a PLY header, without line ends.
 struct Lines<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -245,8 +247,8 @@ impl Lines<'_> {
         let rest = self.bytes.get(self.at..).filter(|rest| !rest.is_empty())?;
         let length = rest.iter().position(|&byte| byte == b'\n' || byte == b'\r').unwrap_or(rest.len());
         let line = self.at..self.at + length;
-        // A lone carriage return ends a line only if the first line ends in one: binary rows may
-        // begin with any byte.
+        // A lone carriage return ends a line only if the first line also ends in one, because
+        // binary rows may begin with any byte.
         let ending = match rest[length..] {
             [b'\r', b'\n', ..] if !self.ends_with_return_alone() => 2,
             [] => 0,

@@ -1,4 +1,4 @@
-//! Vertices, faces and triangle strips of a PLY file.
+//! Reads vertices, faces and triangle strips of a PLY file.
 
 use super::body::{Body, ErrorReported};
 use super::header::{Element, Property};
@@ -10,9 +10,9 @@ use durer_image::decode_srgb;
 use durer_scene::math::{Vec2, Vec3};
 use durer_scene::shape::mesh::NO_INDEX;
 
-/// Properties of a vertex that are read, each with all its names, in the order of a [`Row`].
+/// Vertex properties that are read, each with all its names, in the order of a [`Row`].
 ///
-/// The last ten are Dürer extensions, for the other attributes of a mesh.
+/// The last ten are Dürer extensions for the other attributes of a mesh.
 pub(super) const COLUMNS: [&[&str]; 22] = [
     &["x"],
     &["y"],
@@ -38,14 +38,14 @@ pub(super) const COLUMNS: [&[&str]; 22] = [
     &["tangent_w"],
 ];
 
-/// Values of a vertex: position, normal, texture coordinates, colour and opacity; then linear
-/// colour and opacity, second texture coordinates, tangent.
+/// Values of one vertex: position, normal, texture coordinates, colour and opacity, linear colour
+/// and opacity, second texture coordinates, tangent.
 type Row = [f32; COLUMNS.len()];
 
 const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 impl<V: Values> Body<'_, '_, V> {
-    /// Column of a [`Row`] for each property; `None` if it is not read.
+    /// Returns the column of a [`Row`] for each property; `None` if the property is not read.
     fn columns(&mut self, element: &Element) -> Result<Vec<Option<usize>>, ErrorReported> {
         let mut columns = vec![None; element.properties.len()];
         let mut found: [Option<usize>; COLUMNS.len()] = [None; COLUMNS.len()];
@@ -54,7 +54,7 @@ impl<V: Values> Body<'_, '_, V> {
             let Some(column) = COLUMNS.iter().position(|names| names.iter().any(|n| n.as_bytes() == name)) else {
                 continue;
             };
-            // Lists with the name of a colour mean something else.
+            // A list with the name of a colour has another meaning.
             if property.count.is_some() && column >= 8 {
                 continue;
             }
@@ -62,7 +62,7 @@ impl<V: Values> Body<'_, '_, V> {
                 self.report.error(property.name.clone(), format!("{} must be a number, not a list", shown(name)));
             }
             match found[column] {
-                // Some files have two sets of texture coordinates. The first one is used.
+                // Some files have two sets of texture coordinates; use the first.
                 Some(_) if column >= 6 => continue,
                 Some(first) => {
                     let first = self.report.span(element.properties[first].name.clone());
@@ -79,6 +79,7 @@ impl<V: Values> Body<'_, '_, V> {
         if self.report.has_errors() { Err(ErrorReported) } else { Ok(columns) }
     }
 
+    /// Reads the rows of the `vertex` element.
     pub(super) fn read_vertices(&mut self, element: &Element) -> Result<(), ErrorReported> {
         let columns = self.columns(element)?;
         if self.fixed_vertices(element, &columns).is_some() {
@@ -87,7 +88,7 @@ impl<V: Values> Body<'_, '_, V> {
         let has = |range: std::ops::Range<usize>| range.clone().all(|column| columns.contains(&Some(column)));
         let (has_normals, has_uvs, has_colors) = (has(3..6), has(6..8), has(8..11));
         let (has_linear, has_second, has_tangents) = (has(12..16), has(16..18), has(18..22));
-        // Colours of an integer type are fractions of its maximum.
+        // Integer colours are fractions of the type's maximum.
         let most = |column: usize| {
             let at = columns.iter().position(|found| *found == Some(column));
             at.map_or(1.0, |at| element.properties[at].scalar.greatest())
@@ -140,7 +141,7 @@ impl<V: Values> Body<'_, '_, V> {
         Ok(())
     }
 
-    /// Reads faces or triangle strips, depending on the element's name.
+    /// Reads faces or triangle strips, as the element's name says.
     pub(super) fn read_faces(&mut self, element: &Element) -> Result<(), ErrorReported> {
         if element.rows == 0 {
             return Ok(());
@@ -160,7 +161,7 @@ impl<V: Values> Body<'_, '_, V> {
                     self.skip_property(element, row, property)?;
                     continue;
                 }
-                // An invalid corner has been reported; the face is skipped.
+                // An invalid vertex index has been reported; skip the face.
                 match self.read_corners(element, row, list, strips)? {
                     true if strips => self.cut_strip(),
                     true => self.cut_face()?,
@@ -171,13 +172,13 @@ impl<V: Values> Body<'_, '_, V> {
         Ok(())
     }
 
-    /// Index of the property that lists the corners.
+    /// Returns the index of the property that lists the vertices of a face.
     fn corner_list(&mut self, element: &Element) -> Result<usize, ErrorReported> {
         let named = |i: &usize| {
             CORNER_LISTS.iter().any(|list| list.as_bytes() == &self.bytes[element.properties[*i].name.clone()])
         };
         let Some(list) = (0..element.properties.len()).find(named) else {
-            // Suggests a list whose name is similar.
+            // Suggest a list with a similar name.
             let text = |p: &Property| String::from_utf8_lossy(&self.bytes[p.name.clone()]);
             let near = element.properties.iter().find(|p| did_you_mean(&text(p), CORNER_LISTS).is_some());
             let help = near.map(|p| format!("rename {} to `vertex_indices`", shown(&self.bytes[p.name.clone()])));
@@ -194,7 +195,7 @@ impl<V: Values> Body<'_, '_, V> {
         Ok(list)
     }
 
-    /// Reads one list of corners; `false` if one is invalid.
+    /// Reads the vertex indices of one face; returns `false` if one is invalid.
     fn read_corners(&mut self, element: &Element, row: u64, list: usize, strips: bool) -> Result<bool, ErrorReported> {
         let property = &element.properties[list];
         let length = self.list_length(element, row, property)?;
@@ -234,19 +235,19 @@ impl<V: Values> Body<'_, '_, V> {
         let position = |i: usize| positions[corners[i] as usize];
         let cut = self.cutter.cut(corners.len(), position, |triangle| triangles.push(triangle.map(|i| corners[i])));
         cut.map_err(|_| {
-            let message = format!("a face of {} corners is too complex to triangulate", self.corners.len());
+            let message = format!("this face is too complex to triangulate ({} vertices)", self.corners.len());
             self.report.error(self.values.last(), message).help = Some("triangulate it in a modelling program".into());
             ErrorReported
         })
     }
 
-    /// Each corner forms a triangle with the two before it; every other triangle has the opposite
-    /// winding.
+    /// Splits a strip into triangles: each corner forms a triangle with the two before it, and
+    /// every other triangle has the opposite winding.
     fn cut_strip(&mut self) {
         for strip in self.corners.split(|&corner| corner == NO_INDEX) {
             for (i, window) in strip.windows(3).enumerate() {
                 let [a, b, c] = [window[0], window[1], window[2]];
-                // Degenerate triangles only join strips.
+                // Degenerate triangles only join strips; skip them.
                 if a != b && b != c && a != c {
                     self.mesh.triangles.push(if i % 2 == 0 { [a, b, c] } else { [b, a, c] });
                 }

@@ -4,36 +4,37 @@ use super::header::Scalar;
 use crate::number::{NumberError, parse_f32, parse_integer};
 use std::ops::Range;
 
-/// Reason why a value cannot be used.
+/// Reason why a value in a PLY row cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ValueError {
-    /// The file ends.
+    /// The file ends before the value.
     End,
-    /// The value is not a usable number.
+    /// The value is not a valid number.
     Number(NumberError),
 }
 
-/// A cursor in the rows of a PLY file.
+/// Cursor that reads the values of PLY rows one after the other; implemented for text and binary
+/// files.
 pub(super) trait Values: Clone {
-    /// Byte order of binary values, true if big-endian; `None` for text.
+    /// `Some(true)` for big-endian, `Some(false)` for little-endian binary values; `None` for text.
     const BIG_ENDIAN: Option<bool>;
-    /// Byte range of the last value read; empty at the end of the file.
+    /// Byte range of the last value that was read; empty at the end of the file.
     fn last(&self) -> Range<usize>;
-    /// Upper bound of the number of values of a type that can still follow.
+    /// Upper bound on the number of values of this type that can still follow.
     fn most_left(&self, scalar: Scalar) -> usize;
     /// Reads a finite number.
     fn float(&mut self, scalar: Scalar) -> Result<f32, ValueError>;
-    /// Reads a whole number.
+    /// Reads an integer.
     fn integer(&mut self, scalar: Scalar) -> Result<i64, ValueError>;
-    /// Skips `count` values of a type. They need not be valid numbers.
+    /// Skips `count` values of a type, which need not be valid numbers.
     fn skip(&mut self, scalar: Scalar, count: usize) -> Result<(), ValueError>;
-    /// Byte range of the unread rest, without leading blanks.
+    /// Byte range of the unread rest, without leading whitespace.
     fn remainder(&self) -> Range<usize>;
-    /// Bytes of a value of a type; `None` if it varies.
+    /// Size in bytes of a value of this type; `None` if it varies.
     fn fixed_size(scalar: Scalar) -> Option<usize>;
 }
 
-/// Values as text, separated by blanks and line ends.
+/// Cursor over the values of a text PLY file, which are separated by whitespace.
 #[derive(Clone)]
 pub(super) struct AsciiValues<'a> {
     bytes: &'a [u8],
@@ -64,7 +65,7 @@ impl Values for AsciiValues<'_> {
     }
 
     fn most_left(&self, _: Scalar) -> usize {
-        // A value takes at least a digit and a blank.
+        // A value takes at least one digit and one space.
         (self.bytes.len() - self.end).div_ceil(2)
     }
 
@@ -92,7 +93,7 @@ impl Values for AsciiValues<'_> {
     }
 }
 
-/// Values in binary form.
+/// Cursor over the values of a binary PLY file.
 #[derive(Clone)]
 pub(super) struct BinaryValues<'a, const BIG_ENDIAN: bool> {
     bytes: &'a [u8],

@@ -1,5 +1,5 @@
-//! Writer of meshes as binary PLY. `write` writes positions, colours and triangles, for any
-//! program; `write_whole` writes all attributes, for Dürer's reader.
+//! Writer of meshes as binary PLY. `write` outputs positions, colours and triangles for any
+//! program; `write_whole` outputs all attributes for Dürer's own reader.
 
 use super::rows::COLUMNS;
 use durer_image::Transfer;
@@ -9,6 +9,7 @@ use durer_scene::shape::mesh::NO_INDEX;
 use durer_scene::shape::triangle::face_normal;
 use std::collections::HashMap;
 
+/// Encodes positions, colours and triangles of a mesh as a binary PLY file.
 pub(crate) fn write(mesh: &MeshData) -> Vec<u8> {
     let mut head = format!("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", mesh.positions.len());
     ["x", "y", "z"].iter().for_each(|axis| head += &format!("property float {axis}\n"));
@@ -31,9 +32,9 @@ pub(crate) fn write(mesh: &MeshData) -> Vec<u8> {
     out
 }
 
-/// Writes all attributes of a mesh: normals, both sets of texture coordinates, linear colours and
-/// tangents. Where other corners have a normal or texture coordinates, a corner without them gets
-/// the face normal or 0.
+/// Encodes all attributes of a mesh: normals, both sets of texture coordinates, linear colours and
+/// tangents. A corner without a normal or texture coordinates, while others have them, gets the
+/// face normal or 0.
 pub(crate) fn write_whole(mesh: &MeshData) -> Vec<u8> {
     let Corners { vertices, triangles, normals } = Corners::of(mesh);
     let (has_normals, has_uvs) = (!mesh.triangle_normals.is_empty(), !mesh.triangle_uvs.is_empty());
@@ -75,11 +76,12 @@ pub(crate) fn write_whole(mesh: &MeshData) -> Vec<u8> {
     out
 }
 
-/// Unique vertices: each is the indices of a position, of texture coordinates and of a normal.
+/// Vertices of a PLY file to be written: unique triples of indices of a position, texture
+/// coordinates and a normal.
 struct Corners {
     vertices: Vec<[u32; 3]>,
     triangles: Vec<[u32; 3]>,
-    /// The mesh's normals, followed by face normals of triangles that lack normals.
+    /// The mesh's normals, followed by face normals for triangles that lack normals.
     normals: Vec<Vec3>,
 }
 

@@ -1,4 +1,4 @@
-//! A primitive of a scene file: its modifier, type, name and arguments.
+//! Primitives of a scene file: modifier, type, name and arguments.
 
 use super::words::{Word, Words};
 use crate::shared_report::SharedReport;
@@ -6,7 +6,7 @@ use durer_diag::{Diagnostic, Span};
 use durer_scene::math::Vec3;
 use glam::DVec3;
 
-/// A primitive as stored in the file.
+/// Primitive of a Radiance scene as stored in the file: a surface, material, pattern or mixture.
 #[derive(Debug)]
 pub(super) struct RadPrimitive {
     pub modifier: Word,
@@ -17,8 +17,8 @@ pub(super) struct RadPrimitive {
 }
 
 impl RadPrimitive {
-    /// Reads a primitive after its first word. `None` after an error, since the position of the
-    /// next primitive is unknown.
+    /// Reads a primitive after its first word. Returns `None` after an error, because the start of
+    /// the next primitive is then unknown.
     pub fn read(modifier: Word, words: &mut Words, report: &SharedReport) -> Option<RadPrimitive> {
         let start = modifier.at;
         let mut next = || {
@@ -47,12 +47,12 @@ impl RadPrimitive {
         Some(RadPrimitive { modifier, kind, name, texts, numbers })
     }
 
-    /// Span of the type and the name.
+    /// Returns the span of the type and the name.
     pub fn at(&self) -> Span {
         self.kind.at.to(self.name.at)
     }
 
-    /// Returns true if the number of real arguments is one of `counts`; reports an error otherwise.
+    /// Returns true if the number of real arguments is one of `counts`; reports an error if not.
     pub fn has(&self, counts: &[usize], report: &SharedReport) -> bool {
         let right = counts.contains(&self.numbers.len());
         if !right {
@@ -64,18 +64,18 @@ impl RadPrimitive {
         right
     }
 
-    /// Three real arguments as a point.
+    /// Returns three real arguments, starting at `first`, as a point.
     pub fn point(&self, first: usize) -> DVec3 {
         let number = |i: usize| self.numbers.get(first + i).copied().unwrap_or(0.0);
         DVec3::new(number(0), number(1), number(2))
     }
 
-    /// Three real arguments as a colour; negative ones become 0.
+    /// Returns three real arguments, starting at `first`, as a colour. Negative values become 0.
     pub fn color(&self, first: usize) -> Vec3 {
         self.point(first).as_vec3().max(Vec3::ZERO)
     }
 
-    /// A real argument.
+    /// Returns the `i`-th real argument.
     pub fn number(&self, i: usize) -> Option<f32> {
         self.numbers.get(i).map(|x| *x as f32)
     }

@@ -1,6 +1,6 @@
-//! Merges the surfaces of one material into one mesh. Dürer tracks the objects that a ray is
-//! inside, so the surface of a glass body must be one object; besides, many small objects cost more
-//! than their triangles.
+//! Merges all surfaces with the same material into one mesh. Dürer tracks the objects that a ray is
+//! inside, so the surface of a glass body must be a single object. Moreover, many small objects
+//! take more memory and time than their triangles.
 
 use durer_diag::Span;
 use durer_scene::math::{Vec3, fp};
@@ -8,13 +8,14 @@ use durer_scene::shape::MeshData;
 use durer_scene::shape::mesh::NO_INDEX;
 use glam::{DAffine3, DVec3};
 
-/// Faces, each by its corners.
+/// Faces, each given by its corners.
 pub(super) type Facets = Vec<Vec<DVec3>>;
 
 /// Number of sides of a tessellated round surface.
 const SIDES: u32 = 128;
 
-/// A mesh to which surfaces are added.
+/// Mesh of all surfaces that share a material, to which the reader adds one surface after the
+/// other.
 pub(super) struct Body {
     data: MeshData,
     pub at: Span,
@@ -25,7 +26,7 @@ impl Body {
         Body { data: MeshData { flat: true, ..MeshData::default() }, at }
     }
 
-    /// Adds a triangulated flat face.
+    /// Adds a flat face that is already triangulated.
     pub fn facet(&mut self, corners: &[Vec3], triangles: &[[usize; 3]]) {
         let first = self.data.positions.len() as u32;
         self.data.positions.extend(corners);
@@ -35,7 +36,7 @@ impl Body {
         }
     }
 
-    /// Adds the lateral surface of a cone or cylinder, without caps, between two points with a
+    /// Adds the lateral surface of a cone or cylinder without caps, between two points with a
     /// radius at each. Normals point outwards, or inwards if `inverted`.
     pub fn round(&mut self, [base, top]: [DVec3; 2], radii: [f64; 2], map: DAffine3, inverted: bool) {
         let along = top - base;
@@ -91,7 +92,7 @@ impl Body {
         }
     }
 
-    /// Corners of the bounds.
+    /// Returns the bounding box as its lowest and highest corner.
     pub fn bounds(&self) -> [Vec3; 2] {
         let all = || self.data.positions.iter().copied();
         [all().fold(Vec3::INFINITY, Vec3::min), all().fold(Vec3::NEG_INFINITY, Vec3::max)]

@@ -1,19 +1,20 @@
-//! Chains of modifiers: a surface names a pattern, which names a material, which names a pattern,
-//! and so on.
+//! Converts chains of modifiers: a surface names a pattern, the pattern names a material, the
+//! material names a pattern, and so on.
 
 use super::converted::{ConvertedModifier, PatternEffect};
 use super::state::{MIXTURES, Modifier, PATTERNS, Reader};
 use std::rc::Rc;
 
 impl Reader<'_> {
-    /// Converts a modifier.
+    /// Converts the modifier with an index.
     pub fn made(&mut self, number: usize) -> Rc<ConvertedModifier> {
         self.below(number, &PatternEffect::default())
     }
 
-    /// Converts a modifier below the patterns that a surface names before it.
+    /// Converts a modifier that is modified by `patterns`, which a surface or another pattern
+    /// applies first.
     pub fn below(&mut self, number: usize, patterns: &PatternEffect) -> Rc<ConvertedModifier> {
-        // Modifiers below skies and light distributions are few, so they are not cached.
+        // Modifiers under skies and directional distributions are rare, so they are not cached.
         let plain = patterns.sky.is_none() && patterns.spread.is_none();
         let key = plain.then(|| (number, patterns.tint.to_array().map(f32::to_bits)));
         if let Some(made) = key.as_ref().and_then(|key| self.made.get(key)) {

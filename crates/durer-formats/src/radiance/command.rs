@@ -1,5 +1,5 @@
-//! Commands: `!xform`, `!cat`, `!genbox`, `!genprism` and `!gensky`, optionally piped into `xform`.
-//! No program is run; this reader generates the output.
+//! Executes the commands `!xform`, `!cat`, `!genbox`, `!genprism` and `!gensky`, optionally piped
+//! into `xform`. No program is run; the reader generates the output itself.
 
 use super::body::Facets;
 use super::gensky;
@@ -12,7 +12,7 @@ use durer_diag::Diagnostic;
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
-/// Transforms and settings, one for each copy of a command's output.
+/// Transforms and settings; one for each copy of a command's output.
 type Places = Vec<PrimitiveContext>;
 
 impl Reader<'_> {
@@ -31,7 +31,8 @@ impl Reader<'_> {
             let at = stages.iter().skip(empty).flatten().next().map_or(words.end(), |word| word.at);
             return self.report.bad(at, what);
         }
-        // The output passes the last stage last, so its transform is the outermost.
+        // The output passes through the last stage last, so the transform of that stage is the
+        // outermost.
         let mut places = vec![place.clone()];
         for stage in stages[1..].iter().rev() {
             if stage[0].text != "xform" {
@@ -72,10 +73,10 @@ impl Reader<'_> {
     }
 }
 
-/// Reports an unsupported command and suggests a workaround.
+/// Reports an unsupported command, and suggests a workaround.
 fn refuse(reader: &Reader, name: &Word) {
     let help = format!(
-        "known are `xform`, `cat`, `genbox`, `genprism` and `gensky`. Run Radiance's own `{}`, save its output in a \
+        "supported commands are `xform`, `cat`, `genbox`, `genprism` and `gensky`. Run Radiance's own `{}`, save its output in a \
          file beside the scene, and write `!cat FILE` here",
         name.text
     );
@@ -83,8 +84,8 @@ fn refuse(reader: &Reader, name: &Word) {
     reader.report.push(Diagnostic { help: Some(help), ..error.at(name.at) });
 }
 
-/// Applies an `xform` to outer places; returns the new places, the files that it names, and whether
-/// commands in these files run in the files' own folders.
+/// Applies an `xform` to the contexts that contain it. Returns the new contexts, the files that it
+/// names, and whether commands in these files run in the files' own folders.
 fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[PrimitiveContext]) -> Option<(Places, &'w [Word], bool)> {
     let (mut transform, mut modifier, mut inverted) = (Transform::default(), None, false);
     let mut beside = true;
@@ -96,7 +97,7 @@ fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[PrimitiveContext]) -> 
         let takes = match option.text.as_str() {
             "-m" | "-n" => 1,
             "-c" | "-e" => {
-                // `-c` copies commands unchanged, `-e` expands them.
+                // `-c` copies commands unchanged; `-e` expands them.
                 beside = option.text == "-e";
                 0
             }
@@ -132,7 +133,7 @@ fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[PrimitiveContext]) -> 
     Some((outer.iter().flat_map(|outer| maps.iter().map(move |map| place(outer, map))).collect(), rest, beside))
 }
 
-/// Adds polygons with the material of a generator's first argument.
+/// Adds polygons with the material named by a generator's first argument.
 fn build(reader: &mut Reader, facets: Option<Facets>, args: &[Word], places: &[PrimitiveContext]) {
     let Some(facets) = facets else { return };
     for place in places {
@@ -186,7 +187,7 @@ fn genbox(reader: &Reader, name: &Word, args: &[Word]) -> Option<Facets> {
     Some(SIDES.iter().map(|side| turned(side.map(corner).to_vec(), inward != negative)).collect())
 }
 
-/// Returns the corners in reverse order if `other`.
+/// Returns the corners, in reverse order if `other`.
 fn turned(mut corners: Vec<DVec3>, other: bool) -> Vec<DVec3> {
     if other {
         corners.reverse();
@@ -204,7 +205,7 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &PrimitiveCo
             (numbers(reader, &args[3..], 2 * count)?, &args[3 + 2 * count..])
         }
         Ok(_) => {
-            reader.report.bad(args[2].at, "the base needs at least 3 corners of two numbers each");
+            reader.report.bad(args[2].at, "the base needs at least 3 corners, with two numbers each");
             return None;
         }
         Err(_) => {
@@ -248,7 +249,8 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &PrimitiveCo
     let base: Vec<DVec3> = corners.chunks_exact(2).map(|c| DVec3::new(c[0], c[1], 0.0)).collect();
     let next = |i: usize| base[(i + 1) % base.len()];
     let area: f64 = (0..base.len()).map(|i| base[i].x * next(i).y - next(i).x * base[i].y).sum();
-    // A base that winds around the extrusion direction would face inwards as written.
+    // If the base winds counter-clockwise around the extrusion direction, faces with its winding
+    // would point inwards.
     let inward = (area > 0.0) == (along.z > 0.0);
     let mut facets = Facets::new();
     if ends {

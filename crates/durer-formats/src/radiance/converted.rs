@@ -7,26 +7,30 @@ use durer_scene::math::{Color, Vec3};
 use glam::DVec3;
 use std::rc::Rc;
 
-/// A converted modifier.
+/// Result of converting a Radiance modifier: a material in the scene, and the patterns that apply
+/// to it.
 pub(super) struct ConvertedModifier {
-    /// Number of the material in the scene; `None` for `void`.
+    /// Index of the material in the scene; `None` for `void`.
     pub number: Option<u32>,
     pub kind: Kind,
-    /// Patterns that modify it.
+    /// Combined patterns that modify the material.
     pub patterns: PatternEffect,
 }
 
 impl ConvertedModifier {
+    /// Returns the result for the modifier `void`.
     pub fn nothing() -> ConvertedModifier {
         ConvertedModifier { number: None, kind: Kind::Plain, patterns: PatternEffect::default() }
     }
 
+    /// Returns true if surfaces with this modifier bound a glass body.
     pub fn is_glass(&self) -> bool {
         matches!(self.kind, Kind::Glass { .. })
     }
 }
 
-/// Combined effect of the patterns over a material.
+/// Combined effect of the Radiance patterns that are applied to a material: a tint, a sky and a
+/// directional distribution.
 #[derive(Clone)]
 pub(super) struct PatternEffect {
     /// Constant factor.
@@ -43,8 +47,8 @@ impl Default for PatternEffect {
 }
 
 impl PatternEffect {
-    /// Combines these patterns with others that come after them. Only one sky and one distribution
-    /// apply.
+    /// Combines these patterns with others that follow them. If both have a sky or a distribution,
+    /// only one applies.
     pub fn with(&self, others: &PatternEffect) -> PatternEffect {
         PatternEffect {
             tint: self.tint * others.tint,
@@ -54,17 +58,17 @@ impl PatternEffect {
     }
 }
 
-/// Properties of a material that affect how surfaces are converted.
+/// Kind of a converted material, as far as it affects the conversion of surfaces and sources.
 pub(super) enum Kind {
     Plain,
-    /// A boundary of a dielectric; `outside` is the material for the inside of an inverted surface.
+    /// Boundary of a dielectric. `outside` is the material to use for inverted surfaces.
     Glass {
         outside: Option<u32>,
     },
     Shining {
         radiance: Color,
     },
-    /// An emitter with a directional distribution.
+    /// Emitter with a directional distribution.
     Aimed {
         radiance: Color,
         spread: Rc<Spread>,
@@ -72,7 +76,8 @@ pub(super) enum Kind {
     },
 }
 
-/// A cone of directions, and the radiance from them.
+/// Radiance `source` that becomes part of the environment map: a cone of directions, and the
+/// radiance from them.
 pub(super) struct Distant {
     pub direction: DVec3,
     pub cosine: f64,

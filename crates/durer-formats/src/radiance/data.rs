@@ -1,15 +1,16 @@
-//! Data files: tables of numbers over one or more coordinates.
+//! Reader of data files, which contain tables of numbers over one or more coordinates.
 
 use super::words::{Start, Words};
 use crate::shared_report::SharedReport;
 
-/// Maximum number of coordinates.
+/// Maximum number of coordinates of a table.
 const MOST_DIMENSIONS: usize = 8;
 
-/// A table of numbers, the last coordinate fastest.
+/// Table of numbers over one or more coordinates, read from a Radiance data file. The last
+/// coordinate varies fastest.
 #[derive(Debug, PartialEq)]
 pub(super) struct Table {
-    /// Sample positions of each coordinate.
+    /// Sample positions along each coordinate.
     axes: Vec<Vec<f64>>,
     values: Vec<f64>,
 }
@@ -57,19 +58,21 @@ impl Table {
         Some(Table { axes, values })
     }
 
-    /// Mean of all values.
+    /// Returns the mean of all values.
     pub fn mean(&self) -> f32 {
         (self.values.iter().sum::<f64>() / self.values.len() as f64).max(0.0) as f32
     }
 
+    /// Returns the number of coordinates.
     pub fn dimensions(&self) -> usize {
         self.axes.len()
     }
 
-    /// Interpolates linearly in all coordinates; 0 outside the table.
+    /// Interpolates linearly in all coordinates. Returns 0 outside the table.
     pub fn at(&self, coordinates: &[f64]) -> f64 {
         const SLACK: f64 = 1e-4;
-        // For each coordinate: the index of the sample below, and the fraction towards the next.
+        // For each coordinate: the index of the sample below the position, and the fraction of the
+        // way to the next sample.
         let mut cells = [(0, 0.0); MOST_DIMENSIONS];
         for ((axis, &x), cell) in self.axes.iter().zip(coordinates).zip(&mut cells) {
             let (first, last) = (axis[0].min(axis[axis.len() - 1]), axis[0].max(axis[axis.len() - 1]));

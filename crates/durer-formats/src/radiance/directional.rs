@@ -1,4 +1,4 @@
-//! Converts surfaces with a directional distribution into point lights.
+//! Converts surfaces with a directional distribution to point lights.
 
 use super::converted::{ConvertedModifier, Kind};
 use super::outline::Outline;
@@ -13,11 +13,11 @@ use std::rc::Rc;
 /// Number of point lights for each surface.
 const POINTS: u32 = 16;
 
-/// Maximum number of different profiles.
+/// Maximum number of different light profiles.
 const MOST_PROFILES: usize = 256;
 
 impl Reader<'_> {
-    /// Replaces a surface with point lights spread over it, since Dürer's area lights have no
+    /// Replaces a surface with point lights spread over it, since area lights in Dürer have no
     /// directional distribution.
     pub fn point_lights(&mut self, made: &ConvertedModifier, outline: &Outline, span: Span) {
         let Kind::Aimed { radiance, spread, at } = &made.kind else { return };
@@ -41,8 +41,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Name of the light profile for a distribution on a surface. Surfaces with the same
-    /// orientation share it.
+    /// Returns the name of the light profile for a distribution on a surface. Surfaces with the
+    /// same orientation share a profile.
     fn profile(&mut self, spread: &Rc<Spread>, outline: &Outline, span: Span) -> Option<FileName> {
         let facing = outline.facing();
         let known = self.profiles.iter().position(|(own, axis)| Rc::ptr_eq(own, spread) && *axis == facing);

@@ -1,8 +1,8 @@
-//! Translation of materials into OpenPBR parameters.
+//! Converts materials to OpenPBR parameters.
 //!
-//! Sources: the reference manual; Ward, *Measuring and Modeling Anisotropic Reflection*, SIGGRAPH
-//! 1992, whose roughness is the mean slope of the surface, like GGX's alpha. Alpha is the square of
-//! OpenPBR's roughness.
+//! Ward's roughness is the mean slope of the surface, as GGX's alpha is; alpha is the square of
+//! OpenPBR's roughness. Sources: the reference manual; Ward, *Measuring and Modeling Anisotropic
+//! Reflection*, SIGGRAPH 1992.
 
 use super::args::RadPrimitive;
 use super::converted::{ConvertedModifier, Kind, PatternEffect};
@@ -19,7 +19,7 @@ use durer_scene::scene::{Material, Spanned};
 
 const TURNED: &str = "anisotropic highlights follow the surface's own tangents, not the given direction";
 
-/// A matte material without a specular layer.
+/// Returns a matte material without a specular layer.
 fn matte(base_color: Color) -> PrincipledMaterial {
     let base_color = base_color.min(Vec3::ONE);
     PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
@@ -33,7 +33,8 @@ fn rough(m: &mut PrincipledMaterial, [u, v]: [f32; 2]) {
     m.specular_rotation = if v > u { 0.25 } else { 0.0 };
 }
 
-/// Plastic: a matte base below a dielectric layer that reflects `specular` at normal incidence.
+/// Returns plastic: a matte base below a dielectric layer that reflects `specular` at normal
+/// incidence.
 fn plastic(color: Color, specular: f32, roughness: [f32; 2]) -> PrincipledMaterial {
     let mut m = matte(color);
     if specular > 0.0 {
@@ -44,10 +45,10 @@ fn plastic(color: Color, specular: f32, roughness: [f32; 2]) -> PrincipledMateri
     m
 }
 
-/// Metal whose reflectance is the same in all directions.
+/// Returns a metal whose reflectance is the same at all angles.
 fn metal(color: Color, specular: f32, roughness: [f32; 2]) -> PrincipledMaterial {
     let color = color.min(Vec3::ONE);
-    // Schlick's reflectance at 82 degrees, the reference for the specular colour.
+    // Schlick's reflectance at 82 degrees, to which the specular colour is relative.
     let specular_color = color / schlick_82(color).max(Vec3::splat(1e-6));
     let mut m = PrincipledMaterial { base_metalness: specular.min(1.0), specular_color, ..matte(color) };
     if specular > 0.0 {
@@ -57,20 +58,20 @@ fn metal(color: Color, specular: f32, roughness: [f32; 2]) -> PrincipledMaterial
     m
 }
 
-/// A translucent sheet with diffuse and specular transmission.
+/// Returns a translucent sheet with diffuse and specular transmission.
 fn trans(color: Color, [specular, transmitted, straight]: [f32; 3], roughness: [f32; 2]) -> PrincipledMaterial {
     let [transmitted, straight] = [transmitted, straight].map(|share| share.clamp(0.0, 1.0));
     let through = transmitted * straight;
     let (back, forth) = (1.0 - transmitted, transmitted * (1.0 - straight));
-    // Specularly transmitted light is reflected at both sides of the sheet, 2 F / (1 + F), the rest
-    // once, F. These values of F and of the sheet's weight reproduce the given fractions at normal
-    // incidence.
+    // Specularly transmitted light is reflected at both sides of the sheet, 2 F / (1 + F), all
+    // other light once, F. These values of F and of the sheet's weight give the specified fractions
+    // at normal incidence.
     let specular = specular.min(0.9);
     let once = specular / (1.0 + (1.0 - specular) * through);
     let sheet = (1.0 - specular) * through * (1.0 + once) / (1.0 - once);
     let mut m = plastic(color, once, roughness);
     if specular == 0.0 && through > 0.0 {
-        // Even without reflection, the transmitted light is rough.
+        // Even without reflection, the transmitted light is scattered by the roughness.
         m.specular_ior = 1.0;
         rough(&mut m, roughness);
     }
@@ -85,7 +86,8 @@ fn trans(color: Color, [specular, transmitted, straight]: [f32; 3], roughness: [
     }
 }
 
-/// A dielectric body with an index; `left` is the transmittance at distance 1.
+/// Returns a dielectric body with an index of refraction; `left` is its transmittance at distance
+/// 1.
 fn body(left: Color, index: f32) -> PrincipledMaterial {
     let m = PrincipledMaterial {
         transmission_weight: 1.0,
@@ -103,7 +105,7 @@ fn body(left: Color, index: f32) -> PrincipledMaterial {
     }
 }
 
-/// A black emitter.
+/// Returns a black emitter.
 fn emissive(radiance: Color) -> PrincipledMaterial {
     let most = radiance.max_element();
     let emission_color = if most > 0.0 { radiance / most } else { Vec3::ONE };
@@ -111,12 +113,13 @@ fn emissive(radiance: Color) -> PrincipledMaterial {
 }
 
 impl Reader<'_> {
+    /// Adds a material to the scene and returns its index.
     pub fn add_material(&mut self, m: PrincipledMaterial, at: Span) -> u32 {
         self.scene.materials.push(Spanned { value: Material::Principled(Box::new(m)), span: at });
         (self.scene.materials.len() - 1) as u32
     }
 
-    /// Converts a material below the patterns that modify it.
+    /// Converts a material, including the effect of the patterns that modify it.
     pub fn material(&mut self, number: usize, primitive: &RadPrimitive, above: &PatternEffect) -> ConvertedModifier {
         let (kind, at, report) = (primitive.kind.text.as_str(), primitive.at(), self.report);
         let counts: &[usize] = match kind {
@@ -155,7 +158,8 @@ impl Reader<'_> {
             "metal2" => metal(color, value(3), [value(4), value(5)]),
             "trans2" => trans(color, [value(3), value(6), value(7)], [value(4), value(5)]),
             "ashik2" => {
-                // A cosine power of the half vector corresponds to the slope sqrt(2 / (power + 2)).
+                // A cosine power of the half vector corresponds to a slope of sqrt(2 / (power +
+                // 2)).
                 let slope = |power: f32| (2.0 / (power + 2.0)).sqrt();
                 let specular = primitive.color(3);
                 plastic(color, specular.element_sum() / 3.0, [slope(value(6)), slope(value(7))])
@@ -269,8 +273,8 @@ impl Reader<'_> {
         ConvertedModifier { number: Some(self.add_material(m, at)), ..ConvertedModifier::nothing() }
     }
 
-    /// Converts rough plastic: a white highlight with the same reflectance in all directions, and a
-    /// matte rest. Only smooth plastic reflects more at grazing angles.
+    /// Converts rough plastic to a mix: a white highlight that has the same reflectance at all
+    /// angles, and a matte remainder. Only smooth plastic reflects more at grazing angles.
     fn rough_plastic(&mut self, color: Color, share: f32, roughness: [f32; 2], at: Span) -> ConvertedModifier {
         let material1 = self.add_material(metal(Vec3::ONE, 1.0, roughness), at);
         let material2 = self.add_material(matte(color), at);
@@ -279,7 +283,7 @@ impl Reader<'_> {
         ConvertedModifier { number: Some((self.scene.materials.len() - 1) as u32), ..ConvertedModifier::nothing() }
     }
 
-    /// Mist fills a body without refraction.
+    /// Converts `mist`, which fills a body without refraction.
     fn mist(&mut self, primitive: &RadPrimitive) -> ConvertedModifier {
         let extinction = primitive.color(0);
         let most = extinction.max_element();
@@ -297,7 +301,7 @@ impl Reader<'_> {
             ..body(Vec3::ONE, 1.0)
         };
         let number = self.add_material(m, primitive.at());
-        // Fog attenuates all colours alike, by the luminance.
+        // Fog attenuates all colours equally, so use the luminance.
         let mean = extinction.dot(LUMINANCE);
         let color = (albedo * extinction / mean).min(Vec3::ONE);
         self.mists.insert(number, Fog { extinction: mean, color, anisotropy, ..Fog::default() });
@@ -306,8 +310,8 @@ impl Reader<'_> {
     }
 }
 
-/// A pane of glass, which reflects light or transmits it without scattering; `left` is the
-/// transmittance of its inside.
+/// Returns a pane of glass, which reflects light, or transmits it without scattering. `left` is the
+/// transmittance of the inside.
 fn sheet(left: Color, index: f32) -> PrincipledMaterial {
     PrincipledMaterial {
         transmission_color: left.min(Vec3::ONE),

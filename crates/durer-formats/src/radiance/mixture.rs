@@ -1,4 +1,4 @@
-//! Mixtures of two materials.
+//! Converts mixtures of two materials.
 
 use super::args::RadPrimitive;
 use super::converted::{ConvertedModifier, Kind, PatternEffect};
@@ -10,7 +10,7 @@ use durer_scene::scene::{Material, Spanned};
 use std::collections::BTreeMap;
 
 impl Reader<'_> {
-    /// Converts a mixture; its proportion is constant.
+    /// Converts a mixture. Its proportion becomes constant.
     pub fn mixture(&mut self, number: usize, primitive: &RadPrimitive, patterns: &PatternEffect) -> ConvertedModifier {
         let (at, kind) = (primitive.at(), primitive.kind.text.as_str());
         if primitive.texts.len() < 4 {
@@ -20,7 +20,7 @@ impl Reader<'_> {
         let constant = parse_f32(primitive.texts[2].text.as_bytes()).ok().filter(|_| kind == "mixfunc");
         let share = match (kind, constant) {
             (_, Some(share)) => share.clamp(0.0, 1.0),
-            // Letters cover little of the surface.
+            // Letters cover only a small part of the surface.
             ("mixtext", _) => {
                 self.report.once(at, "text has no counterpart: the modifier around it is used");
                 0.0
@@ -49,7 +49,7 @@ impl Reader<'_> {
                 self.report.once(at, "glass bodies cannot be partly transparent: they are shown in full");
                 first.or(second)
             }
-            // A missing part makes the material partly transparent.
+            // If one part is missing, the material is partly transparent.
             [first, second] => {
                 let share = if first.is_some() { share } else { 1.0 - share };
                 first.or(second).map(|number| self.there_in_part(number, share, &mut BTreeMap::new()))
@@ -59,7 +59,7 @@ impl Reader<'_> {
         ConvertedModifier { number, kind, ..ConvertedModifier::nothing() }
     }
 
-    /// Returns a copy of a material whose opacity is multiplied by `share`.
+    /// Returns a copy of a material, with its opacity multiplied by `share`.
     fn there_in_part(&mut self, number: u32, share: f32, made: &mut BTreeMap<u32, u32>) -> u32 {
         if let Some(made) = made.get(&number) {
             return *made;

@@ -3,7 +3,7 @@
 //!
 //! Sources: *The RADIANCE 5.4 Synthetic Imaging System*, reference manual; the manual pages of
 //! xform, genbox, genprism, gensky, rad and rpict. A pixel value of 1 is a radiance of 1 W/(sr m²),
-//! as in Radiance's own pictures; times 179 it is the luminance in cd/m².
+//! as in Radiance's own pictures. Multiplied by 179, it is the luminance in cd/m².
 
 mod args;
 mod body;
@@ -42,11 +42,11 @@ use durer_scene::scene::{Axis, Scene};
 use place::PrimitiveContext;
 use state::Reader;
 
-/// The Radiance scene format.
+/// Scene format entry for Radiance.
 pub(super) const FORMAT: SceneFormat = SceneFormat {
     name: "Radiance",
     extensions: &["rad", "rif"],
-    // The first word is not distinctive; only the extension identifies the format.
+    // The first word is not distinctive, so only the extension identifies the format.
     recognise: |_| false,
     read,
     write: None,
@@ -68,7 +68,7 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
         false => reader.text(input.bytes, input.file, &PrimitiveContext::default()),
     }
     let mut scene = reader.finish();
-    // From the manual of rtrace: 179 lm/W, and its weights of the colours.
+    // The manual of rtrace specifies 179 lm/W, and these weights of the colours.
     scene.lumens = Some(179.0 * Vec3::new(0.265, 0.670, 0.065));
     let sound = !report.has_errors() && !diagnostics.has_errors();
     diagnostics.extend(report.finish());

@@ -1,10 +1,10 @@
-//! Geometry of emitting surfaces: projected area by direction, and points spread over them.
+//! Geometry of emitting surfaces: projected areas, and points spread over surfaces.
 
 use durer_scene::math::fp;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// A surface that may emit light.
+/// Shape of a surface that may emit light, for replacing it with point lights.
 pub(super) enum Outline<'a> {
     /// A flat polygon, by its corners.
     Polygon(&'a [DVec3]),
@@ -17,29 +17,29 @@ pub(super) enum Outline<'a> {
         center: DVec3,
         radius: f64,
     },
-    /// The lateral surface of a cylinder or cone.
+    /// Lateral surface of a cylinder or cone.
     Side {
         ends: [DVec3; 2],
         radii: [f64; 2],
     },
 }
 
-/// Orientation of a surface, which determines its projected area in a direction.
+/// Orientation of an emitting surface, which determines its projected area in each direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Facing {
-    /// Flat, with a unit normal.
+    /// Flat surface, with a unit normal.
     To(DVec3),
-    /// Round, about an axis. A cone is treated as a cylinder.
+    /// Round surface about an axis. A cone is treated as a cylinder.
     Around(DVec3),
     All,
 }
 
 impl Facing {
-    /// Returns the projected area in a direction as a fraction of the area, and the cosine to the
+    /// Returns the projected area in a direction, as a fraction of the area, and the cosine to the
     /// normal, which is 1 for round surfaces.
     pub fn shows(self, dir: DVec3) -> (f64, f64) {
         match self {
-            // The tolerance excludes directions within the plane.
+            // The tolerance excludes directions in the plane of the surface.
             Facing::To(normal) if normal.dot(dir) > 1e-6 => (normal.dot(dir), normal.dot(dir)),
             Facing::To(_) => (0.0, 1.0),
             Facing::Around(axis) => ((1.0 - axis.dot(dir) * axis.dot(dir)).max(0.0).sqrt() / PI, 1.0),
@@ -49,6 +49,7 @@ impl Facing {
 }
 
 impl Outline<'_> {
+    /// Returns the area of the surface.
     pub fn area(&self) -> f64 {
         match self {
             Outline::Polygon(corners) => 0.5 * twice(corners).length(),
@@ -61,7 +62,7 @@ impl Outline<'_> {
         }
     }
 
-    /// Orientation of the surface.
+    /// Returns the orientation of the surface.
     pub fn facing(&self) -> Facing {
         match self {
             Outline::Polygon(corners) => Facing::To(twice(corners).normalize_or_zero()),
@@ -71,8 +72,8 @@ impl Outline<'_> {
         }
     }
 
-    /// Points spread over the surface, each for an equal area; for round surfaces, on the centre or
-    /// the axis.
+    /// Returns points spread over the surface, each standing for an equal area. For round surfaces,
+    /// they are at the centre or on the axis.
     pub fn places(&self, count: u32) -> Vec<DVec3> {
         let share = |i: u32| (f64::from(i) + 0.5) / f64::from(count);
         match *self {
@@ -94,12 +95,12 @@ impl Outline<'_> {
     }
 }
 
-/// Normal of a polygon whose length is twice the area.
+/// Returns the normal of a polygon; its length is twice the area.
 fn twice(corners: &[DVec3]) -> DVec3 {
     corners.windows(2).skip(1).map(|pair| (pair[0] - corners[0]).cross(pair[1] - corners[0])).sum()
 }
 
-/// Points spread over a polygon, in the triangle fan around its first corner.
+/// Returns points spread over a polygon, using the triangle fan around its first corner.
 fn polygon(corners: &[DVec3], count: u32) -> Vec<DVec3> {
     let areas: Vec<f64> =
         corners.windows(2).skip(1).map(|pair| (pair[0] - corners[0]).cross(pair[1] - corners[0]).length()).collect();
@@ -121,7 +122,7 @@ fn polygon(corners: &[DVec3], count: u32) -> Vec<DVec3> {
         a * (1.0 - root) + root * ((1.0 - v) * b + v * c)
     };
     let mut places: Vec<DVec3> = (0..count).map(place).collect();
-    // Shift the points so that their mean is the polygon's centroid, as seen from far away.
+    // Shift the points so that their mean is the polygon's centroid, which matters at a distance.
     let middle =
         areas.iter().enumerate().map(|(i, area)| *area * (corners[0] + corners[i + 1] + corners[i + 2])).sum::<DVec3>()
             / (3.0 * whole.max(f64::MIN_POSITIVE));

@@ -1,4 +1,5 @@
-//! Patterns and textures: each is replaced by a constant colour, the mean if it can be computed.
+//! Evaluates patterns and textures. Each is replaced by a constant colour: its mean, if that can be
+//! computed.
 
 use super::args::RadPrimitive;
 use super::converted::PatternEffect;
@@ -16,8 +17,8 @@ use glam::{DAffine3, DMat3};
 use std::rc::Rc;
 
 impl Reader<'_> {
-    /// Evaluates a pattern, a modifier given by its index, as a factor of the emission or
-    /// reflectance. `map` is the transform of the text that contains it.
+    /// Evaluates the pattern with index `number` as a factor on the emission or reflectance. `map`
+    /// is the transform of the text that contains it.
     pub fn pattern(&mut self, number: usize, primitive: &RadPrimitive, map: &DAffine3) -> PatternEffect {
         let (at, kind, report) = (primitive.at(), primitive.kind.text.as_str(), self.report);
         let text = |i: usize| primitive.texts.get(i).map_or("", |word| word.text.as_str());
@@ -69,14 +70,15 @@ impl Reader<'_> {
         PatternEffect { tint, ..PatternEffect::default() }
     }
 
-    /// Rotation that `xform` appended after the first `names` words of a function's arguments.
+    /// Returns the rotation that `xform` appended after the first `names` words of a function's
+    /// arguments.
     fn own_turn(&self, primitive: &RadPrimitive, names: usize) -> DMat3 {
         let (mut rest, mut transform) = (primitive.texts.get(names..).unwrap_or_default(), Transform::default());
         while transform.option(&mut rest, self.report) {}
         transform.places().and_then(|places| places.first().map(|map| map.matrix3)).unwrap_or(DMat3::IDENTITY)
     }
 
-    /// Table of a light's directional distribution; it is read once.
+    /// Returns the table of a light's directional distribution, which is read only once.
     fn spread(&mut self, number: usize, primitive: &RadPrimitive, map: &DAffine3) -> Option<Rc<Spread>> {
         if let Some(known) = self.spreads.get(&number) {
             return Some(known.clone());
@@ -98,17 +100,17 @@ impl Reader<'_> {
         Table::read(&bytes, file, self.report)
     }
 
-    /// Mean of a data file.
+    /// Returns the mean of a data file.
     fn mean_of_data(&self, primitive: &RadPrimitive, name: Option<&Word>) -> f32 {
         let Some(table) = self.table(primitive, name) else { return 1.0 };
         self.report.once(primitive.at(), "data patterns have no counterpart: the mean is used");
         table.mean()
     }
 
-    /// Mean colour of a picture.
+    /// Returns the mean colour of a picture.
     fn mean_of_picture(&self, name: &Word) -> Option<Color> {
         let (bytes, _) = self.open(name)?;
-        // The names of Radiance's pictures follow no rule, so the content decides.
+        // Names of Radiance pictures follow no convention, so recognise the format by content.
         let hint = if bytes.starts_with(b"#?") { "picture.hdr" } else { name.text.as_str() };
         let memory = self.input.memory;
         let read = Encoded::open(&bytes, hint).and_then(|encoded| encoded.read(memory, image::decode_srgb));
@@ -125,8 +127,8 @@ impl Reader<'_> {
     }
 }
 
-/// Colour around letters. The arguments are nine numbers of their position, the foreground and
-/// background colours, and distances.
+/// Returns the colour around letters. The arguments are nine coordinates for the position of the
+/// letters, the foreground and background colours, and distances.
 fn background(primitive: &RadPrimitive) -> Color {
     match primitive.kind.text.as_str() {
         "brighttext" => Vec3::splat(primitive.number(10).unwrap_or(1.0).max(0.0)),

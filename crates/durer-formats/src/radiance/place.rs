@@ -1,24 +1,26 @@
-//! Context of a text that is read.
+//! Context in which the primitives of a text are read.
 
 use super::words::Word;
 use glam::DAffine3;
 use std::rc::Rc;
 
-/// Transform and settings that apply to all primitives of a text.
+/// Transform and settings that apply to all primitives of a text that is being read, from the
+/// commands that include it.
 #[derive(Clone, Default)]
 pub(super) struct PrimitiveContext {
     pub map: DAffine3,
-    /// Modifier that replaces the modifiers of all surfaces.
+    /// Modifier that replaces the modifiers of all surfaces, if there is one.
     pub modifier: Option<Word>,
     /// True if all surfaces are inverted.
     pub inverted: bool,
     pub depth: u32,
-    /// Folder in which commands run, relative to the scene's folder, with a trailing `/`.
+    /// Folder in which commands run, relative to the scene's folder and ending in `/`; empty for
+    /// the scene's folder.
     pub folder: Rc<str>,
 }
 
 impl PrimitiveContext {
-    /// Path of a command's file relative to the scene's folder.
+    /// Returns the path of a file named by a command, relative to the scene's folder.
     pub fn seen(&self, name: &Word) -> Word {
         match self.folder.is_empty() || name.text.starts_with(['/', '\\']) {
             true => name.clone(),
@@ -26,7 +28,7 @@ impl PrimitiveContext {
         }
     }
 
-    /// Returns this context with the folder of a file that a command names.
+    /// Returns this context with the folder changed to that of a file named by a command.
     pub fn beside(&self, name: &Word) -> PrimitiveContext {
         let text = self.seen(name).text;
         let folder = text.rfind(['/', '\\']).map_or("", |slash| &text[..=slash]);

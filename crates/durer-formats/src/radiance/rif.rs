@@ -1,4 +1,4 @@
-//! Reader of `rad` input files, which list the files of a scene and its views.
+//! Reader of `rad` input files, which list the files and views of a scene.
 
 use super::place::PrimitiveContext;
 use super::standard::{Zone, standard};
@@ -9,7 +9,7 @@ use crate::shared_report::suggest;
 use durer_diag::Diagnostic;
 use durer_scene::math::fp;
 
-/// Variables of `rad`; three letters suffice.
+/// Variables of `rad`. Their first three letters suffice to name them.
 const VARIABLES: [&str; 26] = [
     "objects",
     "scene",
@@ -38,17 +38,17 @@ const VARIABLES: [&str; 26] = [
     "REPORT",
     "rpict",
 ];
-/// Variables without effect on the light.
+/// Variables that do not affect lighting.
 const MORE: [&str; 8] = ["PGMAP", "PCMAP", "mkpmap", "rvu", "rtrace", "rpiece", "EYESEP", "MATERIAL"];
 
-/// A line: the variable's full name and its values.
+/// Line of a `rad` input file: the full name of a variable, and its values.
 struct Setting {
     name: &'static str,
     values: Vec<Word>,
 }
 
 impl Reader<'_> {
-    /// Reads the scene's main file.
+    /// Reads a `rad` input file, the main file of the scene.
     pub fn rif(&mut self) {
         let (bytes, file) = (self.input.bytes.clone(), self.input.file);
         let settings = self.settings(&bytes, file);
@@ -84,7 +84,7 @@ impl Reader<'_> {
         self.exposure(exposure);
     }
 
-    /// Selects the view by name or number; the default is the first.
+    /// Selects a view by name or number; the default is the first view.
     fn view(&mut self, views: &[&Setting], zone: &Zone, larger: u32) {
         let name = |i: usize| views[i].values.first().filter(|word| !word.text.starts_with('-'));
         let wanted = match &self.input.scene_defaults.camera {
@@ -134,7 +134,7 @@ impl Reader<'_> {
         view.place(&mut self.scene, larger, self.report);
     }
 
-    /// Notes an exposure: stops if it has a sign, else a factor.
+    /// Adds a note about the exposure: a number of stops if it has a sign, otherwise a factor.
     fn exposure(&self, word: Option<Word>) {
         let Some((word, value)) = word.and_then(|word| word.number(self.report).map(|value| (word, value as f32)))
         else {

@@ -1,10 +1,10 @@
-//! Skies as `gensky` and `gendaylit` write them.
+//! Skies in the form written by `gensky` and `gendaylit`.
 //!
 //! Source: *Standardization of Luminance Distribution on Clear Skies*, CIE publication 22, 1973;
 //! Nakamura, Oki and Hayashi, *Luminance distribution of intermediate sky*, 1985; Perez, Seals and
-//! Michalsky, *All-weather model for sky luminance distribution*, Solar Energy 50, 1993; the manual
-//! pages of gensky and gendaylit for the order of the arguments, which are meant for Radiance's
-//! `skybright.cal` and `perezlum.cal`.
+//! Michalsky, *All-weather model for sky luminance distribution*, Solar Energy 50, 1993. The order
+//! of the arguments, which are meant for Radiance's `skybright.cal` and `perezlum.cal`, is that of
+//! the manual pages of gensky and gendaylit.
 
 use super::args::RadPrimitive;
 use crate::shared_report::SharedReport;
@@ -12,7 +12,8 @@ use durer_scene::math::fp;
 use glam::{DMat3, DVec3};
 use std::f32::consts::FRAC_PI_2;
 
-/// A sky above a ground.
+/// Sky with a ground below it, whose radiance in each direction follows from a CIE or Perez
+/// formula.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sky {
     kind: Cover,
@@ -20,23 +21,24 @@ pub(super) struct Sky {
     ground: f32,
     factor: f32,
     sun: DVec3,
-    /// Rotation from world space to the sky's own axes.
+    /// Rotation from world space to the sky's axes.
     turn: DMat3,
 }
 
+/// Type of sky, which determines its radiance formula.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Cover {
     Clear,
     Overcast,
     Uniform,
     Intermediate,
-    /// Perez's sky by its five coefficients.
+    /// Perez's sky with its five coefficients.
     Perez([f32; 5]),
 }
 
 impl Sky {
-    /// Creates a sky from its arguments: kind, zenith, ground, factor, direction to the sun. `map`
-    /// is a similarity from the sky's axes to world space.
+    /// Creates a CIE sky from its arguments: type, zenith, ground, factor, and direction to the
+    /// sun. `map` is a similarity transform from the sky's axes to world space.
     pub fn of(primitive: &RadPrimitive, map: DMat3, report: &SharedReport) -> Option<Sky> {
         let number = |i: usize| primitive.number(i).unwrap_or(0.0);
         let kind = match number(0).round() as i32 {
@@ -65,8 +67,8 @@ impl Sky {
         Some(Sky { kind, zenith: number(1).max(0.0), ground: number(2).max(0.0), factor, sun, turn })
     }
 
-    /// Creates a Perez sky from its arguments: brightness, ground, five coefficients, direction to
-    /// the sun. `map` is a similarity from the sky's axes to world space.
+    /// Creates a Perez sky from its arguments: brightness, ground, five coefficients, and direction
+    /// to the sun. `map` is a similarity transform from the sky's axes to world space.
     pub fn perez(primitive: &RadPrimitive, map: DMat3, report: &SharedReport) -> Option<Sky> {
         if !primitive.has(&[10], report) {
             return None;
@@ -78,17 +80,17 @@ impl Sky {
         Some(Sky { kind, zenith, ground, factor: 1.0, sun: primitive.point(7).normalize_or_zero(), turn })
     }
 
-    /// Radiance in a unit direction of world space.
+    /// Returns the radiance in a unit direction in world space.
     pub fn at(&self, dir: DVec3) -> f32 {
         let dir = self.turn * dir;
         let height = (dir.z as f32).clamp(-1.0, 1.0);
-        // Blends the sky into the ground within about ten degrees of the horizon.
+        // Blend the sky into the ground within about ten degrees of the horizon.
         let above = fp::pow(height + 1.01, 10.0);
         let below = 1.0 / above;
         ((self.bare(dir, height) * above + self.ground * below) / (above + below)).max(0.0)
     }
 
-    /// Radiance of the sky without the ground; its formulas extend below the horizon.
+    /// Returns the radiance of the sky without the ground. Its formulas extend below the horizon.
     fn bare(&self, dir: DVec3, height: f32) -> f32 {
         let cosine = (dir.dot(self.sun) as f32).clamp(-1.0, 1.0);
         let angle = fp::atan2((1.0 - cosine * cosine).sqrt(), cosine);

@@ -19,6 +19,7 @@ const SMALL: f32 = 5.0;
 const ROWS: u32 = 256;
 
 impl Reader<'_> {
+    /// Converts a `source`: light from infinitely far away.
     pub fn source(&mut self, primitive: &RadPrimitive, modifier: Option<usize>, place: &PrimitiveContext) {
         let at = primitive.at();
         if !primitive.has(&[4], self.report) {
@@ -34,13 +35,13 @@ impl Reader<'_> {
         let Some(made) = modifier.map(|modifier| self.made(modifier)) else { return };
         let (radiance, sky) = match &made.kind {
             Kind::Shining { radiance } => (*radiance, made.patterns.sky.clone()),
-            // All its light has one direction.
+            // All of its light comes from one direction.
             Kind::Aimed { radiance, spread, .. } => (*radiance * spread.at(-direction, 1.0) as f32, None),
             _ => return self.report.once(at, "a source without emission is left out"),
         };
         let cosine = fp::sin_cos_degrees(0.5 * f64::from(degrees)).1;
         if degrees <= SMALL && sky.is_none() {
-            // Reflected radiance of a white matte surface that faces the source.
+            // Radiance reflected by a white matte surface that faces the source.
             let color = radiance * (2.0 * (1.0 - cosine)) as f32;
             let spread = Some(0.5 * degrees);
             let light =
@@ -51,11 +52,12 @@ impl Reader<'_> {
         self.distant.push(Distant { direction, cosine, radiance, sky, at });
     }
 
+    /// Adds a light to the scene.
     pub fn light(&mut self, value: Light, span: Span) {
         self.scene.lights.get_or_insert_default().push(Spanned { value, span });
     }
 
-    /// Combines all remaining sources into an environment map.
+    /// Combines all sources that did not become directional lights into an environment map.
     pub fn surround(&mut self) {
         (self.scene.background.color, self.scene.background.ambient_light) = (Vec3::ZERO, Vec3::ZERO);
         let Some(at) = self.distant.first().map(|distant| distant.at) else { return };

@@ -1,7 +1,7 @@
-//! Directional distributions of lights: tables over angles, as `ies2rad` writes them, and
+//! Directional distributions of emitters: tables over angles, as written by `ies2rad`, and
 //! spotlights.
 //!
-//! Source: `source.cal` of Radiance, for the functions and the angles; the manual for spotlights.
+//! Source: Radiance's `source.cal` for the functions and the angles; the manual for spotlights.
 
 use super::args::RadPrimitive;
 use super::data::Table;
@@ -11,57 +11,58 @@ use durer_scene::math::fp;
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
-/// Factor of a light's radiance that depends on the direction of emission.
+/// Directional distribution of an emitter: a factor on its radiance for each direction of emission.
 #[derive(Debug, PartialEq)]
 pub(super) enum Spread {
     Table(IntensityTable),
-    /// Constant inside a cone of a half angle in degrees about a unit direction, 0 outside.
+    /// Constant within a cone about a unit direction, and 0 outside; `degrees` is the half angle.
     Cone {
         aim: DVec3,
         degrees: f64,
-        /// Distance of the apparent origin of the light behind the surface.
+        /// Distance of the light's apparent origin behind the surface.
         focus: f64,
     },
 }
 
-/// A table over the angles of a light.
+/// Directional distribution given by a table over the angles of a light, as in photometric data.
 #[derive(Debug, PartialEq)]
 pub(super) struct IntensityTable {
     table: Table,
     correction: Correction,
     factor: f64,
-    /// Angle of each coordinate of the table, and an offset in degrees.
+    /// Angle that each coordinate of the table stands for, and an offset in degrees.
     angles: Vec<(Angle, f64)>,
-    /// Rotation from world space to the light's own axes.
+    /// Rotation from world space to the light's axes.
     turn: DMat3,
 }
 
-/// Correction that converts intensity to radiance.
+/// Correction that converts a light's intensity from a table to radiance.
 #[derive(Debug, PartialEq)]
 enum Correction {
     Nothing,
     /// Divides by the cosine to the surface normal.
     Flat,
-    /// Divides by the projected area of a box with these sides.
+    /// Divides by the projected area of a box with sides of these lengths.
     Box(DVec3),
-    /// Divides by the projected area of an upright cylinder of this diameter and height.
+    /// Divides by the projected area of an upright cylinder with this diameter and height.
     Cylinder(f64, f64),
 }
 
+/// Angle of an emission direction that a coordinate of the table stands for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Angle {
-    /// Angle from straight down.
+    /// Angle from the downward direction.
     Theta,
-    /// Angle around the vertical axis, from x towards y, mirrored at multiples of this many
+    /// Angle around the vertical axis, from x towards y, mirrored at multiples of this number of
     /// degrees.
     Phi(f64),
-    /// Angles of a type B photometer; `true` drops the sign.
+    /// Vertical and horizontal angle of a type B photometer; `true` drops the sign.
     Vertical(bool),
     Horizontal(bool),
 }
 
 impl Angle {
-    /// Parses an angle and its offset.
+    /// Parses the name of an angle; returns the angle and its offset.
     fn of(name: &str) -> Option<(Angle, f64)> {
         let at = name.find(['+', '-']).unwrap_or(name.len());
         let (name, more) = name.split_at(at);
@@ -80,7 +81,7 @@ impl Angle {
         Some((angle, more))
     }
 
-    /// Returns the angle in degrees of a unit direction of emission.
+    /// Returns the angle, in degrees, of a unit direction of emission.
     fn at(self, e: DVec3) -> f64 {
         let degrees = |y: f64, x: f64| f64::from(fp::atan2(y as f32, x as f32)) * 180.0 / PI;
         match self {
@@ -100,17 +101,16 @@ impl Angle {
     }
 }
 
-/// Number of coordinates in a pattern's arguments, after its function and files; 0 if one of them
-/// is not an angle of a light.
+/// Returns the number of coordinates among a pattern's arguments, which follow its function and
+/// files; 0 if one of them is not an angle of a light.
 pub(super) fn coordinates(primitive: &RadPrimitive) -> usize {
     let names = || primitive.texts.iter().skip(3).take_while(|word| !word.text.starts_with('-'));
     if names().all(|word| Angle::of(&word.text).is_some()) { names().count() } else { 0 }
 }
 
 impl IntensityTable {
-    /// Creates the distribution from the function and coordinates of a pattern; `None` for
-    /// functions other than those of `source.cal`. `turn` rotates from world space to the light's
-    /// axes.
+    /// Creates the distribution from a pattern's function and coordinates; `None` if the function
+    /// is not one of `source.cal`. `turn` rotates from world space to the light's axes.
     pub fn new(primitive: &RadPrimitive, table: Table, turn: DMat3) -> Option<IntensityTable> {
         let number = |i: usize| primitive.numbers.get(i).copied();
         let factor = number(0).unwrap_or(1.0).max(0.0);
@@ -128,7 +128,8 @@ impl IntensityTable {
         (angles.len() == table.dimensions()).then_some(IntensityTable { table, correction, factor, angles, turn })
     }
 
-    /// Factor in a unit direction of world space; `cosine` is that to the surface normal.
+    /// Returns the factor in a unit direction in world space; `cosine` is the cosine to the surface
+    /// normal.
     fn at(&self, dir: DVec3, cosine: f64) -> f64 {
         let e = (self.turn * dir).normalize_or_zero();
         let angles: Vec<f64> = self.angles.iter().map(|(angle, more)| angle.at(e) + more).collect();
@@ -145,8 +146,8 @@ impl IntensityTable {
 }
 
 impl Spread {
-    /// Factor of the radiance in a unit direction of world space; `cosine` is the cosine to the
-    /// surface normal.
+    /// Returns the factor on the radiance in a unit direction in world space; `cosine` is the
+    /// cosine to the surface normal.
     pub fn at(&self, dir: DVec3, cosine: f64) -> f64 {
         match self {
             Spread::Table(light) => light.at(dir, cosine),
@@ -154,6 +155,7 @@ impl Spread {
         }
     }
 
+    /// Returns the distance of the light's apparent origin behind the surface.
     pub fn focal_length(&self) -> f64 {
         match self {
             Spread::Table(_) => 0.0,
@@ -161,7 +163,7 @@ impl Spread {
         }
     }
 
-    /// Axis from which the angles are measured, and a direction perpendicular to it.
+    /// Returns the axis from which the angles are measured, and a direction perpendicular to it.
     pub fn axes(&self) -> [DVec3; 2] {
         match self {
             Spread::Table(light) => {
@@ -172,8 +174,8 @@ impl Spread {
         }
     }
 
-    /// Light profile of a surface, per area and radiance. `shows` returns the projected area in a
-    /// direction as a fraction of the area, and the cosine to the normal.
+    /// Returns the light profile of a surface, per unit of area and radiance. `shows` returns the
+    /// projected area in a direction, as a fraction of the area, and the cosine to the normal.
     pub fn profile(&self, shows: impl Fn(DVec3) -> (f64, f64)) -> Profile {
         let [down, front] = self.axes();
         let side = front.cross(down);
@@ -191,13 +193,13 @@ impl Spread {
             let [(sine, cosine), (s, c)] = [from, around].map(fp::sin_cos_degrees);
             let dir = cosine * down + sine * (c * front + s * side);
             let (share, facing) = shows(dir);
-            // Compares angles at the edge of a cone, which is more exact than the cosine of a
-            // direction.
+            // Compare angles at the edge of the cone, which is more precise than comparing the
+            // cosine of a direction.
             let strength = match self {
                 Spread::Table(light) => light.at(dir, facing),
                 Spread::Cone { degrees, .. } => f64::from(from <= *degrees),
             };
-            // Avoids NaN where the surface is not visible and the factor is infinite.
+            // Avoid NaN where the surface is not visible and the factor is infinite.
             if share > 0.0 { (share * strength) as f32 } else { 0.0 }
         };
         let column = |&around: &f64| vertical.iter().map(move |&from| (around, from));

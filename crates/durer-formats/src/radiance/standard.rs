@@ -1,4 +1,5 @@
-//! Standard views of `rad` by name, such as `XYZ` and `yl`: from the sides and corners of a box.
+//! Standard views of `rad` by name, such as `XYZ` and `yl`: views of a box from its sides and
+//! corners.
 //!
 //! Source: the manual page of rad, and the output of `rad -n`.
 
@@ -10,20 +11,21 @@ use durer_scene::scene::Node;
 use durer_scene::shape::Shape;
 use glam::DVec3;
 
-/// The `ZONE` and `UP` settings of `rad`.
+/// `ZONE` and `UP` settings of a `rad` input file: the box that standard views show, and the up
+/// axis.
 pub(super) struct Zone {
     min: DVec3,
     size: DVec3,
-    /// True if cameras are inside the box.
+    /// True if the cameras are inside the box.
     interior: bool,
-    /// Up axis and its sign.
+    /// Index of the up axis, and its sign.
     up: (usize, f64),
 }
 
 /// Names of the axes.
 const AXES: [char; 3] = ['X', 'Y', 'Z'];
 
-/// Direction from the centre to the camera, and the view type, of a standard view.
+/// Returns the direction from the centre to the camera, and the view type, of a standard view.
 pub(super) fn standard(name: &str) -> Option<(DVec3, char)> {
     let (mut rest, mut way) = (name, DVec3::ZERO);
     for (axis, letter) in AXES.into_iter().enumerate() {
@@ -42,8 +44,8 @@ pub(super) fn standard(name: &str) -> Option<(DVec3, char)> {
 }
 
 impl Zone {
-    /// The values of `ZONE` and `UP`; the defaults are the cube around all surfaces, seen from
-    /// outside, and z.
+    /// Reads the values of `ZONE` and `UP`. The defaults are the bounding cube of all surfaces,
+    /// seen from outside, and the z axis.
     pub fn of(zone: Option<&[Word]>, up: Option<&[Word]>, reader: &Reader) -> Zone {
         let up = up.and_then(|words| words.first()).map_or("", |word| word.text.as_str());
         let letter = up.trim_start_matches(['+', '-']).chars().next().map(|letter| letter.to_ascii_uppercase());
@@ -59,11 +61,12 @@ impl Zone {
         Zone { min, size: max - min, interior, up }
     }
 
+    /// Returns a standard view of the box, given by a result of [`standard`].
     pub fn view(&self, (way, kind): (DVec3, char), at: Span) -> View {
         let middle = self.min + 0.5 * self.size;
         let point = middle + if self.interior { 0.45 } else { 2.0 } * way * self.size;
         let (axis, side) = self.up;
-        // The preceding axis if the view direction is parallel to the up axis.
+        // Use the preceding axis if the view direction is parallel to the up axis.
         let up = match (0..3).map(|i| (axis + 3 - i) % 3).find(|up| (0..3).any(|i| i != *up && way[i] != 0.0)) {
             Some(up) if up == axis => side * DVec3::AXES[up],
             Some(up) => DVec3::AXES[up],
@@ -83,7 +86,7 @@ impl Zone {
 }
 
 impl Reader<'_> {
-    /// Bounding cube of all surfaces that were read.
+    /// Returns the bounding cube of all surfaces read so far.
     fn cube(&self) -> [DVec3; 2] {
         let objects = self.scene.root.iter().flat_map(|root| &root.objects);
         let shapes = objects.filter_map(|object| match &object.node {

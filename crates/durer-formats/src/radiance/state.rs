@@ -22,24 +22,25 @@ use std::sync::Arc;
 /// Maximum depth of nested files, and maximum number of files.
 const DEEPEST: u32 = 32;
 const MAX_FILES: usize = 4096;
-/// Maximum number of materials that patterns and mixtures may create.
+/// Maximum number of materials that can result from patterns and mixtures.
 const MOST_COPIES: usize = 1 << 16;
-/// Maximum number of corners and shapes of a scene.
+/// Maximum number of corners and shapes in a scene.
 const MAX_THINGS: usize = 1 << 26;
 
-/// A material or pattern as stored in the file.
+/// Radiance modifier, such as a material or pattern, as stored in the file, with the indices of the
+/// modifiers that it refers to.
 pub(super) struct Modifier {
     pub primitive: Rc<RadPrimitive>,
-    /// Index of the modifier that applies to it.
+    /// Index of the modifier that is applied to this one.
     pub parent: Option<usize>,
-    /// Indices of other modifiers that it names.
+    /// Indices of further modifiers that this one names.
     pub others: [Option<usize>; 2],
     pub map: DAffine3,
-    /// Length of the longest chain of modifiers above it.
+    /// Length of the longest chain of modifiers that are applied to this one.
     pub depth: u32,
 }
 
-/// Keywords of materials.
+/// Types of materials.
 pub(super) const MATERIALS: [&str; 27] = [
     "plastic",
     "metal",
@@ -69,7 +70,7 @@ pub(super) const MATERIALS: [&str; 27] = [
     "BSDF",
     "ashik2",
 ];
-/// Materials of later versions than the manual describes, or without any counterpart.
+/// Types of materials that are newer than the manual or have no counterpart.
 pub(super) const OTHERS: [&str; 2] = ["aBSDF", "WGMDfunc"];
 pub(super) const PATTERNS: [&str; 10] = [
     "colorfunc",
@@ -87,24 +88,24 @@ pub(super) const MIXTURES: [&str; 4] = ["mixfunc", "mixdata", "mixpict", "mixtex
 pub(super) const SURFACES: [&str; 11] =
     ["source", "sphere", "bubble", "polygon", "cone", "cup", "cylinder", "tube", "ring", "mesh", "instance"];
 
-/// State of reading a scene.
+/// Reader that converts the primitives of a Radiance scene to objects, materials and lights.
 pub(super) struct Reader<'a> {
     pub input: &'a Input<'a>,
     pub report: &'a SharedReport,
     pub modifiers: Vec<Modifier>,
     pub names: BTreeMap<String, usize>,
-    /// Converted modifiers, by index and the bits of the colour by which patterns before them
-    /// multiply.
+    /// Converted modifiers, by index and by the bits of the colour with which preceding patterns
+    /// multiply them.
     pub made: BTreeMap<(usize, [u32; 3]), Rc<ConvertedModifier>>,
-    /// True if the limit of materials has been reached.
+    /// True after the limit of materials was reached.
     full: bool,
-    /// Merged surfaces by material.
+    /// Merged surfaces, by material.
     pub bodies: BTreeMap<u32, Body>,
-    /// Fog of mist materials by material.
+    /// Fog that corresponds to each mist material.
     pub mists: BTreeMap<u32, Fog>,
     pub distant: Vec<Distant>,
-    /// Directional distributions by the index of their modifier; then the profiles made from them,
-    /// by distribution and the orientation of the surface.
+    /// Directional distributions, by the index of their modifier. After them, the light profiles
+    /// made from them, by distribution and orientation of the surface.
     pub spreads: BTreeMap<usize, Rc<Spread>>,
     pub profiles: Vec<(Rc<Spread>, Facing)>,
     pub cutter: Cutter,
@@ -134,7 +135,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads a scene text.
+    /// Reads all primitives and commands in a text.
     pub fn text(&mut self, bytes: &[u8], file: u32, place: &PrimitiveContext) {
         let mut words = Words::new(bytes, file, 0..bytes.len());
         while let Some(start) = words.start() {
@@ -151,8 +152,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Returns true if the limit of materials is reached: the number of materials below many
-    /// patterns and mixtures with `void` can be the product of their counts.
+    /// Returns true if the limit of materials is reached. If many patterns apply to mixtures with
+    /// `void`, the number of materials can be the product of their counts.
     pub fn is_full(&mut self, at: Span) -> bool {
         if !self.full && self.scene.materials.len() > 3 * self.modifiers.len() + MOST_COPIES {
             self.full = true;
@@ -162,13 +163,13 @@ impl<'a> Reader<'a> {
         self.full
     }
 
-    /// Reads a file that a command names. Commands in it run in the folder of that file if
-    /// `beside`, else in the current folder, as for piped output.
+    /// Reads a file named by a command. If `beside`, commands in the file run in its folder;
+    /// otherwise they run in the current folder, as they do for piped output.
     pub fn file(&mut self, name: &Word, place: &PrimitiveContext, beside: bool) {
         self.files += 1;
         if place.depth >= DEEPEST || self.files > MAX_FILES {
             let message = match place.depth >= DEEPEST {
-                true => format!("files are nested more than {DEEPEST} deep: does one include itself?"),
+                true => format!("files are nested more than {DEEPEST} levels deep: does one include itself?"),
                 false => format!("more than {MAX_FILES} files are included"),
             };
             return self.report.bad(name.at, message);
@@ -178,7 +179,7 @@ impl<'a> Reader<'a> {
         self.text(&bytes, file, &PrimitiveContext { depth: place.depth + 1, ..place });
     }
 
-    /// Bytes and index of a file that another file names.
+    /// Returns the bytes and the index of a file named by another file.
     pub fn open(&self, name: &Word) -> Option<(Arc<[u8]>, u32)> {
         match self.input.source.read(&name.text) {
             Ok(bytes) => {
@@ -228,13 +229,14 @@ impl<'a> Reader<'a> {
         let below = [modifier.parent, modifier.others[0], modifier.others[1]].into_iter().flatten();
         modifier.depth = below.map(|other| 1 + self.modifiers[other].depth).max().unwrap_or(0);
         if modifier.depth > DEEPEST {
-            return self.report.bad(name.at, format!("modifiers are nested more than {DEEPEST} deep"));
+            return self.report.bad(name.at, format!("modifiers are nested more than {DEEPEST} levels deep"));
         }
         self.modifiers.push(modifier);
         self.names.insert(name.text, self.modifiers.len() - 1);
     }
 
-    /// Defines an alias: another name for a modifier, which may change its own modifier.
+    /// Defines an alias: another name for a modifier, possibly with a different modifier applied to
+    /// it.
     fn alias(&mut self, alias: RadPrimitive) {
         let Some(Some(real)) = self.find(&alias.texts[0]) else { return };
         let parent = match alias.modifier.text.as_str() {
@@ -249,8 +251,8 @@ impl<'a> Reader<'a> {
         self.define(alias.name, modifier);
     }
 
-    /// Index of a modifier by name; `Some(None)` for `void`. Reports an unknown name and returns
-    /// `None`.
+    /// Finds a modifier by name and returns its index; `Some(None)` for `void`. Reports an unknown
+    /// name and returns `None`.
     pub fn find(&self, name: &Word) -> Option<Option<usize>> {
         if name.text == "void" {
             return Some(None);
@@ -258,7 +260,7 @@ impl<'a> Reader<'a> {
         let found = self.names.get(&name.text).copied();
         if found.is_none() {
             let help = suggest(&name.text, self.names.keys().map(String::as_str));
-            let help = help.or_else(|| Some("files of materials must precede the files that use them".into()));
+            let help = help.or_else(|| Some("files with materials must precede the files that use them".into()));
             self.report.bad_with(name.at, format!("no modifier {} is defined before this", name.shown()), help);
         }
         found.map(Some)
@@ -280,8 +282,8 @@ impl<'a> Reader<'a> {
         self.scene.root.get_or_insert_default().objects.push(object);
     }
 
-    /// Converts the mist that contains the camera into fog, since camera rays do not know that they
-    /// start inside a body.
+    /// Converts the mist around the camera to fog, because camera rays do not know that they start
+    /// inside a body.
     fn step_into_mist(&mut self) {
         let Some(eye) = self.scene.camera.as_ref().map(|camera| camera.pose().center) else { return };
         for (number, fog) in std::mem::take(&mut self.mists) {
@@ -298,7 +300,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Completes the scene.
+    /// Completes the scene and returns it.
     pub fn finish(mut self) -> Scene {
         self.step_into_mist();
         for (material, body) in std::mem::take(&mut self.bodies) {

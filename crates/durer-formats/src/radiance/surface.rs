@@ -1,4 +1,4 @@
-//! Conversion of surfaces.
+//! Converts surfaces.
 
 use super::args::RadPrimitive;
 use super::body::Body;
@@ -14,13 +14,14 @@ use durer_scene::shape::{Disc, Sphere};
 use glam::DVec3;
 
 impl Reader<'_> {
+    /// Converts a surface primitive.
     pub fn surface(&mut self, primitive: &RadPrimitive, modifier: Option<usize>, place: &PrimitiveContext) {
         let at = primitive.at();
         if !self.room_for(1, at) {
             return;
         }
         let map = place.map;
-        // Radiance's transforms are similarities: they scale all lengths alike.
+        // Transforms in Radiance are similarities, so they scale all lengths by the same factor.
         let scale = map.matrix3.x_axis.length();
         match primitive.kind.text.as_str() {
             "instance" | "mesh" => {
@@ -120,7 +121,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Adds a face from a generator. Only the first face of its output reports an unknown material.
+    /// Adds a face from a generator. An unknown material is reported only for the first face of its
+    /// output.
     pub fn facet(&mut self, modifier: &Word, corners: &[DVec3], name: &Word, place: &PrimitiveContext, first: bool) {
         let known = modifier.text == "void" || self.names.contains_key(&modifier.text);
         if !known && !first {
@@ -148,20 +150,20 @@ impl Reader<'_> {
         self.body(number, at).facet(&corners, &triangles);
     }
 
-    /// The mesh of all surfaces of a material.
+    /// Returns the mesh for all surfaces with a material.
     fn body(&mut self, number: u32, at: Span) -> &mut Body {
         self.bodies.entry(number).or_insert_with(|| Body::new(at))
     }
 
-    /// Material of a surface and its number; `None` if the surface is not shown. Adds the lights of
-    /// surfaces with a directional distribution.
+    /// Returns the converted material of a surface and its number; `None` if the surface is not
+    /// shown. If the material has a directional distribution, adds point lights instead.
     fn shown(
         &mut self,
         modifier: Option<usize>,
         outline: &Outline,
         at: Span,
     ) -> Option<(std::rc::Rc<ConvertedModifier>, u32)> {
-        // Surfaces with the modifier `void` only serve other programs.
+        // Surfaces whose modifier is `void` are meant for other programs.
         let made = self.made(modifier?);
         match made.kind {
             Kind::Aimed { .. } => {

@@ -17,7 +17,7 @@ fn read(text: &str) -> (Option<Scene>, Vec<String>) {
     read_in(&std::env::temp_dir(), "scene.rad", text)
 }
 
-/// Reads a text without findings.
+/// Reads a text, which must cause no diagnostics.
 fn clean(text: &str) -> Scene {
     let (scene, messages) = read(text);
     assert_eq!(messages, [""; 0], "{text}");
@@ -54,8 +54,8 @@ fn names_comments_quotes_and_aliases() {
     let Node::Primitive(durer_scene::shape::Primitive::Sphere(sphere)) = &object.node else { panic!("{object:?}") };
     assert_eq!((sphere.center, sphere.radius), (Vec3::new(1.0, 2.0, 3.0), 0.5));
     assert_eq!(layers(&scene, object.material.unwrap()).base_color, Vec3::new(0.1, 0.2, 0.3));
-    // A second definition of a name applies from there on; an alias with `inherit` keeps the
-    // pattern.
+    // A second definition of a name takes effect from its position on. An alias with `inherit`
+    // keeps the pattern.
     let text = "void brightfunc half 1 .5 0 0 half plastic m 0 0 5 .8 .8 .8 0 0\n";
     for (modifier, expected) in [("inherit", 0.4), ("void", 0.8), ("half", 0.4)] {
         let scene = clean(&format!("{text}{modifier} alias n m n sphere s 0 0 4 0 0 0 1"));
@@ -71,7 +71,7 @@ fn commands_are_emulated() {
     assert_eq!(all.len(), 3 * 24);
     assert_eq!(all.iter().copied().reduce(Vec3::min), Some(Vec3::new(10.0, 0.0, 0.0)));
     assert_eq!(all.iter().copied().reduce(Vec3::max), Some(Vec3::new(11.0, 22.0, 3.0)));
-    // All faces are oriented outwards, also those of a prism with a hole, and of mirror images.
+    // All faces point outwards, including those of a prism with a hole and of mirror images.
     let prism = "!genprism white p 10 0 0 0 4 4 4 4 0 0 0 1 1 3 1 3 3 1 3 1 1 -l 0 0 2 -c";
     for (command, volume) in [
         ("!genbox white box 1 2 3 | xform -rx 20 -t 5 6 7", 6.0),
@@ -110,8 +110,8 @@ fn materials_become_layers() {
     assert_eq!((m.base_color, messages.len()), (Vec3::new(0.8, 0.4, 0.2), 0));
     // An index of 1.5 reflects 4 %.
     assert!((m.specular_ior - 1.5).abs() < 1e-5 && m.specular_roughness == 0.0);
-    // In rough plastic the specular part is white in all directions; its roughness is the root of
-    // the slope.
+    // In rough plastic the specular part is white at all angles. Its roughness is the square root
+    // of the slope.
     let scene = clean("void plastic m 0 0 5 .8 .4 .2 .04 .09 m sphere s 0 0 4 1 2 3 .5");
     let Material::Solid(durer_scene::material::Solid::Mix(mix), _) = &scene.materials[2].value else {
         panic!("no mixture")
@@ -125,7 +125,7 @@ fn materials_become_layers() {
     assert!(m.base_metalness == 0.95 && (m.specular_roughness - 0.2).abs() < 1e-6);
     let (m, _) = sphere("void glass m 0 0 3 .9 .8 .7");
     assert_eq!((m.walls, m.specular_ior, m.transmission_color), (Walls::Thin, 1.52, Vec3::new(0.9, 0.8, 0.7)));
-    // The inside absorbs, including light that is reflected internally.
+    // The inside absorbs light, including light that is reflected internally.
     assert_eq!(m.transmission_depth, 1.0);
     let (m, _) = sphere("void dielectric m 0 0 5 .5 .25 1 1.33 0");
     assert_eq!((m.walls, m.specular_ior, m.transmission_depth), (Walls::Solid, 1.33, 1.0));
@@ -136,7 +136,7 @@ fn materials_become_layers() {
     assert!((m.subsurface_scatter_anisotropy + 0.35 / 0.65).abs() < 1e-6);
     let (m, _) = sphere("void light m 0 0 3 4 2 1");
     assert_eq!((m.emission_luminance, m.emission_color, m.base_color), (4.0, Vec3::new(1.0, 0.5, 0.25), Vec3::ZERO));
-    // A bubble in glass has on its inside what the material calls outside.
+    // In glass, the inside of a bubble is what the material calls outside.
     let text = "void interface m 0 0 8 1 1 1 1.5 1 1 1 1.33\n";
     for (kind, index) in [("sphere", 1.5), ("bubble", 1.33)] {
         let scene = clean(&format!("{text}m {kind} s 0 0 4 0 0 0 1"));
@@ -186,7 +186,7 @@ fn errors_have_positions() {
         ("void plastic m 0 2 1 2 0", "1:18 error primitives have no integer arguments: this must be 0"),
         (
             "m sphere s 0 0 4 0 0 0 1",
-            "1:1 error no modifier `m` is defined before this (files of materials must precede the files that use them)",
+            "1:1 error no modifier `m` is defined before this (files with materials must precede the files that use them)",
         ),
         (
             "void polygon p 0 0 6 0 0 0 1 1 1",
@@ -198,7 +198,7 @@ fn errors_have_positions() {
         ("!genbox m b 1 1", "1:2 error `genbox` needs a material, a name and three sizes"),
         (
             "!cat far.rad | grep x",
-            "1:16 error the command `grep` is not supported (known are `xform`, `cat`, `genbox`, `genprism` and `gensky`. Run Radiance's own `grep`, save its output in a file beside the scene, and write `!cat FILE` here)",
+            "1:16 error the command `grep` is not supported (supported commands are `xform`, `cat`, `genbox`, `genprism` and `gensky`. Run Radiance's own `grep`, save its output in a file beside the scene, and write `!cat FILE` here)",
         ),
         ("!| xform", "1:4 error a command is missing beside `|`"),
         ("!", "1:2 error a command is missing after `!`"),
@@ -209,7 +209,7 @@ fn errors_have_positions() {
         assert_eq!(found[0], format!("scene.rad:{expected}"), "{text}");
     }
     let (_, found) = read_in(cycle.path(), "scene.rad", "!cat a.rad");
-    assert_eq!(found, ["a.rad:2:8 error files are nested more than 32 deep: does one include itself?"]);
+    assert_eq!(found, ["a.rad:2:8 error files are nested more than 32 levels deep: does one include itself?"]);
     let (_, found) = read_in(cycle.path(), "scene.rad", "!cat far.rad");
     let help = "a scene can only use files in or below its own folder, unless `--allow-outside` is given";
     assert!(found[0].starts_with("far.rad:1:6 error ") && !found[0].contains("missing"), "{found:?} {help}");
@@ -217,7 +217,8 @@ fn errors_have_positions() {
     assert!(read(&many).1.len() <= 21);
 }
 
-/// A tree of mixtures, used repeatedly in partly transparent mixtures or below patterns.
+/// Returns a tree of mixtures that is used repeatedly, in partly transparent mixtures or below
+/// patterns.
 #[test]
 fn number_of_materials_is_limited() {
     let depth = 9;

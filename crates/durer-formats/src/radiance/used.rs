@@ -1,11 +1,11 @@
-//! Removal of unused materials, and warnings about missing files that are not read.
+//! Removes unused materials, and warns about missing files that are not read.
 
 use super::args::RadPrimitive;
 use super::state::Reader;
 use durer_scene::material::{Pattern, Solid};
 use durer_scene::scene::{Material, Scene};
 
-/// Function files that come with Radiance.
+/// Function files that are installed with Radiance.
 const LIBRARY: &str = "Ashikhmin LaFortune LaFortune1 WGMDaniso WGMDiso WalterBSDF WalterBTDF ambpos bezier2 \
     blackbody blinds bsdf2rad cct cielab cieluv cieresp cieskyscan circle clamp clouds conv1 \
     conv2 cri cubic denom disk2square equivlum ferwerda filt fisheye_corr fitSH fog fovsample \
@@ -18,7 +18,8 @@ const LIBRARY: &str = "Ashikhmin LaFortune LaFortune1 WGMDaniso WGMDiso WalterBS
     tumblin uniq_rgb veil view360stereo vl vonKries vwparab vwplanis window xyz_rgb xyz_srgb";
 
 impl Reader<'_> {
-    /// Warns about files that a primitive names, that are not read, and that do not exist.
+    /// Warns about files that a primitive names and that do not exist, if they are of types that
+    /// are not read.
     pub fn missing(&self, primitive: &RadPrimitive) {
         for word in &primitive.texts {
             let Some((name, kind)) = word.text.rsplit_once('.') else { continue };
@@ -31,13 +32,13 @@ impl Reader<'_> {
     }
 }
 
-/// Removes unused materials, such as those of suns only, the outer side of glass, and the parts of
-/// a mixture that was reduced to one of them.
+/// Removes unused materials. These are, for example, materials used only by suns, the outer side of
+/// glass, and parts of a mixture that was reduced to one of them.
 pub(super) fn keep_used(scene: &mut Scene) {
     let mut used = vec![false; scene.materials.len()];
     let objects = || scene.root.iter().flat_map(|root| &root.objects);
     objects().filter_map(|object| object.material).for_each(|number| used[number as usize] = true);
-    // A mixture comes after its parts.
+    // A mixture comes after its parts, so go backwards.
     for i in (0..used.len()).rev() {
         if let (true, Material::Solid(solid, _)) = (used[i], &scene.materials[i].value) {
             solid.materials().into_iter().for_each(|part| used[part as usize] = true);

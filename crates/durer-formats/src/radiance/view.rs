@@ -1,4 +1,4 @@
-//! Radiance's views, such as `-vtv -vp 0 0 0 -vd 0 1 0 -vu 0 0 1 -vh 45 -vv 45`.
+//! Reads Radiance's views, such as `-vtv -vp 0 0 0 -vd 0 1 0 -vu 0 0 1 -vh 45 -vv 45`.
 
 use super::words::{Word, Words};
 use crate::shared_report::SharedReport;
@@ -10,21 +10,21 @@ use durer_scene::math::fp;
 use durer_scene::scene::Scene;
 use glam::DVec3;
 
-/// Default size in pixels of the picture's larger side.
+/// Default length in pixels of the picture's larger side.
 pub(super) const USUAL_SIZE: u32 = 512;
-/// Programs whose names start a view in a file.
+/// Program names that can begin a view in a file.
 const PROGRAMS: [&str; 7] = ["VIEW=", "rpict", "rview", "rvu", "rpiece", "pinterp", "rad"];
 
-/// A view.
+/// Radiance view: type, position, direction and size of a camera.
 #[derive(Clone, Debug)]
 pub(super) struct View {
     pub kind: char,
     pub point: DVec3,
     pub direction: DVec3,
     pub up: DVec3,
-    /// Horizontal and vertical size: degrees, or lengths in parallel views.
+    /// Horizontal and vertical size: in degrees, or a length in parallel views.
     pub size: [f64; 2],
-    /// Shift of the picture, in fractions of its width and height.
+    /// Shift of the picture, as a fraction of its width and of its height.
     shift: [f64; 2],
     /// Distance of the near clipping plane from the view point.
     fore: f64,
@@ -46,8 +46,8 @@ impl Default for View {
     }
 }
 
-/// Returns the last view in a file. A view is a line that starts with `VIEW=` or the name of a
-/// program. In a picture only the header is searched, and its lines may contain other options.
+/// Returns the last view in a file. A view is a line that begins with `VIEW=` or the name of a
+/// program. In a picture, only the header is searched; lines there can contain other options too.
 pub(super) fn of_file(bytes: &[u8], file: u32, report: &SharedReport) -> Option<View> {
     let (mut view, mut start) = (None, 0);
     let picture = bytes.starts_with(b"#?");
@@ -82,8 +82,8 @@ impl View {
         View { at, ..View::default() }
     }
 
-    /// Applies view options. Skips all other options with their arguments and, if `others`, also
-    /// unknown options that begin with `-v`.
+    /// Applies view options. All other options are skipped together with their arguments; if
+    /// `others`, unknown options that begin with `-v` are skipped too.
     pub fn options(&mut self, words: &[Word], others: bool, report: &SharedReport) {
         let mut rest = words;
         while let Some((option, more)) = rest.split_first() {
@@ -163,7 +163,7 @@ impl View {
         let wide = sides[0] >= sides[1];
         let angle = (if wide { across } else { upwards }) as f32;
         let longest = sides[0].max(sides[1]);
-        // In halves of the larger side.
+        // The shift is in units of half the larger side.
         let [right, above] = [2.0 * self.shift[0] * sides[0] / longest, 2.0 * self.shift[1] * sides[1] / longest];
         let shifted = self.shift != [0.0; 2];
         let camera: Camera = match self.kind {

@@ -1,11 +1,11 @@
-//! Tokenizer of words and commands.
+//! Tokenizer for words and commands.
 
 use crate::number::parse_f32;
 use crate::report::shown;
 use crate::shared_report::SharedReport;
 use durer_diag::Span;
 
-/// A word without its quotes, and its span.
+/// Word of a Radiance file, without its quotes, with its span.
 #[derive(Clone, Debug)]
 pub(super) struct Word {
     pub text: String,
@@ -13,7 +13,7 @@ pub(super) struct Word {
 }
 
 impl Word {
-    /// The word quoted for messages.
+    /// Returns the word, quoted for messages.
     pub fn shown(&self) -> String {
         shown(self.text.as_bytes())
     }
@@ -37,14 +37,14 @@ impl Word {
     }
 }
 
-/// A word or command at the start of a primitive.
+/// Start of a Radiance primitive: its first word, or a `!` command instead.
 pub(super) enum Start {
     Word(Word),
-    /// Range of a command, without its `!`.
+    /// Byte range of a command, without the `!`.
     Command(std::ops::Range<usize>),
 }
 
-/// Cursor over the words of a text.
+/// Cursor over the words of a Radiance text.
 pub(super) struct Words<'a> {
     bytes: &'a [u8],
     file: u32,
@@ -58,16 +58,17 @@ fn is_space(byte: u8) -> bool {
 }
 
 impl<'a> Words<'a> {
-    /// Starts at the beginning of a range of a file, which must be smaller than 4 GiB.
+    /// Starts at the beginning of a range of a file. The file must be smaller than 4 GiB.
     pub fn new(bytes: &'a [u8], file: u32, range: std::ops::Range<usize>) -> Self {
         Words { bytes, file, at: range.start, end: range.end }
     }
 
+    /// Returns the span of a byte range.
     pub fn span(&self, start: usize, end: usize) -> Span {
         Span { file: self.file, start: start as u32, end: end as u32 }
     }
 
-    /// Span of the end of the text.
+    /// Returns the span of the end of the text.
     pub fn end(&self) -> Span {
         self.span(self.end, self.end)
     }
@@ -76,8 +77,8 @@ impl<'a> Words<'a> {
         (self.at < self.end).then(|| self.bytes[self.at])
     }
 
-    /// Returns the next word. In single or double quotes it may contain blanks. A backslash at the
-    /// end of a line is skipped.
+    /// Returns the next word. A word in single or double quotes can contain spaces. A backslash at
+    /// the end of a line is skipped.
     pub fn next(&mut self) -> Option<Word> {
         loop {
             while self.peek().is_some_and(is_space) {
@@ -101,7 +102,7 @@ impl<'a> Words<'a> {
         Some(Word { text: String::from_utf8_lossy(word).into_owned(), at })
     }
 
-    /// Returns the next word or command, skipping comments.
+    /// Returns the next word or command; skips comments.
     pub fn start(&mut self) -> Option<Start> {
         loop {
             while self.peek().is_some_and(is_space) {
@@ -131,7 +132,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Returns true if a line continues on the next.
+/// Returns true if a line continues on the next line.
 fn continued(line: &[u8]) -> bool {
     line.ends_with(b"\\") || line.ends_with(b"\\\r")
 }

@@ -5,20 +5,21 @@ use crate::shared_report::SharedReport;
 use durer_scene::math::fp;
 use glam::{DAffine3, DMat3, DVec3};
 
-/// Maximum number of copies of nested arrays.
+/// Maximum number of copies that nested arrays may create.
 const MAX_PLACES: usize = 1 << 20;
 
-/// Repetition of a part of a transform.
+/// How often a part of an `xform` transform is applied: a fixed number of times, or as an array of
+/// copies.
 #[derive(Clone, Copy, PartialEq)]
 enum Times {
-    /// Applied a fixed number of times, by `-i`.
+    /// Applied a fixed number of times (`-i`).
     Just(i32),
-    /// Array of copies, by `-a`: not applied in the first, once in the second, twice in the third,
-    /// and so on.
+    /// Array of copies (`-a`): applied zero times in the first copy, once in the second, twice in
+    /// the third, and so on.
     Array(usize),
 }
 
-/// A transform in parts, which may yield several copies.
+/// Transform of an `xform` command, as a sequence of parts, which can create several copies.
 #[derive(Clone)]
 pub(super) struct Transform {
     parts: Vec<(Times, DAffine3)>,
@@ -30,7 +31,7 @@ impl Default for Transform {
     }
 }
 
-/// Rotation about an axis by degrees; exact for multiples of a right angle.
+/// Returns the rotation about an axis by degrees; exact for multiples of a right angle.
 fn turn(axis: usize, degrees: f64) -> DAffine3 {
     let (sin, cos) = fp::sin_cos_degrees(degrees);
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -41,8 +42,8 @@ fn turn(axis: usize, degrees: f64) -> DAffine3 {
 }
 
 impl Transform {
-    /// Parses an option with its arguments from the front of `words`; returns false if it is not a
-    /// transform.
+    /// Parses an option with its arguments at the front of `words`; returns false if the option is
+    /// not a transform.
     pub fn option(&mut self, words: &mut &[Word], report: &SharedReport) -> bool {
         let Some((option, rest)) = words.split_first() else { return false };
         let numbers = |count: usize| -> Option<Vec<f64>> {
@@ -86,7 +87,7 @@ impl Transform {
         true
     }
 
-    /// Transforms of all copies in order; `None` if there are too many.
+    /// Returns the transforms of all copies in order; `None` if there are too many.
     pub fn places(&self) -> Option<Vec<DAffine3>> {
         let mut places = vec![DAffine3::IDENTITY];
         for (times, map) in &self.parts {
@@ -111,7 +112,7 @@ impl Transform {
     }
 }
 
-/// A transform applied `count` times.
+/// Returns a transform applied `count` times.
 fn power(map: DAffine3, count: i32) -> DAffine3 {
     let (mut result, mut square, mut left) = (DAffine3::IDENTITY, map, count);
     while left > 0 {

@@ -1,4 +1,4 @@
-//! Tests of text and binary STL, valid and malformed.
+//! Tests of valid and malformed STL files, text and binary.
 
 use crate::tests::{abuse, read, read_clean};
 use durer_scene::math::Vec3;
@@ -27,7 +27,7 @@ fn text_and_binary_are_equivalent_and_share_corners() {
     let text = read_clean(TEXT.as_bytes(), "a.stl");
     assert_eq!(text.positions, [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::X + Vec3::Y]);
     assert_eq!(text.triangles, [[0, 1, 2], [1, 3, 2]]);
-    // A binary file may begin as a text file does.
+    // A binary file can begin like a text file.
     for head in [&b"made by a program"[..], b"solid facet"] {
         assert_eq!(read_clean(&binary(head, &SQUARE), "a.stl"), text);
         assert_eq!(read_clean(&binary(head, &SQUARE), "no ending"), text);

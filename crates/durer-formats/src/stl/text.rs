@@ -7,7 +7,8 @@ use crate::report::{Report, counted, shown};
 use durer_scene::math::Vec3;
 use std::ops::Range;
 
-/// Reads the facets. Only the vertices are used; the other words are checked to report mistakes.
+/// Reads the facets of a text STL file. Only the vertices are used; the other words are checked for
+/// mistakes.
 pub fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
     let mut corners: Vec<Vec3> = Vec::with_capacity(3);
     let mut facet: Option<Range<usize>> = None;
@@ -48,7 +49,7 @@ pub fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
     unfinished(&mut corners, facet, report);
 }
 
-/// Reports a facet without exactly three vertices.
+/// Reports a facet that does not have exactly three vertices.
 fn unfinished(corners: &mut Vec<Vec3>, facet: Option<Range<usize>>, report: &mut Report) {
     // An invalid number has been reported already.
     if let Some(at) = facet.filter(|_| !report.has_errors()) {

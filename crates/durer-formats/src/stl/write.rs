@@ -3,6 +3,7 @@
 use durer_scene::math::Vec3;
 use durer_scene::shape::MeshData;
 
+/// Encodes a mesh as a binary STL file.
 pub(crate) fn write(mesh: &MeshData) -> Vec<u8> {
     let mut out = b"triangles".to_vec();
     out.resize(80, b' ');

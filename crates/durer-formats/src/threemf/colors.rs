@@ -1,4 +1,4 @@
-//! Property resources: colours, mixtures of them, and texture coordinates.
+//! Parses property resources: colours, mixtures of colours, and texture coordinates.
 
 use super::model::{Color, Group, Model, Properties};
 use super::parser::{ErrorReported, Parser};
@@ -7,7 +7,7 @@ use durer_image::decode_srgb;
 use durer_scene::math::Vec2;
 
 impl Model {
-    /// Number of entries in a property list.
+    /// Returns the number of entries in a property list.
     pub fn count(&self, id: u32) -> Option<usize> {
         match &self.properties.get(&id)?.group {
             Group::Colors(colors) => Some(colors.len()),
@@ -16,7 +16,7 @@ impl Model {
         }
     }
 
-    /// Colour of a property; white for texture coordinates.
+    /// Returns the colour of a property; white for texture coordinates.
     fn color(&self, id: u32, index: u32) -> Option<Color> {
         match &self.properties.get(&id)?.group {
             Group::Colors(colors) => colors.get(index as usize).copied(),
@@ -97,7 +97,7 @@ impl Parser<'_, '_> {
         Ok(picture.map(|picture| Group::Texture { picture, uvs }))
     }
 
-    /// Reads whole numbers separated by blanks.
+    /// Reads integers separated by spaces.
     fn list(&self, tag: &Tag, name: &str) -> Vec<u32> {
         let Some(attribute) = tag.get(name) else {
             self.report.bad(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
@@ -110,12 +110,12 @@ impl Parser<'_, '_> {
         })
     }
 
-    /// Reads composite materials: mixtures of base materials by proportion.
+    /// Reads composite materials: mixtures of base materials in given proportions.
     fn composites(&mut self, tag: &Tag) -> Result<Option<Group>, ErrorReported> {
         let (base, indices) = (self.whole_number(tag, "matid"), self.list(tag, "matindices"));
         let known = base.and_then(|base| self.model.count(base));
         if let (Some(base), None) = (base, known) {
-            self.report.bad(tag.at, format!("no list of base materials {base} is defined before this"));
+            self.report.bad(tag.at, format!("no base material list {base} is defined before this"));
         }
         let parts: Vec<Color> = indices.iter().filter_map(|index| self.model.color(base?, *index)).collect();
         if known.is_some() && parts.len() < indices.len() {
@@ -139,11 +139,11 @@ impl Parser<'_, '_> {
         Ok(Some(Group::Colors(colors)))
     }
 
-    /// Reads multiproperties: layers over each other, the last on top.
+    /// Reads multiproperties: layers of properties, the last one on top.
     fn several(&mut self, tag: &Tag) -> Result<Option<Group>, ErrorReported> {
         let pids = self.list(tag, "pids");
         if let Some(missing) = pids.iter().find(|pid| !self.model.properties.contains_key(pid)) {
-            self.report.bad(tag.at, format!("no list of properties {missing} is defined before this"));
+            self.report.bad(tag.at, format!("no property list {missing} is defined before this"));
         }
         if pids
             .iter()
@@ -160,7 +160,7 @@ impl Parser<'_, '_> {
                     let texture = matches!(self.model.properties.get(pid)?.group, Group::Texture { .. });
                     color.filter(|_| !texture)
                 });
-                // Each layer covers those below it by its opacity.
+                // Each layer covers the layers below it in proportion to its opacity.
                 let over = layers.reduce(|below, above| {
                     let a = above[3];
                     let mix = |c: usize| a * above[c] + (1.0 - a) * below[c];

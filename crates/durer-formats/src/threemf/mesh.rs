@@ -1,4 +1,4 @@
-//! Parsing of meshes, of the properties of their corners, and of beam lattices.
+//! Parses meshes, the properties of their corners, and beam lattices.
 
 use super::model::{Mesh, Property};
 use super::parser::{ErrorReported, Parser};
@@ -6,6 +6,7 @@ use crate::xml::Tag;
 use durer_scene::math::Vec3;
 
 impl Parser<'_, '_> {
+    /// Parses a `<mesh>`. `usual` is the default property of its triangles.
     pub fn mesh(&mut self, usual: Option<Property>) -> Result<Mesh, ErrorReported> {
         let mut mesh = Mesh { usual, ..Mesh::default() };
         while let Some(tag) = self.next()? {
@@ -38,7 +39,7 @@ impl Parser<'_, '_> {
         Ok(())
     }
 
-    /// Reads the index of a vertex.
+    /// Reads a vertex index, which must be below `count`.
     fn corner(&self, tag: &Tag, name: &str, count: usize) -> Option<u32> {
         let number = self.whole_number(tag, name)?;
         if number as usize >= count {
@@ -71,17 +72,17 @@ impl Parser<'_, '_> {
         Ok(())
     }
 
-    /// Reads the properties of a triangle's corners; `None` if the triangle names none.
+    /// Reads the properties of a triangle's corners; `None` if the triangle has none.
     fn property(&self, tag: &Tag, usual: Option<Property>) -> Option<(u32, [u32; 3])> {
         let p1 = self.optional_number(tag, "p1")?;
         let Some(pid) = self.optional_number(tag, "pid").or(usual.map(|usual| usual.0)) else {
             let at = tag.get("p1").map_or(tag.at, |attribute| attribute.at);
-            self.report.bad(at, "`p1` needs a `pid`, of the triangle or of its object");
+            self.report.bad(at, "`p1` needs a `pid` on the triangle or on its object");
             return None;
         };
         let Some(count) = self.model.count(pid) else {
             let at = tag.get("pid").map_or(tag.at, |attribute| attribute.at);
-            self.report.bad(at, format!("no list of properties {pid} is defined before this"));
+            self.report.bad(at, format!("no property list {pid} is defined before this"));
             return None;
         };
         let corners = [Some(p1), self.optional_number(tag, "p2"), self.optional_number(tag, "p3")];

@@ -1,4 +1,4 @@
-//! Reader of 3MF, a format of 3D-printing models in a ZIP archive.
+//! Reader of 3MF, a format for 3D printing: models in a ZIP archive.
 //!
 //! Sources: *3D Manufacturing Format, Core Specification* 1.3; *Materials and Properties Extension*
 //! 1.2; *Production Extension* 1.1; *Beam Lattice Extension* 1.2; 3MF Consortium. Lengths are
@@ -20,7 +20,7 @@ use super::{too_large, zip};
 use durer_diag::Diagnostics;
 use durer_scene::scene::{Axis, Scene};
 
-/// The 3MF scene format.
+/// Scene format entry for 3MF.
 pub(super) const FORMAT: SceneFormat = SceneFormat {
     name: "3MF",
     extensions: &["3mf"],
@@ -32,7 +32,7 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     light_hint: None,
 };
 
-/// Returns true for ZIP archives; no other supported format is one.
+/// Returns true for ZIP archives, since no other supported format is one.
 fn recognise(bytes: &[u8]) -> bool {
     zip::recognise(bytes)
 }

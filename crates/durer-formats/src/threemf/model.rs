@@ -1,46 +1,47 @@
-//! Data structures of a model part.
+//! Data structures of a parsed model part.
 
 use durer_diag::Span;
 use durer_scene::math::{Vec2, Vec3};
 use glam::DAffine3;
 use std::collections::BTreeMap;
 
-/// A build item or component: an object of a part with a transform.
+/// Reference to an object with a transform: a build item, or a component of another object.
 pub(super) struct ObjectRef {
-    /// Name of the object's part if it is another one.
+    /// Name of the part that contains the object, if it is another part.
     pub part: Option<String>,
     pub id: u32,
     pub map: DAffine3,
     pub at: Span,
 }
 
-/// An object: a mesh, or components.
+/// Object resource of a 3MF model: a mesh, or references to other objects.
 pub(super) enum Object {
     Mesh(Box<Mesh>),
     Components(Vec<ObjectRef>),
 }
 
-/// Content of a model part.
+/// Content of one 3MF model part: its objects, property lists and build items.
 #[derive(Default)]
 pub(super) struct Model {
     pub objects: BTreeMap<u32, (Object, Span)>,
     pub properties: BTreeMap<u32, Properties>,
     pub items: Vec<ObjectRef>,
-    /// Length of its unit in millimetres.
+    /// Length of its unit of measurement in millimetres.
     pub unit: f64,
 }
 
-/// A property: the identifier of its list, and the index in it.
+/// Reference to a property: the id of its property list, and the index in that list.
 pub(super) type Property = (u32, u32);
 
-/// Positions, triangles and beams.
+/// Triangle mesh and beams of a 3MF object.
 #[derive(Default)]
 pub(super) struct Mesh {
     pub positions: Vec<Vec3>,
     pub triangles: Vec<[u32; 3]>,
-    /// Property list and indices of the corners of each triangle; empty if no triangle names one.
+    /// Property list and indices for the corners of each triangle; empty if no triangle has
+    /// properties.
     pub properties: Vec<Option<(u32, [u32; 3])>>,
-    /// Default property of triangles that name none.
+    /// Default property of triangles without their own.
     pub usual: Option<Property>,
     /// The two vertices of each beam, and the radius at each.
     pub beams: Vec<([u32; 2], [f32; 2])>,
@@ -48,22 +49,22 @@ pub(super) struct Mesh {
     pub at: Span,
 }
 
-/// Linear colour and opacity.
+/// Linear RGB colour and opacity.
 pub(super) type Color = [f32; 4];
 
-/// A list that the properties of triangles refer to.
+/// Property list, such as colours or texture coordinates, that triangle corners refer to.
 pub(super) struct Properties {
     pub group: Group,
     pub at: Span,
 }
 
-/// Content of a property list.
+/// Content of a 3MF property list.
 pub(super) enum Group {
     /// Appearance of base materials, colours, composites or multiproperties.
     Colors(Vec<Color>),
-    /// Texture coordinates in the picture of a resource, with v upwards.
+    /// Texture coordinates in a texture resource, with v upwards.
     Texture { picture: u32, uvs: Vec<Vec2> },
-    /// A picture: name of its part, and how it continues beyond its borders.
+    /// A texture: the name of the image's part, and the wrap mode along u and v.
     Picture { part: String, styles: [Option<String>; 2], at: Span },
 }
 

@@ -1,4 +1,4 @@
-//! The ZIP archive: finds the model part, and reads parts by name.
+//! Access to the ZIP archive: finds the model part, and reads parts by name.
 
 use crate::files::unescaped;
 use crate::model::Input;
@@ -8,21 +8,21 @@ use crate::zip::Zip;
 use durer_diag::{Diagnostic, Span};
 use std::sync::Arc;
 
-/// Suffix of the relationship type of the model part.
+/// Suffix of the relationship type that marks the model part.
 const MODEL: &str = "/3dmodel";
 const RELATIONS: &str = "_rels/.rels";
 
-/// An opened archive and its diagnostics.
+/// An open 3MF archive: finds and reads its parts, and reports errors.
 pub(super) struct Package<'a> {
     pub input: &'a Input<'a>,
     report: &'a SharedReport,
     zip: Zip<'a>,
-    /// Name of the model part.
+    /// Name of the root model part.
     pub root: String,
 }
 
 impl<'a> Package<'a> {
-    /// Opens an archive and finds its model part.
+    /// Opens an archive and finds its root model part.
     pub fn open(input: &'a Input<'a>, report: &'a SharedReport) -> Option<Self> {
         let at = Span { file: input.file, start: 0, end: 0 };
         let zip = match Zip::open(input.bytes) {
@@ -38,8 +38,8 @@ impl<'a> Package<'a> {
         Some(package)
     }
 
-    /// Name of the model part: the target of the relationship, else the only part that ends in
-    /// `.model`.
+    /// Returns the name of the model part: the target of the relationship, otherwise the only part
+    /// that ends in `.model`.
     fn found(&mut self, at: Span) -> Option<String> {
         let (mut roots, mut broken) = (Vec::new(), false);
         if let Some((bytes, file)) = self.part(RELATIONS, at) {
@@ -71,7 +71,7 @@ impl<'a> Package<'a> {
             }
         }
         if let [_, (name, second), ..] = roots.as_slice() {
-            let message = format!("an archive has one model: `{name}` is a second");
+            let message = format!("an archive can have only one model, and `{name}` is the second");
             self.report.push(Diagnostic::error(message).code("bad-file").at(*second));
             return None;
         }
@@ -95,7 +95,7 @@ impl<'a> Package<'a> {
         }
     }
 
-    /// Name of a part in the archive. Names are compared without case and percent escapes.
+    /// Finds the name of a part in the archive, ignoring case and decoding percent escapes.
     fn known(&self, name: &str) -> Option<String> {
         let plain = |name: &str| unescaped(name).unwrap_or_else(|| name.to_string()).to_lowercase();
         let same = |part: &&str| *part == name;
@@ -116,7 +116,7 @@ impl<'a> Package<'a> {
         }
     }
 
-    /// Reads a text part and registers it as a file, for spans.
+    /// Reads a text part and registers it as a file, so that spans can refer to it.
     pub fn part(&mut self, name: &str, at: Span) -> Option<(Arc<[u8]>, u32)> {
         let bytes = utf8(self.bytes(name, at)?);
         if bytes.len() >= u32::MAX as usize {

@@ -1,4 +1,4 @@
-//! Parser of the XML of a model part: resources and build items.
+//! Parses the XML of a model part: resources and build items.
 
 use super::model::{Group, Model, Object, ObjectRef};
 use super::package::Package;
@@ -8,22 +8,22 @@ use durer_diag::{Diagnostic, Span};
 use glam::DAffine3;
 use std::sync::Arc;
 
-/// Units of length in millimetres.
+/// Units of length, in millimetres.
 const UNITS: [(&str, f64); 6] =
     [("micron", 1e-3), ("millimeter", 1.0), ("centimeter", 10.0), ("inch", 25.4), ("foot", 304.8), ("meter", 1000.0)];
 const TYPES: [&str; 5] = ["model", "solidsupport", "support", "surface", "other"];
 
-/// Parser of one model part.
+/// Parser of the XML of one model part.
 pub(super) struct Parser<'a, 'x> {
     pub xml: Xml<'x>,
     pub report: &'a SharedReport,
     pub model: Model,
 }
 
-/// Signals that parsing cannot continue; the error has been reported.
+/// Error type of the 3MF parser: parsing cannot continue, and the error has already been reported.
 pub(super) struct ErrorReported;
 
-/// Reads a model part of an archive.
+/// Reads and parses a model part of an archive.
 pub fn read(package: &mut Package, name: &str, at: Span, report: &SharedReport) -> Option<Model> {
     let Some((bytes, file)) = package.part(name, at) else {
         if !report.has_errors() {
@@ -45,7 +45,7 @@ pub fn read(package: &mut Package, name: &str, at: Span, report: &SharedReport) 
 }
 
 impl<'x> Parser<'_, 'x> {
-    /// Next child of the open element; `None` at its end.
+    /// Returns the next child of the open element; `None` at its end.
     pub fn next(&mut self) -> Result<Option<Tag<'x>>, ErrorReported> {
         match self.xml.next() {
             _ if self.report.is_full() => Err(ErrorReported),
@@ -94,13 +94,13 @@ impl<'x> Parser<'_, 'x> {
                     self.build()?;
                 }
                 "model" => {
-                    self.report.bad(part.at, "a file has one model: this is a second");
+                    self.report.bad(part.at, "a file can have only one `<model>` element, and this is the second");
                     return Err(ErrorReported);
                 }
                 _ => self.skip()?,
             }
         }
-        // No element may follow the model.
+        // No element may follow `<model>`.
         self.next()?;
         if built.is_none() {
             self.report.bad(tag.at, "a model needs a `<build>` that lists the objects to show");
@@ -119,7 +119,7 @@ impl<'x> Parser<'_, 'x> {
         Ok(())
     }
 
-    /// Reads the identifier of a resource, which must be unique.
+    /// Reads the id of a resource, which must be unique.
     pub fn new_id(&self, tag: &Tag) -> Option<u32> {
         let id = self.whole_number(tag, "id")?;
         let known = self.model.objects.get(&id).map(|known| known.1);
@@ -131,7 +131,7 @@ impl<'x> Parser<'_, 'x> {
         Some(id)
     }
 
-    /// Reads a required whole number.
+    /// Reads a required integer.
     pub fn whole_number(&self, tag: &Tag, name: &str) -> Option<u32> {
         let Some(attribute) = tag.get(name) else {
             self.report.bad(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
@@ -144,7 +144,7 @@ impl<'x> Parser<'_, 'x> {
         number
     }
 
-    /// Reads an optional whole number.
+    /// Reads an optional integer.
     pub fn optional_number(&self, tag: &Tag, name: &str) -> Option<u32> {
         tag.get(name)?;
         self.whole_number(tag, name)
@@ -208,7 +208,7 @@ impl<'x> Parser<'_, 'x> {
         Ok(places)
     }
 
-    /// Reads a transform of twelve numbers, for row vectors: three axes and the translation.
+    /// Reads a transform of twelve numbers for row vectors: three axes, then the translation.
     fn map(&self, tag: &Tag) -> DAffine3 {
         let Some(attribute) = tag.get("transform") else { return DAffine3::IDENTITY };
         let words = attribute.value.split_whitespace();

@@ -1,4 +1,4 @@
-//! Conversion of a model into a scene: meshes by material, and components with their transforms.
+//! Converts a model into a scene: meshes by material, and components with their transforms.
 
 use super::model::{Group, Mesh, Model, Object, ObjectRef};
 use super::package::Package;
@@ -18,19 +18,19 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Limits on the depth of nested objects and on the number of parts.
+/// Maximum depth of nested objects, and maximum number of parts.
 const DEEPEST: u32 = 32;
 const MAX_PARTS: usize = 4096;
 
-/// Builder of the scene.
+/// Builder that converts the objects of a 3MF archive to a scene.
 struct SceneMaker<'a> {
     package: Package<'a>,
     report: &'a SharedReport,
     models: BTreeMap<String, Option<Rc<Model>>>,
-    /// Converted objects by part and identifier, with the number of scene objects in each.
+    /// Converted objects by part and id, with the number of scene objects in each.
     shown: BTreeMap<(String, u32), (Rc<scene::Group>, usize)>,
-    /// Materials: of each picture resource, by part and identifier, and of meshes with vertex
-    /// colours.
+    /// Material index for each texture resource, by part and id. After it, the material of meshes
+    /// with vertex colours.
     pictures: BTreeMap<(String, u32), Option<u32>>,
     colored: Option<u32>,
     count: usize,
@@ -89,21 +89,21 @@ impl SceneMaker<'_> {
                 return objects;
             }
             let inner = scene::Object { node: Node::Group((*group).clone()), material: None, span: place.at };
-            // Translations are in the unit of the part that contains the item.
+            // Translations are in the unit of the part that contains the build item.
             let unit = self.models.get(part).and_then(Option::as_ref).map_or(1.0, |model| model.unit);
             objects.push(inner.placed(DAffine3 { translation: unit * place.map.translation, ..place.map }));
         }
         objects
     }
 
-    /// Converts an object of a part, once.
+    /// Converts an object of a part. Each object is converted only once.
     fn object(&mut self, part: &str, place: &ObjectRef, depth: u32) -> Option<(Rc<scene::Group>, usize)> {
         let key = (part.to_string(), place.id);
         if let Some(known) = self.shown.get(&key) {
             return Some(known.clone());
         }
         if depth > DEEPEST {
-            self.report.bad(place.at, format!("objects are nested more than {DEEPEST} deep: does one contain itself?"));
+            self.report.bad(place.at, format!("objects are nested more than {DEEPEST} levels deep: does one contain itself?"));
             return None;
         }
         let model = self.model(part, place.at)?;
@@ -126,15 +126,16 @@ impl SceneMaker<'_> {
         Some(group)
     }
 
-    /// Converts the mesh of an object: one mesh for the triangles with colours or without
-    /// properties, and one for each picture.
+    /// Converts the mesh of an object: one mesh for triangles with colours or without properties,
+    /// and one for each texture.
     fn mesh(&mut self, (part, model, id): (&str, &Model, u32), mesh: &Mesh, at: Span) -> Vec<scene::Object> {
         let unit = model.unit as f32;
         let property = |i: usize| {
             let own = mesh.properties.get(i).copied().flatten();
             own.or(mesh.usual.map(|(list, index)| (list, [index; 3])))
         };
-        // Triangles and their corners' properties by picture; `None` is without one.
+        // Triangles and the properties of their corners, grouped by texture; `None` is the group
+        // without a texture.
         let mut skins: BTreeMap<Option<u32>, Skin> = BTreeMap::new();
         for (i, triangle) in mesh.triangles.iter().enumerate() {
             let skin = |picture| (picture, [[1.0; 4]; 3], [Vec2::ZERO; 3]);
@@ -151,7 +152,7 @@ impl SceneMaker<'_> {
                 },
                 Some((None, _)) => {
                     let list = mesh.usual.map_or(0, |usual| usual.0);
-                    self.report.bad(at, format!("no list of properties {list} is defined before this"));
+                    self.report.bad(at, format!("no property list {list} is defined before this"));
                     return Vec::new();
                 }
                 None => skin(None),
@@ -186,13 +187,13 @@ impl SceneMaker<'_> {
         objects
     }
 
-    /// Material of meshes with vertex colours.
+    /// Returns the material for meshes with vertex colours.
     fn colored(&mut self) -> u32 {
         let scene = &mut self.scene;
         *self.colored.get_or_insert_with(|| scene.add_material(Material::Principled(Box::new(plastic()))))
     }
 
-    /// Material with the picture of a resource.
+    /// Returns the material that shows a texture resource.
     fn picture(&mut self, part: &str, model: &Model, id: u32, at: Span) -> Option<u32> {
         let key = (part.to_string(), id);
         if let Some(known) = self.pictures.get(&key) {
@@ -229,7 +230,8 @@ fn plastic() -> PrincipledMaterial {
     PrincipledMaterial { base_color: Vec3::ONE, specular_roughness: 0.4, ..PrincipledMaterial::default() }
 }
 
-/// Triangles of one material; each corner has its own colour and texture coordinates.
+/// Mesh under construction for the triangles of one material; each corner has its own colour and
+/// texture coordinates.
 #[derive(Default)]
 struct Skin {
     data: MeshData,

@@ -1,10 +1,10 @@
-//! Tests on the course's scenes in the folder `DURER_CORPUS`, if it exists.
+//! Tests with the course's scenes in the folder `DURER_CORPUS`, if it exists.
 
 use super::*;
 use durer_scene::dialect::set;
 use std::path::{Path, PathBuf};
 
-/// Returns every scene of the course with its dialect; empty if the corpus is absent.
+/// Returns every scene of the course with its dialect; empty if the folder does not exist.
 pub(super) fn scenes() -> Vec<(PathBuf, Dialect)> {
     let default = || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared"));
     let root = std::env::var_os("DURER_CORPUS").map_or_else(default, PathBuf::from).join("course/scenes");
@@ -22,7 +22,7 @@ pub(super) fn scenes() -> Vec<(PathBuf, Dialect)> {
 fn collect(folder: &Path, dialect: Dialect, found: &mut Vec<(PathBuf, u8)>) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let (path, name) = (entry.path(), entry.file_name().into_string().unwrap());
-        // Splines are curves for another program.
+        // Splines are curves that belong to another program.
         let other = name.starts_with("spline8_") || name == "readme.txt";
         if path.is_dir() {
             collect(&path, dialect, found);
@@ -58,7 +58,7 @@ fn grid_of_2003_reports_mistakes() {
     let ball = "min -1 -1 -1 max 1 1 1 numCells 3 3 3 rasterizeSphere { radius 1 }";
     assert_eq!(
         found(ball),
-        ["3:47 error: `rasterizeSphere` has no `center` [rasterizeSphere] (add it to the block, as in `center 0 0 5`)"]
+        ["3:47 error: `rasterizeSphere` has no `center` [rasterizeSphere] (add it to the block, for example `center 0 0 5`)"]
     );
 }
 
@@ -69,10 +69,10 @@ fn guess_of_every_scene_includes_its_year() {
         let folder = path.parent().unwrap();
         let guess = guess(&text, 0, &[], &|name| folder.join(name).exists());
         println!("{} {}", path.display(), guess.note().message);
-        // Files of the two years with `falloff` do not differ: one is guessed, the other remains
-        // possible.
+        // The two years with `falloff` have identical files, so one year is guessed and the other
+        // remains possible.
         assert!(guess.dialect == dialect || guess.others.contains(&dialect), "{}: {guess:?}", path.display());
-        // The guessed dialect reads the file without findings.
+        // The guessed dialect reads the file without diagnostics.
         let (_, findings) = read_as(&text, guess.dialect, false);
         assert_eq!(findings, [""; 0], "{}", path.display());
     }
@@ -98,7 +98,7 @@ fn distinctive_words_decide_the_guess() {
     ] {
         assert_eq!(of(text), dialect, "{text}");
     }
-    // The note has only the reasons that the guess needs.
+    // The note contains only the reasons that are needed for the guess.
     let note = guess(
         b"PerspectiveCamera { } PointLight { falloff 1 } Materials { Material { refractionIndex 2 } }",
         0,

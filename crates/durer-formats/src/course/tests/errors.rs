@@ -1,4 +1,4 @@
-//! Tests of each kind of error and warning, with span and message.
+//! Tests of each kind of error and warning, with its span and message.
 
 use super::*;
 use durer_scene::math::Vec3;
@@ -122,7 +122,7 @@ fn words_in_the_wrong_place() {
 fn fields_and_values() {
     in_group(
         "Sphere { center 0 0 0 }",
-        "2:1 error: `Sphere` has no `radius` [Sphere] (add it to the block, as in `radius 1`)",
+        "2:1 error: `Sphere` has no `radius` [Sphere] (add it to the block, for example `radius 1`)",
     );
     in_group(
         "Sphere { center 0 0\n radius 1 }",
@@ -144,15 +144,15 @@ fn fields_and_values() {
     );
     in_group(
         "Sphere { center 0 0 0 radius 1,5 }",
-        "2:30 error: `radius` needs a number, but found `1,5` [1,5] (use a decimal point, and only blanks between numbers)",
+        "2:30 error: `radius` needs a number, but found `1,5` [1,5] (use a decimal point, and only spaces between numbers)",
     );
     in_group(
         "Sphere { center 1, 2, 3 radius 1 }",
-        "2:17 error: `center` needs number 1 of 3, but found `1,` [1,] (separate numbers by blanks only: `1 0.5 0`)",
+        "2:17 error: `center` needs number 1 of 3, but found `1,` [1,] (separate numbers with spaces only: `1 0.5 0`)",
     );
     in_group(
         "Sphere { center 0 0 0 radius 1.f }",
-        "2:30 error: `radius` needs a number, but found `1.f` [1.f] (separate numbers by blanks only: `1 0.5 0`)",
+        "2:30 error: `radius` needs a number, but found `1.f` [1.f] (separate numbers with spaces only: `1 0.5 0`)",
     );
     in_group("MaterialIndex -1", "2:15 error: `MaterialIndex` needs a whole number, but found `-1` [-1]");
     in_group("MaterialIndex 1.5", "2:15 error: `MaterialIndex` needs a whole number, but found `1.5` [1.5]");
@@ -168,7 +168,7 @@ fn surplus_values() {
     );
     in_group(
         "TriangleMesh { obj_file my cube.obj }",
-        "2:28 error: `TriangleMesh` has no field `cube.obj` [cube.obj] (a path ends at the first blank)",
+        "2:28 error: `TriangleMesh` has no field `cube.obj` [cube.obj] (a path ends at the first space)",
     );
     one(
         "Lights { numLights 0 0 }",

@@ -1,4 +1,4 @@
-//! Tests of every form of the language.
+//! Tests of every form of every statement.
 
 use super::*;
 use durer_scene::camera::Camera;
@@ -10,7 +10,7 @@ use durer_scene::medium::Fog;
 use durer_scene::scene::{Background, Material, MatrixOp, Node, Object};
 use durer_scene::shape::{HeightField, Primitive, TriangleMesh};
 
-/// Returns a value of a kind, different from the default, as text and as read.
+/// Returns a value of a type that differs from the default, as text and as it is read.
 fn sample(kind: Kind, rule: Constraint) -> (String, Value) {
     let (text, value) = match kind {
         Kind::Word(words) => (words[words.len() - 1], Value::Word(words[words.len() - 1].into())),
@@ -22,7 +22,7 @@ fn sample(kind: Kind, rule: Constraint) -> (String, Value) {
         }
         Kind::Float if matches!(rule, Constraint::Share | Constraint::Between(..)) => ("0.125", Value::Float(0.125)),
         Kind::Float => ("12.5", Value::Float(12.5)),
-        // Index of one of the two materials before a solid texture.
+        // Index of one of the two materials before the solid texture.
         Kind::Int if rule == Constraint::Any => ("1", Value::Int(1)),
         Kind::Int => ("7", Value::Int(7)),
         Kind::Vec3 if matches!(rule, Constraint::Counts(_)) => ("3 1. 2", Value::Vec3(Vec3::new(3.0, 1.0, 2.0))),
@@ -35,7 +35,7 @@ fn sample(kind: Kind, rule: Constraint) -> (String, Value) {
 }
 
 /// Writes every statement of a list with all fields of a dialect, reads it inside the text of
-/// `wrap`, and compares.
+/// `wrap`, and compares the result.
 fn every_word<T: DescribedList + PartialEq + std::fmt::Debug>(
     wrap: impl Fn(&str, &str) -> String,
     find: impl Fn(Scene) -> T,
@@ -210,7 +210,7 @@ fn material_index_applies_to_all_following_objects() {
     assert_eq!(inner.material, Some(2));
 }
 
-/// Collects the shapes of a scene of nodes with their materials, in order.
+/// Collects the shapes of a scene with nodes and their materials, in order.
 fn flat(objects: &[Object], out: &mut Vec<(String, Option<u32>)>) {
     for object in objects {
         match &object.node {
@@ -256,7 +256,7 @@ fn point_light_is_positioned_by_its_nodes() {
     let lights: Vec<Light> = scene.lights.unwrap().into_iter().map(|light| light.value).collect();
     let [Light::Point(near), Light::Point(far), Light::Directional(sun)] = &lights[..] else { panic!("{lights:?}") };
     assert_eq!(near.position, Vec3::X);
-    // Moved by 2 along z, scaled by 3, rotated from z to x, moved by 1.
+    // Moved by 2 along z, scaled by 3, rotated from z to x, then moved by 1.
     assert_eq!((far.position, far.falloff, near.falloff), (Vec3::new(7.0, 0.0, 0.0), Some(7.0), None));
     assert_eq!(sun.direction, Vec3::X);
     // A node with lights only is not an object.

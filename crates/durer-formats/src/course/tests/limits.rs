@@ -16,8 +16,8 @@ fn strict_reading_allows_only_the_course_language() {
             "Group { numObjects 0 } # by me".to_string(),
             "1:24 error: the course's language has no comments [# by me]",
         ),
-        (Dialect::F04, "Group{ numObjects 0 }".into(), "1:6 error: there must be a blank before `{` [{]"),
-        (Dialect::F04, "Group {numObjects 0 }".into(), "1:7 error: there must be a blank after `{` [{]"),
+        (Dialect::F04, "Group{ numObjects 0 }".into(), "1:6 error: there must be a space before `{` [{]"),
+        (Dialect::F04, "Group {numObjects 0 }".into(), "1:7 error: there must be a space after `{` [{]"),
         (
             Dialect::F04,
             "Materials { numMaterials 1 Material { shininess 1 } }".into(),
@@ -101,7 +101,7 @@ fn deep_nesting_is_an_error_and_fast() {
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
     let nested = |depth: usize| format!("{}{}", "Group { ".repeat(depth), "} ".repeat(depth));
     assert_eq!(findings(&nested(200), Dialect::F04), [""; 0]);
-    assert_eq!(findings(&nested(300), Dialect::F04), ["1:1609 error: objects are nested deeper than 200 [Group]"]);
+    assert_eq!(findings(&nested(300), Dialect::F04), ["1:1609 error: objects are nested more than 200 levels deep [Group]"]);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Tests of typical mistakes of students: each gives one error at its place.
+//! Tests of typical mistakes made by students. Each causes one error, at its position.
 
 use super::*;
 

@@ -52,7 +52,7 @@ fn each_use_copies_the_defined_object() {
     scene.root.iter().flat_map(|root| &root.objects).for_each(|object| materials(object, &mut found));
     // A use is equivalent to writing the object out.
     assert_eq!(found, [Some(0), Some(1), Some(2), Some(1), Some(2), Some(2)]);
-    // A use equals the object written out.
+    // A use is equal to writing the object out.
     let used =
         ours(&format!("define ball {ball} Group {{ MaterialIndex 0 Transform {{ Translate 1 0 0 use ball }} }}"));
     let plain = ours(&format!("Group {{ MaterialIndex 0 Transform {{ Translate 1 0 0 Group {{ {ball} }} }} }}"));
@@ -82,17 +82,17 @@ fn wrong_names_are_errors() {
             "3:22 error: nothing is defined as `a` before this [a] (write `define NAME` and an object first, outside the object that uses it)",
         ),
         ("include light.txt", "3:1 error: a text without a folder cannot include files [include light.txt]"),
-        ("include", "3:1 error: `include` needs the name of a file [include] (as in `include light.txt`)"),
+        ("include", "3:1 error: `include` needs the name of a file [include] (for example `include light.txt`)"),
     ] {
         assert_eq!(refused(text)[0], expected, "{text}");
     }
-    // Each definition doubles the size: reject the bomb before it takes memory.
+    // Each definition doubles the size. The reader must reject this before it takes memory.
     let mut text = "define a0 Sphere { center 0 0 0 radius 1 }\n".to_string();
     for i in 1..64 {
         text += &format!("define a{i} Group {{ use a{} use a{} }}\n", i - 1, i - 1);
     }
     assert!(refused(&text)[0].contains("more than 1048576 objects"), "{:?}", refused(&text));
-    // Other years lack these words.
+    // Other years do not have these words.
     let (_, found) = read_as(b"Group { numObjects 1 use ball }", Dialect::F04, true);
     assert!(!found.is_empty());
 }

@@ -1,10 +1,10 @@
-//! Round-trip tests: scene to text to scene.
+//! Round trips from a scene to text and back.
 
 use super::corpus::scenes;
 use super::*;
 use crate::course::random::Random;
 
-/// Compares bit for bit, except for spans: `PartialEq` treats 0 and -0 as equal.
+/// Compares bit for bit, except for spans, since `PartialEq` treats 0 and -0 as equal.
 #[track_caller]
 fn same(a: &Scene, b: &Scene, context: &str) {
     assert_eq!(a, b, "{context}");
@@ -21,12 +21,12 @@ fn course_scenes_round_trip_in_every_dialect() {
             let (again, findings) = read_as(text.as_bytes(), target, false);
             let context = format!("{} as {}: {findings:?}", path.display(), target.name());
             let mut again = again.expect(&context);
-            // A scene of nodes cannot express a missing section of lights.
+            // A scene with nodes cannot express that it has no lights section.
             if target == Dialect::F23 && scene.lights.is_none() {
                 assert_eq!(again.lights.take(), Some(Vec::new()));
             }
             same(&scene, &again, &context);
-            // Written in its own dialect, it has no findings, even if strict.
+            // Text in the scene's own dialect causes no diagnostics, even in strict mode.
             if target == dialect {
                 assert_eq!(read_as(text.as_bytes(), target, true).1, [""; 0], "{context}\n{text}");
             }
@@ -54,7 +54,7 @@ fn random_scenes_round_trip_in_every_dialect() {
 fn random_scenes_round_trip_as_json() {
     let mut random = Random::seeded(2);
     for _ in 0..3000 {
-        // JSON has only hashes of meshes and pictures, and reading does not restore them.
+        // JSON contains only hashes of meshes and pictures, so reading cannot restore them.
         let scene = Scene { assets: Default::default(), ..random.scene(Dialect::Durer) };
         let json = serde_json::to_string(&scene).unwrap();
         let again: Scene = serde_json::from_str(&json).unwrap();
@@ -66,10 +66,10 @@ fn random_scenes_round_trip_as_json() {
 fn scene_is_written_in_another_year_without_needless_words() {
     let scene = clean(SMALL[3].1, Dialect::F23);
     let text = write(&scene, Dialect::F12a5);
-    // Defaults that 2012 has no word for are omitted.
+    // Defaults for which 2012 has no word are omitted.
     assert!(!text.contains("reflectiveColor") && !text.contains("bump"), "{text}");
     assert_eq!(read_as(text.as_bytes(), Dialect::F12a5, true).1, [""; 0], "{text}");
     let text = write(&clean(SMALL[0].1, Dialect::F04), Dialect::F23);
-    // Nodes have no word for Blinn's exponent, so the word of the other years is used.
+    // The node grammar has no word for Blinn's exponent, so the word of other years is used.
     assert!(text.contains("exponent 20"), "{text}");
 }

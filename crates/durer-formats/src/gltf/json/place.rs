@@ -1,9 +1,9 @@
-//! Search for the byte range of a JSON pointer in a text. Only diagnostics need it.
+//! Finds the byte range of the value at a JSON pointer. Only diagnostics need this.
 
 use std::ops::Range;
 
-/// Returns the range of the value at a pointer or, if it does not exist, of the innermost value
-/// around it.
+/// Returns the byte range of the value at a JSON pointer. If it does not exist, returns the range
+/// of the innermost existing value around it.
 pub(super) fn locate(text: &[u8], pointer: &str) -> Range<usize> {
     let mut walk = Walk { text, at: 0 };
     walk.blanks();
@@ -66,6 +66,7 @@ pub(super) fn items(text: &[u8], key: &str) -> Vec<usize> {
     }
 }
 
+/// Cursor that walks through JSON text and skips values without parsing them.
 struct Walk<'a> {
     text: &'a [u8],
     at: usize,
@@ -82,7 +83,8 @@ impl Walk<'_> {
         }
     }
 
-    /// Range of the value here; for an object or array, only of its first byte.
+    /// Returns the range of the value at the cursor; for an object or array, only that of its first
+    /// byte.
     fn here(&self) -> Range<usize> {
         let mut walk = Walk { ..*self };
         if matches!(walk.peek(), Some(b'{' | b'[')) {
@@ -111,7 +113,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Skips a value, including nested brackets.
+    /// Skips a value with everything nested in it.
     fn skip(&mut self) {
         let mut depth = 0usize;
         loop {
@@ -158,7 +160,7 @@ mod tests {
         assert_eq!(at("/a/1/d"), "[");
         assert_eq!(items(text, "a").iter().map(|&i| text[i]).collect::<Vec<_>>(), b"1{-");
         assert!(items(text, "e").is_empty() && items(text, "x").is_empty());
-        // A missing value is reported at the value around it.
+        // A missing value is located at the value around it.
         assert_eq!((at("/a/7"), at("/a/1/none"), at("/e/x")), ("[".into(), "{".into(), "true".into()));
         for end in 0..text.len() {
             for pointer in ["", "/a/2", "/a/1/d/0", "/e", "/e/f/g"] {

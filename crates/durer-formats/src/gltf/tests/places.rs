@@ -1,23 +1,24 @@
-//! Tests of positions of findings and of names in messages.
+//! Tests of the positions of diagnostics, and of the names in messages.
 
 use super::{BOUNDS, document, mesh};
 use crate::testing::read_in;
 use durer_scene::math::Vec3;
 use durer_scene::scene::Node;
 
-/// Returns the findings of a file.
+/// Returns the diagnostics for a file.
 fn messages(name: &str, bytes: &[u8]) -> Vec<String> {
     read_in(std::path::Path::new("."), name, bytes).1
 }
 
-/// Returns a GLB file with JSON only, so long that its header contains a line feed byte.
+/// Returns a GLB file that contains only JSON, of such a length that its header contains a line
+/// feed byte.
 fn glb(json: &str) -> Vec<u8> {
     let json = format!("{json:<2560}");
     let length = |bytes: usize| (bytes as u32).to_le_bytes();
     [b"glTF", &length(2)[..], &length(json.len() + 20), &length(json.len()), b"JSON", json.as_bytes()].concat()
 }
 
-/// Returns a document of four vertices, without blanks at line ends.
+/// Returns a document with four vertices, without spaces at line ends.
 fn corners(primitive: &str, nodes: &str) -> String {
     let corners = [[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let faces = [0u8, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3];
@@ -80,7 +81,7 @@ fn warnings_name_the_part_of_the_file() {
     let at = "/materials/0/pbrMetallicRoughness/baseColorTexture";
     let found = messages("a.gltf", text.as_bytes());
     assert_eq!(found, [format!("{} warning {at}: {expected}", line(&text, r#"{"index":0,"texCoord""#))]);
-    // Errors about a picture are reported where the file names it.
+    // Errors in a picture are reported where the file names the picture.
     let (scene, _) = read_in(std::path::Path::new("."), "a.gltf", text.as_bytes());
     let durer_scene::scene::Material::Principled(layers) = &scene.unwrap().materials[0].value else { panic!() };
     let span = layers.base_color_texture.as_ref().unwrap().span;
@@ -110,11 +111,11 @@ fn mesh_scaled_to_zero_along_one_axis_is_a_sheet() {
     assert_eq!(flat.positions, [at(0.0, 0.0), at(2.0, 0.0), at(0.0, 1.0), at(0.0, 0.0)]);
     assert_eq!(flat.triangles, [[0, 2, 1], [1, 2, 3]]);
     assert!(flat.flat && flat.normals.is_empty() && flat.triangle_normals.is_empty());
-    // After a rotation, no coordinate is exact.
+    // After a rotation, the coordinates are not exact.
     let turn = r#""rotation":[0.1825742,0.3651484,0.5477226,0.7302967],"translation":[1000,2000,3000]"#;
     let turned = sheet(&format!(r#""scale":[1,1,0],{turn}"#));
     assert_eq!(turned.triangles, [[0, 2, 1], [1, 2, 3]]);
-    // A shear: the map is singular, but no axis is scaled to 0.
+    // A shear: the map is singular, although no axis is scaled to 0.
     let leaning = sheet(r#""matrix":[1,0,0,0,0,1,0,0,1,1,0,0,0,0,0,1]"#);
     assert_eq!(leaning.positions[3], Vec3::new(1.0, 1.0, 0.0));
     assert_eq!(leaning.triangles.len(), 4);

@@ -26,7 +26,7 @@ fn colored(words: &str) -> durer_scene::material::PrincipledMaterial {
 fn vertex_colours_multiply_unlit_emission() {
     let unlit = r#""extensions":{"KHR_materials_unlit":{}}"#;
     assert_eq!(colored(unlit).emission_vertex_colors, Switch::On);
-    // Without colours the emission is uniform, so the mesh can be sampled as a light.
+    // Without colours, the emission is uniform, so the mesh can be sampled as a light.
     assert_eq!(material(unlit).emission_vertex_colors, Switch::Off);
     assert_eq!(colored(r#""emissiveFactor":[1,1,1]"#).emission_vertex_colors, Switch::Off);
 }

@@ -1,5 +1,5 @@
-//! Writer of materials: translates OpenPBR parameters into metallic-roughness and KHR extensions,
-//! the inverse of the reader.
+//! Converts OpenPBR parameters to metallic-roughness materials and KHR extensions. This is the
+//! inverse of the reader.
 
 use super::Writer;
 use durer_scene::bsdf::lobe::hair::Fibre;
@@ -15,8 +15,8 @@ use serde_json::{Map, Value, json};
 use std::f32::consts::TAU;
 
 impl Writer<'_> {
-    /// Index of the glTF material for a material of the scene; writes it on the first use. `holes`
-    /// is true if some vertex colours are not opaque.
+    /// Returns the index of the glTF material for a scene material; writes it on first use. `holes`
+    /// is true if any vertex colour is not opaque.
     pub(super) fn material(&mut self, number: u32, holes: bool) -> Option<usize> {
         if let Some(known) = self.materials.get(&number) {
             return *known;
@@ -39,7 +39,7 @@ impl Writer<'_> {
             Material::Solid(solid, _) => {
                 self.left_out("glTF has no patterns of two materials: the first is written");
                 let first = solid.materials()[0];
-                // Patterns refer to earlier materials only, so the recursion ends.
+                // A pattern refers only to earlier materials, so the recursion ends.
                 if first < number { self.material(first, holes) } else { None }
                     .and_then(|at| self.lists.get("materials")?.get(at).cloned())
             }
@@ -57,7 +57,7 @@ impl Writer<'_> {
         let mut material = json!({ "doubleSided": m.backs == Backs::Shown && !dark_backs });
         let mut extensions = Map::new();
         let unlit = m.emission_luminance == 1.0 && m.base_weight == 0.0 && m.specular_weight == 0.0;
-        // In glTF, transmitted light has the base colour.
+        // In glTF, transmitted light is tinted by the base colour.
         let tinted = clear && m.transmission_depth == 0.0;
         let base = match (unlit, tinted) {
             (true, _) => m.emission_color,
@@ -112,7 +112,7 @@ impl Writer<'_> {
         }
         let pictured = m.specular_weight_texture.is_some() || m.specular_color_texture.is_some();
         if !is_metal && (m.specular_weight != 1.0 || m.specular_color != Vec3::ONE || pictured) {
-            // A weight above 1 is multiplied into the colour, which is unbounded.
+            // A weight above 1 is multiplied into the colour, which has no upper limit.
             let weight = m.specular_weight.min(1.0);
             let color = m.specular_color * (m.specular_weight / weight.max(1e-6)).max(1.0);
             let value = json!({ "specularFactor": weight, "specularColorFactor": color.to_array() });
@@ -149,7 +149,7 @@ impl Writer<'_> {
             extend("KHR_materials_anisotropy", value);
         }
         if m.thin_film_weight > 0.0 {
-            // Micrometres to nanometres.
+            // Convert micrometres to nanometres.
             let thickness = 1000.0 * m.thin_film_thickness;
             let film = json!({
                 "iridescenceFactor": m.thin_film_weight, "iridescenceIor": m.thin_film_ior,
@@ -196,7 +196,7 @@ impl Writer<'_> {
         material
     }
 
-    /// Adds a parameter's texture to its extension; returns false if no extension has an
+    /// Adds the texture of a parameter to its extension; returns false if no extension has an
     /// equivalent.
     fn add_picture(
         &mut self,
@@ -206,9 +206,9 @@ impl Writer<'_> {
         extensions: &mut Map<String, Value>,
     ) -> bool {
         match field {
-            // In glTF this is the base colour texture.
+            // In glTF this is the base colour texture, which is already written.
             "transmission_color_texture" => return m.base_color_texture.as_ref() == Some(name),
-            // In glTF this is in the same texture as the strength.
+            // In glTF this is in the texture of the anisotropy strength.
             "specular_rotation_texture" if m.specular_anisotropy_texture.is_some() => return true,
             _ => {}
         }
@@ -216,7 +216,7 @@ impl Writer<'_> {
         let Some(value) = extensions.get_mut(extension) else { return false };
         let Picture { bytes, mapping } = self.picture(name);
         let fits = match field {
-            // The rotation must be in the same texture as the strength.
+            // The rotation must be in the texture of the anisotropy strength.
             "specular_anisotropy_texture" => {
                 let turned = Picture { bytes, mapping: Mapping { channel: Some(Channel::Angle), ..mapping } };
                 m.specular_rotation_texture.as_ref().is_some_and(|turns| self.picture(turns) == turned)
@@ -236,7 +236,7 @@ impl Writer<'_> {
     }
 }
 
-/// Returns the roughness and the anisotropy strength in glTF's parameters.
+/// Returns the roughness and the anisotropy strength as glTF defines them.
 fn brushed(m: &PrincipledMaterial) -> (f32, f32) {
     let pictured = m.metallic_roughness_texture.is_some()
         || m.specular_roughness_texture.is_some()
@@ -244,8 +244,8 @@ fn brushed(m: &PrincipledMaterial) -> (f32, f32) {
     if m.specular_anisotropy == 0.0 || pictured {
         return (m.specular_roughness, m.specular_anisotropy);
     }
-    // In glTF the alpha across the highlight follows from the roughness, and the alpha along it
-    // grows towards 1.
+    // In glTF, alpha across the highlight follows from the roughness, and alpha along it increases
+    // towards 1 with the strength.
     let Vec2 { x: along, y: across } = Ggx::new(m.specular_roughness, m.specular_anisotropy).alpha;
     if across >= 1.0 {
         return (1.0, 0.0);
@@ -253,7 +253,7 @@ fn brushed(m: &PrincipledMaterial) -> (f32, f32) {
     (across.sqrt(), ((along - across) / (1.0 - across)).max(0.0).sqrt())
 }
 
-/// Textures of parameters: field, extension, key in the extension, and the channel that is read.
+/// Textures of parameters: field, extension, key in the extension, and channel.
 const PICTURES: [(&str, &str, &str, Option<Channel>); 11] = [
     ("specular_weight_texture", "KHR_materials_specular", "specularTexture", Some(Channel::Alpha)),
     ("specular_color_texture", "KHR_materials_specular", "specularColorTexture", None),
@@ -268,7 +268,7 @@ const PICTURES: [(&str, &str, &str, Option<Channel>); 11] = [
     ("thin_film_thickness_texture", "KHR_materials_iridescence", "iridescenceThicknessTexture", Some(Channel::Green)),
 ];
 
-/// Extensions that the writer uses for materials and lights.
+/// Extensions that the writer can use for materials and lights.
 const EXTENSIONS: [&str; 13] = [
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -285,8 +285,8 @@ const EXTENSIONS: [&str; 13] = [
     "KHR_lights_punctual",
 ];
 
-/// Approximates a Phong material by OpenPBR: a sharp highlight becomes a low roughness, a strong
-/// mirror a metal, a transparent material glass.
+/// Approximates a Phong material with OpenPBR: a sharp highlight becomes a low roughness, a strong
+/// mirror becomes a metal, and a transparent material becomes glass.
 fn alike(phong: &PhongMaterial) -> PrincipledMaterial {
     let diffuse = phong.diffuse_color.unwrap_or(Vec3::ONE);
     let sharp = phong.exponent.or(phong.shininess).filter(|_| phong.specular_color != Vec3::ZERO);

@@ -1,4 +1,4 @@
-//! Writer of meshes: positions, normals and texture coordinates share one vertex list.
+//! Writes meshes, with one list of vertices for positions, normals and texture coordinates.
 
 use super::Writer;
 use durer_scene::math::{Vec2, Vec3};
@@ -13,7 +13,7 @@ const VERTICES: u32 = 34962;
 const INDICES: u32 = 34963;
 
 impl Writer<'_> {
-    /// Index of the glTF mesh for a mesh with a material; writes it on the first use.
+    /// Returns the index of the glTF mesh for a mesh with a material; writes it on first use.
     pub(super) fn mesh(&mut self, name: String, data: &MeshData, material: Option<u32>) -> Option<usize> {
         let key = (name, material);
         if let Some(known) = self.meshes.get(&key) {
@@ -50,7 +50,7 @@ impl Writer<'_> {
         attributes["POSITION"] = self.floats(&positions, 3, true).into();
         if !triangle_normals.is_empty() {
             let normal = |v: &[u32; 3]| normals.get(v[2] as usize).copied().unwrap_or(Vec3::Z);
-            // Keeps normals that are nearly of unit length, so that reading them back gives equal
+            // Keep normals that are nearly of unit length, so that reading them back gives the same
             // values.
             let unit = |n: Vec3| if (n.length() - 1.0).abs() < 1e-3 { n } else { n.normalize_or(Vec3::Z) };
             let normals = list(&|v| unit(normal(v)).to_array().into());
@@ -82,7 +82,7 @@ impl Writer<'_> {
         Some(json!({ "attributes": attributes, "indices": indices }))
     }
 
-    /// Writes rows of `width` numbers; returns the index of the accessor.
+    /// Writes rows of `width` numbers; returns the index of their accessor.
     fn floats(&mut self, values: &[f32], width: usize, bounds: bool) -> usize {
         let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
         let view = self.view(&bytes, Some(VERTICES));
@@ -100,13 +100,13 @@ impl Writer<'_> {
     }
 }
 
-/// Returns true if some vertex colour is not opaque.
+/// Returns true if any vertex colour is not opaque.
 fn has_holes(data: &MeshData) -> bool {
     data.colors.iter().any(|color| color[3] < 1.0)
 }
 
-/// Builds an indexed vertex list: returns a vertex index for each triangle corner, and for each
-/// vertex its indices of position, texture coordinate and normal.
+/// Builds an indexed vertex list. Returns a vertex index for each triangle corner, and for each
+/// vertex the indices of its position, texture coordinates and normal.
 fn welded(data: &MeshData, triangle_normals: &[[u32; 3]]) -> (Vec<u32>, Vec<[u32; 3]>) {
     let (mut known, mut vertices) = (HashMap::new(), Vec::new());
     let own = |list: &[[u32; 3]], i: usize, k: usize| list.get(i).map_or(NO_INDEX, |corners| corners[k]);

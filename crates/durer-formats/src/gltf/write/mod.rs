@@ -1,7 +1,8 @@
-//! Writer of scenes as glTF 2.0: a self-contained JSON file, or a binary file.
+//! Writer of scenes as glTF 2.0, in a self-contained JSON file or in a binary file.
 //!
 //! Source: *glTF 2.0 Specification*, Khronos Group, 2021, and the extensions named in the
-//! submodules. Content that glTF cannot represent is reported once per message, without a span.
+//! submodules. Content that glTF cannot represent is reported once for each message, without a
+//! span.
 
 mod material;
 mod mesh;
@@ -27,18 +28,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-/// State of writing one scene.
+/// Writer that converts one scene to glTF and collects its JSON arrays and its binary buffer.
 struct Writer<'a> {
     scene: &'a Scene,
     output: &'a Output<'a>,
     diagnostics: &'a mut Diagnostics,
     reported: BTreeSet<String>,
     buffer: Vec<u8>,
-    /// Top-level arrays of the file by name.
+    /// Top-level arrays of the glTF file, by name.
     lists: BTreeMap<&'static str, Vec<Value>>,
     extensions: BTreeSet<&'static str>,
-    /// Items already written, by their source: geometry, meshes with materials, materials, textures
-    /// and images.
+    /// Items that were already written, by their source: geometry, meshes with materials,
+    /// materials, textures and images.
     attributes: BTreeMap<String, Option<Value>>,
     meshes: BTreeMap<(String, Option<u32>), usize>,
     materials: BTreeMap<u32, Option<usize>>,
@@ -47,7 +48,7 @@ struct Writer<'a> {
     lights: Vec<Value>,
 }
 
-/// Writes a scene as binary glTF if the file name ends in `.glb`, else as JSON.
+/// Encodes a scene as binary glTF if the file name ends in `.glb`, otherwise as JSON.
 pub(crate) fn write(scene: &Scene, output: &Output, diagnostics: &mut Diagnostics) -> Vec<u8> {
     let mut writer = Writer {
         scene,
@@ -77,7 +78,7 @@ pub(crate) fn write(scene: &Scene, output: &Output, diagnostics: &mut Diagnostic
 }
 
 impl Writer<'_> {
-    /// Warns once per message about content that is lost or changed.
+    /// Warns about content that is lost or changed, once per message.
     fn left_out(&mut self, message: impl Into<String>) {
         let message = message.into();
         if self.reported.insert(message.clone()) {
@@ -85,14 +86,14 @@ impl Writer<'_> {
         }
     }
 
-    /// Appends to a top-level array; returns the index.
+    /// Appends a value to a top-level array; returns its index.
     fn add(&mut self, list: &'static str, value: Value) -> usize {
         let list = self.lists.entry(list).or_default();
         list.push(value);
         list.len() - 1
     }
 
-    /// Appends bytes to the buffer; returns the index of their buffer view.
+    /// Appends bytes to the buffer; returns the index of a buffer view for them.
     fn view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
         self.buffer.resize(self.buffer.len().next_multiple_of(4), 0);
         let mut view = json!({ "buffer": 0, "byteOffset": self.buffer.len(), "byteLength": bytes.len() });
@@ -103,7 +104,7 @@ impl Writer<'_> {
         self.add("bufferViews", view)
     }
 
-    /// Writes the node of an object; `None` if it has nothing visible.
+    /// Writes the node of an object; `None` if the object has no visible content.
     fn object(&mut self, object: &Object) -> Option<usize> {
         match &object.node {
             Node::Group(group) => {
@@ -115,7 +116,7 @@ impl Writer<'_> {
                 let map = MatrixOp::product(ops, MatrixRules::default());
                 let own = self.lists.get("nodes").is_some_and(|nodes| nodes[child].get("matrix").is_none());
                 if own {
-                    // The node has no matrix yet, so it takes the transform itself.
+                    // The node has no matrix yet, so the transform can be stored in it.
                     if let Some(node) = self.lists.get_mut("nodes").and_then(|nodes| nodes.get_mut(child)) {
                         node["matrix"] = columns(map);
                     }
@@ -148,7 +149,7 @@ impl Writer<'_> {
         Some(self.add("nodes", json!({ "mesh": mesh })))
     }
 
-    /// Mesh data of an asset or a file.
+    /// Returns the mesh of an asset or of a file.
     fn mesh_data(&mut self, name: &str) -> Option<Arc<MeshData>> {
         if let Some(data) = self.scene.assets.meshes.get(name) {
             return Some(data.clone());
@@ -162,11 +163,12 @@ impl Writer<'_> {
         data.map(Arc::new)
     }
 
-    /// Writes the node of the camera.
+    /// Writes the node of the camera; returns its index.
     fn camera(&mut self) -> Option<usize> {
         let camera = self.scene.camera.as_ref()?;
         let pose = camera.pose();
-        // The scene's angles and sizes refer to the picture's larger side, glTF's to its height.
+        // The scene's angles and sizes refer to the picture's larger side, those of glTF to its
+        // height.
         let aspect = self.scene.render_defaults.size.map_or(1.0, |(width, height)| width as f32 / height as f32);
         let narrow = aspect.max(1.0);
         let upright = |angle: f32| {
@@ -204,7 +206,7 @@ impl Writer<'_> {
         Some(self.add("nodes", json!({ "camera": camera, "matrix": columns(place) })))
     }
 
-    /// Writes the node of a light with KHR_lights_punctual.
+    /// Writes the node of a light, using KHR_lights_punctual; returns its index.
     fn light(&mut self, light: &Light) -> Option<usize> {
         let light = &light.in_units();
         let (mut written, center, direction) = match light {
@@ -226,7 +228,7 @@ impl Writer<'_> {
                 return None;
             }
         };
-        // glTF's intensities are luminous: a matte white surface reflects 1 / pi of them.
+        // glTF's intensities are photometric: a matte white surface reflects 1 / pi of them.
         let color = light.color();
         let most = color.max_element();
         if most <= 0.0 {
@@ -254,7 +256,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Assembles the file.
+    /// Assembles the glTF file.
     fn file(mut self, roots: &[usize]) -> Vec<u8> {
         let mut root = Map::new();
         root.insert(
@@ -294,7 +296,7 @@ impl Writer<'_> {
     }
 }
 
-/// Builds a binary file of two chunks. Source: *glTF 2.0 Specification*, chapter 4.4.
+/// Builds a GLB file of two chunks. Source: *glTF 2.0 Specification*, chapter 4.4.
 fn container(text: &[u8], buffer: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(28 + text.len() + buffer.len());
     let word = |bytes: &mut Vec<u8>, word: u32| bytes.extend(word.to_le_bytes());
@@ -313,12 +315,12 @@ fn container(text: &[u8], buffer: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// A matrix as sixteen numbers in column-major order.
+/// Returns a matrix as sixteen numbers in column-major order.
 fn columns(map: DAffine3) -> Value {
     json!(DMat4::from(map).to_cols_array().map(|x| x as f32))
 }
 
-/// Transform of a camera or light that looks along its -z axis, with y up.
+/// Returns the transform of a camera or light that looks along its -z axis, with y up.
 fn placed(center: Vec3, direction: Vec3, up: Vec3) -> DAffine3 {
     let back = -direction.as_dvec3().normalize_or(DVec3::NEG_Z);
     let right = up.as_dvec3().cross(back).normalize_or(back.any_orthonormal_vector());

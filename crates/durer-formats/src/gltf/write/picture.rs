@@ -1,4 +1,4 @@
-//! Writer of textures: images, samplers and texture transforms.
+//! Writes textures: images, samplers and texture transforms.
 
 use super::Writer;
 use crate::pictures::{CHANGING, as_png};
@@ -10,7 +10,8 @@ use serde_json::{Value, json};
 use std::sync::Arc;
 
 impl Writer<'_> {
-    /// Writes a `textureInfo` for a picture that a material names; also returns its mapping.
+    /// Writes a `textureInfo` for a picture named by a material; also returns the picture's
+    /// mapping.
     pub(super) fn texture(&mut self, name: Option<&FileName>) -> Option<(Value, Mapping)> {
         let name = name?;
         let picture = self.picture(name);
@@ -25,7 +26,7 @@ impl Writer<'_> {
         Some((made?, picture.mapping))
     }
 
-    /// The picture that a material names: an asset, or a file with the default mapping.
+    /// Returns the picture named by a material: an asset, or a file with the default mapping.
     pub(super) fn picture(&self, name: &FileName) -> Picture {
         let file = || Picture { bytes: PictureBytes::File(name.path.clone()), mapping: Mapping::default() };
         self.scene.assets.pictures.get(&name.path).cloned().unwrap_or_else(file)
@@ -40,7 +41,7 @@ impl Writer<'_> {
             Wrap::Clamp => 33071,
         };
         let filter = if mapping.nearest { 9728 } else { 9729 };
-        // Trilinear filtering.
+        // 9987 is trilinear filtering.
         let smaller = if mapping.mipmaps { 9987 } else { filter };
         let [s, t] = mapping.wrap.map(wrap);
         let sampler = json!({ "wrapS": s, "wrapT": t, "magFilter": filter, "minFilter": smaller });
@@ -58,7 +59,7 @@ impl Writer<'_> {
         Some(info)
     }
 
-    /// Offset, rotation and scale of KHR_texture_transform.
+    /// Returns the offset, rotation and scale of KHR_texture_transform.
     fn transform(&mut self, mapping: &Mapping) -> Value {
         let [[a, b, x], [c, d, y]] = mapping.transform;
         let sx = (a * a + c * c).sqrt();
@@ -71,7 +72,7 @@ impl Writer<'_> {
         json!({ "offset": [x, y], "rotation": turn, "scale": [sx, sy] })
     }
 
-    /// Index of an image; writes it on the first use.
+    /// Returns the index of an image; writes it on first use.
     fn image(&mut self, bytes: &PictureBytes) -> Option<usize> {
         let (PictureBytes::File(name) | PictureBytes::Here(name, _)) = bytes;
         if let Some(known) = self.images.get(name) {
@@ -94,7 +95,7 @@ impl Writer<'_> {
     }
 }
 
-/// Returns PNG and JPEG files unchanged, and converts others to 8-bit PNG.
+/// Returns PNG and JPEG files unchanged, and other formats converted to 8-bit PNG.
 fn known_to_gltf(bytes: Arc<[u8]>, name: &str, memory: u64) -> Option<(Arc<[u8]>, &'static str)> {
     if bytes.starts_with(b"\x89PNG") {
         return Some((bytes, "image/png"));

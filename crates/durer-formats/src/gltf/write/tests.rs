@@ -1,4 +1,4 @@
-//! Tests that written files read back as the original scene.
+//! Tests that written files read back as the same scene.
 
 use crate::folder::FolderSource;
 use crate::scene::{Output, SCENE_FORMATS};
@@ -18,7 +18,7 @@ fn scene(text: &str) -> Scene {
     scene.unwrap_or_else(|| panic!("{messages:?}"))
 }
 
-/// Writes and reads a scene; returns the result and the writer's findings.
+/// Writes a scene and reads it back; returns the result and the writer's diagnostics.
 fn again(scene: &Scene, name: &str) -> (Scene, Vec<String>) {
     let folder = folder(&[]);
     let source = FolderSource::new(folder.path());

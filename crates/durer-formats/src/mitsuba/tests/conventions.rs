@@ -1,5 +1,5 @@
-//! Conventions of Mitsuba in closed form. Where its documentation is silent, values are from
-//! Mitsuba 3.9.1.
+//! Conventions of Mitsuba, compared with closed forms. Where its documentation does not specify
+//! them, values are from Mitsuba 3.9.1.
 
 use super::{clean, folder, material, objects, read, read_in};
 use durer_scene::camera::{Camera, Handedness};
@@ -16,7 +16,7 @@ pub(super) fn layers(bsdf: &str) -> PrincipledMaterial {
     (**layers).clone()
 }
 
-/// Camera with a film of 200 x 100 pixels.
+/// Camera whose film has 200 x 100 pixels.
 fn camera(more: &str) -> Camera {
     let film = "<film type='hdrfilm'><integer name='width' value='200'/><integer name='height' value='100'/></film>";
     clean(&format!("<sensor {more}{film}</sensor><shape type='sphere'/>")).camera.unwrap()
@@ -30,7 +30,7 @@ const LOOK: &str = "<transform name='to_world'><lookat origin='0,0,5' target='0,
 
 #[test]
 fn field_of_view_is_across_given_axis() {
-    // 90 degrees across x gives a half width of 1; the film is twice as wide as high.
+    // 90 degrees across x is a half width of 1, and the film is twice as wide as high.
     for (axis, fov, half) in [
         ("x", 90.0, 1.0),
         ("larger", 90.0, 1.0),
@@ -45,7 +45,8 @@ fn field_of_view_is_across_given_axis() {
         assert!((tan(0.5 * camera.angle) - half).abs() < 1e-5, "{axis}: {}", camera.angle);
         assert_eq!((camera.center, camera.direction, camera.up), (Vec3::new(0.0, 0.0, 5.0), Vec3::NEG_Z, Vec3::Y));
     }
-    // Default: 50 mm on 36 x 24 mm film, across the diagonal; half is 0.43267.
+    // The default is 50 mm on a film of 36 x 24 mm, across its diagonal; half of the view is
+    // 0.43267.
     let Camera::Perspective(usual) = camera(&format!("type='perspective'>{LOOK}")) else { panic!() };
     let half = (36f32 * 36.0 + 24.0 * 24.0).sqrt() / 100.0 * 2.0 / 5f32.sqrt();
     assert!((tan(0.5 * usual.angle) - half).abs() < 1e-5);
@@ -61,7 +62,7 @@ fn field_of_view_is_across_given_axis() {
 
 #[test]
 fn default_up_is_that_of_mitsuba() {
-    // As in Mitsuba 3.9.1: an axis perpendicular to the direction.
+    // Mitsuba 3.9.1 uses an axis perpendicular to the direction.
     for (origin, target, up) in [
         ("0,2,6", "0,.6,0", [1.0, 0.0, 0.0]),
         ("1,0,0", "0,3,-2", [0.953452, 0.139643, -0.267261]),
@@ -113,7 +114,8 @@ fn lights_have_mitsuba_units() {
         "<emitter type='spot'><float name='cutoff_angle' value='40'/><float name='beam_width' value='40'/></emitter>";
     let Light::Spot(spot) = of(spot) else { panic!() };
     assert_eq!((spot.angle, spot.inner_angle, spot.direction), (40.0, 40.0, Vec3::Z));
-    // A spotlight with falloff is linear in the angle: a measured light of its intensity.
+    // A spotlight with a falloff that is linear in the angle becomes a measured light with its
+    // intensity.
     let text = "<emitter type='spot'><float name='intensity' value='3'/></emitter><shape type='sphere'/>";
     let scene = clean(text);
     let Light::Photometric(light) = &scene.lights.as_ref().unwrap()[0].value else { panic!() };
@@ -173,8 +175,8 @@ fn textures_of_numbers_become_linear_pictures() {
              <rgb name='color1' value='{other}'/></texture>"
         )
     };
-    // Values of the picture of a material, which are linear. Mitsuba swaps the fields when it reads
-    // numbers.
+    // Values of the picture in a material, which are linear. Mitsuba swaps the colours of a
+    // checkerboard when it is used as a number.
     let check = |bsdf: &str, get: &dyn Fn(&PrincipledMaterial) -> Option<&FileName>, [other, one]: [f32; 2]| {
         let wanted = [one, other];
         let scene = clean(&format!("<shape type='sphere'>{bsdf}</shape>"));
@@ -183,12 +185,12 @@ fn textures_of_numbers_become_linear_pictures() {
         let PictureBytes::Here(path, bytes) = &scene.assets.pictures[&name.path].bytes else { panic!() };
         let image = durer_image::read(bytes, path).unwrap();
         for (pixel, wanted) in image.pixels.iter().zip(wanted) {
-            // Fields have 8 bits, before and after the change.
+            // The colours have 8 bits, before and after the change.
             assert!((pixel.x - wanted).abs() < 1.5 / 255.0, "{bsdf}: {} and not {wanted}", pixel.x);
         }
         (**layers).clone()
     };
-    // Our roughness is the square root of alpha.
+    // Dürer's roughness is the square root of alpha.
     let (ggx, alpha) = ("<string name='distribution' value='ggx'/>", fields("alpha", 0.04, 0.25));
     let metal = format!("<bsdf type='roughconductor'>{ggx}{alpha}</bsdf>");
     let metal = check(&metal, &|m| m.specular_roughness_texture.as_ref(), [0.2, 0.5]);
@@ -213,7 +215,7 @@ fn textures_of_numbers_become_linear_pictures() {
     let bump =
         format!("<bsdf type='bumpmap'>{}<float name='scale' value='.3'/>{inner}</bsdf>", fields("arbitrary", 0.5, 0.9));
     assert_eq!(check(&bump, &|m| m.bump_texture.as_ref(), [0.5, 0.9]).bump_height, 0.3);
-    // A colour converted to a number is its luminance.
+    // A colour is converted to a number by its luminance.
     let colors = "<texture name='opacity' type='checkerboard'><rgb name='color0' value='0,1,0'/>\
         <rgb name='color1' value='1,0,0'/></texture>";
     check(&format!("<bsdf type='mask'>{colors}{inner}</bsdf>"), &|m| m.opacity_texture.as_ref(), [0.7152, 0.2126]);
@@ -224,7 +226,7 @@ fn textures_of_numbers_become_linear_pictures() {
     assert!((disney.specular_roughness - 1.0).abs() < 1e-6 && disney.base_metalness == 1.0);
 }
 
-/// The only mesh of a scene.
+/// Returns the only mesh of a scene.
 pub(super) fn mesh(scene: &Scene) -> &durer_scene::shape::MeshData {
     scene.assets.meshes.values().next().unwrap()
 }
@@ -267,7 +269,7 @@ fn rotation_axis_not_of_length_1_is_reported() {
     assert!(messages("0.6.0", "x='1' y='2' z='.5'").is_empty() && messages("3.0.0", "x='.6' y='.8'").is_empty());
 }
 
-/// Reads a scene with files of a folder and expects no diagnostics.
+/// Reads a scene with files in a folder; it must cause no diagnostics.
 pub(super) fn clean_in(files: &[(&str, &[u8])], inner: &str) -> Scene {
     let folder = folder(files);
     let (scene, messages) = read_in(folder.path(), "scene.xml", &format!("<scene version='3.0.0'>{inner}</scene>"));
@@ -275,7 +277,7 @@ pub(super) fn clean_in(files: &[(&str, &[u8])], inner: &str) -> Scene {
     scene.unwrap()
 }
 
-/// PFM file of 2 x 1 pixels.
+/// Returns a PFM file of 2 x 1 pixels.
 pub(super) fn picture(pixels: [[f32; 3]; 2]) -> Vec<u8> {
     let mut bytes = b"PF\n2 1\n-1.0\n".to_vec();
     pixels.as_flattened().iter().for_each(|number| bytes.extend(number.to_le_bytes()));
@@ -330,7 +332,7 @@ fn picture_colours_are_srgb_unless_raw() {
         let scene = clean_in(&[("grey.ppm", grey)], &inner);
         let Material::Principled(layers) = material(&scene) else { panic!() };
         let picture = &scene.assets.pictures[&layers.base_color_texture.as_ref().unwrap().path];
-        // A picture's alpha cuts no holes.
+        // A picture's alpha does not cut holes.
         assert_eq!(picture.mapping.cutoff, Some(0.0));
         match &picture.bytes {
             PictureBytes::File(_) => srgb(128.0 / 255.0),
@@ -342,7 +344,7 @@ fn picture_colours_are_srgb_unless_raw() {
 
 #[test]
 fn nested_glass_has_its_own_index() {
-    // The index is the ratio across the surface, regardless of the surrounding medium.
+    // The index is the ratio across the surface, whatever the surrounding medium is.
     let body = |radius: f32, inside: &str, outside: &str| {
         let index = |name: &str, value: &str| match value.parse::<f32>() {
             Ok(value) => format!("<float name='{name}' value='{value}'/>"),
@@ -417,7 +419,7 @@ fn cameras_clip_at_near_and_far_planes() {
     let clip = "<float name='near_clip' value='2'/><float name='far_clip' value='7'/>";
     let Camera::ThinLens(lens) = camera(&format!("type='perspective'>{LOOK}{clip}")) else { panic!() };
     assert_eq!((lens.near, lens.far), (2.0, Some(7.0)));
-    // The default planes do not clip.
+    // The default clipping planes have no effect.
     let usual = "<float name='near_clip' value='0.01'/><float name='far_clip' value='10000'/>";
     assert!(matches!(camera(&format!("type='perspective'>{LOOK}{usual}")), Camera::Perspective(_)));
 }
@@ -437,7 +439,7 @@ fn conductor_tint_applies_at_all_angles() {
     assert!((at_82(&tinted) - tint * at_82(&plain)).abs().max_element() < 1e-6);
 }
 
-/// Two faces with a fold between them; one vertex has a colour.
+/// Two faces with a fold between them; only one vertex has a colour.
 const FOLDED: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
     property float u\nproperty float v\nproperty float r\nproperty float g\nproperty float b\n\
     element face 2\nproperty list uchar int vertex_indices\nend_header\n\
@@ -451,7 +453,7 @@ fn mesh_files_are_smooth_and_uncoloured_by_default() {
     };
     let plain = of("");
     assert!(plain.colors.is_empty() && !plain.flat && plain.tangents.is_empty());
-    // At the fold both faces are weighted by their angle: 45 degrees and 60 degrees.
+    // At the fold, the normals of both faces are weighted by their angles, 45 and 60 degrees.
     let a = plain.triangles[0].iter().position(|&i| plain.positions[i as usize] == Vec3::ZERO).unwrap();
     let [face, other] = [Vec3::Z, Vec3::new(1.0, -1.0, 1.0) / 3f32.sqrt()];
     let angles = [45f32.to_radians(), 60f32.to_radians()];
@@ -461,7 +463,7 @@ fn mesh_files_are_smooth_and_uncoloured_by_default() {
     assert!(of("<boolean name='face_normals' value='true'/>").flat);
     let colored = of("<bsdf type='diffuse'><texture name='reflectance' type='mesh_attribute'>\
         <string name='name' value='vertex_color'/></texture></bsdf>");
-    // Vertex colours of PLY are linear.
+    // Vertex colours of PLY files are linear.
     let wanted = [0.5, 0.2, 0.8];
     let found = colored.colors[0];
     assert!((0..3).all(|k| (found[k] - wanted[k]).abs() < 4e-3) && found[3] == 1.0, "{found:?}");

@@ -1,4 +1,4 @@
-//! Conventions of shapes and of their materials in Mitsuba 3.9.1.
+//! Conventions of shapes and of their materials, compared with Mitsuba 3.9.1.
 
 use super::conventions::{clean_in, mesh};
 use super::{clean, objects};
@@ -8,8 +8,8 @@ use durer_scene::scene::{Material, Scene};
 
 #[test]
 fn serialized_mesh_equals_ply_mesh() {
-    // Equal lists in all files. v goes down in both formats; flags of colours and of flat faces
-    // have no effect.
+    // All files have equal lists. In both formats, v grows downwards, and the flags for colours and
+    // for flat faces have no effect.
     let ply = b"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
         property float nx\nproperty float ny\nproperty float nz\nproperty float u\nproperty float v\n\
         element face 2\nproperty list uchar int vertex_indices\nend_header\n\
@@ -41,7 +41,7 @@ fn serialized_mesh_equals_ply_mesh() {
     assert!(first.uvs.is_empty() && first.triangle_normals.len() == 2);
 }
 
-/// Index of refraction of each object.
+/// Returns the index of refraction of each object.
 fn indices(scene: &Scene) -> Vec<f32> {
     let index = |object: &&durer_scene::scene::Object| match &scene.materials[object.material.unwrap() as usize].value {
         Material::Principled(layers) => layers.specular_ior,
@@ -62,7 +62,7 @@ fn inverted_spheres_swap_their_indices() {
         assert!(found.len() == wanted.len(), "{text}");
         assert!(found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-5), "{text}: {found:?} and not {wanted:?}");
     };
-    // A bubble in glass that fills all space; inverted twice, an ordinary sphere.
+    // A bubble in glass that fills all space; when inverted twice, an ordinary sphere.
     for kind in ["dielectric", "roughdielectric"] {
         let ggx = if kind == "dielectric" { "" } else { "<string name='distribution' value='ggx'/>" };
         let glass = format!("<bsdf type='{kind}' id='glass'>{ggx}</bsdf>");
@@ -72,7 +72,7 @@ fn inverted_spheres_swap_their_indices() {
     }
     // Both sides of a thin dielectric are alike.
     check(glass("thindielectric") + &sphere(flip), &[GLASS]);
-    // Hollow ball of one material: air is inside its glass.
+    // A hollow ball of one material, with air inside its glass.
     let radius = "<float name='radius' value='.9'/>";
     check(glass("dielectric") + &sphere("") + &sphere(&(flip.to_string() + radius)), &[GLASS, 1.0 / GLASS]);
 }
@@ -81,7 +81,7 @@ fn inverted_spheres_swap_their_indices() {
 fn disk_uv_goes_outwards_and_around() {
     let picture = "<bsdf type='diffuse'><texture name='reflectance' type='checkerboard'/></bsdf>";
     let data = mesh(&clean(&format!("<shape type='disk'>{picture}</shape>"))).clone();
-    // Positions and texture coordinates in Mitsuba 3.9.1; v is flipped here.
+    // Positions and texture coordinates in Mitsuba 3.9.1; v is flipped in Dürer.
     for (x, y, wanted) in [(0.5, 0.0, [0.5, 0.0]), (0.0, 0.5, [0.5, 0.25]), (0.3, -0.4, [0.5, 0.852416])] {
         let place = Vec2::new(x, y);
         let found = data.triangles.iter().zip(&data.triangle_uvs).find_map(|(corners, uvs)| {
@@ -100,7 +100,7 @@ fn disk_uv_goes_outwards_and_around() {
     // The tangent points in the direction of increasing u, outwards.
     let outwards = |(p, t): (&Vec3, &[f32; 4])| p.length() == 0.0 || p.dot(Vec3::new(t[0], t[1], t[2])) > 0.9;
     assert!(data.positions.iter().zip(&data.tangents).all(outwards));
-    // A disk without a picture stays a disc.
+    // A disk without a picture becomes a `Disc`.
     assert!(clean("<shape type='disk'/>").assets.meshes.is_empty());
 }
 
@@ -109,7 +109,8 @@ fn linear_curve_joints_and_ends_are_round() {
     let bent = b"0 0 0 .5\n2 0 0 .5\n2 2 0 .25\n";
     let shape = "<shape type='linearcurve'><string name='filename' value='bent.txt'/></shape>";
     let data = mesh(&clean_in(&[("bent.txt", bent)], shape)).clone();
-    // Signed distance from the swept balls whose radius is linear along each segment.
+    // Signed distance to the balls swept along the curve, whose radius is linear along each
+    // segment.
     let ends = [(Vec3::ZERO, 0.5), (2.0 * Vec3::X, 0.5), (Vec3::new(2.0, 2.0, 0.0), 0.25)];
     let outside = |p: &Vec3| {
         let from = |pair: &[(Vec3, f32)]| {

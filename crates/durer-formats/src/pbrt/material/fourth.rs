@@ -1,8 +1,8 @@
-//! Materials of pbrt-v4.
+//! Converts the materials of pbrt-v4.
 //!
 //! Source: *Physically Based Rendering*, 4th edition, chapters 9, 10 and 14. A coat over a matte
-//! base becomes a coat that darkens it. A metal becomes its reflectance at 0 and at 82 degrees.
-//! GGX's alpha is the square of our roughness.
+//! base becomes a coat with darkening. A metal is converted by its reflectance at 0 and at 82
+//! degrees. GGX's alpha is the square of Dürer's roughness.
 
 use super::super::defs::{MaterialDef, Texture};
 use super::super::medium::medium_of;
@@ -35,7 +35,7 @@ const KNOWN: [&str; 12] = [
     "hair",
 ];
 
-/// Materials of pbrt-v3 and their nearest materials in pbrt-v4.
+/// Materials of pbrt-v3, and the nearest materials of pbrt-v4.
 const OLD: [(&str, &str); 8] = [
     ("matte", "diffuse"),
     ("plastic", "coateddiffuse"),
@@ -47,21 +47,23 @@ const OLD: [(&str, &str); 8] = [
     ("translucent", "diffusetransmission"),
 ];
 
-/// Transmittance of a coat for light that crosses it down and up. Each crossing multiplies by
-/// exp(-thickness / cosine), also for light reflected between the boundary and a matte base.
+/// Returns the transmittance of a coat for light that crosses it down and up. Each crossing
+/// multiplies light by exp(-thickness / cosine); this includes light reflected between the boundary
+/// and a matte base.
 ///
 /// Source: `LayeredBxDF` in *Physically Based Rendering*, 4th edition, section 14.3.2.
 fn crossed(thickness: f32, ior: f32, base: f32) -> f32 {
     const STEPS: u16 = 64;
     let at = |i: u16| (f32::from(i) + 0.5) / f32::from(STEPS);
-    // Cosine-weighted mean over diffuse light.
+    // Cosine-weighted mean for diffuse light.
     let even = (0..STEPS).map(|i| 2.0 * at(i) * fp::exp(-thickness / at(i))).sum::<f32>() / f32::from(STEPS);
     let back = base.clamp(0.0, 1.0) * fresnel::diffuse(1.0 / ior);
     fp::exp(-2.0 * thickness) * (1.0 - back) / (1.0 - back * even * even)
 }
 
 impl Reader<'_> {
-    /// GGX's alpha along u and v; the parameters are for both directions, for u and for v.
+    /// Returns GGX's alpha along u and v. The parameter names are for both directions, for u and
+    /// for v.
     fn alphas(&self, params: &Params, [both, u, v]: [&'static str; 3], remapped: bool) -> [f32; 2] {
         let usual = self.value(params, both, 0.0);
         // Source: pbrt-v4 takes the square root if `remaproughness` is set.
@@ -71,8 +73,8 @@ impl Reader<'_> {
         })
     }
 
-    /// Picture of roughness made of a picture of GGX's alpha, and the alpha that it multiplies: 1,
-    /// or the parameters' alphas without a picture.
+    /// Returns a roughness picture computed from a picture of GGX's alpha, and the alpha that it
+    /// multiplies: 1. Without a picture, returns only the alphas given by the parameters.
     fn roughness(&mut self, params: &Params, names: [&'static str; 3], remapped: bool) -> (Option<FileName>, [f32; 2]) {
         let each = names[1..].iter().any(|name| params.get(name).is_some());
         let fourth = |x: f32| x.max(0.0).sqrt().sqrt();
@@ -87,6 +89,7 @@ impl Reader<'_> {
         }
     }
 
+    /// Converts a pbrt-v4 material of type `kind`.
     pub(super) fn fourth(&mut self, kind: &str, params: &Params, at: Span) -> MaterialDef {
         let remapped = params.truth("remaproughness").unwrap_or(true);
         let mut m = PrincipledMaterial::default();
@@ -163,7 +166,7 @@ impl Reader<'_> {
                     let path = params.spectrum("mfp").map_or(Vec3::ONE, |spectrum| spectrum.coefficient());
                     below_skin(&mut m, params, color, path);
                 } else {
-                    // The boundary refracts and the medium inside scatters.
+                    // The boundary refracts, and the medium inside scatters.
                     m.transmission_weight = 1.0;
                     medium_of(params, "name").fill(&mut m);
                 }
@@ -179,7 +182,7 @@ impl Reader<'_> {
             other => {
                 let old = OLD.iter().find(|row| row.0 == other);
                 let help = match old {
-                    Some((_, now)) => Some(format!("this material is of pbrt-v3; the nearest of pbrt-v4 is `{now}`")),
+                    Some((_, now)) => Some(format!("this is a pbrt-v3 material; the nearest in pbrt-v4 is `{now}`")),
                     None => suggest(other, KNOWN),
                 };
                 self.no_material(other, at, help, old.is_some());
@@ -187,13 +190,13 @@ impl Reader<'_> {
             }
         }
         m.energy_compensation = Switch::Off;
-        // `eta` is the ratio across the surface, regardless of the surrounding medium.
+        // `eta` is the ratio across the surface, whatever the surrounding medium is.
         m.surroundings = Surroundings::Ignored;
         self.surface(&mut m, params, "displacement");
         MaterialDef::Layers(Box::new(m), at)
     }
 
-    /// Index of refraction; may be a spectrum.
+    /// Reads an index of refraction, which may be a spectrum.
     fn index(&self, params: &Params, name: &'static str, usual: f32) -> f32 {
         let index = match params.get(name).map(|param| param.kind) {
             Some(Kind::Spectrum | Kind::Rgb) => params.spectrum(name).map_or(usual, |spectrum| spectrum.index()),
@@ -214,7 +217,7 @@ impl Reader<'_> {
         if params.get("albedo").is_some_and(|param| param.numbers().iter().any(|x| *x != 0.0)) {
             self.report.once(params.place("albedo"), "a medium inside a coat has no counterpart: the coat is clear");
         }
-        // Light that crosses the coat is attenuated by its thickness even if it contains no medium.
+        // The coat's thickness attenuates light that crosses it even if it contains no medium.
         let thickness = self.value(params, "thickness", 0.01).max(0.0);
         m.coat_color = m.base_color.map(|base| crossed(thickness, m.coat_ior, base));
         params.known(&["g", "maxdepth", "nsamples", "twosided"]);
@@ -238,7 +241,7 @@ impl Reader<'_> {
                 let share = match self.pattern(params, reflectance, true, Vec3::splat(0.5)) {
                     Texture::Even(color) => color,
                     Texture::Picture(picture, scale) => {
-                        // The picture is the reflectance at normal incidence; grazing reflection is
+                        // The picture is the reflectance at normal incidence. Grazing reflection is
                         // not tinted.
                         m.base_color_texture = Some(self.asset(picture, param.at));
                         (m.base_metalness, m.base_color) = (1.0, scale);
@@ -246,7 +249,7 @@ impl Reader<'_> {
                         return;
                     }
                 };
-                // With an index of 1, this k gives the reflectance at normal incidence.
+                // With an index of 1, this k gives the desired reflectance at normal incidence.
                 let k = share.map(|r| 2.0 * (r.min(0.9999) / (1.0 - r.min(0.9999))).sqrt());
                 conductor_colors(&SpectrumSource::Rgb(Vec3::ONE), &SpectrumSource::Rgb(k), 1.0)
             }

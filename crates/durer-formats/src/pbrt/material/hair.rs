@@ -10,7 +10,7 @@ use durer_scene::material::HairMaterial;
 use durer_scene::math::Vec3;
 
 impl Reader<'_> {
-    /// Reads hair given by absorption, by colour (a parameter in `names`) or by melanin.
+    /// Reads hair that is defined by absorption, by colour (a parameter in `names`) or by melanin.
     pub(super) fn hair(&self, params: &Params, names: &[&'static str], at: Span) -> MaterialDef {
         let given = names.iter().copied().find(|name| params.get(name).is_some());
         let absorption = params.spectrum("sigma_a").map(|spectrum| spectrum.coefficient().max(Vec3::ZERO));

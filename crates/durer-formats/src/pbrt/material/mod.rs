@@ -1,4 +1,4 @@
-//! Materials, converted to OpenPBR's parameters.
+//! Converts materials to OpenPBR parameters.
 
 mod disney;
 mod fourth;
@@ -30,12 +30,12 @@ use std::rc::Rc;
 const DEEPEST: u32 = 32;
 
 impl MaterialDef {
-    /// Material of shapes without a `Material` directive.
+    /// Returns the material of shapes without a `Material` directive.
     pub fn usual() -> MaterialDef {
         MaterialDef::Layers(Box::new(matte(Vec3::splat(0.5))), Span::default())
     }
 
-    /// Depth of nested mixes.
+    /// Returns the depth of nested mixes.
     fn depth(&self) -> u32 {
         if let MaterialDef::Mix { depth, .. } = self { *depth } else { 0 }
     }
@@ -49,13 +49,13 @@ impl MaterialDef {
     }
 }
 
-/// Diffuse material without a specular boundary.
+/// Returns a diffuse material without a specular boundary.
 fn matte(base_color: Color) -> PrincipledMaterial {
     PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
 }
 
-/// Lets light scatter below the surface with mean free path `path` and albedo `color`, from a
-/// picture if there is one.
+/// Adds subsurface scattering with mean free path `path` and albedo `color`, which may be
+/// multiplied by a picture.
 fn below_skin(m: &mut PrincipledMaterial, params: &Params, (color, picture): (Color, Option<FileName>), path: Vec3) {
     m.subsurface_weight = 1.0;
     (m.subsurface_color, m.subsurface_color_texture) = (color.min(Vec3::ONE), picture);
@@ -65,7 +65,7 @@ fn below_skin(m: &mut PrincipledMaterial, params: &Params, (color, picture): (Co
 }
 
 impl Reader<'_> {
-    /// Adds a material and returns its index.
+    /// Adds a material to the reader's list and returns its index.
     pub fn material(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) -> usize {
         let params = self.params(list, Some(MATERIAL), at);
         let made = match self.language {
@@ -78,6 +78,7 @@ impl Reader<'_> {
         self.materials.len() - 1
     }
 
+    /// Executes `MakeNamedMaterial`.
     pub fn make_named_material(&mut self, name: String, at: Span, list: Vec<Rc<Param>>) {
         let kind = list.iter().find(|param| param.name == "type" && param.kind == Kind::Text);
         let Some(kind) = kind.map(|param| param.text().to_string()) else {
@@ -89,6 +90,7 @@ impl Reader<'_> {
         }
     }
 
+    /// Executes `NamedMaterial`, which sets the current material.
     pub fn named_material(&mut self, name: &str, at: Span) {
         match self.named_materials.get(name) {
             Some(number) => self.state.material = *number,
@@ -99,8 +101,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Reports an unknown material. If it belongs to the other language, points at the word that
-    /// decided the language.
+    /// Reports an unknown material. If it exists in the other language, the message points at the
+    /// word that decided the language.
     fn no_material(&self, name: &str, at: Span, help: Option<String>, other: bool) {
         let language = if self.language == Language::Third { "pbrt-v3" } else { "pbrt-v4" };
         let error = Diagnostic::error(format!("unknown material `{name}` in {language}")).code("bad-value").at(at);
@@ -111,24 +113,25 @@ impl Reader<'_> {
         self.report.push(Diagnostic { help, ..error });
     }
 
-    /// Mix of two materials by index; `MaterialDef::Nothing` if mixes are nested too deep.
+    /// Returns a mix of two materials by index; `MaterialDef::Nothing` if mixes are nested too
+    /// deep.
     fn mix(&self, parts: [usize; 2], share: f32, at: Span) -> MaterialDef {
         self.mix_by(parts, (share, None), at)
     }
 
-    /// Mix whose share is multiplied by a picture. See [`Reader::mix`].
+    /// Returns a mix whose share is multiplied by a picture. See [`Reader::mix`].
     fn mix_by(&self, parts: [usize; 2], (share, picture): (f32, Option<FileName>), at: Span) -> MaterialDef {
         let [first, second] = parts.map(|number| &self.materials[number]);
         let depth = 1 + first.depth().max(second.depth());
         let pictured = first.is_pictured() || second.is_pictured() || picture.is_some();
         if depth > DEEPEST {
-            self.report.bad(at, format!("mixes of materials are nested more than {DEEPEST} deep"));
+            self.report.bad(at, format!("mixes of materials are nested more than {DEEPEST} levels deep"));
             return MaterialDef::Nothing;
         }
         MaterialDef::Mix { parts, share, picture, depth, pictured, at }
     }
 
-    /// Index of a material named by a mix.
+    /// Returns the index of a material that a mix names.
     fn known_material(&self, name: &str, at: Span) -> Option<usize> {
         let found = self.named_materials.get(name).copied();
         if found.is_none() {
@@ -138,7 +141,7 @@ impl Reader<'_> {
         found
     }
 
-    /// Reads the normal map and the bump map of a surface.
+    /// Reads the normal map and the bump map of a material.
     fn surface(&mut self, m: &mut PrincipledMaterial, params: &Params, heights: &'static str) {
         if let Some(name) = params.text("normalmap") {
             let place = params.get("normalmap").map_or(params.at, |param| param.values_at);
@@ -157,8 +160,8 @@ impl Reader<'_> {
         light || self.materials[self.state.material].is_pictured()
     }
 
-    /// Index in the scene of a material with emission and opacity; `None` for a material that is
-    /// not rendered.
+    /// Returns the scene index of a material with emission and opacity; `None` for a material that
+    /// is not rendered.
     pub fn number(&mut self, made: usize, light: Option<(&AreaLight, Color)>, opacity: &Opacity) -> Option<u32> {
         let key = (
             made,

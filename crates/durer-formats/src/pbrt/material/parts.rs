@@ -1,6 +1,6 @@
-//! Parts of pbrt-v3's materials: lobes as layers, and their sums.
+//! Lobes of pbrt-v3's materials as OpenPBR parameters, and sums of lobes.
 //!
-//! A sum becomes a mixture: each part is scaled by the inverse of its share.
+//! A sum becomes a mix, in which each part is scaled by the inverse of its share.
 
 use super::super::defs::MaterialDef;
 use super::super::state::Reader;
@@ -13,14 +13,14 @@ use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Surroundings;
 use durer_scene::math::{Color, Vec3};
 
-/// Summand of a material.
+/// Summand of a pbrt-v3 material: one or more lobes as an OpenPBR material.
 pub(super) struct Part {
     pub layers: PrincipledMaterial,
-    /// Maximum reflectance of the part.
+    /// Maximum reflectance of the part; determines its share of the mix.
     pub most: f32,
 }
 
-/// Rough specular boundary over a black base.
+/// Returns a rough specular boundary over a black base.
 pub(super) fn glossy((color, picture): (Color, Option<FileName>), ior: f32, rough: &Rough) -> PrincipledMaterial {
     let mut m = matte(Vec3::ZERO);
     (m.specular_weight, m.specular_ior) = (1.0, ior);
@@ -29,8 +29,8 @@ pub(super) fn glossy((color, picture): (Color, Option<FileName>), ior: f32, roug
     m
 }
 
-/// Colour and roughness of an energy-preserving rough diffuse lobe with the mean albedo of
-/// Oren–Nayar.
+/// Returns the colour and roughness of an energy-preserving rough diffuse lobe with the mean albedo
+/// of Oren–Nayar.
 ///
 /// Source: Oren and Nayar, *Generalization of Lambert's Reflectance Model*, SIGGRAPH 1994.
 pub(super) fn oren_nayar(color: Color, degrees: f32) -> (Color, f32) {
@@ -40,7 +40,7 @@ pub(super) fn oren_nayar(color: Color, degrees: f32) -> (Color, f32) {
     let variance = sigma * sigma;
     let (a, b) = (1.0 - 0.5 * variance / (variance + 0.33), 0.45 * variance / (variance + 0.09));
     let roughness = (b / a).clamp(0.0, 1.0);
-    // As in `bsdf::lobe::diffuse`: mean albedo of single and of multiple scattering.
+    // Mean albedo of single and of multiple scattering, as in `bsdf::lobe::diffuse`.
     let mean = (1.0 + 0.072_488 * roughness) / (1.0 + 0.287_793 * roughness);
     let whole = |c: f32| c * mean + c * c * mean * (1.0 - mean) / (1.0 - c * (1.0 - mean));
     let solved = color.map(|wanted| {
@@ -55,7 +55,7 @@ pub(super) fn oren_nayar(color: Color, degrees: f32) -> (Color, f32) {
     (solved, roughness)
 }
 
-/// Metal given by its reflectance at normal incidence and at 82 degrees.
+/// Returns a metal with a given reflectance at normal incidence and at 82 degrees.
 pub(super) fn metallic(f0: Color, f82: Color, rough: &Rough) -> PrincipledMaterial {
     let mut m = PrincipledMaterial {
         base_metalness: 1.0,
@@ -67,7 +67,7 @@ pub(super) fn metallic(f0: Color, f82: Color, rough: &Rough) -> PrincipledMateri
     m
 }
 
-/// Solid glass, rough or smooth.
+/// Returns solid glass; smooth if `rough` is `None`.
 pub(super) fn glass(
     (reflected, reflected_picture): (Color, Option<FileName>),
     (through, through_picture): (Color, Option<FileName>),
@@ -90,9 +90,9 @@ pub(super) fn glass(
 }
 
 impl Reader<'_> {
-    /// Material that scatters as the sum of the parts.
+    /// Returns a material that scatters like the sum of the parts.
     pub(super) fn sum(&mut self, parts: Vec<Part>, at: Span) -> MaterialDef {
-        // Keep the opacity: a black material may still be partly transparent.
+        // Keep the opacity: a black material can still be partly transparent.
         let opacity =
             parts.first().map_or((1.0, None), |part| (part.layers.opacity, part.layers.opacity_texture.clone()));
         let black = PrincipledMaterial { opacity: opacity.0, opacity_texture: opacity.1, ..matte(Vec3::ZERO) };

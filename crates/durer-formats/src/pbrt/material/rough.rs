@@ -1,4 +1,4 @@
-//! Roughness of pbrt-v3's materials.
+//! Reads the roughness of pbrt-v3's materials.
 
 use super::super::params::{Kind, Params};
 use super::super::state::Reader;
@@ -8,7 +8,7 @@ use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Switch;
 use durer_scene::math::fp;
 
-/// Roughness of a surface.
+/// Roughness of a pbrt-v3 material: GGX's alpha, which a picture may multiply.
 pub(super) struct Rough {
     picture: Option<FileName>,
     /// GGX's alpha along u and v.
@@ -20,6 +20,7 @@ impl Rough {
         Rough { picture: None, alphas }
     }
 
+    /// Sets the roughness and anisotropy of a material.
     pub fn put(&self, m: &mut PrincipledMaterial) {
         m.energy_compensation = Switch::Off;
         m.specular_roughness_texture = self.picture.clone();
@@ -27,7 +28,7 @@ impl Rough {
     }
 }
 
-/// GGX's alpha of a roughness in [0, 1].
+/// Converts a pbrt-v3 roughness in [0, 1] to GGX's alpha.
 ///
 /// Source: *Physically Based Rendering*, 3rd edition, section 8.4.2.
 pub(in crate::pbrt) fn alpha_of_roughness(roughness: f32) -> f32 {
@@ -36,8 +37,8 @@ pub(in crate::pbrt) fn alpha_of_roughness(roughness: f32) -> f32 {
 }
 
 impl Reader<'_> {
-    /// Reads roughness from the parameter `both` for both directions, if any, or from one for each
-    /// direction.
+    /// Reads the roughness from the parameter `both` for both directions, if it has one, or from
+    /// one parameter for each direction.
     pub(super) fn rough(&mut self, params: &Params, both: Option<&'static str>, each: bool, usual: f32) -> Rough {
         const EACH: [&str; 2] = ["uroughness", "vroughness"];
         let remapped = params.truth("remaproughness").unwrap_or(true);
@@ -61,8 +62,8 @@ impl Reader<'_> {
         Rough::new(alphas)
     }
 
-    /// Reads roughness as the geometric mean of both directions: in Dürer, a coat over a matte base
-    /// is isotropic. See [`Reader::rough`].
+    /// Reads the roughness as the geometric mean of both directions, because a coat over a matte
+    /// base is isotropic in Dürer. See [`Reader::rough`].
     pub(super) fn even_rough(&mut self, params: &Params, both: Option<&'static str>, each: bool, usual: f32) -> Rough {
         let rough = self.rough(params, both, each, usual);
         let [u, v] = rough.alphas;

@@ -1,4 +1,4 @@
-//! Substrate of pbrt-v3: a matte base below a glossy coat.
+//! Converts the substrate of pbrt-v3: a matte base below a glossy coat.
 //!
 //! Source: Ashikhmin and Shirley, *An Anisotropic Phong BRDF Model*, Journal of Graphics Tools
 //! 5(2), 2000, with the microfacets of *Physically Based Rendering*, 3rd edition, section 8.5.
@@ -12,9 +12,8 @@ use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::{Vec3, fp};
 use std::f32::consts::TAU;
 
-/// Index and roughness of the boundary over the base. Including both passages through the boundary,
-/// the base reflects (1 - (1
-/// - cos / 2)^5) of its value at normal incidence, to 2 %.
+/// Index and roughness of the boundary over the base. With both crossings of the boundary, the base
+/// reflects (1 - (1 - cos / 2)^5) of its value at normal incidence, within 2 %.
 const INDEX: f32 = 0.8;
 const ROUGHNESS: f32 = 0.894_427;
 
@@ -23,6 +22,7 @@ const REFLECTED: f32 = 0.1514;
 const MEAN: f32 = 23.0 / 28.0;
 
 impl Reader<'_> {
+    /// Converts `substrate` to a base and a coat, which are to be summed.
     pub(super) fn substrate(&mut self, params: &Params) -> Vec<Part> {
         let rough = self.even_rough(params, None, true, 0.1);
         let (color, picture) = self.colored(params, "Kd", 0.5);
@@ -44,13 +44,13 @@ impl Reader<'_> {
         let (f0, hue) = (most.min(0.98), specular / most);
         let strength = blended(rough.alphas[0], f0);
         let layers = glossy((strength * hue, specular_picture), fresnel::ior_of_reflectance(f0), &rough);
-        // Mean reflectance over all directions, instead of that at normal incidence.
+        // Use the mean reflectance over all directions, not that at normal incidence.
         vec![base, Part { most: f0 + (1.0 - f0) / 21.0, layers }]
     }
 }
 
-/// Mean albedo of the coat over that of microfacets of a dielectric with the reflectance `f0` at
-/// normal incidence.
+/// Returns the mean albedo of the coat, divided by that of microfacets of a dielectric with
+/// reflectance `f0` at normal incidence.
 pub(super) fn blended(alpha: f32, f0: f32) -> f32 {
     const POINTS: u16 = 4096;
     // Source: Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018.
@@ -60,7 +60,7 @@ pub(super) fn blended(alpha: f32, f0: f32) -> f32 {
         let u = (Vec3::splat(0.5) + f32::from(i) * STEPS).fract();
         let mu = u.x.max(1e-4).sqrt();
         let wo = Vec3::new((1.0 - mu * mu).max(0.0).sqrt(), 0.0, mu);
-        // Sample a microfacet normal by density times cosine.
+        // Sample a microfacet normal in proportion to its density times the cosine.
         let tangent2 = alpha * alpha * u.y / (1.0 - u.y);
         let up = 1.0 / (1.0 + tangent2).sqrt();
         let (sin, cos) = (fp::sin(TAU * u.z), fp::cos(TAU * u.z));
@@ -75,6 +75,6 @@ pub(super) fn blended(alpha: f32, f0: f32) -> f32 {
     }
     let eta = fresnel::ior_of_reflectance(f0);
     let reflected = albedo::single_means(eta, alpha.clamp(0.0, 1.0).sqrt())[0];
-    // Both exclude light that facets block.
+    // Both numbers exclude light that is blocked by other facets.
     if reflected > 0.0 { blend / f32::from(POINTS) / reflected } else { 1.0 }
 }

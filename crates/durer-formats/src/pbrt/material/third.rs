@@ -1,5 +1,6 @@
-//! Materials of pbrt-v3. Most are sums of a Lambertian and a rough specular lobe, where pbrt-v4 has
-//! layers. Sums become mixes: each part is scaled by the inverse of its share.
+//! Converts the materials of pbrt-v3. Most are sums of a Lambertian and a rough specular lobe,
+//! where pbrt-v4 has layers. Sums become mixes, in which each part is scaled by the inverse of its
+//! share.
 //!
 //! Source: *Physically Based Rendering*, 3rd edition, chapters 8 and 9, and *Input File Format*,
 //! pbrt.org/fileformat-v3.
@@ -38,14 +39,15 @@ const KNOWN: [&str; 15] = [
     "uber",
 ];
 
-/// Index of refraction of copper (eta, k) for red, green and blue: pbrt-v3's spectra as RGB.
+/// Index of refraction of copper (eta, k) for red, green and blue: pbrt-v3's spectra converted to
+/// RGB.
 ///
 /// Source of the spectra: Palik, *Handbook of Optical Constants of Solids*, 1985, as distributed
 /// with pbrt-v3.
 const COPPER: [Vec3; 2] = [Vec3::new(0.200438, 0.924033, 1.102212), Vec3::new(3.912949, 2.452848, 2.142188)];
 
 impl Reader<'_> {
-    /// Index of refraction, `eta` or `index`.
+    /// Reads the index of refraction, `eta` or `index`.
     pub(super) fn old_index(&self, params: &Params, usual: f32) -> f32 {
         let name = if params.get("eta").is_some() { "eta" } else { "index" };
         let index = match params.get(name).map(|param| param.kind) {
@@ -59,6 +61,7 @@ impl Reader<'_> {
         index
     }
 
+    /// Converts a pbrt-v3 material of type `kind`.
     pub(super) fn third(&mut self, kind: &str, params: &Params, at: Span) -> MaterialDef {
         let parts = match kind {
             "matte" => {
@@ -74,7 +77,8 @@ impl Reader<'_> {
             }
             "plastic" => {
                 let rough = self.even_rough(params, Some("roughness"), false, 0.1);
-                // Its index is 1.5 outside and 1 inside, so it reflects as if seen from within.
+                // pbrt uses an index of 1.5 outside and 1 inside, so the surface reflects as if
+                // seen from inside.
                 vec![self.lambert(params, "Kd", 0.25), self.gloss(params, "Ks", (0.25, 1.0 / 1.5), &rough)]
             }
             "uber" => self.uber(params),
@@ -122,7 +126,7 @@ impl Reader<'_> {
             }
             other => {
                 let is_new = NEW_MATERIALS.contains(&other);
-                let help = if is_new { Some("this material is of pbrt-v4".into()) } else { suggest(other, KNOWN) };
+                let help = if is_new { Some("this is a pbrt-v4 material".into()) } else { suggest(other, KNOWN) };
                 self.no_material(other, at, help, is_new);
                 return MaterialDef::Nothing;
             }
@@ -135,14 +139,14 @@ impl Reader<'_> {
         self.sum(bent, at)
     }
 
-    /// Lambertian lobe of the colour `name`.
+    /// Returns the Lambertian lobe with the colour parameter `name`.
     fn lambert(&mut self, params: &Params, name: &'static str, usual: f32) -> Part {
         let (color, picture) = self.colored(params, name, usual);
         let layers = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
         Part { layers, most: color.max_element() }
     }
 
-    /// Microfacet lobe of the colour `name` with an index of refraction.
+    /// Returns the microfacet lobe with the colour parameter `name` and an index of refraction.
     fn gloss(&mut self, params: &Params, name: &'static str, (usual, ior): (f32, f32), rough: &Rough) -> Part {
         let color = self.colored(params, name, usual);
         Part { most: color.0.max_element(), layers: glossy(color, ior, rough) }
@@ -171,7 +175,7 @@ impl Reader<'_> {
         parts
     }
 
-    /// Diffuse reflection and transmission, with glossy microfacets on both sides.
+    /// Returns diffuse reflection and transmission, with glossy microfacets on both sides.
     fn translucent(&mut self, params: &Params) -> Vec<Part> {
         let rough = self.rough(params, Some("roughness"), false, 0.1);
         let even = |reader: &mut Self, name, usual| reader.pattern(params, name, true, Vec3::splat(usual)).even();
@@ -191,7 +195,7 @@ impl Reader<'_> {
         let (specular, picture) = self.colored(params, "Ks", 0.25);
         let gloss = glossy((up * specular, picture.clone()), 1.5, &rough);
         let mut parts = vec![matte, Part { most: (up * specular).max_element(), layers: gloss }];
-        // Microfacets transmit too; those of a thin sheet do not refract.
+        // The microfacets transmit light too; in Dürer, those of a thin sheet do not refract it.
         if (down * specular).max_element() > 0.0 {
             let what = "glossy transmission of `translucent` is not refracted here";
             self.report.once(params.at, what);
@@ -205,7 +209,7 @@ impl Reader<'_> {
         parts
     }
 
-    /// Subsurface scattering below a refractive boundary.
+    /// Returns subsurface scattering below a refractive boundary.
     fn below(&mut self, kind: &str, params: &Params) -> Part {
         let rough = self.rough(params, None, true, 0.0);
         let mut m = PrincipledMaterial::default();
@@ -223,7 +227,7 @@ impl Reader<'_> {
         Part { layers: m, most: 1.0 }
     }
 
-    /// Mean of a colour where only a number has a counterpart.
+    /// Returns the mean of a colour, for a parameter that can only be a number in Dürer.
     fn grey(&self, params: &Params, name: &'static str, color: Color) -> f32 {
         if color.max_element() - color.min_element() > 1e-3 {
             let what = format!("a coloured `{name}` has no counterpart: its mean is used");
@@ -232,7 +236,7 @@ impl Reader<'_> {
         color.element_sum() / 3.0
     }
 
-    /// Mix of two named materials; `amount` is the share of the first.
+    /// Returns a mix of two named materials; `amount` is the share of the first.
     fn mix_of_two(&mut self, params: &Params, at: Span) -> MaterialDef {
         let share = |amount: f32| amount.clamp(0.0, 1.0);
         let amount = match self.pattern(params, "amount", true, Vec3::splat(0.5)) {

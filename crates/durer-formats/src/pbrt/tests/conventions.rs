@@ -16,7 +16,8 @@ use durer_scene::sampler::SampleId;
 use durer_scene::spectrum::Lanes;
 use durer_scene::spectrum::SpectrumSource;
 
-/// Camera ray through a point of the picture; coordinates are -1 to 1 across the larger side.
+/// Returns the camera ray through a point of the picture. Coordinates are from -1 to 1 across the
+/// larger side.
 fn ray(scene: &Scene, x: f32, y: f32) -> (Vec3, Vec3) {
     let camera = scene.camera.as_ref().unwrap();
     let frame = CameraBasis::of(camera, CameraRules::default());
@@ -41,22 +42,22 @@ fn camera(text: &str, size: [u32; 2]) -> Scene {
 
 #[test]
 fn cameras_match_pbrt_coordinates() {
-    // Without a transform pbrt looks along +z with +x to the right: left-handed coordinates.
+    // Without a transform, pbrt looks along +z with +x to the right, which is left-handed.
     let scene = camera("Camera \"perspective\" \"float fov\" 90", [200, 100]);
     close(ray(&scene, 0.0, 0.0).1, Vec3::Z);
-    // The field of view is across the shorter side: half of the larger side's unit is 45 degrees
+    // The field of view is across the shorter side, so half a unit of the larger side is 45 degrees
     // up.
     close(ray(&scene, 0.0, 0.5).1, Vec3::new(0.0, 1.0, 1.0).normalize());
     close(ray(&scene, 1.0, 0.0).1, Vec3::new(2.0, 0.0, 1.0).normalize());
     let tall = camera("Camera \"perspective\" \"float fov\" 90", [100, 200]);
     close(ray(&tall, 0.5, 1.0).1, Vec3::new(1.0, 2.0, 1.0).normalize());
-    // A mirrored view matches a viewer in right-handed coordinates.
+    // A mirrored view corresponds to a viewer in right-handed coordinates.
     let flipped = camera("Scale -1 1 1 LookAt 0 0 5 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 90", [100, 100]);
     close(ray(&flipped, 1.0, 0.0).1, Vec3::new(1.0, 0.0, -1.0).normalize());
     let plain = camera("LookAt 0 0 5 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 90", [100, 100]);
     close(ray(&plain, 1.0, 0.0).1, Vec3::new(-1.0, 0.0, -1.0).normalize());
     close(ray(&plain, 0.3, 0.0).0, Vec3::new(0.0, 0.0, 5.0));
-    // Screen window: a quarter of the picture, with its middle off the axis.
+    // Screen window: a quarter of the picture, whose middle is off the axis.
     let part = camera("Camera \"perspective\" \"float fov\" 90 \"float screenwindow\" [ 0 1 0 1 ]", [100, 100]);
     close(ray(&part, -1.0, -1.0).1, Vec3::Z);
     close(ray(&part, 1.0, 0.0).1, Vec3::new(1.0, 0.5, 1.0).normalize());
@@ -74,7 +75,7 @@ fn orthographic_spherical_and_lens_cameras_match_closed_forms() {
     close(ray(&around, 0.0, 0.0).1, Vec3::NEG_X);
     close(ray(&around, -0.5, 0.0).1, Vec3::Z);
     close(ray(&around, 0.5, 0.0).1, Vec3::NEG_Z);
-    // Rays through one point of the picture meet at the focus distance.
+    // Rays through one point of the picture meet at the distance of focus.
     let text = "Camera \"perspective\" \"float fov\" 90 \"float lensradius\" 0.5 \"float focaldistance\" 4";
     let scene = camera(text, [100, 100]);
     let lens = scene.camera.unwrap();
@@ -87,7 +88,7 @@ fn orthographic_spherical_and_lens_cameras_match_closed_forms() {
     }
 }
 
-/// Irradiance at a point on a surface facing up, from one sample.
+/// Returns the irradiance at a point on a surface facing up, from one sample.
 fn irradiance(world: &World, point: Vec3) -> Vec3 {
     let settings = WhittedOptions { bounces: 0, ..Job::default().settings };
     let paths = Paths::new(world, settings, PathOptions::default());
@@ -117,7 +118,7 @@ fn area_light_equals_course_format_bit_for_bit() {
     let twin = ours("", "MaterialIndex 0 Sphere { center 1 3 0.5 radius 0.75 }");
     let (a, b) = (irradiance(&pbrt(sphere), point), irradiance(&twin, point));
     assert!(a == b && a.x > 0.1, "{a} {b}");
-    // Twice the shutter time and four times the ISO.
+    // Twice the shutter time, and four times the ISO.
     let text = "Film \"rgb\" \"float iso\" 400 Camera \"perspective\" \"float shutterclose\" 2 WorldBegin ";
     let longer = irradiance(&world("a.pbrt", &format!("{text}{sphere}")), point);
     assert!((longer - 8.0 * a).length() < 1e-5 * longer.length(), "{longer} {a}");
@@ -149,7 +150,7 @@ fn lights_have_pbrt_units() {
     close(distant.direction.normalize(), Vec3::NEG_Y);
     let Light::Spot(spot) = light("\"spot\" \"float coneangle\" 40 \"float conedeltaangle\" 15") else { panic!() };
     assert_eq!((spot.angle, spot.inner_angle, spot.direction), (40.0, 25.0, Vec3::Z));
-    // The power is per triangle: two triangles of area 1/2, each of 3 lumens.
+    // The power is for each triangle: two triangles of area 1/2, with 3 lumens each.
     let (scene, _) = read(
         "Camera \"perspective\" WorldBegin AreaLightSource \"diffuse\" \"float power\" 3 Shape \"trianglemesh\"\n\
          \"integer indices\" [ 0 1 2 0 2 3 ] \"point3 P\" [ 0 0 0 1 0 0 1 1 0 0 1 0 ]",
@@ -173,7 +174,7 @@ fn area_lights_emit_on_pbrt_side() {
     assert!(!lit(&format!("ReverseOrientation {down}"), below));
     assert!(lit(&format!("Scale 1 -1 1 ReverseOrientation {down}"), below));
     assert!(!lit(&format!("Scale 1 -1 1 {down}"), below));
-    // Vertex normals decide the side, for either order of the corners.
+    // Vertex normals determine the front, whatever the order of the corners.
     let normals = |y: i32| format!("{down} \"normal N\" [ 0 {y} 0 0 {y} 0 0 {y} 0 ]");
     assert!(lit(&normals(-1), below) && !lit(&normals(1), below));
     assert!(lit(&format!("ReverseOrientation {}", normals(1)), below));
@@ -192,7 +193,7 @@ fn materials_become_openpbr_parameters() {
         "Material \"coateddiffuse\" \"rgb reflectance\" [ 0.2 0.4 0.6 ] \"float roughness\" 0.16 \"float eta\" 1.4",
     );
     assert_eq!((m.base_color, m.coat_weight, m.coat_ior), (Vec3::new(0.2, 0.4, 0.6), 1.0, 1.4));
-    // alpha = sqrt(0.16); its square root is our roughness.
+    // alpha = sqrt(0.16); its square root is Dürer's roughness.
     assert!((m.coat_roughness - 0.4_f32.sqrt()).abs() < 1e-6 && m.coat_darkening == 1.0, "{}", m.coat_roughness);
     let (m, _) = material(
         "Material \"dielectric\" \"float roughness\" 0.04 \"bool remaproughness\" false \"spectrum eta\" \"glass-BK7\"",
@@ -249,7 +250,8 @@ fn equal_area_mapping_inverts_and_preserves_area() {
         assert!((dir.length() - 1.0).abs() < 1e-5);
         assert!((equal_area(dir) - place).length() < 1e-3, "{place} {dir} {}", equal_area(dir));
     }
-    // The middle is +z, the corners are -z. Equal areas: a quarter of all positions have z > 1/2.
+    // The middle is +z, and the corners are -z. Areas are equal, so a quarter of all positions have
+    // z > 1/2.
     close(of_equal_area(Vec2::splat(0.5)), Vec3::Z);
     close(of_equal_area(Vec2::ZERO), Vec3::NEG_Z);
     close(of_equal_area(Vec2::new(1.0, 0.5)), Vec3::X);
@@ -264,7 +266,7 @@ fn equal_area_mapping_inverts_and_preserves_area() {
 
 #[test]
 fn environment_picture_has_pbrt_orientation() {
-    // Square picture that is bright around +x in the light's own coordinates.
+    // A square picture that is bright around +x in the light's own coordinates.
     let n = 32;
     let pixels: Vec<Vec3> = (0..n * n)
         .map(|i| {
@@ -318,14 +320,14 @@ fn textures_have_pbrt_orientation() {
         world.shading(&at, 1.0, &Lanes::Rgb).eval(Vec3::NEG_Z).0.truncate() * std::f32::consts::PI
     };
     let map = "\"imagemap\" \"string filename\" \"t.ppm\" \"string filter\" \"point\"";
-    // v goes up: the upper left texel is red.
+    // v grows upwards, so the upper left texel is red.
     close(seen(map, Vec2::new(0.2, 0.8)), Vec3::X);
     close(seen(map, Vec2::new(0.8, 0.7)), Vec3::Y);
     close(seen(map, Vec2::new(0.2, 0.3)), Vec3::Z);
     close(seen(&format!("{map} \"float scale\" 0.5"), Vec2::new(0.8, 0.3)), Vec3::splat(0.5));
     close(seen(&format!("{map} \"float uscale\" 2 \"float vdelta\" 0.5"), Vec2::new(0.3, 0.3)), Vec3::Y);
     let check = "\"checkerboard\" \"rgb tex1\" [ 1 0 0 ] \"rgb tex2\" [ 0 0 1 ] \"float uscale\" 4 \"float vscale\" 2";
-    // Fields are a quarter wide and half high; `tex1` is where both indices are even.
+    // Squares are a quarter wide and half high; `tex1` is where both indices are even.
     close(seen(check, Vec2::new(0.1, 0.2)), Vec3::X);
     close(seen(check, Vec2::new(0.3, 0.2)), Vec3::Z);
     close(seen(check, Vec2::new(0.3, 0.8)), Vec3::X);
@@ -334,8 +336,8 @@ fn textures_have_pbrt_orientation() {
 
 #[test]
 fn pictures_on_spheres_have_pbrt_orientation() {
-    // Four columns, one per quarter of u, which begins at +x and grows towards +y; v grows from -z
-    // to +z.
+    // Four columns, one for each quarter of u, which begins at +x and grows towards +y; v grows
+    // from -z to +z.
     let picture: &[u8] =
         b"P6 4 2 255\n\x00\x00\x00\x00\x00\x33\x00\x00\x66\x00\x00\x99\xff\x00\x00\xff\x00\x33\xff\x00\x66\xff\x00\x99";
     let folder = folder(&[("t.ppm", picture)]);
@@ -366,7 +368,8 @@ fn roughness_and_heights_come_from_pictures() {
     let at = world.intersect(&ray, &mut ()).unwrap();
     let durer_render::world::Material::Phong(phong) = &world.materials()[at.material as usize] else { panic!() };
     let own = phong.principled.as_ref().unwrap();
-    // pbrt's alpha is the square root of the value; our roughness is the square root of alpha.
+    // pbrt's alpha is the square root of the value, and Dürer's roughness is the square root of
+    // alpha.
     let expected = (0.5 * durer_image::decode_srgb(128)).sqrt().sqrt();
     let found = world.parameters_at(own, &at).specular_roughness;
     assert!((found - expected).abs() < 2.0 / 255.0, "{found} {expected}");
@@ -375,7 +378,7 @@ fn roughness_and_heights_come_from_pictures() {
 
 #[test]
 fn touching_meshes_become_one_glass_body() {
-    // Cube about the origin; its lid is a separate, mirrored mesh.
+    // A cube about the origin, whose lid is a separate, mirrored mesh.
     let side = |turn: &str| {
         format!(
             "AttributeBegin {turn} Translate 0 0 1 Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 0 2 3 ]\n\
@@ -400,7 +403,7 @@ fn touching_meshes_become_one_glass_body() {
 
 #[test]
 fn density_grids_follow_transform_and_end_in_zero() {
-    // Two cells along y of a box from (0, 0, 0) to (2, 4, 2), whose y is z in world space.
+    // Two cells along y in a box from (0, 0, 0) to (2, 4, 2), whose y is z in world space.
     let text = |third: bool| {
         let kind = if third { "heterogeneous" } else { "uniformgrid" };
         format!(
@@ -416,7 +419,7 @@ fn density_grids_follow_transform_and_end_in_zero() {
         let medium = world.medium(Some(0)).unwrap();
         let at = |x, y, z| medium.scattering(glam::DVec3::new(x, y, z), &durer_scene::spectrum::Lanes::Rgb).truncate();
         let sigma = Vec3::new(0.5, 0.25, 1.0);
-        // At cell centres, halfway between, at the border, and beyond it.
+        // At cell centres, halfway between them, at the border, and beyond it.
         for (y, density) in [(1.0, 1.0), (3.0, 3.0), (2.0, 2.0), (4.0, 1.5), (0.0, 0.5), (5.0, 0.0), (7.0, 0.0)] {
             close(at(1.0, -1.0, y), density * sigma);
         }
@@ -439,7 +442,7 @@ fn density_grids_follow_transform_and_end_in_zero() {
 fn media_fill_shapes_and_surround_the_camera() {
     let smoke = "MakeNamedMedium \"smoke\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.5 0.25 1 ] \
                  \"rgb sigma_s\" [ 0 0 0 ] \"float scale\" 0.5";
-    // exp(-2 sigma) is left through the middle of a ball of radius 1 without a boundary.
+    // A fraction exp(-2 sigma) passes through the middle of a ball of radius 1 without a boundary.
     let text = format!(
         "Camera \"perspective\" WorldBegin {smoke} LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n\
          AttributeBegin MediumInterface \"smoke\" \"\" Material \"interface\" Translate 0 0 5 Shape \"sphere\" AttributeEnd\n\
@@ -454,12 +457,12 @@ fn media_fill_shapes_and_surround_the_camera() {
         paths.radiance(&ray, SampleId::new(0, (3, 5), 7), &mut ())
     };
     close(through(&inside), Vec3::new(-0.5, -0.25, -1.0).map(fp::exp));
-    // Around the camera it is fog; the strongest of its coefficients counts.
+    // Around the camera, it is fog with the largest of its coefficients.
     let text = format!("{smoke} MediumInterface \"\" \"smoke\" Camera \"perspective\" WorldBegin Shape \"sphere\"");
     let fog = world("fog.pbrt", &text).fog().cloned().unwrap();
     close(fog.extinction, Vec3::splat(0.5));
     assert!(fog.place.is_none() && !fog.scatters());
-    // Defaults of `subsurface`, and a sheet that scatters to both sides.
+    // The defaults of `subsurface`, and a sheet that scatters to both sides.
     let text = "Camera \"perspective\" WorldBegin Material \"subsurface\" Shape \"sphere\"\n\
                 Material \"diffusetransmission\" \"rgb reflectance\" [ 0.3 0.3 0.3 ] \"rgb transmittance\" [ 0.1 0.1 0.1 ] \
                 Shape \"sphere\"";

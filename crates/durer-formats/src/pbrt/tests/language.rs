@@ -32,7 +32,7 @@ fn errors_have_place_and_suggestion() {
         ),
         (
             "WorldBegin Shape \"sphere\" \"flaot radius\" 1",
-            "error `flaot` is not a type of a parameter (did you mean `float`?)",
+            "error `flaot` is not a parameter type (did you mean `float`?)",
         ),
         ("WorldBegin Shape \"sphere\" \"float radius\" 1 \"float radius\" 2", "error `radius` is given twice"),
         ("WorldBegin Shape \"sphere\" \"string radius\" \"a\"", "error `radius` must be a float"),
@@ -65,7 +65,7 @@ fn errors_have_place_and_suggestion() {
         ),
         (
             "WorldBegin Material \"diffuse\" Material \"matte\"",
-            "error unknown material `matte` in pbrt-v4 (this material is of pbrt-v3; the nearest of pbrt-v4 is `diffuse`",
+            "error unknown material `matte` in pbrt-v4 (this is a pbrt-v3 material; the nearest in pbrt-v4 is `diffuse`",
         ),
         (
             "WorldBegin Material \"diffuse\" \"texture reflectance\" \"wood\"",
@@ -193,9 +193,9 @@ fn hostile_files_never_panic() {
         )
     });
     for (text, wanted) in [
-        (deep, "scopes are nested more than 4096 deep"),
+        (deep, "scopes are nested more than 4096 levels deep"),
         (many, "too many objects: more than"),
-        (mixes + " NamedMaterial \"m199\" Shape \"sphere\"", "mixes of materials are nested more than 32 deep"),
+        (mixes + " NamedMaterial \"m199\" Shape \"sphere\"", "mixes of materials are nested more than 32 levels deep"),
         (format!("{world} Shape \"sphere\" {}", "\"float a\" ".repeat(100_000)), "expected"),
     ] {
         let (scene, messages) = read(&text);
@@ -206,7 +206,7 @@ fn hostile_files_never_panic() {
             "{end}: {messages:#?}"
         ); // prose: keep
     }
-    // Every prefix of a file, and a change of every byte.
+    // Every prefix of a file, and the file with every byte changed.
     let text = "Film \"rgb\" \"integer xresolution\" [8] Camera \"perspective\" \"float fov\" 40 WorldBegin\n\
                 Texture \"t\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [1 0 0] \"rgb tex2\" [0 0 1]\n\
                 AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [1 2 3] Material \"diffuse\" \"texture reflectance\" \"t\"\n\
@@ -263,7 +263,7 @@ fn settings_come_from_film_sampler_and_integrator() {
         (render_defaults.size, render_defaults.samples, render_defaults.bounces),
         (Some((30, 20)), Some(12), Some(6))
     );
-    // Pixels from, to, from, to; fractions are rounded up.
+    // Pixels as from, to, from, to; fractions are rounded up.
     let film = |more: &str| {
         format!(
             "Film \"rgb\" \"integer xresolution\" 30 \"integer yresolution\" 20 {more}\n\

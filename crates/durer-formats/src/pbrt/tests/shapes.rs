@@ -1,4 +1,4 @@
-//! Tessellated shapes against closed forms.
+//! Tessellated shapes compared with closed forms.
 
 use super::*;
 use crate::testing::read_with_low_limits;
@@ -6,7 +6,7 @@ use durer_scene::math::{Vec3, fp};
 use durer_scene::shape::MeshData;
 use std::f64::consts::PI;
 
-/// The only mesh of a pbrt-v3 scene.
+/// Returns the only mesh of a pbrt-v3 scene.
 fn mesh(text: &str) -> MeshData {
     let scene = clean(&format!("Film \"image\" Camera \"perspective\" WorldBegin {text}"));
     assert_eq!(scene.assets.meshes.len(), 1, "{text}");
@@ -19,7 +19,7 @@ fn area(data: &MeshData) -> f64 {
     0.5 * data.triangles.iter().map(twice).sum::<f64>()
 }
 
-/// Returns true if every triangle faces the side of its normals.
+/// Returns true if every triangle faces the same side as its normals.
 fn faced(data: &MeshData) -> bool {
     data.triangles.iter().zip(&data.triangle_normals).all(|(triangle, normals)| {
         let [a, b, c] = triangle.map(|i| data.positions[i as usize].as_dvec3());
@@ -32,7 +32,7 @@ fn faced(data: &MeshData) -> bool {
 fn partial_quadrics_have_closed_form_areas() {
     let turn = |degrees: f64| degrees.to_radians();
     for (text, wanted) in [
-        // 2 pi r h, times the share of the turn.
+        // 2 pi r h, times the fraction of the turn.
         ("\"sphere\" \"float radius\" 2 \"float zmin\" -0.5 \"float zmax\" 1.5", 2.0 * PI * 2.0 * 2.0),
         ("\"sphere\" \"float zmin\" 0.6 \"float phimax\" 90", turn(90.0) * 0.4),
         ("\"sphere\" \"float phimax\" 250", turn(250.0) * 2.0),
@@ -48,7 +48,7 @@ fn partial_quadrics_have_closed_form_areas() {
             "\"paraboloid\" \"float radius\" 2 \"float zmin\" 1 \"float zmax\" 4",
             PI / 6.0 * (17.0 * 17_f64.sqrt() - 5.0 * 5_f64.sqrt()),
         ),
-        // A line that is perpendicular to the axis makes a ring; a line along it makes a cylinder.
+        // A line perpendicular to the axis sweeps a ring; a line parallel to it sweeps a cylinder.
         ("\"hyperboloid\" \"point p1\" [ 1 0 0 ] \"point p2\" [ 2 0 0 ]", 3.0 * PI),
         ("\"hyperboloid\" \"point p1\" [ 1 0 0 ] \"point p2\" [ 1 0 3 ]", 6.0 * PI),
     ] {
@@ -75,7 +75,7 @@ fn quadrics_face_outwards_and_have_pbrt_uv() {
             assert!(faced(&data), "{head} {text}");
         }
     }
-    // u is the share of the turn and v goes up; v of a disc goes inwards.
+    // u is the fraction of the turn, and v grows upwards; on a disc, v grows inwards.
     let sphere = mesh("Shape \"sphere\" \"float zmin\" -0.5 \"float zmax\" 0.5 \"float phimax\" 180");
     for (place, uv) in sphere.positions.iter().zip(&sphere.uvs) {
         // Half a turn, and from -30 to 30 degrees of latitude.
@@ -95,8 +95,8 @@ const CUBE: &str = "\"integer indices\" [ 0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 2 
 
 #[test]
 fn loop_vertices_lie_on_the_limit_surface() {
-    // Octahedron: each vertex has four neighbours whose mean is the centre, so its limit is scaled
-    // by 1 - 4 / (4 + 3 / (8 beta)), with beta = 3 / 32.
+    // Octahedron: each vertex has four neighbours whose mean is the centre, so its limit position
+    // is the vertex scaled by 1 - 4 / (4 + 3 / (8 beta)), with beta = 3 / 32.
     let text = "Shape \"loopsubdiv\" \"point P\" [ 1 0 0 -1 0 0 0 1 0 0 -1 0 0 0 1 0 0 -1 ]\n\
                 \"integer indices\" [ 0 2 4 2 1 4 1 3 4 3 0 4 2 0 5 1 2 5 3 1 5 0 3 5 ]";
     for levels in 0..4 {
@@ -120,14 +120,14 @@ fn loop_vertices_lie_on_the_limit_surface() {
          \"integer indices\" [ 0 1 4 0 4 3 1 2 5 1 5 4 3 4 7 3 7 6 4 5 8 4 8 7 ]",
     );
     assert!(flat.positions.iter().all(|p| p.z == 0.0) && flat.normals.iter().all(|n| (*n - Vec3::Z).length() < 1e-6));
-    // The middle of a side stays in place; the corners of the border are rounded off.
+    // The middle of a side stays in place, but the corners of the border are rounded off.
     assert!(
         flat.positions[1] == Vec3::X && area(&flat) < 4.0 && area(&flat) > 3.6,
         "{} {}",
         flat.positions[1],
         area(&flat)
     );
-    // Three triangles at an edge have no one-ring: they stay in place.
+    // Three triangles at an edge have no one-ring, so they stay in place.
     let fan = "Shape \"loopsubdiv\" \"integer levels\" 1 \"point P\" [ 0 0 0 0 0 1 1 0 0 0 1 0 -1 0 0 ] \"integer indices\" [ 0 1 2 0 1 3 0 1 4 ]";
     assert_eq!(mesh(fan).positions[0], Vec3::ZERO);
     let cube = mesh(&format!(
@@ -139,7 +139,7 @@ fn loop_vertices_lie_on_the_limit_surface() {
 #[test]
 fn curves_have_given_width() {
     let line = "\"point P\" [ 0 0 0 1 0 0 2 0 0 3 0 0 ]";
-    // Mean of the circumscribed and the inscribed circle of a tube's polygon.
+    // Mean of the circumscribed and inscribed circles of a tube's polygon.
     let tube = mesh(&format!("Shape \"curve\" \"string type\" \"cylinder\" \"float width\" 0.5 {line}"));
     assert!((area(&tube) / (PI * 0.5 * 3.0) - 1.0).abs() < 0.01, "{}", area(&tube));
     for (place, normal) in tube.positions.iter().zip(&tube.normals) {
@@ -156,19 +156,19 @@ fn curves_have_given_width() {
         (area(&ribbon) - 1.5).abs() < 1e-5 && ribbon.positions.iter().all(|p| p.z.abs() < 1e-6 && p.y.abs() < 0.2501)
     );
     assert!(ribbon.normals.iter().all(|n| (*n - Vec3::Z).length() < 1e-5));
-    // After a quarter turn of the ribbon, its middle is turned half as far.
+    // If the ribbon makes a quarter turn, its middle is turned by half of that.
     let turned = mesh(&format!(
         "Shape \"curve\" \"string type\" \"ribbon\" \"float width\" 0.5 \"normal N\" [ 0 0 1 0 1 0 ] {line}"
     ));
     let middle = turned.positions.iter().zip(&turned.normals).find(|(p, _)| (p.x - 1.5).abs() < 1e-4).unwrap().1;
     assert!((*middle - Vec3::new(0.0, 1.0, 1.0).normalize()).length() < 1e-3, "{middle}");
-    // A B-spline of equal steps is a straight line from the second to the second to last point.
+    // A B-spline with equal steps is a straight line from the second to the second to last point.
     let spline = mesh(&format!(
         "Shape \"curve\" \"string type\" \"cylinder\" \"string basis\" \"bspline\" \"float width\" 0.1 {line}"
     ));
     let ends = spline.positions.iter().fold((9.0_f32, -9.0_f32), |(a, b), p| (a.min(p.x), b.max(p.x)));
     assert!((ends.0 - 1.0).abs() < 1e-5 && (ends.1 - 2.0).abs() < 1e-5, "{ends:?}");
-    // Parabola of degree 2 and of degree 3.
+    // The same parabola as a curve of degree 2 and of degree 3.
     let text = |points: &str, degree: u32| {
         mesh(&format!(
             "Shape \"curve\" \"string type\" \"cylinder\" \"integer degree\" {degree} \"float width\" 0.1 \"point P\" [ {points} ]"
@@ -203,7 +203,8 @@ fn height_fields_and_nurbs_become_meshes() {
 
 #[test]
 fn tessellation_is_limited() {
-    // A partial ball has at most 128 x 64 x 2 triangles: the limit in tests leaves out some of 20.
+    // A partial ball has at most 128 x 64 x 2 triangles. The limit in tests leaves out some of 20
+    // balls.
     let text = "Shape \"sphere\" \"float phimax\" 359 ".repeat(20);
     let (scene, messages) =
         read_with_low_limits("a.pbrt", &format!("Film \"image\" Camera \"perspective\" WorldBegin {text}"));

@@ -1,4 +1,4 @@
-//! Scenes of pbrt-v3: detection of the language, and its conventions.
+//! Scenes of pbrt-v3: detection of the language, and conventions.
 
 use super::*;
 use durer_image::{Image, Layer, WriteOptions, format_for};
@@ -21,7 +21,7 @@ fn lights(text: &str) -> Vec<Light> {
     third(&format!("{text} Shape \"sphere\"")).lights.unwrap().into_iter().map(|light| light.value).collect()
 }
 
-/// Layers of a sphere's material with their shares; each part of a mix.
+/// Returns the layers of a sphere's material with their shares, one for each part of a mix.
 pub(super) fn parts(text: &str) -> Vec<(f32, PrincipledMaterial)> {
     let (scene, messages) = read(&format!("{HEAD}{text} Shape \"sphere\""));
     let scene = scene.unwrap_or_else(|| panic!("{text}: {messages:?}")); // prose: keep
@@ -74,7 +74,7 @@ fn first_unambiguous_word_decides_language() {
         &format!("{camera} LightSource \"distant\" \"rgb scale\" [ 1 1 1 ]"),
         &format!("{camera} AreaLightSource \"diffuse\" \"integer nsamples\" 4"),
         &format!("{camera} MakeNamedMedium \"a\" \"string type\" \"heterogeneous\" \"float density\" 1"),
-        // The first such word decides.
+        // The first such word decides the language.
         &format!("{camera} Material \"matte\" ColorSpace \"srgb\""),
     ] {
         assert!(is_third(text), "{text}");
@@ -92,7 +92,7 @@ fn first_unambiguous_word_decides_language() {
     ] {
         assert!(!is_third(text), "{text}");
     }
-    // An included file may decide.
+    // An included file can decide the language.
     let folder = folder(&[("a.pbrt", b"Material \"matte\"")]);
     let text = format!("{camera} {light} Include \"a.pbrt\"");
     let (scene, messages) = read_in(folder.path(), &text);
@@ -112,7 +112,7 @@ fn light_values_are_absolute() {
     let (place, color) = point("\"color I\" [ 2 4 6 ] \"rgb scale\" [ 0.5 1 2 ] \"point from\" [ 1 2 3 ]");
     close(color, Vec3::new(1.0, 4.0, 12.0) / pi);
     assert_eq!(place, Vec3::new(1.0, 2.0, 3.0));
-    // RGB of a constant spectrum of 1: that of X = Y = Z = 1.
+    // RGB of a constant spectrum of 1, which is that of X = Y = Z = 1.
     let white = Vec3::new(1.2048, 0.9483, 0.9087);
     assert!((point("\"spectrum I\" [ 500 3 600 3 ]").1 * pi / 3.0 - white).abs().max_element() < 0.01);
     assert!((point("\"xyz I\" [ 3 3 3 ]").1 * pi / 3.0 - white).abs().max_element() < 0.001);
@@ -123,7 +123,7 @@ fn light_values_are_absolute() {
     close(body("5795.5 4"), 4.0 * warm);
     let head = "Film \"image\" \"float scale\" 3 Camera \"perspective\" \"float shutterclose\" 7 WorldBegin ";
     let scene = clean(&format!("{head} LightSource \"infinite\" \"rgb L\" [ 1 2 3 ] Shape \"sphere\""));
-    // The film's scale counts; the shutter time does not.
+    // The film's scale has an effect, but the shutter time does not.
     assert_eq!(scene.background.color, Vec3::new(3.0, 6.0, 9.0));
     let Light::Spot(spot) = lights("LightSource \"spot\" \"float coneangle\" 40")[0].clone() else { panic!() };
     assert_eq!((spot.angle, spot.inner_angle, spot.fade), (40.0, 35.0, Fade::Fourth));
@@ -134,7 +134,7 @@ fn light_values_are_absolute() {
 
 #[test]
 fn environment_has_z_up_and_x_at_left_edge() {
-    // Rows go down from +z, columns from +x over +y.
+    // Rows go down from +z; columns go from +x through +y.
     let bytes = pfm(8, 4, |x, y| Vec3::new(x as f32, y as f32, 1.0));
     let folder = folder(&[("sky.pfm", &bytes)]);
     let text =
@@ -145,7 +145,7 @@ fn environment_has_z_up_and_x_at_left_edge() {
     let encoded = durer_image::Encoded::open(bytes, name).unwrap();
     let sky = encoded.read(u64::MAX, durer_image::decode_linear).unwrap();
     let at = |dir: [f64; 3]| crate::panorama::looked_up(&sky, dir.into());
-    // +y lies between the texels at 67.5 and at 112.5 degrees, of longitude and from the pole.
+    // +y is between the texels at 67.5 and at 112.5 degrees, both in longitude and from the pole.
     let y = at([0.0, 1.0, 0.001]);
     assert!((y.x / 2.0 - 1.5).abs() < 0.6 && (y.y - 1.5).abs() < 0.6, "{y}");
     let west = at([-1.0, 0.0, 0.001]);
@@ -173,20 +173,20 @@ fn pictured_lights_follow_their_pictures() {
     };
     let gonio = "LightSource \"goniometric\" \"rgb I\" [ 1 2 3 ] \"string mapname\" \"gonio.pfm\"";
     let emissive = lights(gonio);
-    // The pole is +y, where the first row meets the last, as in pbrt-v3; columns go from +x over
+    // The pole is +y, where the first row meets the last, as in pbrt-v3. Columns go from +x through
     // +z.
     close(emissive([0.0, 1.0, 0.0]), 0.5 * (5.0 + 4.5) * Vec3::new(1.0, 2.0, 3.0));
     close(emissive([0.0, 0.0, 1.0]), 2.5 * Vec3::new(1.0, 2.0, 3.0));
     close(emissive([-1.0, 0.0, 0.0]), 4.5 * Vec3::new(1.0, 2.0, 3.0));
     close(emissive([0.0, 0.0, -1.0]), 6.5 * Vec3::new(1.0, 2.0, 3.0));
-    // Rotated: the pole is +x, and z stays.
+    // Rotated, so that the pole is +x and z is unchanged.
     let turned = lights(&format!("Rotate -90 0 0 1 {gonio}"));
     close(turned([1.0, 0.0, 0.0]), 4.75 * Vec3::new(1.0, 2.0, 3.0));
     close(turned([0.0, 0.0, 1.0]), 2.5 * Vec3::new(1.0, 2.0, 3.0));
     // Mirrored.
     let mirrored = lights(&format!("Scale 1 1 -1 {gonio}"));
     close(mirrored([0.0, 0.0, -1.0]), 2.5 * Vec3::new(1.0, 2.0, 3.0));
-    // 90 degrees across the shorter side: the picture covers -2 to 2 by -1 to 1.
+    // 90 degrees across the shorter side, so the picture covers -2 to 2 by -1 to 1.
     let slide = lights("LightSource \"projection\" \"float fov\" 90 \"string mapname\" \"slide.pfm\"");
     let at = |x: f32, y: f32| slide([x, y, 1.0]);
     for (place, wanted) in [((0.5, 0.5), [2.0, 1.0, 0.0]), ((-1.5, -0.5), [0.0; 3]), ((1.5, 0.0), [3.0, 0.5, 0.0])] {
@@ -203,7 +203,7 @@ fn pictured_lights_follow_their_pictures() {
 fn errors_and_warnings_of_pbrt_v3() {
     for (text, wanted) in [
         ("\nMaterial \"mattte\"", "scene.pbrt:2:11 error unknown material `mattte` in pbrt-v3 (did you mean `matte`?)"),
-        ("Material \"conductor\"", "error unknown material `conductor` in pbrt-v3 (this material is of pbrt-v4"),
+        ("Material \"conductor\"", "error unknown material `conductor` in pbrt-v3 (this is a pbrt-v4 material"),
         ("Material \"mix\" \"string namedmaterial1\" \"a\"", "error no material `a` is defined before this"),
         ("Material \"mix\"", "error a mix needs `\"string namedmaterial1\"`"),
         ("LightSource \"infinite\" \"string mapname\" \"no.exr\"", "error the file `no.exr` does not exist"),

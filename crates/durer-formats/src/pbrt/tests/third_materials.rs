@@ -43,7 +43,7 @@ fn mixes_reflect_the_sum_of_their_parts() {
     close(whole(&uber, |layers| layers.transmission_color * layers.transmission_weight), Vec3::splat(0.5));
     close(whole(&uber, |layers| layers.specular_color * layers.transmission_weight), Vec3::new(0.2, 0.4, 0.6));
     assert!(uber.iter().all(|(_, layers)| layers.opacity == 0.25));
-    // Emission is as given for every material.
+    // Each material has the specified emission.
     let emissive = parts("AreaLightSource \"diffuse\" \"rgb L\" [ 2 4 6 ] Material \"plastic\"");
     close(whole(&emissive, |layers| layers.emission_luminance * layers.emission_color), Vec3::new(2.0, 4.0, 6.0));
 }
@@ -68,7 +68,7 @@ fn other_materials_read_their_parameters() {
     close(copper, Vec3::new(0.95214, 0.61968, 0.51058));
     let rough = only("Material \"matte\" \"rgb Kd\" [ 0.5 0.5 0.5 ] \"float sigma\" 30");
     assert!(rough.base_diffuse_roughness > 0.3 && rough.base_color.x < 0.5);
-    // `amount` is the share of the first.
+    // `amount` is the share of the first material.
     let mixed = parts(
         "MakeNamedMaterial \"a\" \"string type\" \"matte\" \"rgb Kd\" [ 1 0 0 ]\n\
          MakeNamedMaterial \"b\" \"string type\" \"matte\" \"rgb Kd\" [ 0 0 1 ]\n\
@@ -77,7 +77,7 @@ fn other_materials_read_their_parameters() {
     let all: Vec3 = mixed.iter().map(|(share, layers)| *share * layers.base_color).sum();
     close(all, Vec3::new(0.3, 0.0, 0.7));
     let disney = only("Material \"disney\" \"rgb color\" [ 0.1 0.2 0.3 ] \"float roughness\" 0.4");
-    // The base colour is raised to make up for the share that the boundary reflects.
+    // The base colour is increased to compensate for the fraction that the boundary reflects.
     let color = Vec3::new(0.1, 0.2, 0.3);
     let more = disney.base_color / color;
     assert!((more - more.x).abs().max_element() < 1e-5 && (1.0..1.2).contains(&more.x), "{more}");

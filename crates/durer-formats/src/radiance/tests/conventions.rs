@@ -9,8 +9,8 @@ use durer_scene::math::{Vec2, fp};
 use durer_scene::sampler::SampleId;
 use std::f64::consts::PI;
 
-/// Estimates the irradiance over pi at a point with a normal: the reflected radiance of a white
-/// diffuse surface.
+/// Estimates the irradiance over pi at a point with a normal, which is the radiance reflected by a
+/// white diffuse surface.
 fn shown(text: &str, point: Vec3, normal: Vec3) -> Vec3 {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let options = LoadOptions::default();
@@ -60,14 +60,15 @@ fn emitters_have_the_given_radiance() {
         "void brightfunc f 2 skybr skybright.cal 0 3 2 9 0\nf glow g 0 0 4 1 1 1 0\ng source s 0 0 4 0 0 1 180";
     let found = f64::from(shown(overcast, Vec3::ZERO, Vec3::Z).x);
     assert!((found / 7.0 - 1.0).abs() < 0.03, "{found}");
-    // A spot on its axis: L A / d², over pi, with the falloff from its focus, which is 2 behind;
-    // zero outside the cone.
+    // A spotlight seen on its axis: L A / d², over pi, with the falloff from its focus, which is 2
+    // behind it. It is zero outside the cone.
     let spot = "void spotlight l 0 0 7 6 6 6 30 0 0 -2\nl ring r 0 0 8 0 0 3 0 0 -1 0 .1";
     lit(spot, Vec3::ZERO, Vec3::Z, 6.0 * 0.01 / 25.0);
     assert_eq!(shown(spot, Vec3::new(1.0, 0.0, 0.0), Vec3::Z), Vec3::ZERO);
 }
 
-/// Direction of a view at a picture position, -1 to 1 across the larger side.
+/// Returns the direction of a view at a position in the picture, from -1 to 1 across the larger
+/// side.
 fn sees(options: &str, x: f32, y: f32) -> Vec3 {
     let files = folder(&[("s.rad", b"void plastic w 0 0 5 1 1 1 0 0 w sphere s 0 0 4 0 0 0 1")]);
     let (scene, messages) = read_in(files.path(), "x.rif", &format!("scene = s.rad\nview = {options}\n"));
@@ -84,7 +85,7 @@ fn views_match_radiance() {
     // With the default view, x is to the right and z upwards.
     close(sees("-vh 90 -vv 90", 1.0, 0.0), Vec3::new(1.0, 1.0, 0.0).normalize());
     close(sees("-vh 90 -vv 90", 0.0, 1.0), Vec3::new(0.0, 1.0, 1.0).normalize());
-    // Parallel views show what is in front of their point, or of `-vo`.
+    // Parallel views show what is in front of the view point, or of the distance `-vo`.
     for (options, near) in [("-vtl -vp 1 2 3 -vh 4 -vv 4", 0.0), ("-vtl -vo -2.5 -vh 4 -vv 4", -2.5)] {
         let files = folder(&[("s.rad", b"void plastic w 0 0 5 1 1 1 0 0 w sphere s 0 0 4 0 0 0 1")]);
         let (scene, messages) = read_in(files.path(), "x.rif", &format!("scene = s.rad\nview = {options}\n"));
@@ -95,9 +96,9 @@ fn views_match_radiance() {
         let frame = CameraBasis::of(&camera, CameraRules::default());
         assert_eq!(camera.ray(&frame, &CameraSample::at(Vec2::ZERO)).unwrap().t_min, near);
     }
-    // A picture taller than wide: its height is 90 degrees.
+    // In a picture that is taller than wide, the height is 90 degrees.
     close(sees("-vh 53.130102 -vv 90", 0.5, 0.0), Vec3::new(0.5, 1.0, 0.0).normalize());
-    // Shifted to the right by half its width: the centre is where the edge was.
+    // Shifted to the right by half the width, so the centre is where the edge was.
     close(sees("-vh 90 -vv 90 -vs .5", 0.0, 0.0), Vec3::new(1.0, 1.0, 0.0).normalize());
     close(sees("-vta -vh 180 -vv 180", 0.5, 0.0), Vec3::new(1.0, 1.0, 0.0).normalize());
     close(sees("-vth -vh 180 -vv 180", 0.6, 0.0), Vec3::new(0.6, 0.8, 0.0));

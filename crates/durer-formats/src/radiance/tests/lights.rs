@@ -9,7 +9,7 @@ use durer_scene::math::fp;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Sum of the intensities of all lights of a scene in a direction: radiance times area.
+/// Returns the sum of the intensities of all lights of a scene in a direction: radiance times area.
 fn intensity(scene: &Scene, dir: DVec3) -> f64 {
     let lights = scene.lights.as_ref().unwrap().iter();
     let strong = lights.map(|light| {
@@ -20,7 +20,7 @@ fn intensity(scene: &Scene, dir: DVec3) -> f64 {
     strong.sum()
 }
 
-/// Direction by its angle from straight down and its angle around the vertical axis.
+/// Returns the direction for an angle from straight down and an angle around the vertical axis.
 fn way(theta: f64, phi: f64) -> DVec3 {
     let [(sin, cos), (s, c)] = [theta, phi].map(fp::sin_cos_degrees);
     DVec3::new(sin * c, sin * s, -cos)
@@ -34,7 +34,8 @@ fn sin(degrees: f64) -> f64 {
     fp::sin_cos_degrees(degrees).0
 }
 
-/// A table over two angles: 0 to 180 around, 0 to 180 from below.
+/// Data file with a table over two angles: 0 to 180 degrees around the axis, and 0 to 180 degrees
+/// from below.
 fn by_two() -> String {
     let values =
         (0..=18).flat_map(|i| (0..=36).map(move |j| (1.0 + 0.1 * f64::from(i) + 0.2 * f64::from(j)).to_string()));
@@ -74,7 +75,7 @@ fn intensity_follows_the_table() {
              l polygon r 0 0 12 -1 -1 0 -1 1 0 1 1 0 1 -1 0",
             Box::new(|theta, phi| if theta < 90.0 { 4.0 * of_two(theta, phi) } else { 0.0 }),
         ),
-        // The projected area of a sphere is a disc in all directions, that of a tube its side.
+        // The projected area of a sphere is a disc in all directions; that of a tube is its side.
         (
             "void brightdata d 5 corr b.dat source.cal src_phi2 src_theta 0 0 d light l 0 0 3 1 1 1 l sphere r 0 0 4 1 2 3 2",
             Box::new(|theta, phi| 4.0 * PI * of_two(theta, phi)),
@@ -83,7 +84,7 @@ fn intensity_follows_the_table() {
             "void brightdata d 5 corr b.dat source.cal src_phi2 src_theta 0 0 d light l 0 0 3 1 1 1 l cylinder r 0 0 7 0 0 1 0 0 4 .5",
             Box::new(|theta, phi| 3.0 * sin(theta) * of_two(theta, phi)),
         ),
-        // The intensity of a whole box or cylinder is the table's value.
+        // The intensity of a box or cylinder as a whole is the table's value.
         (
             "void brightdata d 5 boxcorr b.dat source.cal src_phi2 src_theta 0 4 1 2 4 1 d light l 0 0 3 1 1 1 !genbox l r 2 4 1",
             Box::new(of_two),
@@ -93,7 +94,8 @@ fn intensity_follows_the_table() {
              l cylinder r 0 0 7 0 0 0 0 0 3 1 l ring t 0 0 8 0 0 3 0 0 1 0 1 l ring u 0 0 8 0 0 0 0 0 -1 0 1",
             Box::new(of_two),
         ),
-        // Rotated by a right angle about z, and upside down, by a command and by explicit options.
+        // Rotated by a right angle about z, and turned upside down, both by a command and by
+        // explicit options.
         (
             "!xform -rz 90 lamp.rad", // prose: keep
             Box::new(
@@ -102,7 +104,7 @@ fn intensity_follows_the_table() {
         ),
         (
             "void brightdata d 6 corr back.dat source.cal src_theta -rx 180 0 0 d light l 0 0 3 1 1 1 l sphere r 0 0 4 1 2 3 1",
-            // 4 below, 1 at the side, 0 above; upside down.
+            // 4 from below, 1 at the side, 0 from above; turned upside down.
             Box::new(|theta, _| PI * if theta > 90.0 { 4.0 - 3.0 * (180.0 - theta) / 90.0 } else { theta / 90.0 }),
         ),
         // An eighth of the ring's radiance: two angles of a type B photometer.
@@ -110,7 +112,7 @@ fn intensity_follows_the_table() {
             "void brightdata d 4 corr one.dat source.cal srcB_vert2 0 0 d light l 0 0 3 1 1 1 l sphere r 0 0 4 1 2 3 1",
             Box::new(|_, _| PI),
         ),
-        // A spotlight of 60 degrees in total, by its cosine.
+        // A spotlight of 60 degrees in total; the expected value follows from its cosine.
         (
             "void spotlight s 0 0 7 2 2 2 60 0 0 -1 s ring r 0 0 8 0 0 1 0 0 -1 0 1",
             Box::new(|theta, _| if theta <= 30.0 { 2.0 * PI * cos(theta) } else { 0.0 }),
@@ -142,7 +144,7 @@ fn equal_distributions_share_a_profile_and_are_exported() {
     let text = format!("{light} l polygon q 0 0 12 -1 -1 2 -1 1 2 1 1 2 1 -1 2 !xform -t 5 0 0 lamp.rad"); // prose: keep
     let (scene, _) = read_in(files.path(), "scene.rad", &text);
     let scene = scene.unwrap();
-    // The last text is a different one.
+    // The last text differs from the others.
     assert_eq!((scene.assets.profiles.len(), scene.lights.as_ref().unwrap().len()), (2, 48));
     let (made, beside) = export_assets(&scene, "kept", &FolderSource::new(files.path()));
     let names: Vec<&str> = beside.iter().map(|(name, _)| name.as_str()).collect();
@@ -184,7 +186,7 @@ fn angles_may_have_an_offset() {
     let (scene, _) = read_in(files.path(), "scene.rad", text);
     let scene = scene.unwrap();
     for (theta, phi) in [(30.0, 0.0), (30.0, 200.0)] {
-        // The light is rotated back by a right angle, so its angle is a right angle more.
+        // The light is rotated back by a right angle, so its angle is larger by a right angle.
         let around: f64 = (phi + 90.0_f64).rem_euclid(360.0);
         let folded = if around > 180.0 { 360.0 - around } else { around };
         let expected = 4.0 * (1.0 + 0.01 * (folded + 20.0) + 0.04 * theta);
