@@ -16,7 +16,7 @@ use durer_scene::shape::Surface;
 /// Values at the first hit of the ray through a pixel's centre, from which AOVs are computed.
 #[derive(Clone, Copy, Debug)]
 pub struct AovInput {
-    /// True if the camera sees an object or a background through this pixel.
+    /// True if the camera has a ray through this pixel's centre.
     pub covered: bool,
     /// The first hit.
     pub hit: Option<SurfaceInteraction>,
@@ -30,7 +30,7 @@ pub struct AovInput {
 }
 
 impl AovInput {
-    /// A pixel through which the camera sees nothing.
+    /// Values of a pixel for which the camera has no ray.
     pub const NOTHING: AovInput = AovInput {
         covered: false,
         hit: None,

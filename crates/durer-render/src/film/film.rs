@@ -38,7 +38,7 @@ pub(super) struct Pixel {
     pub(super) luminance: i64,
     /// Sum of weights, in units of 2^-24.
     pub(super) weight: i64,
-    /// Sum of the weights of samples that hit something, in units of 2^-24.
+    /// Sum of weight times coverage over the samples, in units of 2^-24.
     pub(super) covered: i64,
     pub(super) samples: u64,
 }
@@ -255,7 +255,7 @@ impl Film {
         self.add_if_seen(x, y, sample, Some(color), weight);
     }
 
-    /// Adds a sample, or `None` for a transparent one, which lowers the pixel's coverage.
+    /// Adds a sample. A `color` of `None` is transparent: it lowers the pixel's coverage.
     pub fn add_if_seen(&mut self, x: u32, y: u32, sample: u32, color: Option<Color>, weight: f32) {
         self.add_covering(x, y, sample, color.map_or((Color::ZERO, 0.0), |color| (color, 1.0)), weight);
     }
@@ -375,14 +375,14 @@ impl Film {
         self.first_rejected.is_sorted().then_some(self)
     }
 
-    /// Returns the weighted mean of a pixel's samples, where misses are black. Black if the weights
-    /// sum to zero. Panics outside the window.
+    /// Returns the weighted mean of a pixel's samples, where transparent ones are black. Black if the
+    /// weights sum to zero. Panics outside the window.
     pub fn resolve(&self, x: u32, y: u32) -> Color {
         self.pixel(x, y).mean()
     }
 
-    /// Returns the pixel's coverage from 0 to 1: the weighted share of its samples that hit
-    /// something. Panics outside the window.
+    /// Returns the pixel's coverage from 0 to 1: the weighted share of its samples that are not
+    /// transparent. Panics outside the window.
     pub fn coverage(&self, x: u32, y: u32) -> f32 {
         self.pixel(x, y).coverage()
     }

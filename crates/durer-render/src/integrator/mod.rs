@@ -20,8 +20,8 @@ use std::sync::atomic::AtomicBool;
 pub use trace::{NodeId, TraceListener, TraceNode, TraceRecorder, Tree};
 pub use whitted::{Whitted, WhittedOptions, WhittedParameters, refract};
 
-/// Name and options of an integrator, as read from the command line. The `described!` block of each
-/// implementation defines its options.
+/// Options of one kind of integrator, which create it for a world. Each implementation is a
+/// `described!` block, from which the command line gets the integrator's name and options.
 pub trait Parameters: Describe + Copy {
     /// Integrator that these parameters create.
     type Integrator<'w>: Integrate;

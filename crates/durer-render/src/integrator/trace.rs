@@ -18,8 +18,8 @@ use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3};
 use durer_scene::spectrum::{Lanes, Spectrum};
 use serde::Serialize;
 
-/// Receiver of the terms that an integrator reports. Only listeners that store terms call the
-/// closures.
+/// Receiver of the terms of light that an integrator reports, to count rays or explain a pixel.
+/// Only listeners that store terms call the closures.
 pub trait TraceListener: TraversalCounter {
     /// True if terms that contribute nothing should also be reported.
     const LISTENS: bool = false;

@@ -50,9 +50,10 @@ pub(super) fn kept_bytes(job: &Job, side: u32) -> u64 {
     }
 }
 
-/// What a stored sample records: colour, or coverage. The course's sampling stores colours only, so
-/// if the camera has no ray for some sample, a second picture is rendered as a mask. It is white
-/// where the camera has a ray and black elsewhere.
+/// Quantity that the course's samples store: colours, or a mask for the coverage.
+///
+/// The course's films have no coverage. If the camera has no ray for some sample, a second picture
+/// is therefore rendered as a mask: white where the camera has a ray, black elsewhere.
 #[derive(Default)]
 struct SubPixelPicture {
     mask: bool,

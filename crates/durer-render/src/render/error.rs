@@ -57,7 +57,7 @@ pub enum RenderError {
     Panic(#[from] Panicked),
 }
 
-/// Panic of a thread while it rendered a sample. This is a bug; the rest of the render is kept.
+/// Error that reports a panic and the sample that caused it, which is a bug. Other work is kept.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("internal error: pixel {x},{y}{}: {message}", sample.map(|s| format!(", sample {s}")).unwrap_or_default())]
 pub struct Panicked {

@@ -22,7 +22,7 @@ pub fn ends(samples: u32) -> impl Iterator<Item = u32> {
     powers.flatten().take_while(move |&end| end < samples).chain([samples])
 }
 
-/// Iterator over the passes of a render, as numbers of samples per pixel.
+/// Iterator over the passes of a render: the number of samples per pixel at the end of each.
 ///
 /// Each pass packs and unpacks every block. If the result does not change, passes that are too
 /// short to be visible are therefore joined.

@@ -23,7 +23,7 @@ pub struct Rendered {
     /// Pictures with the values for floating-point files: colour first, if requested, then the AOVs
     /// in the job's order. See also [`Rendered::pictures`].
     pub layers: Vec<Layer>,
-    /// The same pictures with display values from 0 to 1.
+    /// Pictures of the same layers with display values from 0 to 1.
     pub pictures: Vec<Layer>,
     /// Numbers of samples and rays.
     pub statistics: Statistics,

@@ -131,8 +131,8 @@ pub(super) struct Samples<'a> {
     pub(super) aim: Aim<'a>,
     pub(super) whitted: Whitted<'a>,
     pub(super) integrator: Integrator<'a>,
-    /// What the quirk in [`stale`] adds to each pixel of the full picture. Empty if it does not
-    /// apply.
+    /// Contribution of the quirk in [`stale`] to each pixel of the full picture. Empty if it does
+    /// not apply.
     stale: Vec<Color>,
     stop: &'a AtomicBool,
 }

@@ -54,7 +54,7 @@ pub struct World {
     extents: Vec<OnceLock<Option<f32>>>,
     /// Simple shapes outside the acceleration structure, tested eight at a time.
     pub(crate) packs: PrimitivePacks,
-    /// All objects in a form for batches of rays, if there are few.
+    /// Copy of all objects in a form for batches of rays, if there are few objects.
     pub(crate) small_world: Option<SmallWorld>,
     /// Other objects outside the acceleration structure: unbounded ones, or all if there are too
     /// few for a tree to be faster.

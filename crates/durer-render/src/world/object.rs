@@ -26,7 +26,7 @@ pub struct Object {
     pub material: u32,
     /// Length of the surface normals: 1 except with [`ShadingRules::raw_normals`].
     pub normal_length: f32,
-    /// Where the scene file defines the object.
+    /// Span of the object's definition in the scene file.
     pub span: durer_diag::Span,
 }
 

@@ -73,8 +73,8 @@ pub struct DisplayRules {
     /// The background of a depth picture is black, even if far objects are white.
     #[serde(default)]
     pub black_sky: bool,
-    /// Where rays hit nothing, a picture of normals shows the previous hit's normal. Rows are
-    /// processed from the bottom up.
+    /// At misses, a picture of normals shows the previous hit's normal. Rows are processed from the
+    /// bottom up.
     #[serde(default)]
     pub stale_normals: bool,
     /// Depths are clamped to the range set by the user before they are converted to greys.

@@ -11,7 +11,7 @@ use durer_scene::spectrum::{Lanes, Spectrum};
 use glam::DVec3;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// What a path's ray reaches next: a surface, a scattering event in a medium, or nothing.
+/// Next event along a path's ray: a surface hit, scattering in a medium, or the end of the path.
 pub(super) enum Event {
     /// The path ended inside a medium, by Russian roulette or after too many scatterings.
     Absorbed,

@@ -5,7 +5,7 @@ use super::state::{PathState, SampleContext};
 use crate::integrator::trace::{TermKind, TraceListener};
 use durer_scene::spectrum::Spectrum;
 
-/// Radiance of a camera ray that a path has found so far, and the trace listener.
+/// Output of tracing a path: the sum of the radiance found so far, and the trace listener.
 pub(super) struct Output<'t, T> {
     /// Sum of throughput · light over all terms so far, by lane.
     pub(super) radiance: Spectrum,

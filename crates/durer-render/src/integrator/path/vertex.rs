@@ -40,8 +40,7 @@ pub(super) struct Vertex<'a, 'w> {
     pub(super) receiver: Receiver,
 }
 
-/// What scatters light at a path vertex: a surface with its BSDF, or a medium with its phase
-/// function.
+/// Scatterer at a path vertex: a surface with its BSDF, or a medium with its phase function.
 #[derive(Clone, Copy)]
 pub(super) enum VertexKind<'a, 'w> {
     /// A surface. With a passage, light can pass through it into another medium.

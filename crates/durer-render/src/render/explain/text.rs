@@ -31,10 +31,10 @@ pub struct Names<'a> {
 pub struct TextLine {
     /// Indentation depth.
     pub depth: usize,
-    /// What the term adds: to the pixel for a path, else to its parent term. `None` for lines with
-    /// details about the line before.
+    /// Contribution of the term: to the pixel for a path, else to its parent term. `None` for lines
+    /// with details about the line before.
     pub adds: Option<TermValue>,
-    /// Colour of what the term adds.
+    /// Colour of the contribution.
     pub color: Color,
     /// Share of the tree's total brightness, from 0 to 1.
     pub share: f32,
@@ -67,7 +67,7 @@ impl Default for ExplainOptions {
     }
 }
 
-/// What the text of a trace node needs from the nodes above it.
+/// Data from the nodes above a trace node that its text needs, such as the enclosing ray.
 #[derive(Clone, Copy)]
 struct Context<'a> {
     /// Trace that the node belongs to.

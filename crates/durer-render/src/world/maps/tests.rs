@@ -178,7 +178,7 @@ fn bump_ramp_tilts_the_normals_of_a_wall() {
         let text = format!("bumpTexture {name} bumpHeight 1");
         let world = world(&text, object, folder.path());
         let [bent, _] = normal(&world, Vec3::new(3.0, 4.0, 9.0), Vec3::NEG_Z);
-        // From the first to the last of 256 texels there are 255 steps of 1/255.
+        // Brightness rises by 1/255 per texel, which is 256/255 over the full picture.
         let expected = (Vec3::Z - slope * (256.0 / 255.0)).normalize();
         assert!((bent - expected).length() < 1e-3, "{name}: {bent} {expected}");
     }

@@ -22,7 +22,7 @@ pub(super) struct Photon {
     pub(super) rest: Absorber,
 }
 
-/// Where a photon was absorbed: on a surface or in the medium of an object.
+/// Place where a photon was absorbed: a surface, or the medium inside an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Absorber {
     Surface,
