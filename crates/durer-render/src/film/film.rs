@@ -375,8 +375,8 @@ impl Film {
         self.first_rejected.is_sorted().then_some(self)
     }
 
-    /// Returns the weighted mean of a pixel's samples, where transparent ones are black. Black if the
-    /// weights sum to zero. Panics outside the window.
+    /// Returns the weighted mean of a pixel's samples, where transparent ones are black. Black if
+    /// the weights sum to zero. Panics outside the window.
     pub fn resolve(&self, x: u32, y: u32) -> Color {
         self.pixel(x, y).mean()
     }

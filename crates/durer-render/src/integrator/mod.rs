@@ -20,8 +20,8 @@ use std::sync::atomic::AtomicBool;
 pub use trace::{NodeId, TraceListener, TraceNode, TraceRecorder, Tree};
 pub use whitted::{Whitted, WhittedOptions, WhittedParameters, refract};
 
-/// Options of one kind of integrator, which create it for a world. Each implementation is a
-/// `described!` block, from which the command line gets the integrator's name and options.
+/// Options of one kind of integrator, which create it for a world. The command line gets the
+/// integrator's name and its options from [`Describe`].
 pub trait Parameters: Describe + Copy {
     /// Integrator that these parameters create.
     type Integrator<'w>: Integrate;

@@ -24,7 +24,8 @@ const fn sub_pixels(jitter: bool, blur: bool) -> SamplingCase {
     (Sampling::Course2012 { jitter, blur }, None, false)
 }
 
-/// Sampling methods to check, which include all ways of combining samples. One filter is so narrow that often all weights are zero.
+/// Sampling methods to check, which include all ways of combining samples. One filter is so narrow
+/// that often all weights are zero.
 pub const SAMPLINGS: [SamplingCase; 12] = [
     (Sampling::Center, None, false),
     filtered(3, None, false),
