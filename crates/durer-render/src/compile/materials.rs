@@ -80,6 +80,7 @@ pub(super) fn compile(
     scene.materials.iter().map(&mut one).collect()
 }
 
+/// Compiles a Phong material, with the dialect's meaning of its fields.
 fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, rules: &Rules) -> Phong {
     let (reflective, transparent, ior) = secondary(m, rules);
     let diffuse = m.diffuse_color.unwrap_or(Color::ONE);
@@ -131,6 +132,7 @@ fn plain(m: &PrincipledMaterial) -> Phong {
     }
 }
 
+/// Returns colour, exponent and formula of the highlight, if the dialect gives it one.
 fn highlight(m: &PhongMaterial, rules: &Rules) -> Option<(Color, f32, HighlightModel)> {
     let blinn = |exponent: f32| Some((m.specular_color, exponent, HighlightModel::Blinn));
     let phong = |shininess: f32| {

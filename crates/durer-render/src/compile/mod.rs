@@ -466,12 +466,14 @@ impl SceneFlattener<'_, '_> {
         }));
     }
 
+    /// Adds all objects of a group, with an accumulated transform.
     fn group(&mut self, group: &Group, to_world: DAffine3) {
         for object in &group.objects {
             self.object(object, to_world);
         }
     }
 
+    /// Adds an object with everything in it, with an accumulated transform.
     fn object(&mut self, object: &scene::Object, to_world: DAffine3) {
         match &object.node {
             Node::Group(group) => self.group(group, to_world),

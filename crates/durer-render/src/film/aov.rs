@@ -259,6 +259,7 @@ pub static AOVS: &[Aov] = &[
     },
 ];
 
+/// Converts a normal to a colour, as the dialect does.
 fn normal_picture(n: Vec3, _: bool, display: &Display) -> Color {
     match display.rules.normals {
         NormalsPicture::Abs => n.abs(),
@@ -266,18 +267,22 @@ fn normal_picture(n: Vec3, _: bool, display: &Display) -> Color {
     }
 }
 
+/// Converts luminance or illuminance to a false colour.
 fn light_picture(value: Vec3, _: bool, display: &Display) -> Color {
     display.light_scale.color(value.x)
 }
 
+/// Converts a count to a heat-map colour, relative to the maximum of the picture.
 fn heat_picture(value: Vec3, _: bool, display: &Display) -> Color {
     heat(value.x / display.all.max.x.max(1.0))
 }
 
+/// Returns an attribute of the surface that was hit; zero for a miss.
 fn of_surface(seen: &AovInput, value: impl Fn(&Surface) -> Vec3) -> Vec3 {
     seen.hit.map_or(Vec3::ZERO, |at| value(&at.surface))
 }
 
+/// Converts a depth to a grey, as the dialect does.
 fn depth_picture(depth: Vec3, hit: bool, display: &Display) -> Color {
     let rules = display.rules;
     let (least, greatest) = (display.hits.min.x, display.hits.max.x);

@@ -176,6 +176,7 @@ struct Small {
 }
 
 impl Small {
+    /// Returns true if a sample is small enough for exact sums in 64 bits.
     #[inline(always)]
     fn holds(color: Color, weight: f32) -> bool {
         color.x.abs() + color.y.abs() + color.z.abs() < SMALL_COLOR && weight.abs() <= 1.0

@@ -187,6 +187,7 @@ impl TraceNode {
         self.throughput.map(|_| self.add_sources(TermValue::Color(Color::ZERO)))
     }
 
+    /// Adds throughput · value of each light source below to `sum`, in order.
     fn add_sources(&self, sum: TermValue) -> TermValue {
         match (&self.what, self.throughput) {
             (TermKind::Ray { .. } | TermKind::OneWavelength { .. }, _) => {

@@ -47,7 +47,7 @@ pub enum RenderError {
         allowed: u64,
     },
     /// The system has too little memory for the render.
-    #[error("rendering needs about {} of memory, and the system has less to give", at_least(*.0))]
+    #[error("rendering needs about {} of memory, but the system has less", at_least(*.0))]
     NoMemory(u64),
     /// The saved part belongs to another scene.
     #[error("this part belongs to a different scene")]

@@ -109,6 +109,7 @@ pub fn explain_ray(world: &World, job: &Job, ray: &Ray, id: SampleId) -> Option<
     trace_tree(&job.integrator(world, None), ray, id)
 }
 
+/// Traces a camera ray and returns the tree of its terms.
 fn trace_tree(integrator: &Integrator, ray: &Ray, id: SampleId) -> Option<Tree> {
     let mut account = TraceRecorder::default();
     integrator.radiance(ray, id, &mut account);

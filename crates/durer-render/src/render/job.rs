@@ -113,10 +113,12 @@ pub struct Job {
     pub light_scale: Option<LightScale>,
 }
 
+/// Serializes AOVs by their names.
 fn aov_names<S: Serializer>(aovs: &[&'static Aov], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(aovs.iter().map(|aov| aov.name))
 }
 
+/// Deserializes AOVs from their names.
 fn named_aovs<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<&'static Aov>, D::Error> {
     let unknown = |name: &str| serde::de::Error::custom(format!("unknown picture `{name}`"));
     let names = Vec::<String>::deserialize(deserializer)?;

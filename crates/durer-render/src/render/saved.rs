@@ -117,6 +117,7 @@ impl PartialRender {
         out
     }
 
+    /// Returns everything that comes before the blocks.
     fn head(&self) -> Vec<u8> {
         let mut out = PartialRender::MAGIC.to_vec();
         put(&mut out, FORMAT.into());
@@ -198,6 +199,7 @@ impl PartialRender {
         Ok(part)
     }
 
+    /// Reads the samples and centre-ray results of all blocks; `None` if they are invalid.
     fn read_blocks(&self, mut rest: Bytes) -> Option<()> {
         let (mut state, range) = (self.state(), self.shard.range(self.job.sampling.samples()));
         while let number @ 1.. = rest.whole::<usize>()? {

@@ -186,7 +186,7 @@ fn texels(texture: &Texture, uv: durer_scene::math::Vec2) -> Vec<String> {
         let stored = tap.bytes.map_or(String::new(), |bytes| {
             let [r, g, b] = bytes;
             let plain = Vec3::from(bytes.map(|byte| f32::from(byte) / 255.0));
-            let how = if (plain - tap.color).abs().max_element() < 1e-6 { "/ 255" } else { "by the curve of sRGB" };
+            let how = if (plain - tap.color).abs().max_element() < 1e-6 { "/ 255" } else { "by the sRGB curve" };
             format!("{r} {g} {b} {how} = ")
         });
         format!("{} · texel ({x}, {y}): {stored}{}", number(tap.weight), rgb(tap.color))

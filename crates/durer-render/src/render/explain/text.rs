@@ -233,7 +233,7 @@ impl Explanation {
             say(1, format!("luminance {luminance}, error at most {bound} with 90 % confidence: {parts}"));
         }
         if let Some(stale) = self.stale_texels {
-            say(1, format!("plus {} by the quirk `stale-texels`", rgb(stale)));
+            say(1, format!("plus {} from the quirk `stale-texels`", rgb(stale)));
         }
         let nothing = |i: usize| i != wanted && self.samples[i].weight == 0.0 && self.mean != Mean::Own;
         for (i, sample) in self.samples.iter().enumerate().filter(|(i, _)| !nothing(*i)) {

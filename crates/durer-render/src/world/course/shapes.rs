@@ -31,6 +31,7 @@ impl Limits {
         t > self.t_min && self.is_nearer(t, ties)
     }
 
+    /// Returns true if `t` is nearer than the best hit or, with `ties`, equally near.
     fn is_nearer(&self, t: f32, ties: bool) -> bool {
         // The official programs initialize the nearest hit to the end of the ray.
         let best = self.best.unwrap_or(self.t_max.min(f32::MAX));

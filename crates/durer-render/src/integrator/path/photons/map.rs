@@ -74,6 +74,7 @@ impl Photon {
 }
 
 impl Cells {
+    /// Sorts photons into cells that are two search radii wide.
     pub(super) fn new(photons: &[Photon], radius: f32, corrected: bool) -> Self {
         // Photons in a cell stay in the order of emission, so sums are reproducible.
         let cell = |photon: &Photon| cell_of(place(photon.position, radius, 0.0));

@@ -102,10 +102,12 @@ impl Photons {
         }
     }
 
+    /// Returns the map of a sample if it is cached.
     fn found(kept: &MapCache, sample: u32) -> Option<Arc<PhotonMap>> {
         kept.iter().find(|(number, _)| *number == sample).map(|(_, map)| map.clone())
     }
 
+    /// Caches a map, and drops the oldest one if there are too many.
     fn keep(kept: &mut MapCache, sample: u32, map: PhotonMap) -> Arc<PhotonMap> {
         let map = Arc::new(map);
         kept.push_back((sample, map.clone()));
@@ -115,6 +117,7 @@ impl Photons {
         map
     }
 
+    /// Traces the photons of a sample and builds their map.
     fn make(&self, path: &Path, sample: u32, parallel: bool) -> PhotonMap {
         // Photons have the same wavelengths as the paths of the sample.
         let lanes = Lanes::new(path.transport.color, SampleId::new(self.seed, (0, 0), sample).wavelength());
