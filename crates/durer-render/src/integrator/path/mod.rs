@@ -14,6 +14,7 @@
 //! 5. `Path::scatter` samples a direction, applies Russian roulette and starts the next ray. If
 //!    there is an environment, the first glossy vertex follows several directions, which wait on
 //!    the `PathStack`.
+//!
 //! The radiance of a camera ray is the sum of throughput · light over all terms, in the order in
 //! which they are found.
 //!
