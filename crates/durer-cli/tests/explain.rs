@@ -308,7 +308,7 @@ fn numbers_say_where_they_come_from() {
         ("0 0 5 0 -0.5 -1", &["t = (offset - n·o) / n·d = (-1.5 - 0) / -0.5 = 3", "checkerboard: ", "material "]),
         (
             "-3.2 0.1 5 0 0 -1",
-            &["texture `two.ppm` of 2 x 1 texels", "99 99 99 by the curve of sRGB", "· texel (0, 0)"],
+            &["texture `two.ppm` of 2 x 1 texels", "99 99 99 by the sRGB curve", "· texel (0, 0)"],
         ),
         ("3.3 0 5 0 0 -1", &["Snell: sin i = 0.3, sin t = n₁/n₂ sin i = 1 / 1.5 · 0.3 = 0.2"]),
     ] {

@@ -1,8 +1,8 @@
-//! Clock, on platforms that have one.
+//! Monotonic clock that also compiles for WebAssembly, where there may be none.
 
 pub use std::time::Duration;
 
-/// Instant of a clock that never runs backwards.
+/// Instant of a monotonic clock, used for time limits and to measure renders.
 ///
 /// WebAssembly without a host has no clock: all instants are equal there, so renders have no time
 /// limit and report durations of zero.
@@ -10,7 +10,7 @@ pub use std::time::Duration;
 pub struct Instant(#[cfg(not(target_family = "wasm"))] std::time::Instant);
 
 impl Instant {
-    /// The present instant.
+    /// Returns the current instant.
     pub fn now() -> Self {
         Instant(
             #[cfg(not(target_family = "wasm"))]
@@ -18,7 +18,7 @@ impl Instant {
         )
     }
 
-    /// Time since `earlier`; zero if that is later.
+    /// Time elapsed since `earlier`, or zero if `earlier` is later than this instant.
     pub fn duration_since(self, earlier: Instant) -> Duration {
         #[cfg(not(target_family = "wasm"))]
         return self.0.duration_since(earlier.0);

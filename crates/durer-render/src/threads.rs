@@ -1,5 +1,5 @@
-//! Thread pools with as many threads as requested and available. If none can be started, the
-//! calling thread does all work.
+//! Thread pools with the requested number of threads, or fewer if the system allows fewer. If it
+//! allows none, the calling thread does all the work.
 
 use rayon::{ThreadBuilder, ThreadPool, ThreadPoolBuilder};
 use std::io;
@@ -8,15 +8,16 @@ use std::sync::{Once, mpsc};
 /// Maximum number of threads.
 pub const MOST: usize = 1024;
 
-/// Returns the wanted number of threads: as requested, else `RAYON_NUM_THREADS`, else the number of
-/// processors.
+/// Returns the number of threads to start: the requested one, or else `RAYON_NUM_THREADS`, or else
+/// the number of processors.
 fn wanted(requested: Option<usize>) -> usize {
     let environment = || std::env::var("RAYON_NUM_THREADS").ok()?.parse().ok().filter(|&count: &usize| count > 0);
     let machine = || std::thread::available_parallelism().map_or(1, usize::from);
     requested.or_else(environment).unwrap_or_else(machine).clamp(1, MOST)
 }
 
-/// Starts the wanted threads, as far as the system allows. Each waits to be assigned to a pool.
+/// Starts the threads that [`wanted`] returns, or as many as the system allows. Each waits until it
+/// is assigned to a pool.
 fn started(requested: Option<usize>) -> Vec<mpsc::Sender<ThreadBuilder>> {
     let start = |_| {
         let (sender, receiver) = mpsc::channel::<ThreadBuilder>();
@@ -26,8 +27,8 @@ fn started(requested: Option<usize>) -> Vec<mpsc::Sender<ThreadBuilder>> {
     (0..wanted(requested)).map_while(start).collect()
 }
 
-/// Returns a spawn handler that assigns running threads to a pool, which cannot fail halfway,
-/// unlike starting new ones.
+/// Returns a spawn handler that assigns running threads to a pool. Unlike starting new threads,
+/// this cannot fail halfway.
 fn giving(mut started: Vec<mpsc::Sender<ThreadBuilder>>) -> impl FnMut(ThreadBuilder) -> io::Result<()> {
     move |thread| {
         let sent = started.pop().map(|sender| sender.send(thread));
@@ -35,7 +36,7 @@ fn giving(mut started: Vec<mpsc::Sender<ThreadBuilder>>) -> impl FnMut(ThreadBui
     }
 }
 
-/// Returns a private pool; `None` if the system allows no threads.
+/// Returns a new thread pool, or `None` if the system allows no threads.
 pub fn pool(requested: Option<usize>) -> Option<ThreadPool> {
     let started = started(requested);
     if started.is_empty() {
@@ -45,7 +46,7 @@ pub fn pool(requested: Option<usize>) -> Option<ThreadPool> {
     ThreadPoolBuilder::new().num_threads(started.len()).spawn_handler(giving(started)).build().ok()
 }
 
-/// Runs work in a private pool, or in the calling thread without one.
+/// Runs work in a new thread pool or, if there is none, in the calling thread.
 pub fn install<R: Send>(requested: Option<usize>, work: impl FnOnce() -> R + Send) -> R {
     match pool(requested) {
         Some(pool) => pool.install(work),
@@ -53,13 +54,13 @@ pub fn install<R: Send>(requested: Option<usize>, work: impl FnOnce() -> R + Sen
     }
 }
 
-/// Starts the threads of the global pool. Programs call it when they begin; otherwise the threads
-/// start on first use, and a system that allows none makes the program fail.
+/// Starts the threads of rayon's global pool. Programs should call this at their start. Otherwise,
+/// the threads start at first use, and the program fails if the system allows none.
 pub fn prepare() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
         let started = started(None);
-        // An error means that the global pool exists already.
+        // An error means that the global pool already exists.
         let _ = match started.is_empty() {
             true => ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global(),
             false => {

@@ -1,4 +1,5 @@
-//! Cache of meshes and pictures between compilations: watching a scene only reloads what changed.
+//! Cache of meshes and pictures that outlives a compilation, so that a watched scene reloads only
+//! the files that changed.
 
 use super::decoded::Encoding;
 use crate::world::MeshTree;
@@ -9,7 +10,7 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Source of a cached item.
+/// Key of a cached mesh or picture: the file or the memory contents that it was read from.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Origin {
     /// A file with its modification stamp.
@@ -18,19 +19,21 @@ pub(super) enum Origin {
     Memory(Digest),
 }
 
-/// Cached meshes with their trees, and cached pictures.
+/// Cache of meshes (with their BVHs) and decoded pictures, shared by successive compilations of a
+/// scene.
 #[derive(Debug, Default)]
 pub struct AssetCache(Mutex<CacheEntries>);
 
+/// Contents of an [`AssetCache`], behind its mutex.
 #[derive(Debug, Default)]
 struct CacheEntries {
-    /// Rules with which the meshes were built.
+    /// Dialect rules that the meshes were built with.
     rules: Option<Rules>,
     meshes: Items<Origin, Arc<MeshTree>>,
     pictures: Items<(Origin, Encoding), Texture>,
 }
 
-/// Cached items by source.
+/// Cached meshes or pictures, by key, with counts of those built and reused.
 #[derive(Debug)]
 struct Items<K, V> {
     all: HashMap<K, Item<V>>,
@@ -38,16 +41,16 @@ struct Items<K, V> {
     reused: usize,
 }
 
-/// A cached item, and the hash of its file.
+/// Cached mesh or picture, with the hash of the file that it was read from.
 #[derive(Clone, Debug)]
 pub(super) struct Item<V> {
     pub value: V,
     pub digest: Option<Digest>,
-    /// True if the current or latest compilation uses it.
+    /// True if the current or most recent compilation uses the item.
     used: bool,
 }
 
-/// Statistics of the cache for the latest compilation.
+/// Numbers of meshes and pictures that the latest compilation built and took from the cache.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reuse {
     /// Number of items that were read and built.
@@ -86,7 +89,7 @@ impl AssetCache {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Starts a compilation. Other rules make other meshes, so they clear the cache.
+    /// Starts a compilation. Clears the cache if the rules differ, since meshes depend on them.
     pub(super) fn begin(&self, rules: &Rules) {
         let mut inside = self.inside();
         if inside.rules.as_ref() != Some(rules) {
@@ -96,14 +99,14 @@ impl AssetCache {
         inside.pictures.begin();
     }
 
-    /// Ends a compilation; drops unused items.
+    /// Ends a compilation and drops the items that it did not use.
     pub(super) fn finish(&self) {
         let mut inside = self.inside();
         inside.meshes.all.retain(|_, item| item.used);
         inside.pictures.all.retain(|_, item| item.used);
     }
 
-    /// Returns a cached mesh.
+    /// Returns the cached mesh with this key.
     pub(super) fn mesh(&self, origin: &Origin) -> Option<Item<Arc<MeshTree>>> {
         self.inside().meshes.get(origin)
     }
@@ -113,7 +116,7 @@ impl AssetCache {
         self.inside().meshes.put(origin, Arc::clone(mesh), digest);
     }
 
-    /// Returns a cached picture.
+    /// Returns the cached picture with this key and encoding.
     pub(super) fn picture(&self, origin: &Origin, encoding: Encoding) -> Option<Item<Texture>> {
         self.inside().pictures.get(&(origin.clone(), encoding))
     }
@@ -123,7 +126,7 @@ impl AssetCache {
         self.inside().pictures.put((origin, encoding), texture.clone(), digest);
     }
 
-    /// Returns the numbers of meshes and pictures built and reused in the latest compilation.
+    /// Returns how many meshes and pictures the latest compilation built and reused.
     pub fn reuse(&self) -> Reuse {
         let inside = self.inside();
         Reuse { made: inside.meshes.made + inside.pictures.made, reused: inside.meshes.reused + inside.pictures.reused }

@@ -1,4 +1,4 @@
-//! Decoding of pictures to textures.
+//! Decoding of image files into textures.
 
 use durer_diag::{Diagnostic, Diagnostics};
 use durer_image::{self as image, Encoded, ImageError, Raster};
@@ -6,17 +6,17 @@ use durer_scene::describe::FileName;
 use durer_scene::math::Vec3;
 use durer_scene::texture::Texture;
 
-/// Meaning of a picture's eight-bit values.
+/// Meaning of the eight-bit values of a picture: sRGB colours or linear numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Encoding {
-    /// Colours with the sRGB curve.
+    /// Colours encoded with the sRGB curve.
     Srgb,
     /// Linear numbers from 0 to 1.
     Linear,
 }
 
-/// Decodes a picture into a texture within a memory limit. Eight-bit pictures stay eight-bit,
-/// others become floats.
+/// Decodes an image file into a texture, using at most `memory` bytes. Eight-bit pictures stay
+/// eight-bit; all others become floats.
 pub(super) fn decode(
     name: &FileName,
     path: &str,
@@ -48,11 +48,12 @@ pub(super) fn decode(
     }
 }
 
-/// Largest finite half-precision number. Infinite texels are clamped to it: usually a sun too
-/// bright for the camera.
+/// Largest finite half-precision number. Infinite texels are clamped to it; they are usually the
+/// sun in an HDR photograph, too bright for the camera.
 const BRIGHTEST: f32 = 65_504.0;
 
-/// Replaces invalid texels: NaN by 0, infinity by the largest value. Returns a message about them.
+/// Replaces NaN texels by 0 and clamps infinite ones to [`BRIGHTEST`]. Returns a warning text if
+/// there were any.
 pub(super) fn mend(texels: &mut [Vec3], width: u32, path: &str) -> Option<String> {
     let (mut count, mut first) = (0_usize, None);
     for (i, texel) in texels.iter_mut().enumerate().filter(|(_, texel)| !texel.is_finite()) {
@@ -70,7 +71,7 @@ pub(super) fn mend(texels: &mut [Vec3], width: u32, path: &str) -> Option<String
     ))
 }
 
-/// Unwraps a picture that was read; reports an error at the span that names it.
+/// Returns a picture that was read, or reports the error at the file name in the scene.
 pub(super) fn used<T>(
     name: &FileName,
     path: &str,

@@ -1,4 +1,4 @@
-//! Files that a scene names. Each is read and decoded once.
+//! Loader for the files that a scene names. Each file is read and decoded once.
 
 use super::Resources;
 use super::cache::Origin;
@@ -22,32 +22,34 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Temporary bytes per triangle for the tree and its construction.
+/// Temporary memory in bytes per triangle for a mesh's BVH and its construction.
 const TREE_BYTES: u64 = 200;
-/// Temporary bytes per height while normals are computed: the normals at the corners of its two
-/// triangles, also in vertex order, each three times four bytes.
+/// Temporary memory in bytes per height while normals are computed: two triangles with three corner
+/// normals each, and again in vertex order.
 const HEIGHT_BYTES: u64 = 112;
 
 /// Width of a sky picture in pixels.
 const SKY_WIDTH: u32 = 512;
 
-/// Name of a picture, and the meaning of its values.
+/// Picture name and encoding, the key under which a decoded picture is stored.
 pub(super) type PictureKey = (String, Encoding);
 
+/// Loads the meshes, pictures, profiles, spectra and densities of a scene, for its compilation.
 pub(super) struct Loader<'r> {
     pub(super) resources: Resources<'r>,
     rules: Rules,
     pub(super) assets: &'r Assets,
     /// Meshes by path; `None` for unreadable files, which are reported once.
     meshes: HashMap<String, Option<Arc<MeshTree>>>,
+    /// Indices of textures by picture name, for Phong materials.
     texture_numbers: HashMap<String, Option<u32>>,
     /// Indices of the textures of layered materials, by picture name and encoding.
     pub(super) map_numbers: HashMap<PictureKey, Option<u32>>,
-    /// Decoded pictures, by file name or by address in memory.
+    /// Decoded pictures, by file name or, for pictures in memory, by asset name.
     pub(super) decoded: HashMap<PictureKey, Option<Texture>>,
     /// Decoded pictures with mipmaps.
     pub(super) mipmapped: HashMap<PictureKey, Option<Texture>>,
-    /// Pictures decoded in advance.
+    /// Pictures decoded in parallel before they are needed.
     pub(super) ahead: HashMap<PictureKey, Texture>,
     pub(super) textures: Vec<Texture>,
 }
@@ -68,14 +70,14 @@ impl<'r> Loader<'r> {
         }
     }
 
-    /// Builds the tree of a mesh. With fewer rays than triangles, a better tree would cost more
-    /// time than it saves. The hits are identical bit for bit.
+    /// Builds the BVH of a mesh. If there are fewer rays than triangles, the build is faster and
+    /// the tree less good. The hits are bit-identical either way.
     pub(super) fn tree(&self, mesh: Mesh) -> MeshTree {
         let few = self.resources.rays < mesh.len() as u64;
         MeshTree::new(mesh, if few { BuildQuality::Fast } else { BuildQuality::Balanced })
     }
 
-    /// Returns the mesh of a file.
+    /// Returns the mesh of a file with its BVH.
     pub(super) fn mesh(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Arc<MeshTree>> {
         if let Some(known) = self.meshes.get(&name.path) {
             return known.clone();
@@ -111,11 +113,11 @@ impl<'r> Loader<'r> {
             };
             let mesh = Mesh::new(data, normals, self.rules.file_normals || by_vertex);
             let mesh = self.centered(mesh);
-            // As in the official program, which treats smaller determinants as zero.
+            // The official program treats smaller determinants as zero.
             let least_volume = if self.rules.has(Quirk::ThinTriangles) { 1e-6 } else { 0.0 };
             Arc::new(self.tree(mesh).least_volume(least_volume))
         });
-        // Cache only meshes without diagnostics, which must be reported each time.
+        // Cache only meshes without diagnostics, because each compilation must report those again.
         if let (Some(cache), Some(origin), Some(tree), true) =
             (self.resources.cache, origin, &tree, diagnostics.iter().count() == count_before)
         {
@@ -125,14 +127,14 @@ impl<'r> Loader<'r> {
         tree
     }
 
-    /// Returns the cache key of an asset if caching is on: the hash of data in memory, or the stamp
-    /// of a file.
+    /// Returns the cache key of a file or asset: the hash of data in memory, or else the stamp of
+    /// the file. `None` if caching is off.
     pub(super) fn origin(&self, path: &str, memory: impl FnOnce() -> Option<Digest>) -> Option<Origin> {
         self.resources.cache?;
         memory().map(Origin::Memory).or_else(|| self.resources.source.stamp(path).map(Origin::File))
     }
 
-    /// Records a cached file as read.
+    /// Records a file as read although its contents came from the cache.
     pub(super) fn remember(&self, path: &str, origin: Option<&Origin>, digest: Option<Digest>) {
         if let (Some(Origin::File(stamp)), Some(digest)) = (origin, digest) {
             self.resources.source.skip_reading(path, stamp, digest);
@@ -145,7 +147,7 @@ impl<'r> Loader<'r> {
         self.parsed(name, "mesh", diagnostics, |bytes, file, own| decoder.mesh(bytes, file, &name.path, quirks, own))
     }
 
-    /// Parses a file; a note after its errors points to where the scene names the file.
+    /// Parses a file. After errors in the file, adds an error where the scene names it.
     fn parsed<T>(
         &mut self,
         name: &FileName,
@@ -167,7 +169,7 @@ impl<'r> Loader<'r> {
         data
     }
 
-    /// Returns the mesh of a height field.
+    /// Reads a height field's picture and returns its mesh.
     pub(super) fn height_field(&mut self, field: &HeightField, diagnostics: &mut Diagnostics) -> Option<Arc<MeshTree>> {
         let name = &field.picture;
         let bytes = self.read(name, "height image", diagnostics)?;
@@ -206,12 +208,12 @@ impl<'r> Loader<'r> {
         Some(Arc::new(self.tree(self.centered(Mesh::of_terrain(terrain, self.rules.mesh_normals)))))
     }
 
-    /// Moves a distant mesh to the origin, except in official programs.
+    /// Moves a distant mesh to the origin for precision, except in bit-compatible mode.
     fn centered(&self, mesh: Mesh) -> Mesh {
         if self.rules.is_bit_compatible() { mesh } else { mesh.centered() }
     }
 
-    /// Returns the index of a picture's texture.
+    /// Returns the index of a Phong material's texture.
     pub(super) fn texture(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<u32> {
         if let Some(known) = self.texture_numbers.get(&name.path) {
             return *known;
@@ -226,7 +228,7 @@ impl<'r> Loader<'r> {
         number
     }
 
-    /// Returns the cube map of a folder; a missing optional map is a warning.
+    /// Returns the cube map in a folder. If the cube map is optional, errors become warnings.
     pub(super) fn cube_map(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<CubeMap> {
         let mut own = Diagnostics::default();
         let map = self.faces(name, &mut own);
@@ -253,7 +255,7 @@ impl<'r> Loader<'r> {
         }
     }
 
-    /// Returns the densities of a file, and the box that they fill.
+    /// Returns the densities in a file and the box that they fill.
     pub(super) fn density(
         &mut self,
         name: &FileName,
@@ -268,7 +270,7 @@ impl<'r> Loader<'r> {
         self.charge(name, grid.bytes() as u64, diagnostics).then(|| (bounds, Arc::new(grid)))
     }
 
-    /// Returns a measured reflectance.
+    /// Returns a reflectance spectrum from a file.
     pub(super) fn reflectance(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Arc<Curve>> {
         let rows = self.curve(name, diagnostics)?;
         if let Some([nm, share]) = rows.iter().find(|row| row[1] > 1.0) {
@@ -279,7 +281,7 @@ impl<'r> Loader<'r> {
         Curve::reflectance(rows).map(Arc::new)
     }
 
-    /// Returns the spectrum of a light: a named illuminant or a file.
+    /// Returns the emission spectrum of a light: a named illuminant or a file.
     pub(super) fn illuminant(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Arc<Curve>> {
         if let Some(known) = illuminants::illuminant(&name.path) {
             return Some(Arc::new(known));
@@ -299,7 +301,8 @@ impl<'r> Loader<'r> {
         emitter.map(Arc::new)
     }
 
-    /// Returns the rows of a file's only spectrum, or of the one named after a colon.
+    /// Returns the rows of a spectrum file. For `path:column`, selects that column of the file;
+    /// otherwise the file must have only one spectrum.
     fn curve(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Vec<[f32; 2]>> {
         let (path, column) = match name.path.rsplit_once(':') {
             Some((path, column)) if !column.contains(['/', '\\']) => (path, Some(column)),
@@ -311,7 +314,7 @@ impl<'r> Loader<'r> {
         self.parsed(&file, "spectrum", diagnostics, read)
     }
 
-    /// Returns the environment picture.
+    /// Returns the environment map: a picture from a file, or a computed sky.
     pub(super) fn environment(&mut self, written: &Background, diagnostics: &mut Diagnostics) -> Option<Environment> {
         let Some(name) = written.environment.as_ref() else {
             if written.is_night() {
@@ -347,12 +350,13 @@ impl<'r> Loader<'r> {
         if environment.is_none() {
             let message = format!("the environment `{}` is black: it emits no light", name.path);
             let warning = Diagnostic::warning(message).code("bad-file");
-            // A name from an option has no span in the file.
+            // A file name from a command-line option has no span in the scene.
             diagnostics.push(if name.span.is_place() { warning.at(name.span) } else { warning });
         }
         environment.filter(|environment| self.charge(name, environment.bytes() as u64, diagnostics))
     }
 
+    /// Reads and decodes the six faces of a cube map.
     fn faces(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<CubeMap> {
         let folder = name.path.trim_end_matches(['/', '\\']);
         let (mut files, mut unread) = (Vec::with_capacity(6), Diagnostics::default());
@@ -363,14 +367,14 @@ impl<'r> Loader<'r> {
             let Some(bytes) = self.read(&file, "face of the cube map", &mut unread) else { break };
             files.push((file.path, bytes));
         }
-        // All faces are decoded in parallel; each gets the memory that the ones before it leave.
+        // The faces are decoded in parallel. Each may use the memory that the ones before it leave.
         let mut memory = self.resources.memory;
         let mut left = Vec::with_capacity(6);
         for (path, bytes) in &files {
             left.push(memory);
             memory = memory.saturating_sub(Encoded::open(bytes, path).map_or(0, |face| face.needed_raster()));
         }
-        // Decoding dominates. Report the first bad face in order.
+        // Decoding takes most of the time. Errors are reported in the order of the faces.
         let srgb = self.rules.srgb_textures;
         let one = |((path, bytes), left): (&(String, Arc<[u8]>), &u64)| {
             let mut own = Diagnostics::default();
@@ -389,7 +393,7 @@ impl<'r> Loader<'r> {
         Some(CubeMap { faces: faces.try_into().ok()?, mirrored_back }).filter(|_| affordable)
     }
 
-    /// Reserves memory; reports an error if there is too little.
+    /// Reserves memory. Returns false and reports an error if too little is left.
     pub(super) fn charge(&mut self, name: &FileName, needed: u64, diagnostics: &mut Diagnostics) -> bool {
         let left = self.resources.memory;
         self.resources.memory = left.saturating_sub(needed);
@@ -401,7 +405,7 @@ impl<'r> Loader<'r> {
         needed <= left
     }
 
-    /// Reads a file; reports errors where the scene names it.
+    /// Reads a file. Reports an error where the scene names it.
     pub(super) fn read(&self, name: &FileName, what: &str, diagnostics: &mut Diagnostics) -> Option<Arc<[u8]>> {
         // Skip the file if no more diagnostics are accepted.
         if diagnostics.is_full() {
@@ -417,7 +421,7 @@ impl<'r> Loader<'r> {
             SourceError::Missing { tried, near, .. } => {
                 let (help, folder) =
                     (missing_help(&tried, near.as_deref()), name.path.rfind('/').map_or(0, |at| at + 1));
-                // The scene names only the folder of a cube map's faces.
+                // For cube maps the scene names only the folder, so no fix is possible.
                 match near.filter(|_| matches!(what, "mesh" | "texture" | "height image")) {
                     Some(near) => diagnostic.help(help).fix(name.span, format!("{}{near}", &name.path[..folder])),
                     None => diagnostic.help(help),
@@ -431,7 +435,7 @@ impl<'r> Loader<'r> {
     }
 }
 
-/// Returns help about the searched paths, and a file there with a similar name.
+/// Returns a help text with the paths that were searched and a similar file name, if there is one.
 fn missing_help(tried: &[PathBuf], near: Option<&str>) -> String {
     let shown: Vec<String> = tried.iter().map(|path| path.display().to_string()).collect();
     match near {

@@ -1,4 +1,4 @@
-//! Compilation of materials: resolves the dialect's meaning of their fields.
+//! Compilation of materials. The dialect determines the meaning of their fields.
 
 use super::files::Loader;
 use super::media;
@@ -14,6 +14,7 @@ use durer_scene::math::Color;
 use durer_scene::scene::{self, MatrixOp, Scene};
 use std::sync::Arc;
 
+/// Compiles the materials of a scene and loads their textures and spectra.
 pub(super) fn compile(
     scene: &Scene,
     rules: &Rules,
@@ -24,7 +25,7 @@ pub(super) fn compile(
         scene::Material::Principled(layers) => Some(&**layers),
         _ => None,
     }));
-    // Boundaries of equal index share their tables.
+    // Materials with the same index of refraction share their tables.
     let mut tables = Vec::new();
     let mut one = |material: &scene::Spanned<scene::Material>| match &material.value {
         scene::Material::Solid(solid, ops) => {
@@ -66,7 +67,7 @@ pub(super) fn compile(
         }
         scene::Material::Hair(hair) => {
             let fibre = Fibre::new(hair);
-            // Appearance in Whitted's model.
+            // Approximation for the Whitted integrator.
             let highlight = Some((Color::splat(0.2), 20.0, HighlightModel::Blinn));
             let diffuse = fibre.color();
             Material::Phong(Phong { diffuse, highlight, fibre: Some(Arc::new(fibre)), ..Phong::default() })
@@ -79,6 +80,7 @@ pub(super) fn compile(
     scene.materials.iter().map(&mut one).collect()
 }
 
+/// Compiles a Phong material, with the dialect's meaning of its fields.
 fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, rules: &Rules) -> Phong {
     let (reflective, transparent, ior) = secondary(m, rules);
     let diffuse = m.diffuse_color.unwrap_or(Color::ONE);
@@ -92,7 +94,7 @@ fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, 
         tinted: false,
         noise,
         ambient,
-        // A normal longer than 1 may give an infinite highlight, and infinity times 0 is NaN.
+        // A normal longer than 1 can make the highlight infinite, and infinity times 0 is NaN.
         highlight: highlight(m, rules).filter(|(color, ..)| rules.has(Quirk::RawNormals) || *color != Color::ZERO),
         reflective,
         transparent,
@@ -104,13 +106,13 @@ fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, 
     }
 }
 
-/// Approximates layers in Whitted's model: matte base, a highlight as wide as GGX's, metals as
-/// mirrors, and glass.
+/// Approximates a principled material for the Whitted integrator: a matte base, a highlight as wide
+/// as GGX's, and mirrors or glass for metals and transmission.
 fn plain(m: &PrincipledMaterial) -> Phong {
     let base = m.base_weight * m.base_color;
     let matte = (1.0 - m.base_metalness) * (1.0 - m.transmission_weight);
-    // Blinn's exponent with the same width at the peak; after Walter and others, *Microfacet Models
-    // for Refraction*, 2007.
+    // Blinn exponent that gives the highlight the same width at its peak. Source: Walter and
+    // others, *Microfacet Models for Refraction*, 2007.
     let alpha = (m.specular_roughness * m.specular_roughness).max(1e-3);
     let exponent = (2.0 / (alpha * alpha) - 2.0).max(1.0);
     let ratio = (m.specular_ior - 1.0) / (m.specular_ior + 1.0);
@@ -130,6 +132,7 @@ fn plain(m: &PrincipledMaterial) -> Phong {
     }
 }
 
+/// Returns colour, exponent and formula of the highlight, if the dialect gives it one.
 fn highlight(m: &PhongMaterial, rules: &Rules) -> Option<(Color, f32, HighlightModel)> {
     let blinn = |exponent: f32| Some((m.specular_color, exponent, HighlightModel::Blinn));
     let phong = |shininess: f32| {
@@ -141,8 +144,8 @@ fn highlight(m: &PhongMaterial, rules: &Rules) -> Option<(Color, f32, HighlightM
         (Highlight::Blinn, exponent, shininess) => blinn(exponent.or(shininess).unwrap_or(1.0)),
         (Highlight::Phong, exponent, shininess) => {
             let shininess = shininess.or(exponent).unwrap_or(0.0);
-            // An exponent of 0 gives no highlight, except in programs that evaluate 0 to the power
-            // of 0.
+            // A shininess of 0 means no highlight, except in programs that evaluate `pow(0, 0)` as
+            // 1.
             if shininess > 0.0 || rules.has(Quirk::PowZero) { phong(shininess) } else { None }
         }
         (Highlight::ByKeyword, Some(exponent), _) => blinn(exponent),
@@ -151,7 +154,8 @@ fn highlight(m: &PhongMaterial, rules: &Rules) -> Option<(Color, f32, HighlightM
     }
 }
 
-/// Returns the index of refraction if the material is glass with Fresnel's law.
+/// Returns the index of refraction if the dialect renders the material as glass with Fresnel
+/// reflection.
 fn glass(m: &PhongMaterial, rules: &Rules) -> Option<f32> {
     let divides = matches!(rules.secondary, Secondary::SpecularFresnel | Secondary::ByKeyword);
     m.refraction_index.filter(|index| divides && *index > 0.0)

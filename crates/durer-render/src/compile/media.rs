@@ -1,4 +1,4 @@
-//! Compilation of media: interiors of objects, and fog.
+//! Compilation of participating media: object interiors and fog.
 
 use super::files::Loader;
 use durer_diag::{Diagnostic, Diagnostics};
@@ -20,8 +20,8 @@ pub(super) fn inside(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &
     m.has_subsurface().then(|| subsurface(m))
 }
 
-/// Medium of the transmission layer. Source: OpenPBR, *Translucent base*: with a colour T after a
-/// depth, extinction is -ln T / depth, and scattering is the scattered colour over the depth.
+/// Returns the medium of the transmission layer. Source: OpenPBR, *Translucent base*. For a colour
+/// T at a depth d, extinction is -ln T / d, and scattering is the scatter colour divided by d.
 fn transmission(m: &PrincipledMaterial) -> Option<Medium> {
     if m.transmission_depth <= 0.0 {
         return None;
@@ -29,7 +29,7 @@ fn transmission(m: &PrincipledMaterial) -> Option<Medium> {
     // Black would need infinite extinction.
     let extinction = m.transmission_color.map(|c| -fp::ln(c.clamp(1e-6, 1.0)) / m.transmission_depth);
     let scattering = m.transmission_scatter.max(Vec3::ZERO) / m.transmission_depth;
-    // Raise negative absorption for all colours equally, to keep the hue.
+    // If absorption is negative, raise it equally in all channels to keep the hue.
     let absorption = extinction - scattering;
     let absorption = absorption - absorption.min_element().min(0.0);
     let extinction = if scattering == Color::ZERO { extinction } else { absorption + scattering };
@@ -37,7 +37,7 @@ fn transmission(m: &PrincipledMaterial) -> Option<Medium> {
     (extinction != Color::ZERO).then(|| medium(extinction, scattering, phase))
 }
 
-/// Returns the density field of an interior, if it is not uniform.
+/// Returns the density field of an object's interior, if its density is not uniform.
 fn density(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &mut Diagnostics) -> Option<MediumRegion> {
     let name = m.transmission_density.as_ref()?;
     let (bounds, grid) = loader.density(name, diagnostics)?;
@@ -61,16 +61,17 @@ fn density(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &mut Diagno
     Some(MediumRegion { bounds: Aabb { min: Vec3::ZERO, max: Vec3::ONE }, placed: Some(placed), ..place })
 }
 
+/// Returns an unbounded medium with this extinction and scattering, in 1/length.
 fn medium(extinction: Color, scattering: Color, phase: HenyeyGreenstein) -> Medium {
     let share = |s: f32, all: f32| if all > 0.0 { s / all } else { 0.0 };
     let albedo = Color::from_array(std::array::from_fn(|i| share(scattering[i], extinction[i])));
     Medium { extinction, albedo, phase, place: None }
 }
 
-/// Returns the medium whose half-space has a given albedo.
+/// Returns the medium that gives a half-space the subsurface colour as its albedo.
 ///
-/// Source: OpenPBR, *Subsurface*; the inversion after Kulla and Conty, *Revisiting Physically Based
-/// Shading at Imageworks*, 2017.
+/// Source: OpenPBR, *Subsurface*. The albedo inversion is from Kulla and Conty, *Revisiting
+/// Physically Based Shading at Imageworks*, 2017.
 fn subsurface(m: &PrincipledMaterial) -> Medium {
     let g = m.subsurface_scatter_anisotropy;
     let albedo = |color: f32| {
@@ -87,7 +88,7 @@ fn subsurface(m: &PrincipledMaterial) -> Medium {
     }
 }
 
-/// Returns true if a surface only bounds a medium.
+/// Returns true if a surface neither reflects nor refracts but only bounds a medium.
 pub(super) fn is_interface(m: &PrincipledMaterial) -> bool {
     let tint = m.transmission_depth > 0.0 || m.transmission_color == Vec3::ONE;
     m.walls == Walls::Solid
@@ -100,7 +101,7 @@ pub(super) fn is_interface(m: &PrincipledMaterial) -> bool {
         && m.emission_luminance == 0.0
 }
 
-/// Returns the medium of the air.
+/// Returns the medium of a scene's fog, optionally bounded by a box or a density grid.
 pub(super) fn fog(written: &Fog, loader: &mut Loader, diagnostics: &mut Diagnostics) -> Option<Medium> {
     let corners = written.min.zip(written.max).map(|(min, max)| Aabb { min, max });
     let density = match &written.density {

@@ -1,4 +1,4 @@
-//! Compiles the scene description into the world. No later stage needs the description.
+//! Compilation of a scene description into a world. Later stages use only the world.
 
 mod cache;
 mod decoded;
@@ -31,46 +31,46 @@ use glam::{DAffine3, DVec3};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Acceleration structure over the objects.
+/// Acceleration structure for the objects of a world, as chosen by the user.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AccelKind {
     /// A bounding volume hierarchy.
     #[default]
     Bvh,
-    /// A uniform grid with these numbers of cells, or automatic ones.
+    /// A uniform grid with these numbers of cells along x, y and z, or automatic ones.
     Grid(Option<[u32; 3]>),
-    /// Brute force.
+    /// No structure: every ray tests all objects.
     None,
 }
 
-/// Resources for compiling a scene.
+/// Inputs of [`compile`] besides the scene: file access, limits and a cache.
 pub struct Resources<'a> {
     /// Reads files that the scene names.
     pub source: &'a dyn AssetSource,
     /// Decodes meshes, photometric files, spectra and densities.
     pub decoder: &'a dyn AssetDecoder,
-    /// Keeps the texts of files for diagnostics.
+    /// Keeps the text of each file so that diagnostics can quote it.
     pub files: &'a mut Files,
-    /// Turns a missing cube map into a warning, and uses the background's colour instead.
+    /// If true, a missing cube map is only a warning and the background colour is used instead.
     pub sky_optional: bool,
-    /// Memory limit of meshes and pictures, in bytes.
+    /// Memory limit for meshes and pictures, in bytes.
     pub memory: u64,
-    /// Expected camera rays (`u64::MAX` if unknown): few rays get a faster BVH build.
+    /// Expected number of camera rays, `u64::MAX` if unknown. Few rays get a faster BVH build.
     pub rays: u64,
     /// Cache of meshes and pictures from earlier compilations.
     pub cache: Option<&'a AssetCache>,
 }
 
 impl<'a> Resources<'a> {
-    /// Unlimited memory, many rays, no cache.
+    /// Creates resources with unlimited memory, an unknown number of rays and no cache.
     pub fn new(source: &'a dyn AssetSource, decoder: &'a dyn AssetDecoder, files: &'a mut Files) -> Self {
         Resources { source, decoder, files, sky_optional: false, memory: u64::MAX, rays: u64::MAX, cache: None }
     }
 }
 
-/// Compiles a scene into a world. Collects errors and warnings; returns `None` after an error.
+/// Compiles a scene into a world. Collects errors and warnings, and returns `None` after an error.
 ///
-/// First checks all values with [`Scene::validate`], regardless of the scene's source.
+/// Values are first checked with [`Scene::validate`], wherever the scene comes from.
 pub fn compile(
     scene: &Scene,
     rules: &Rules,
@@ -112,7 +112,7 @@ pub fn compile(
     };
     match &scene.root {
         Some(root) => flattener.group(root, DAffine3::IDENTITY),
-        // The reader of a model has already reported it.
+        // The model's reader has already reported it.
         None if diagnostics.iter().any(|known| known.code == "no-objects") => {}
         None => {
             let warning = Diagnostic::warning("the scene has no objects: it has no `Group`");
@@ -144,7 +144,7 @@ pub fn compile(
             *emitter = emitter.with_flux(profile);
         }
     }
-    // Serialisation fails only for non-finite numbers, which valid scenes and rules do not have.
+    // Serialization fails only for non-finite numbers, which valid scenes and rules do not contain.
     let digest = loader.resources.source.record().digest(&serde_json::to_vec(&(scene, rules)).unwrap_or_default());
     let textures = loader.textures;
     let failed = own.has_errors();
@@ -165,8 +165,9 @@ pub fn compile(
         } else {
             scene.background.color
         },
-        // Under `path`, only the lights that the scene defines emit; Whitted's method takes no
-        // light from the background. A model has a grey background.
+        // With `path`, a scene without a background is lit only by the lights that it defines. (The
+        // Whitted integrator takes no light from the background.) Models have a grey background
+        // instead.
         dark: scene.up.is_none()
             && environment.is_none()
             && scene.background == scene::Background::default()
@@ -191,7 +192,7 @@ pub fn compile(
     Some(world)
 }
 
-/// Builds the acceleration structure over a world's objects, also after they have moved.
+/// Builds or rebuilds the acceleration structure of a world. Call it after objects have moved.
 pub fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>> {
     let objects = world.objects();
     if let Some(rules) = world.hit_rules() {
@@ -238,20 +239,21 @@ pub fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>
     Ok(())
 }
 
-/// Number of objects, and cost of simple shapes in units of spheres, up to which linear search is
-/// faster than a tree. Simple shapes are tested eight at a time, or against eight rays.
+/// Maximum number of other objects for which linear search is faster than a tree.
 const FEW: usize = 2;
+/// Maximum total cost of simple shapes, in sphere tests, for which linear search is faster than a
+/// tree. Simple shapes are tested eight at a time, or against eight rays.
 const FEW_SIMPLE: usize = 16;
 
-/// Number of simple shapes below which packing by eight is slower than one by one.
+/// Minimum number of simple shapes for which tests of eight at a time are faster than single tests.
 const MIN_PACKED: usize = 4;
 
-/// Builds the structure over the objects with these bounds; `None` for unbounded objects.
+/// Builds the structure over the objects with these bounds, which are `None` for unbounded objects.
 fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Result<Accel, Box<Diagnostic>> {
     let cells = match kind {
         AccelKind::None => return Ok(Accel::None),
         AccelKind::Bvh => {
-            // Empty boxes are ignored.
+            // The BVH ignores empty boxes.
             let boxes: Vec<Aabb> = bounds.into_iter().map(|bounds| bounds.unwrap_or(Aabb::EMPTY)).collect();
             return Ok(Accel::Bvh(Bvh::build(&boxes)));
         }
@@ -271,7 +273,7 @@ fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Res
     if cells.is_none() {
         let outliers = outliers(&boxes);
         wide = outliers.iter().map(|&i| parts[i]).collect();
-        // Remove from the last to the first, so that the indices stay valid.
+        // Remove from last to first so that the remaining indices stay valid.
         for &i in outliers.iter().rev() {
             parts.remove(i);
             boxes.remove(i);
@@ -293,12 +295,12 @@ fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Res
     Ok(Accel::Grid { grid, parts, wide })
 }
 
-/// Returns the indices, in ascending order, of the few boxes that extend so far beyond the others
-/// that a grid around all of them would have the others in one cell.
+/// Returns the indices, in ascending order, of boxes that extend so far beyond the others that a
+/// grid around all boxes would have the others in a single cell.
 fn outliers(boxes: &[Aabb]) -> Vec<usize> {
-    /// Maximum number of outliers, since every ray tests them all.
+    /// Maximum number of outliers, because every ray tests them all.
     const MOST: usize = 64;
-    /// Maximum number of cells along an axis; see `Grid::suitable`.
+    /// Maximum number of grid cells along an axis; see `Grid::suitable`.
     const RATIO: f64 = 256.0;
     if boxes.len() < 2 {
         return Vec::new();
@@ -319,7 +321,7 @@ fn outliers(boxes: &[Aabb]) -> Vec<usize> {
     found
 }
 
-/// Warns of a sun below the horizon.
+/// Warns if the sun is below the horizon.
 fn check_sun(scene: &Scene, diagnostics: &mut Diagnostics) {
     let low = |way: Vec3| -fp::asin(way.normalize_or(Vec3::Y).y).to_degrees();
     if let Some(way) = scene.background.sun()
@@ -332,7 +334,7 @@ fn check_sun(scene: &Scene, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Warns of sky fields that have no effect.
+/// Warns about sky fields that have no effect.
 fn check_sky(scene: &Scene, diagnostics: &mut Diagnostics) {
     let sky = &scene.background;
     let (standard, sun) = (sky.cie_sky.is_some(), !matches!(sky.way_to_sun(), Ok(None)));
@@ -352,6 +354,7 @@ fn check_sky(scene: &Scene, diagnostics: &mut Diagnostics) {
     }
 }
 
+/// Warns if the camera's `up` is parallel to its `direction`.
 fn check_camera(scene: &Scene, pose: durer_scene::camera::Pose, diagnostics: &mut Diagnostics) {
     let parallel = pose.direction.as_dvec3().normalize_or_zero().cross(pose.up.as_dvec3().normalize_or_zero()).length();
     if parallel < 1e-6 {
@@ -361,24 +364,24 @@ fn check_camera(scene: &Scene, pose: durer_scene::camera::Pose, diagnostics: &mu
     }
 }
 
-/// Returns the sun of a clear sky.
+/// Returns the sun of a clear sky as a directional light.
 fn sun(background: &scene::Background) -> Option<Light> {
-    // The standard skies use the sun's position, but emit the sky's light only.
+    // The CIE standard skies use the sun's position but have no direct sunlight.
     let way = background.sun().filter(|_| background.cie_sky.is_none() && !background.is_night())?;
     let sky = Sky::new(way, background.turbidity());
     let (turn, scale) = background.environment_placing();
     let (sin, cos) = fp::sin_cos_degrees(f64::from(-turn));
     let [sin, cos] = [sin, cos].map(|x| x as f32);
     let way = Vec3::new(cos * way.x + sin * way.z, way.y.max(0.0), cos * way.z - sin * way.x);
-    // A light's colour is the radiance of a white matte surface: illuminance over pi.
+    // Light colours are the radiance of a white matte surface, which is illuminance divided by pi.
     let color = scale * sky.sun() / std::f32::consts::PI;
     Some(DirectionalLight { direction: -way, color, spread: Some(SUN_RADIUS), ..Default::default() }.into())
 }
 
-/// Returns the lights and the ambient light.
+/// Returns the lights as the dialect interprets them, and the ambient light.
 fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<Light>, Color) {
     let written = scene.lights.as_deref().unwrap_or_default();
-    // Light comes from emissive surfaces or the environment.
+    // The scene is lit by emissive surfaces or the environment.
     if written.is_empty() && scene.is_physical() {
         return (Vec::new(), scene.background.ambient_light);
     }
@@ -390,7 +393,7 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
                 scene.background.ambient_light,
             ),
         };
-        // The first assignments intentionally have no lights and ambient light of 1 1 1.
+        // The first assignments intentionally have no lights and an ambient light of 1 1 1.
         let intended = scene.background.ambient_light == Color::ONE;
         let finding = if intended { Diagnostic::note(message) } else { Diagnostic::warning(message) };
         diagnostics.push(finding.code("no-light"));
@@ -419,33 +422,35 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
     (compiled, scene.background.ambient_light)
 }
 
-/// Flattens nested groups and transforms into a list.
+/// Visitor of a scene's object tree that flattens nested groups and transforms into a list of
+/// objects.
 struct SceneFlattener<'a, 'r> {
     objects: Vec<Object>,
     loader: &'a mut files::Loader<'r>,
     rules: &'a Rules,
     diagnostics: &'a mut Diagnostics,
     material_count: u32,
-    /// True if some object needs the plain material after the last one.
+    /// True if some object needs the default material, which is added after all others.
     plain_needed: bool,
     /// First object without a material, and the number of such objects.
     bare: Option<(Span, usize)>,
     /// Number of transforms around the current object.
     transforms: u32,
-    /// Matrices of these transforms as an official program multiplies them, outermost first; `None`
-    /// inside a solid, which the course does not have.
+    /// Matrices of these transforms as an official program multiplies them, outermost first. `None`
+    /// inside a CSG solid, because the official programs have no solids.
     matrices: Option<Vec<Matrix>>,
-    /// An edge at which a mesh is open, if there is one, by its path.
+    /// For each mesh file in a solid, an edge with an odd number of triangles; `None` if the mesh
+    /// is closed.
     open_edges: HashMap<String, Option<[Vec3; 2]>>,
 }
 
-/// Returns true if the dialect uses nodes, for help texts.
+/// Returns true if the dialect describes scenes as nodes. Help texts depend on it.
 fn is_nodes(rules: &Rules) -> bool {
     rules.name == Dialect::F23.name()
 }
 
 impl SceneFlattener<'_, '_> {
-    /// Warns once of objects without a material.
+    /// Warns once about all objects without a material.
     fn warn_of_bare(&mut self) {
         let Some((span, count)) = self.bare else { return };
         let mut message = "this object has no material and is rendered in plain grey".to_string();
@@ -461,12 +466,14 @@ impl SceneFlattener<'_, '_> {
         }));
     }
 
+    /// Adds all objects of a group, with an accumulated transform.
     fn group(&mut self, group: &Group, to_world: DAffine3) {
         for object in &group.objects {
             self.object(object, to_world);
         }
     }
 
+    /// Adds an object with everything in it, with an accumulated transform.
     fn object(&mut self, object: &scene::Object, to_world: DAffine3) {
         match &object.node {
             Node::Group(group) => self.group(group, to_world),
@@ -495,7 +502,7 @@ impl SceneFlattener<'_, '_> {
         MatrixOp::product(ops, rules::matrix_rules(self.rules))
     }
 
-    /// Places a shape or mesh in the world; `None` after an error.
+    /// Places a shape or mesh in the world. Returns `None` after an error.
     fn shape(&mut self, object: &scene::Object, to_world: DAffine3) -> Option<Object> {
         let geometry = match &object.node {
             Node::Primitive(Primitive::Triangle(t)) if self.rules.has(Quirk::LooseTriangles) => {
@@ -511,7 +518,7 @@ impl SceneFlattener<'_, '_> {
             }
             Node::Group(_) | Node::Transform(..) | Node::Solid(..) => return None,
         };
-        // Move distant shapes to the origin, where they keep full precision.
+        // Move distant shapes to the origin to keep full precision.
         let (geometry, center) = match geometry {
             Geometry::Primitive(shape)
                 if !self.rules.is_bit_compatible() && shape.bounds().is_some_and(Aabb::is_far) =>
@@ -565,8 +572,8 @@ impl SceneFlattener<'_, '_> {
         Some(Object { geometry, to_world, matrices, center, material, normal_length, span: object.span })
     }
 
-    /// Returns the matrices around an object if an official program's arithmetic is active: each
-    /// one, or with glm their product.
+    /// Returns the matrices around an object if an official program's arithmetic is active: one per
+    /// transform or, with glm, their product.
     fn matrices_around(&self, to_world: DAffine3) -> Vec<Matrix> {
         let Some(rules) = rules::hit_rules(self.rules) else { return Vec::new() };
         match (&self.matrices, rules.vectors) {

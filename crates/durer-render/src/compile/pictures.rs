@@ -1,4 +1,4 @@
-//! Pictures of materials. Each is decoded once, however many textures use it.
+//! Loading of material textures. Each picture is decoded once even if several textures use it.
 
 use super::cache::Origin;
 use super::decoded::{Encoding, decode};
@@ -16,7 +16,8 @@ use rayon::prelude::*;
 use std::collections::HashSet;
 
 impl Loader<'_> {
-    /// Returns the index of a layered material's texture: an asset, or a file that repeats.
+    /// Returns the index of a principled material's texture. The picture is an asset, or else a
+    /// file, which repeats over the surface.
     fn map(&mut self, name: &FileName, encoding: Encoding, diagnostics: &mut Diagnostics) -> Option<u32> {
         let key = (name.path.clone(), encoding);
         if let Some(known) = self.map_numbers.get(&key) {
@@ -35,12 +36,12 @@ impl Loader<'_> {
         number
     }
 
-    /// Returns the index of a texture of numbers.
+    /// Returns the index of a texture that holds numbers instead of colours.
     pub(super) fn number_map(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<u32> {
         self.map(name, Encoding::Linear, diagnostics)
     }
 
-    /// Returns the source of a picture's bytes, and its mapping.
+    /// Returns where a picture's bytes are, and how the picture is mapped to a surface.
     fn found(&self, name: &FileName) -> (PictureBytes, Mapping) {
         if let Some(asset) = self.assets.pictures.get(&name.path) {
             return (asset.bytes.clone(), asset.mapping);
@@ -50,15 +51,15 @@ impl Loader<'_> {
         (PictureBytes::File(word.map_or(name.path.as_str(), |(path, _)| path).into()), mapping)
     }
 
-    /// Decodes the pictures of materials in parallel, as far as memory allows for all of them.
-    /// Pictures that fail are left for later, where the error can be reported.
+    /// Decodes the pictures of materials in parallel, as many as fit into memory together. Pictures
+    /// that fail are skipped here; their errors are reported when they are used.
     pub(super) fn decode_ahead<'m>(&mut self, materials: impl Iterator<Item = &'m PrincipledMaterial>) {
         let mut left = self.resources.memory;
         let (mut packed, mut seen) = (Vec::new(), HashSet::new());
         for (name, encoding) in materials.flat_map(pictures) {
             let (bytes, _) = self.found(name);
             let key: PictureKey = (bytes.path().into(), encoding);
-            // Materials may share a picture.
+            // Several materials can use the same picture.
             if !seen.insert(key.clone()) {
                 continue;
             }
@@ -88,7 +89,8 @@ impl Loader<'_> {
         self.ahead = decoded.collect();
     }
 
-    /// Returns the textures of a layered material; reports errors, and omits those textures.
+    /// Returns the textures of a principled material. Reports errors and omits the textures
+    /// concerned.
     pub(super) fn maps(&mut self, layers: &PrincipledMaterial, diagnostics: &mut Diagnostics) -> Maps {
         let mut one = |name: Option<&FileName>, encoding| name.and_then(|name| self.map(name, encoding, diagnostics));
         let mut maps = Maps {
@@ -118,7 +120,7 @@ impl Loader<'_> {
         maps
     }
 
-    /// Returns a picture, decoded once for all textures.
+    /// Returns a decoded picture. All textures of the same picture share it.
     pub(super) fn picture(
         &mut self,
         name: &FileName,
@@ -157,7 +159,7 @@ impl Loader<'_> {
         texture
     }
 
-    /// Returns a picture with mipmaps.
+    /// Returns a decoded picture with mipmaps.
     fn mipmapped(
         &mut self,
         name: &FileName,
@@ -170,7 +172,7 @@ impl Loader<'_> {
             return known.clone();
         }
         let texture = self.picture(name, bytes, encoding, diagnostics);
-        // Mipmaps add a third: 1/4 + 1/16 + ...
+        // Mipmaps need a third more memory: 1/4 + 1/16 + ...
         let texture = texture.filter(|texture| self.charge(name, texture.bytes() as u64 / 3, diagnostics));
         let texture = texture.map(Texture::with_levels);
         self.mipmapped.insert(key, texture.clone());
@@ -186,7 +188,7 @@ impl Loader<'_> {
     }
 }
 
-/// Iterates over the pictures of a layered material.
+/// Iterates over the pictures that a principled material names.
 fn pictures(layers: &PrincipledMaterial) -> impl Iterator<Item = (&FileName, Encoding)> {
     let own = [
         (layers.emission_texture.as_ref(), Encoding::Srgb),
@@ -199,7 +201,7 @@ fn pictures(layers: &PrincipledMaterial) -> impl Iterator<Item = (&FileName, Enc
     own.into_iter().chain(parameters).filter_map(|(name, encoding)| Some((name?, encoding)))
 }
 
-/// Encoding of the picture of a parameter: sRGB for colours, linear for numbers.
+/// Returns the encoding of a parameter's texture: sRGB for colours, linear for numbers.
 fn encoding_of(textured: &Textured) -> Encoding {
     match textured.change {
         Change::Number(_) => Encoding::Linear,

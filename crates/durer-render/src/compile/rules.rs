@@ -1,5 +1,5 @@
-//! Meaning of a scene's dialect for each part of the renderer. Code after this module does not
-//! depend on dialects.
+//! Translation of a dialect into rules for each part of the renderer. Only the scene's compilation
+//! depends on dialects; later code uses these rules.
 
 use crate::world::{Contents, DisplayRules, Epsilon, HitRules, ShadingRules, Vectors};
 use durer_scene::camera::{Aim, CameraRules, UpRule};
@@ -8,7 +8,7 @@ use durer_scene::light::{DirectionalLight, Illuminate as _, Light, PointLight};
 use durer_scene::math::Vec3;
 use durer_scene::scene::MatrixRules;
 
-/// Rules of cameras and pictures.
+/// Returns the rules for cameras and pixel positions.
 pub fn camera_rules(rules: &Rules) -> CameraRules {
     let up = match () {
         () if rules.has(Quirk::RawUp) => UpRule::Raw,
@@ -29,7 +29,7 @@ pub fn camera_rules(rules: &Rules) -> CameraRules {
     }
 }
 
-/// Rules of products of matrices.
+/// Returns the rules for products of transform matrices.
 pub fn matrix_rules(rules: &Rules) -> MatrixRules {
     MatrixRules {
         matrix_on_left: rules.has(Quirk::MatrixOnLeft),
@@ -38,7 +38,7 @@ pub fn matrix_rules(rules: &Rules) -> MatrixRules {
     }
 }
 
-/// Hit rules of an official program; `None` for Dürer's own arithmetic.
+/// Returns the ray intersection rules of an official program, or `None` for Dürer's own arithmetic.
 pub fn hit_rules(rules: &Rules) -> Option<HitRules> {
     let vectors = match rules.arithmetic {
         Arithmetic::Own => return None,
@@ -56,7 +56,7 @@ pub fn hit_rules(rules: &Rules) -> Option<HitRules> {
     })
 }
 
-/// Rules of hits and of Whitted's integrator.
+/// Returns the rules for shading and for the Whitted integrator.
 pub fn shading_rules(rules: &Rules) -> ShadingRules {
     let official = rules.is_bit_compatible();
     ShadingRules {
@@ -84,7 +84,7 @@ pub fn shading_rules(rules: &Rules) -> ShadingRules {
     }
 }
 
-/// Display rules of pictures of values. `lumens` are those of the scene.
+/// Returns the rules for displaying AOVs as pictures. `lumens` are the scene's.
 pub fn display_rules(rules: &Rules, lumens: Option<Vec3>) -> DisplayRules {
     DisplayRules {
         normals: rules.normals_picture,
@@ -98,7 +98,8 @@ pub fn display_rules(rules: &Rules, lumens: Option<Vec3>) -> DisplayRules {
 }
 
 impl Contents {
-    /// Resolves other rules; the camera's axes, lights, materials and objects stay as they are.
+    /// Applies other rules, except to the camera's axes, lights, materials and objects, which stay
+    /// as they were compiled.
     pub fn set_rules(&mut self, rules: Rules) {
         self.camera_rules = camera_rules(&rules);
         self.hits = hit_rules(&rules);
@@ -108,14 +109,13 @@ impl Contents {
     }
 }
 
-/// Returns a light with its power folded into its colour, and with the attenuation that its dialect
-/// defines.
+/// Returns a light with its power folded into its colour, and with the dialect's attenuation.
 pub(super) fn light(light: &Light, rules: &Rules) -> Light {
     match light {
         Light::Point(emitter) if emitter.candela.or(emitter.lumens).is_none() => {
             PointLight { attenuation: attenuation(emitter, rules), falloff: None, ..emitter.clone() }.into()
         }
-        // The direction normalizes to NaN, and so does all light from it.
+        // The zero direction normalizes to NaN, so the light it gives is NaN too.
         Light::Directional(sun) if sun.direction == Vec3::ZERO => {
             DirectionalLight { color: Vec3::NAN, ..sun.clone() }.into()
         }
@@ -123,7 +123,7 @@ pub(super) fn light(light: &Light, rules: &Rules) -> Light {
     }
 }
 
-/// Divisor of a point light at distance d, as a0 + a1 d + a2 d^2.
+/// Returns the divisor of a point light at distance d, as coefficients of a0 + a1 d + a2 d^2.
 fn attenuation(light: &PointLight, rules: &Rules) -> Option<Vec3> {
     let divides_by_zero = rules.has(Quirk::MissingFalloff);
     match (rules.falloff, light.falloff) {

@@ -1,4 +1,4 @@
-//! Compilation of solids: checks that parts are closed.
+//! Compilation of CSG solids, whose parts must be closed.
 
 use super::SceneFlattener;
 use crate::world::csg::Csg;
@@ -12,7 +12,7 @@ use glam::DAffine3;
 use std::sync::Arc;
 
 impl SceneFlattener<'_, '_> {
-    /// Compiles a solid below groups and transforms only.
+    /// Compiles a solid that is not part of another one, except of a union.
     pub(super) fn solid(&mut self, span: Span, operation: Operation, parts: &[scene::Object], to_world: DAffine3) {
         let (errors, before) = (self.diagnostics.error_count(), self.objects.len());
         self.check_count(span, operation, parts);
@@ -30,7 +30,7 @@ impl SceneFlattener<'_, '_> {
         }
     }
 
-    /// Compiles a part of a union, which stays a separate object but must be closed.
+    /// Compiles a part of a union. It becomes a separate object but must be closed.
     fn part_of_union(&mut self, part: &scene::Object, to_world: DAffine3) {
         match &part.node {
             Node::Group(group) => {
@@ -46,7 +46,7 @@ impl SceneFlattener<'_, '_> {
         }
     }
 
-    /// Adds a disjoint piece of a solid as an object.
+    /// Adds a piece of a solid, disjoint from the others, as an object.
     fn piece(&mut self, piece: Solid, span: Span) {
         if let Solid::Operand(object) = piece {
             return self.objects.push(Arc::unwrap_or_clone(object));
@@ -65,6 +65,7 @@ impl SceneFlattener<'_, '_> {
         self.objects.push(Object { geometry, to_world, matrices, center, material, normal_length: 1.0, span });
     }
 
+    /// Reports a solid without parts, and a difference of only one part.
     fn check_count(&mut self, span: Span, operation: Operation, parts: &[scene::Object]) {
         let name = operation.keyword();
         match parts.len() {
@@ -77,11 +78,12 @@ impl SceneFlattener<'_, '_> {
         }
     }
 
+    /// Compiles the parts of a solid. Parts with errors are missing from the result.
     fn solids(&mut self, parts: &[scene::Object], to_world: DAffine3) -> Vec<Solid> {
         parts.iter().filter_map(|part| self.closed(part, to_world)).collect()
     }
 
-    /// Compiles a part of a solid, which must be closed; `None` after an error.
+    /// Compiles a part of a solid. The part must be closed. Returns `None` after an error.
     fn closed(&mut self, part: &scene::Object, to_world: DAffine3) -> Option<Solid> {
         match &part.node {
             Node::Group(group) => {
@@ -113,6 +115,7 @@ impl SceneFlattener<'_, '_> {
         }
     }
 
+    /// Reports a shape that does not enclose a volume.
     fn check_shape(&mut self, shape: &Primitive, span: Span) {
         if shape.inside(glam::DVec3::ZERO).is_none() {
             let message = "a surface without an inside cannot be part of a solid";
@@ -122,6 +125,7 @@ impl SceneFlattener<'_, '_> {
         }
     }
 
+    /// Reports a mesh that is not closed.
     fn check_mesh(&mut self, object: &Object, path: &str, span: Span) {
         let Geometry::Mesh(tree) = &object.geometry else { return };
         let edge = *self.open_edges.entry(path.to_string()).or_insert_with(|| tree.mesh.open_edge());
@@ -134,7 +138,7 @@ impl SceneFlattener<'_, '_> {
     }
 }
 
-/// Combines solids into one; `None` if there are none.
+/// Combines solids with an operation; `None` if there are none.
 fn joined(operation: Operation, mut parts: Vec<Solid>) -> Option<Solid> {
     if parts.is_empty() {
         return None;

@@ -1,4 +1,4 @@
-//! Worlds for tests of other modules.
+//! Helpers that compile worlds for tests, also in other crates.
 
 use super::*;
 use crate::world::World;
@@ -11,7 +11,7 @@ use glam::DAffine3;
 use std::cell::RefCell;
 use std::path::Path;
 
-/// Compiles a scene text; also returns its diagnostics.
+/// Compiles a scene text; returns the world and its diagnostics.
 pub fn try_read(text: &str, rules: &Rules, accel: AccelKind, folder: &Path) -> (Option<World>, Diagnostics) {
     let mut files = Files::default();
     let file = files.add("scene.txt", text.as_bytes().into());
@@ -32,14 +32,14 @@ pub fn read(text: &str) -> World {
     world.unwrap_or_else(|| panic!("{diagnostics:?}"))
 }
 
-/// Returns the text of a transform.
+/// Returns a transform as scene text.
 pub fn matrix_words(affine: &DAffine3) -> String {
     let rows = glam::DMat4::from(*affine).transpose().to_cols_array();
     let words: Vec<String> = rows.iter().map(|x| format!("{:?}", *x as f32)).collect();
     format!("Matrix {{ {} }}", words.join(" "))
 }
 
-/// Compiles a world of one object, with files from a folder.
+/// Compiles a world with one object. Its files are relative to `folder`.
 pub fn object(object: scene::Object, accel: AccelKind, folder: &Path) -> World {
     let root = Group { objects: vec![object] };
     let camera = Some(durer_scene::camera::PerspectiveCamera::default().into());
@@ -50,7 +50,7 @@ pub fn object(object: scene::Object, accel: AccelKind, folder: &Path) -> World {
     world.unwrap_or_else(|| panic!("{diagnostics:?}"))
 }
 
-/// Compiles a world of moved shapes.
+/// Compiles a world of shapes, each with a transform.
 pub fn shapes(shapes: &[(Primitive, DAffine3)], accel: AccelKind) -> World {
     let object = |node| scene::Object { node, material: None, span: Default::default() };
     let moved = |(shape, affine): &(Primitive, DAffine3)| {

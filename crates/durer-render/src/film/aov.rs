@@ -1,7 +1,8 @@
-//! Table of the arbitrary output variables (AOVs): pictures of values other than colour.
+//! Arbitrary output variables (AOVs): pictures of values other than colour.
 //!
-//! Most use one ray through each pixel's centre, some the sums of the colour's samples.
-//! Floating-point files get the values unchanged; eight-bit files get a mapping to 0 to 1.
+//! Most AOVs trace one ray through the centre of each pixel; some use the statistics of the colour
+//! samples. Floating-point files contain the values unchanged. For eight-bit files, values are
+//! mapped to display colours from 0 to 1.
 
 use super::false_color::LightScale;
 use super::{Film, luminance_of};
@@ -12,24 +13,24 @@ use durer_scene::math::{Aabb, Color, Vec3};
 use durer_scene::sampler::hash;
 use durer_scene::shape::Surface;
 
-/// Data from the ray through a pixel's centre.
+/// Values at the first hit of the ray through a pixel's centre, from which AOVs are computed.
 #[derive(Clone, Copy, Debug)]
 pub struct AovInput {
-    /// True if the camera sees anything through this pixel.
+    /// True if the camera has a ray through this pixel's centre.
     pub covered: bool,
     /// The first hit.
     pub hit: Option<SurfaceInteraction>,
     /// Diffuse colour at the hit.
     pub albedo: Color,
-    /// Traversal cost of the pixel, with all secondary rays.
+    /// Traversal statistics of the pixel, including all secondary rays.
     pub counts: TraversalStats,
-    /// Illuminance at the surface, in lux if the scene's light is in cd/m^2, or in watts; 0 unless
+    /// Illuminance at the surface. In lux if the scene's light is in cd/m^2 or watts; 0 unless
     /// requested.
     pub illuminance: f32,
 }
 
 impl AovInput {
-    /// A pixel through which the camera sees nothing.
+    /// Values of a pixel for which the camera has no ray.
     pub const NOTHING: AovInput = AovInput {
         covered: false,
         hit: None,
@@ -39,14 +40,14 @@ impl AovInput {
     };
 }
 
-/// Statistics of a pixel's colour samples, computed on demand.
+/// Colour statistics of one pixel (sample count, mean and variance) for AOVs, computed on demand.
 #[derive(Clone, Copy, Debug)]
 pub struct Sums<'a> {
-    /// Film and pixel; `None` if it has no samples yet.
+    /// The film and pixel coordinates; `None` if the pixel has no samples yet.
     pub pixel: Option<(&'a Film, u32, u32)>,
-    /// Magnitude of the sample weights if their mean is 1, as [`Film::variance`] takes it.
+    /// Magnitude of the sample weights relative to their mean; see [`Film::variance`].
     pub gain: f32,
-    /// Luminous efficacy by colour channel, if light is in watts.
+    /// Luminous efficacy of each colour channel, if light is in watts.
     pub lumens: Option<Vec3>,
 }
 
@@ -61,55 +62,56 @@ impl Sums<'_> {
         self.pixel.map_or(f64::INFINITY, |(film, x, y)| film.variance(x, y, self.gain))
     }
 
-    /// Returns the luminance of the mean.
+    /// Returns the luminance of the pixel's mean colour.
     pub fn luminance(&self) -> f64 {
         self.pixel.map_or(0.0, |(film, x, y)| brightness(film.resolve(x, y), self.lumens))
     }
 }
 
-/// Returns the luminance of light, or its lumens if it is in watts.
+/// Returns the luminance of a colour. If light is in watts, uses `lumens`, the luminous efficacy of
+/// each channel.
 pub fn brightness(light: Color, lumens: Option<Vec3>) -> f64 {
     lumens.map_or_else(|| luminance_of(light), |lumens| light.as_dvec3().dot(lumens.as_dvec3()))
 }
 
-/// Parameters for displaying values.
+/// Parameters for mapping AOV values to display colours: ranges, scales and the dialect's rules.
 #[derive(Clone, Copy, Debug)]
 pub struct Display {
     /// Display rules of the dialect.
     pub rules: DisplayRules,
-    /// Depths shown as black and white; `None`: minimum and maximum of the picture.
+    /// Depths shown as black and white. `None` uses the minimum and maximum of the picture.
     pub depth_range: Option<(f32, f32)>,
-    /// Scale of false colours.
+    /// Scale of values for false-colour pictures.
     pub light_scale: LightScale,
-    /// Bounds of the values at hits.
+    /// Bounds of the values at pixels with a hit.
     pub hits: Aabb,
-    /// Bounds of all values.
+    /// Bounds of the values of all pixels.
     pub all: Aabb,
 }
 
-/// Source of a picture's values.
+/// Function that computes an AOV's value at a pixel, from a ray or from the colour samples.
 #[derive(Clone, Copy, Debug)]
 pub enum Value {
-    /// The ray through the pixel's centre.
+    /// Uses the ray through the pixel's centre.
     Ray(fn(&AovInput) -> Vec3),
-    /// The samples of the colour.
+    /// Uses the statistics of the colour samples.
     Sums(fn(&Sums) -> Vec3),
 }
 
-/// Description of an AOV.
+/// Entry of the table of arbitrary output variables (AOVs) such as `depth` and `normals`.
 #[derive(Debug)]
 pub struct Aov {
     /// Name on the command line and in files.
     pub name: &'static str,
-    /// Description.
+    /// Description for the help.
     pub doc: &'static str,
-    /// Value at a pixel, as in floating-point files.
+    /// Value at a pixel, as it is written to floating-point files.
     pub value: Value,
-    /// Value as a display colour; the flag is true for hits.
+    /// Maps a value to a display colour; the flag is true for hits.
     pub picture: fn(Vec3, bool, &Display) -> Color,
-    /// True if that colour depends on the values of other pixels.
+    /// True if the display colour depends on the values of other pixels.
     pub relative: bool,
-    /// Unit of values in false colours, whose scale is drawn next to the picture.
+    /// Unit of false-colour values. A scale with this unit is drawn next to the picture.
     pub unit: Option<&'static str>,
 }
 
@@ -120,8 +122,8 @@ impl Aov {
     }
 }
 
-/// Fills pixels without a hit with the colour of the previous hit, in rows from the bottom, each
-/// from left to right.
+/// Fills each pixel without a hit with the colour of the previous hit. Rows are processed from the
+/// bottom up, each from left to right.
 pub fn fill_from_last_hit(pixels: &mut [Color], hits: &[bool], width: usize) {
     let rows = pixels.len() / width.max(1);
     let mut last = None;
@@ -136,7 +138,7 @@ pub fn fill_from_last_hit(pixels: &mut [Color], hits: &[bool], width: usize) {
     }
 }
 
-/// Table of all AOVs, in the order of the help.
+/// Table of all AOVs, in the order in which the help lists them.
 pub static AOVS: &[Aov] = &[
     Aov {
         name: "depth",
@@ -151,7 +153,7 @@ pub static AOVS: &[Aov] = &[
         doc: "shading normal, in world space",
         value: Value::Ray(|seen| of_surface(seen, |s| s.n_shade)),
         picture: normal_picture,
-        // For misses, one quirk shows the previous hit's normal.
+        // One quirk shows the normal of the previous hit at misses.
         relative: true,
         unit: None,
     },
@@ -257,6 +259,7 @@ pub static AOVS: &[Aov] = &[
     },
 ];
 
+/// Converts a normal to a colour, as the dialect does.
 fn normal_picture(n: Vec3, _: bool, display: &Display) -> Color {
     match display.rules.normals {
         NormalsPicture::Abs => n.abs(),
@@ -264,23 +267,27 @@ fn normal_picture(n: Vec3, _: bool, display: &Display) -> Color {
     }
 }
 
+/// Converts luminance or illuminance to a false colour.
 fn light_picture(value: Vec3, _: bool, display: &Display) -> Color {
     display.light_scale.color(value.x)
 }
 
+/// Converts a count to a heat-map colour, relative to the maximum of the picture.
 fn heat_picture(value: Vec3, _: bool, display: &Display) -> Color {
     heat(value.x / display.all.max.x.max(1.0))
 }
 
+/// Returns an attribute of the surface that was hit; zero for a miss.
 fn of_surface(seen: &AovInput, value: impl Fn(&Surface) -> Vec3) -> Vec3 {
     seen.hit.map_or(Vec3::ZERO, |at| value(&at.surface))
 }
 
+/// Converts a depth to a grey, as the dialect does.
 fn depth_picture(depth: Vec3, hit: bool, display: &Display) -> Color {
     let rules = display.rules;
     let (least, greatest) = (display.hits.min.x, display.hits.max.x);
     let (min, max) = match display.depth_range {
-        // Keep a range whose ends truncate to the same integer.
+        // Truncate the range to integers, unless its ends would become equal.
         Some((min, max)) if rules.whole_depths && min.trunc() != max.trunc() => (min.trunc(), max.trunc()),
         Some(range) => range,
         None => (least, if greatest > least { greatest } else { least + 1.0 }),
@@ -304,14 +311,14 @@ fn depth_picture(depth: Vec3, hit: bool, display: &Display) -> Color {
     })
 }
 
-/// Returns a bright colour that differs between numbers.
+/// Returns a bright pseudo-random colour for an object or material index.
 fn id_color(id: f32) -> Color {
     let bits = hash(0, id as u32, 0, 0, 0);
     let channel = |shift: u32| 0.25 + 0.75 * ((bits >> shift) & 0xff) as f32 / 255.0;
     Vec3::new(channel(0), channel(8), channel(16))
 }
 
-/// Maps 0 to 1 to black, blue, red, yellow, white.
+/// Maps 0 to 1 to a heat map: black, blue, red, yellow, white.
 pub(crate) fn heat(x: f32) -> Color {
     const STEPS: [Vec3; 5] =
         [Vec3::ZERO, Vec3::new(0.1, 0.1, 0.8), Vec3::new(0.9, 0.1, 0.1), Vec3::new(1.0, 0.9, 0.1), Vec3::ONE];

@@ -1,10 +1,10 @@
-//! Variable-length encoding of integers.
+//! Variable-length encoding of integers in checkpoint files.
 //!
-//! Integers are written in groups of seven bits, lowest first, where the eighth bit marks that more
-//! follow (LEB128). Signed integers alternate around zero (zigzag), so that small ones of either
-//! sign are short.
+//! Integers are written in groups of seven bits, lowest first; the eighth bit of a byte is set if
+//! more bytes follow (LEB128). Signed integers are mapped to unsigned ones in the order 0, -1, 1,
+//! -2, ... (zigzag), so that small magnitudes are short.
 
-/// Appends an unsigned integer.
+/// Appends an unsigned integer to `out`.
 pub fn put(out: &mut Vec<u8>, mut number: u128) {
     while number > 0x7f {
         out.push(number as u8 | 0x80);
@@ -13,25 +13,25 @@ pub fn put(out: &mut Vec<u8>, mut number: u128) {
     out.push(number as u8);
 }
 
-/// Appends a signed integer.
+/// Appends a signed integer to `out`.
 pub fn put_signed(out: &mut Vec<u8>, number: i128) {
     put(out, ((number << 1) ^ (number >> 127)) as u128);
 }
 
-/// Reads numbers from untrusted bytes: returns `None` for truncated or invalid data, and never
-/// panics.
+/// Reader of encoded integers and floats from untrusted bytes. Returns `None` for truncated or
+/// invalid data and never panics.
 #[derive(Clone, Copy, Debug)]
 pub struct Bytes<'a>(pub &'a [u8]);
 
 impl<'a> Bytes<'a> {
-    /// Takes the next bytes.
+    /// Takes the next `count` bytes.
     pub fn take(&mut self, count: usize) -> Option<&'a [u8]> {
         let (taken, rest) = self.0.split_at_checked(count)?;
         self.0 = rest;
         Some(taken)
     }
 
-    /// Reads an unsigned integer, if it fits its type.
+    /// Reads an unsigned integer; `None` if it does not fit into `T`.
     pub fn whole<T: TryFrom<u128>>(&mut self) -> Option<T> {
         let mut number = 0_u128;
         for shift in (0..128).step_by(7) {
@@ -46,13 +46,13 @@ impl<'a> Bytes<'a> {
         None
     }
 
-    /// Reads a signed integer, if it fits its type.
+    /// Reads a signed integer; `None` if it does not fit into `T`.
     pub fn signed<T: TryFrom<i128>>(&mut self) -> Option<T> {
         let number: u128 = self.whole()?;
         ((number >> 1) as i128 ^ -((number & 1) as i128)).try_into().ok()
     }
 
-    /// Reads a little-endian float, bit for bit.
+    /// Reads a little-endian float. Every bit pattern is valid.
     pub fn float(&mut self) -> Option<f32> {
         Some(f32::from_le_bytes(self.take(4)?.try_into().ok()?))
     }

@@ -1,22 +1,23 @@
-//! False colours of light with a scale, as lighting engineers use them.
+//! False-colour pictures of luminance and illuminance with a legend, as lighting engineers use
+//! them.
 
 use durer_scene::math::{Color, Vec3, fp};
 use serde::{Deserialize, Serialize};
 
-/// Range of values for the colours.
+/// Range of luminance or illuminance that a false-colour picture shows, linear or logarithmic.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LightScale {
-    /// Value of the first colour, dark blue.
+    /// Value shown in the first colour, dark blue.
     pub low: f32,
-    /// Value of the last colour, red; more than `low`.
+    /// Value shown in the last colour, red. Must be greater than `low`.
     pub high: f32,
-    /// True for a logarithmic scale, which needs `low` above 0.
+    /// True for a logarithmic scale, which requires `low` > 0.
     pub logarithmic: bool,
 }
 
 impl LightScale {
-    /// Returns a scale from 0 to the 98th percentile of the positive values. A visible emitter
-    /// would otherwise leave no colours for the rest.
+    /// Returns a linear scale from 0 to the 98th percentile of the positive values. With the
+    /// maximum instead, a visible emitter would leave no colours for the rest.
     pub fn over(values: impl Iterator<Item = f32>) -> Self {
         let mut all: Vec<f32> = values.filter(|value| value.is_finite() && *value > 0.0).collect();
         all.sort_by(f32::total_cmp);
@@ -24,7 +25,7 @@ impl LightScale {
         LightScale { low: 0.0, high, logarithmic: false }
     }
 
-    /// Maps a value to 0 to 1.
+    /// Returns the position of a value on the scale, from 0 to 1.
     pub fn place(&self, value: f32) -> f32 {
         let share = match self.logarithmic {
             true if value <= 0.0 => 0.0,
@@ -34,7 +35,7 @@ impl LightScale {
         share.clamp(0.0, 1.0)
     }
 
-    /// Returns the value at a position from 0 to 1.
+    /// Returns the value at a position from 0 to 1, the inverse of [`LightScale::place`].
     fn value(&self, place: f32) -> f32 {
         match self.logarithmic {
             true => self.low * fp::exp(place * fp::ln(self.high / self.low)),
@@ -42,7 +43,7 @@ impl LightScale {
         }
     }
 
-    /// Returns the colour of a value.
+    /// Returns the false colour of a value.
     pub fn color(&self, value: f32) -> Color {
         const STEPS: [Vec3; 6] = [
             Vec3::new(0.02, 0.0, 0.12),
@@ -57,8 +58,8 @@ impl LightScale {
         STEPS[step].lerp(STEPS[step + 1], place - step as f32)
     }
 
-    /// Draws a legend with numbers and unit over the right border of a picture, if it is large
-    /// enough.
+    /// Draws a legend with numbers and unit along the right edge of a picture, if the picture is
+    /// large enough.
     pub fn draw(&self, pixels: &mut [Color], width: usize, unit: &str) {
         const ROWS: usize = 8;
         let height = pixels.len() / width.max(1);
@@ -97,7 +98,7 @@ impl LightScale {
     }
 }
 
-/// Formats a number with three significant digits, without trailing zeros.
+/// Formats a legend number with three significant digits, without trailing zeros.
 fn number(value: f32) -> String {
     let rounded = format!("{value:.2e}").parse::<f64>().unwrap_or(0.0);
     let text = if rounded != 0.0 && !(1e-3..1e7).contains(&rounded.abs()) {
@@ -108,7 +109,7 @@ fn number(value: f32) -> String {
     text.to_lowercase()
 }
 
-/// Returns the rows of a 3x5 glyph from the top; blank for unknown characters.
+/// Returns the five rows of a 3x5 glyph, top first. Unknown characters are blank.
 fn glyph(letter: char) -> [u8; 5] {
     match letter {
         '0' => [7, 5, 5, 5, 7],
@@ -146,7 +147,7 @@ mod tests {
                 let place = i as f32 / 10.0;
                 assert!((scale.place(scale.value(place)) - place).abs() < 1e-5);
             }
-            // Values outside get the colours at the ends.
+            // Values outside the range get the colours at its ends.
             assert_eq!(scale.color(-1.0), scale.color(scale.low));
             assert_eq!(scale.color(f32::INFINITY), scale.color(scale.high));
         }

@@ -1,4 +1,5 @@
-//! Exact sums: samples are added as integers, so the order of adding and merging does not matter.
+//! Film with exact sums: samples are added as integers, so the result does not depend on the order
+//! of adding and merging.
 
 use super::bytes::{Bytes, put, put_signed};
 use durer_scene::math::{Color, LUMINANCE_F64, Vec3};
@@ -6,15 +7,15 @@ use durer_scene::math::{Color, LUMINANCE_F64, Vec3};
 #[cfg(test)]
 mod tests;
 
-/// A window of a picture that accumulates weighted samples, each pixel separately.
+/// Accumulator of weighted samples for a rectangle of a picture, with separate sums for each pixel.
 ///
-/// A weight is rounded once to a multiple of 2^-24, and the product of colour and weight once to a
-/// multiple of 2^-48 (ties to even). Everything after that is integer addition. Colours are clamped
-/// to ±2^44, and weights are at most 2^10: a pixel holds 2^25 samples of the greatest colour and
-/// weight, and 2^35 of the greatest colour at weight 1.
+/// Each weight is rounded to a multiple of 2^-24, and each product of colour and weight to a
+/// multiple of 2^-48 (ties to even). All further arithmetic is integer addition. Colours are
+/// clamped to ±2^44, and weights are at most 2^10. A pixel can hold 2^25 samples of maximum colour
+/// and weight, or 2^35 of maximum colour and weight 1.
 ///
-/// Exact sums for the variance of the mean: luminances, rounded to multiples of 2^-28 and clamped
-/// to ±2^14, and their squares, for up to 2^21 samples.
+/// For the variance of the mean, the film also sums luminances, rounded to multiples of 2^-28 and
+/// clamped to ±2^14, and their squares. These sums are exact for up to 2^21 samples.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Film {
     left: u32,
@@ -26,24 +27,24 @@ pub struct Film {
     first_rejected: Vec<Rejected>,
 }
 
-/// Sums of one pixel.
+/// Integer sums of one pixel of a [`Film`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Pixel {
-    /// Weighted colour, in units of 2^-48.
+    /// Sum of weighted colours, in units of 2^-48.
     pub(super) color: [i128; 3],
-    /// Squares of luminances, in units of 2^-56.
+    /// Sum of squared luminances without weights, in units of 2^-56.
     pub(super) squares: i128,
     /// Sum of luminances without weights, in units of 2^-28.
     pub(super) luminance: i64,
-    /// Weight, in units of 2^-24.
+    /// Sum of weights, in units of 2^-24.
     pub(super) weight: i64,
-    /// Weight of the samples that hit something, in the same units.
+    /// Sum of weight times coverage over the samples, in units of 2^-24.
     pub(super) covered: i64,
     pub(super) samples: u64,
 }
 
 impl Pixel {
-    /// Adds a sample that covers a share of the pixel; returns `false` if it is not finite.
+    /// Adds a sample that covers a share of the pixel. Returns `false` if it is not finite.
     #[inline]
     pub(super) fn add_any(&mut self, color: Color, share: f32, weight: f32) -> bool {
         // Fast path: almost all samples are small.
@@ -56,7 +57,7 @@ impl Pixel {
         self.add(color.to_array().map(f64::from), weight.into(), share.into())
     }
 
-    /// Adds a sample; returns `false` if it is not finite. Clamps colours that are too bright.
+    /// Adds a sample. Returns `false` if it is not finite. Clamps colours that are too bright.
     fn add(&mut self, rgb: [f64; 3], weight: f64, share: f64) -> bool {
         let weight = weight * WEIGHT_SCALE;
         if !(weight.abs() <= GREATEST_WEIGHT * WEIGHT_SCALE && rgb.iter().all(|c| c.is_finite())) {
@@ -73,7 +74,8 @@ impl Pixel {
         true
     }
 
-    /// Checks if `most_samples` samples could produce these sums, which were read from a file.
+    /// Returns true if `most_samples` samples could produce these sums, which were read from a
+    /// file.
     fn is_possible(&self, most_samples: u32) -> bool {
         let (n, most) = (i128::from(self.samples), |greatest: f64, scale: f64| greatest as i128 * scale as i128);
         let within =
@@ -98,15 +100,15 @@ impl Pixel {
         self.samples += small.samples;
     }
 
-    /// Returns the sums of one covering sample of weight 1.
+    /// Returns the sums of one sample with weight 1 and full coverage.
     pub(super) fn of_single(color: Color) -> Self {
         let mut pixel = Pixel::default();
         pixel.add_any(color, 1.0, 1.0);
         pixel
     }
 
-    /// Inverse of [`Pixel::of_single`]. A sample of weight 1 has one, because its rounded colour is
-    /// again a single-precision number.
+    /// Returns the colour if the sums are those of [`Pixel::of_single`]. Rounding to multiples of
+    /// 2^-48 leaves a single-precision number, so the colour can be recovered.
     #[inline]
     pub(super) fn single(&self) -> Option<Color> {
         if self.samples != 1 || self.weight != WEIGHT_SCALE as i64 || self.covered != self.weight {
@@ -121,20 +123,20 @@ impl Pixel {
             let color = Color::from(color);
             return (Pixel::of_single(color) == *self).then_some(color);
         }
-        // Same computation as in `add_small`.
+        // Same arithmetic as in `Small::add`.
         let is_same = rgb.iter().zip(&self.color).all(|(c, &sum)| i128::from((c * COLOR_SCALE) as i64) == sum)
             && whole_number(luminance(rgb) * LUMINANCE_SCALE) == self.luminance
             && i128::from(self.luminance) * i128::from(self.luminance) == self.squares;
         is_same.then(|| Color::from(color))
     }
 
-    /// Returns the mean; see [`Film::resolve`].
+    /// Returns the weighted mean colour; see [`Film::resolve`].
     #[inline]
     pub(super) fn mean(&self) -> Color {
         if self.weight == 0 {
             return Vec3::ZERO;
         }
-        // Rounds each sum to double precision, divides, and rounds to single precision.
+        // Round each sum to double precision, divide, and round to single precision.
         let weight = self.weight as f64 / WEIGHT_SCALE;
         Vec3::from(self.color.map(|sum| (rounded(sum) / COLOR_SCALE / weight) as f32))
     }
@@ -142,12 +144,12 @@ impl Pixel {
     /// Returns the coverage; see [`Film::coverage`].
     #[inline]
     pub(super) fn coverage(&self) -> f32 {
-        // Also if the weights sum to zero: the pixel then counts as fully covered.
+        // Also true if both sums are zero, in which case the pixel counts as fully covered.
         if self.covered == self.weight {
             return 1.0;
         }
-        // Negative filter weights may leave the range; if the weights sum to 0 the quotient is
-        // infinite.
+        // Negative filter weights can give values out of range, and infinity if the weights sum to
+        // 0.
         (self.covered as f64 / self.weight as f64).clamp(0.0, 1.0) as f32
     }
 
@@ -161,8 +163,9 @@ impl Pixel {
     }
 }
 
-/// Sums of up to [`MOST_SMALL`] covering samples of one pixel with colours below [`SMALL_COLOR`]
-/// and weights of at most 1: the same result as [`Pixel::add`], faster.
+/// Sums in 64 bits of up to [`MOST_SMALL`] samples of one pixel. The samples must have full
+/// coverage, colours below [`SMALL_COLOR`] and weights of at most 1. Equal to [`Pixel::add`] but
+/// faster.
 #[derive(Default)]
 struct Small {
     color: [i64; 3],
@@ -173,6 +176,7 @@ struct Small {
 }
 
 impl Small {
+    /// Returns true if a sample is small enough for exact sums in 64 bits.
     #[inline(always)]
     fn holds(color: Color, weight: f32) -> bool {
         color.x.abs() + color.y.abs() + color.z.abs() < SMALL_COLOR && weight.abs() <= 1.0
@@ -193,23 +197,24 @@ impl Small {
     }
 }
 
-/// Bound on |red| + |green| + |blue| of a sample; with weights up to 1, products are below 2^51
-/// units.
+/// Bound on |red| + |green| + |blue| of samples in [`Small`]. With weights up to 1, products of
+/// colour and weight are below 2^51 units.
 const SMALL_COLOR: f32 = 8.0;
 
-/// Number of such products whose sum fits in 64 bits.
+/// Maximum number of samples in [`Small`] for which the sums of products fit in 64 bits.
 const MOST_SMALL: usize = 1 << 11;
 
 const COLOR_SCALE: f64 = (1_u64 << 48) as f64;
 const WEIGHT_SCALE: f64 = (1_u64 << 24) as f64;
-/// A weight of 1 in units.
+/// Weight 1 in film units.
 pub(super) const WEIGHT_ONE: i64 = WEIGHT_SCALE as i64;
 const GREATEST_COLOR: f64 = (1_u64 << 44) as f64;
 const GREATEST_WEIGHT: f64 = (1_u64 << 10) as f64;
 const LUMINANCE_SCALE: f64 = (1_u64 << 28) as f64;
 const GREATEST_LUMINANCE: f64 = (1_u64 << 14) as f64;
 
-/// A sample that was rejected because it is infinite or NaN. Ordered by row, column, sample.
+/// Position of a sample that was rejected because it is infinite or NaN. Ordered by row, then
+/// column, then sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Rejected {
     /// Row from the top.
@@ -220,28 +225,28 @@ pub struct Rejected {
     pub sample: u32,
 }
 
-/// Number of rejected samples that are remembered.
+/// Number of rejected samples whose positions are kept.
 const REMEMBERED: usize = 16;
 
-/// The film to merge is not inside this film's window.
+/// Error from merging a film that is not inside the window of the target film.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cannot merge a film of pixels outside this film's window")]
 pub struct WrongWindow;
 
 impl Film {
-    /// Creates a black film of a whole picture.
+    /// Creates a black film for a full picture.
     pub fn new(width: u32, height: u32) -> Self {
         Film::window(0, 0, width, height)
     }
 
-    /// Creates a black film of a part of a picture. Pixel coordinates are those of the whole
+    /// Creates a black film for a rectangle of a picture. Pixel coordinates refer to the full
     /// picture.
     pub fn window(left: u32, top: u32, width: u32, height: u32) -> Self {
         let pixels = vec![Pixel::default(); width as usize * height as usize];
         Film { left, top, width, height, pixels, rejected: 0, first_rejected: Vec::new() }
     }
 
-    /// Returns width and height.
+    /// Returns width and height of the window in pixels.
     pub fn size(&self) -> (u32, u32) {
         (self.width, self.height)
     }
@@ -251,22 +256,23 @@ impl Film {
         self.add_if_seen(x, y, sample, Some(color), weight);
     }
 
-    /// Adds a sample that may be transparent: `None` reduces the pixel's coverage by its weight.
+    /// Adds a sample. A `color` of `None` is transparent: it lowers the pixel's coverage.
     pub fn add_if_seen(&mut self, x: u32, y: u32, sample: u32, color: Option<Color>, weight: f32) {
         self.add_covering(x, y, sample, color.map_or((Color::ZERO, 0.0), |color| (color, 1.0)), weight);
     }
 
-    /// Adds consecutive samples of one pixel, with a weight for each colour.
+    /// Adds consecutive samples of one pixel with full coverage; `weights` has one weight per
+    /// colour.
     pub fn add_seen(&mut self, x: u32, y: u32, first: u32, colors: &[Color], weights: &[f32]) {
         let holds = |&(color, weight): &(&Color, &f32)| Small::holds(*color, *weight);
         let small = colors.iter().zip(weights).take(MOST_SMALL).take_while(holds).count();
-        // No calls in this loop, so that sums stay in registers.
+        // There are no calls in this loop, so that the sums stay in registers.
         let mut sums = Small::default();
         for (&color, &weight) in colors[..small].iter().zip(&weights[..small]) {
             sums.add(color, weight);
         }
         self.pixel_mut(x, y).add_small(&sums);
-        // Almost always empty.
+        // There are rarely any samples left for this loop.
         for i in small..colors.len() {
             self.add(x, y, first + i as u32, colors[i], weights[i]);
         }
@@ -284,7 +290,7 @@ impl Film {
         &mut self.pixels[index]
     }
 
-    /// Counts a rejected sample; remembers the first few in reading order.
+    /// Counts a rejected sample and keeps its position if it is among the first in reading order.
     fn reject(&mut self, what: Rejected) {
         self.rejected += 1;
         let place = self.first_rejected.partition_point(|old| *old <= what);
@@ -294,7 +300,7 @@ impl Film {
         }
     }
 
-    /// Adds a film whose window is inside this one's.
+    /// Adds the sums of a film whose window is inside this one's.
     pub fn merge(&mut self, other: &Film) -> Result<(), WrongWindow> {
         if other.pixels.is_empty() {
             return Ok(());
@@ -316,19 +322,20 @@ impl Film {
                 to.samples = to.samples.wrapping_add(from.samples);
             }
         }
-        // Samples that `other` no longer remembers come after sixteen others, also in the union.
+        // Rejected samples that `other` did not keep come after sixteen others, so they are not
+        // among the first sixteen of the union either.
         other.first_rejected.iter().for_each(|&r| self.reject(r));
         self.rejected = self.rejected.wrapping_add(other.rejected - other.first_rejected.len() as u64);
         Ok(())
     }
 
-    /// Appends the sums and the rejected samples as bytes, without the window. Equal films give
+    /// Appends the sums and the rejected samples as bytes, without the window. Equal films produce
     /// equal bytes.
     pub fn write(&self, out: &mut Vec<u8>) {
         for pixel in &self.pixels {
             put(out, pixel.samples.into());
             put_signed(out, pixel.weight.into());
-            // Usually zero.
+            // The difference is usually zero, which takes one byte.
             put_signed(out, i128::from(pixel.weight) - i128::from(pixel.covered));
             pixel.color.iter().for_each(|&sum| put_signed(out, sum));
             put_signed(out, pixel.luminance.into());
@@ -341,8 +348,8 @@ impl Film {
         }
     }
 
-    /// Reads bytes of [`Film::write`] into this film, which must have the same window and at most
-    /// `most_samples` samples per pixel. Returns `None` for invalid bytes or impossible sums.
+    /// Reads bytes that [`Film::write`] wrote into an empty film with the same window. Returns
+    /// `None` for invalid bytes, or if no `most_samples` samples per pixel could give these sums.
     pub fn read(mut self, bytes: &mut Bytes, most_samples: u32) -> Option<Self> {
         for pixel in &mut self.pixels {
             pixel.samples = bytes.whole()?;
@@ -369,46 +376,46 @@ impl Film {
         self.first_rejected.is_sorted().then_some(self)
     }
 
-    /// Returns the weighted mean of a pixel's samples, where misses count as black; black if the
-    /// weights sum to zero. Panics outside the window.
+    /// Returns the weighted mean of a pixel's samples, where transparent ones are black. Black if
+    /// the weights sum to zero. Panics outside the window.
     pub fn resolve(&self, x: u32, y: u32) -> Color {
         self.pixel(x, y).mean()
     }
 
-    /// Returns the weighted share of a pixel's samples that hit something, from 0 to 1. Panics
-    /// outside the window.
+    /// Returns the pixel's coverage from 0 to 1: the weighted share of its samples that are not
+    /// transparent. Panics outside the window.
     pub fn coverage(&self, x: u32, y: u32) -> f32 {
         self.pixel(x, y).coverage()
     }
 
-    /// Returns the estimated variance of the pixel's mean luminance, from its samples: the expected
-    /// squared error. Infinite for fewer than two samples. Panics outside the window.
+    /// Returns the estimated variance of the pixel's mean luminance, which is its expected squared
+    /// error. Infinite for fewer than two samples. Panics outside the window.
     ///
-    /// For n samples y with mean m it is sum (y - m)^2 / (n (n - 1)). `gain` is the magnitude of
-    /// the sample weights if their mean is 1 (see [`super::FilterSampler::gain`]); it scales each
-    /// error.
+    /// For n samples y with mean m, it is sum (y - m)^2 / (n (n - 1)). It is multiplied by the
+    /// square of `gain`, the magnitude of the sample weights when their mean is 1 (see
+    /// [`super::FilterSampler::gain`]).
     pub fn variance(&self, x: u32, y: u32, gain: f32) -> f64 {
         let pixel = self.pixel(x, y);
         let n = pixel.samples as f64;
         if pixel.samples < 2 {
             return f64::INFINITY;
         }
-        // Clamped like the samples.
+        // Clamp the mean as the samples were clamped.
         let mean = luminance(self.resolve(x, y).to_array().map(f64::from));
         let mean = mean.clamp(-GREATEST_LUMINANCE, GREATEST_LUMINANCE);
         let sum = pixel.luminance as f64 / LUMINANCE_SCALE;
         let squares = pixel.squares as f64 / (LUMINANCE_SCALE * LUMINANCE_SCALE);
-        // For equal samples, rounding may leave a small negative number.
+        // If all samples are equal, rounding can leave a small negative number.
         let deviation = (squares - 2.0 * mean * sum + mean * mean * n).max(0.0);
         deviation / (n * (n - 1.0)) * f64::from(gain) * f64::from(gain)
     }
 
-    /// Returns the number of samples of a pixel, without rejected ones. Panics outside the window.
+    /// Returns the number of a pixel's samples, without rejected ones. Panics outside the window.
     pub fn samples(&self, x: u32, y: u32) -> u64 {
         self.pixel(x, y).samples
     }
 
-    /// Returns the number of rejected samples.
+    /// Returns the number of samples that were rejected because they are infinite or NaN.
     pub fn rejected(&self) -> u64 {
         self.rejected
     }
@@ -428,25 +435,25 @@ impl Film {
     }
 }
 
-/// Rounds a sum to double precision. Almost all fit in 64 bits, for which there is an instruction.
+/// Rounds a sum to double precision. Almost all sums fit in 64 bits, which is faster to convert.
 fn rounded(sum: i128) -> f64 {
     i64::try_from(sum).map_or_else(|_| sum as f64, |small| small as f64)
 }
 
-/// Returns the luminance of a colour.
+/// Returns the luminance of a linear RGB colour in double precision.
 pub fn luminance([r, g, b]: [f64; 3]) -> f64 {
     LUMINANCE_F64[0] * r + LUMINANCE_F64[1] * g + LUMINANCE_F64[2] * b
 }
 
-/// Returns the luminance of a single-precision colour.
+/// Returns the luminance of a single-precision linear RGB colour.
 pub fn luminance_of(color: Color) -> f64 {
     luminance(color.to_array().map(f64::from))
 }
 
 /// Rounds a number below 2^51 in magnitude to the nearest integer, ties to even.
 ///
-/// Adding 3 * 2^51 leaves no bits below 1, so the sum is rounded, and its bits exceed those of 3 *
-/// 2^51 by the integer. The baseline instruction sets lack a rounding instruction.
+/// Adding 3 * 2^51 rounds the number, because the sum has no bits below 1. Subtracting the bits of
+/// 3 * 2^51 then leaves the integer. The baseline instruction sets have no rounding instruction.
 fn whole_number(x: f64) -> i64 {
     const MAGIC: f64 = 3.0 * (1_u64 << 51) as f64;
     debug_assert!(x.abs() < (1_u64 << 51) as f64);

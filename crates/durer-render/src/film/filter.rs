@@ -1,10 +1,10 @@
 //! Reconstruction filters: the weight of a sample at an offset from a pixel's centre.
 //!
 //! Each filter is a product of the same function of `dx` and of `dy`, zero beyond the radius.
-//! Filters are importance-sampled: a uniform position is warped to an offset whose density is the
-//! filter's absolute value, so every sample of a pixel has the same weight (up to sign) and affects
-//! no other pixel. Source: Pharr, Jakob, Humphreys, *Physically Based Rendering*, 4th edition,
-//! section 8.8.
+//! Filters are importance-sampled: a uniform position is warped to an offset with a density
+//! proportional to the filter's absolute value. Every sample of a pixel thus has the same weight,
+//! up to sign, and contributes to that pixel only. Source: Pharr, Jakob, Humphreys, *Physically
+//! Based Rendering*, 4th edition, section 8.8.
 
 use durer_scene::math::{Vec2, fp};
 use serde::{Deserialize, Serialize};
@@ -13,10 +13,10 @@ use std::f32::consts::PI;
 #[cfg(test)]
 mod tests;
 
-/// A reconstruction filter. Lengths are in pixels and must be positive and finite.
+/// Pixel reconstruction filter of a render. Lengths are in pixels and must be positive and finite.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Filter {
-    /// Constant weight: sharp, aliases.
+    /// Constant weight. Sharp, but aliases.
     Box {
         /// Half the width.
         radius: f32,
@@ -33,14 +33,15 @@ pub enum Filter {
         /// Half the width.
         radius: f32,
     },
-    /// A sum of four cosines, close to a Gaussian without its tail: smooth, no ringing.
+    /// Blackman-Harris window, a sum of four cosines: close to a Gaussian without its tail, no
+    /// ringing.
     ///
     /// Source: Harris, *On the Use of Windows for Harmonic Analysis*, Proc. IEEE 66(1), 1978.
     BlackmanHarris {
         /// Half the width.
         radius: f32,
     },
-    /// A cubic with negative lobes, B = C = 1/3: the sharpest, may ring.
+    /// Mitchell-Netravali cubic with B = C = 1/3 and negative lobes. The sharpest filter; can ring.
     ///
     /// Source: Mitchell, Netravali, *Reconstruction Filters in Computer Graphics*, SIGGRAPH 1988.
     Mitchell {
@@ -56,7 +57,7 @@ impl Default for Filter {
 }
 
 impl Filter {
-    /// Every filter at its default size, with its name on the command line.
+    /// All filters at their default sizes, with their names on the command line.
     pub const NAMES: [(&'static str, Filter); 5] = [
         ("box", Filter::Box { radius: 0.5 }),
         ("tent", Filter::Tent { radius: 1.0 }),
@@ -65,12 +66,12 @@ impl Filter {
         ("mitchell", Filter::Mitchell { radius: 2.0 }),
     ];
 
-    /// Returns the filter of a name at its default size.
+    /// Returns the filter with this name at its default size.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::NAMES.iter().find(|(n, _)| *n == name).map(|&(_, filter)| filter)
     }
 
-    /// Returns the filter with another radius; a Gaussian's sigma scales with it.
+    /// Returns the filter with another radius. A Gaussian's sigma scales with it.
     pub fn with_radius(self, radius: f32) -> Self {
         match self {
             Filter::Box { .. } => Filter::Box { radius },
@@ -81,7 +82,7 @@ impl Filter {
         }
     }
 
-    /// Returns half the width in pixels: the weight is zero farther out.
+    /// Returns half the filter's width in pixels. The weight is zero farther out.
     pub fn radius(self) -> f32 {
         match self {
             Filter::Box { radius }
@@ -92,13 +93,13 @@ impl Filter {
         }
     }
 
-    /// Returns the weight at an offset from the pixel's centre, in pixels. Not normalised; negative
-    /// in Mitchell's lobes.
+    /// Returns the weight at an offset from the pixel's centre, in pixels. Not normalized, and
+    /// negative in the lobes of the Mitchell filter.
     pub fn weight(self, dx: f32, dy: f32) -> f32 {
         self.profile(dx.abs()) * self.profile(dy.abs())
     }
 
-    /// Returns the filter along one axis, at a distance of 0 or more.
+    /// Returns the weight along one axis at a distance d >= 0.
     fn profile(self, d: f32) -> f32 {
         if d > self.radius() {
             return 0.0;
@@ -125,27 +126,30 @@ impl Filter {
         }
     }
 
-    /// Prepares importance sampling: a table of 16 KiB, built once a render.
+    /// Prepares importance sampling by building a table of 8 KiB, once per render.
     pub fn sampler(self) -> FilterSampler {
         FilterSampler::new(self)
     }
 }
 
-/// Samples offsets in proportion to a filter's absolute value.
+/// Importance sampler of a reconstruction filter: draws offsets in proportion to the filter's
+/// absolute value.
 ///
-/// The filter's integral along an axis is inverted once, at `SHARES + 1` knots; between two knots
-/// the density is constant. An offset is off by less than the width of its share: on average by
-/// less than a thousandth of the radius, as a test checks.
+/// The filter's integral along an axis is inverted once at `SHARES + 1` knots, and the density is
+/// constant between two knots. An offset is wrong by less than the distance of its two knots, which
+/// is on average below a thousandth of the radius; a test checks this.
 #[derive(Clone, Debug)]
 pub struct FilterSampler {
     filter: Filter,
-    /// Distances within which 0, 1, 2, ... of `SHARES` equal shares of the absolute filter lie.
+    /// Distances from the centre that contain 0, 1, 2, ... of `SHARES` equal shares of the absolute
+    /// filter's integral.
     knots: Box<[f32; SHARES + 1]>,
-    /// Integral of the absolute filter over that of the filter, squared for two axes: the magnitude
-    /// of sample weights.
+    /// Integral of the absolute filter divided by that of the filter, squared because there are two
+    /// axes. It is the magnitude of the sample weights.
     gain: f32,
 }
 
+/// Number of equal shares of a filter's integral from the centre to the radius.
 const SHARES: usize = 2048;
 
 /// Number of linear pieces from the centre to the radius for integrating the filter.
@@ -157,7 +161,7 @@ impl FilterSampler {
         let values: Vec<f64> = (0..=BINS).map(value).collect();
         let trapezoid = |a: f64, b: f64| 0.5 * (a + b);
         let signed: f64 = values.windows(2).map(|pair| trapezoid(pair[0], pair[1])).sum();
-        // Integral of the absolute filter from the centre to the end of each bin.
+        // Integral of the absolute filter from the centre to the end of each bin, starting with 0.
         let parts = values.windows(2).map(|pair| trapezoid(pair[0].abs(), pair[1].abs()));
         let integral: Vec<f64> = std::iter::once(0.0)
             .chain(parts.scan(0.0, |sum, part| {
@@ -166,13 +170,14 @@ impl FilterSampler {
             }))
             .collect();
         let absolute = integral[BINS];
-        // A filter with a non-positive integral is sampled without gain.
+        // A filter whose integral is not positive is sampled without gain.
         let gain = if signed > 0.0 { (absolute / signed) * (absolute / signed) } else { 1.0 };
         let distance = |share: usize| {
             let target = share as f64 / SHARES as f64 * absolute;
             let bin = (integral.partition_point(|&sum| sum <= target)).clamp(1, BINS) - 1;
             let (start, end) = (values[bin].abs(), values[bin + 1].abs());
-            // In the bin: start * t + (end - start) * t^2 / 2 = rest, solved without cancellation.
+            // Solve start * t + (end - start) * t^2 / 2 = rest for t in the bin, without
+            // cancellation.
             let rest = target - integral[bin];
             let root = (start * start + 2.0 * (end - start) * rest).max(0.0).sqrt();
             let t = if rest > 0.0 { (2.0 * rest / (start + root)).min(1.0) } else { 0.0 };
@@ -181,8 +186,8 @@ impl FilterSampler {
         FilterSampler { filter, knots: Box::new(std::array::from_fn(distance)), gain: gain as f32 }
     }
 
-    /// Returns the magnitude of a sample's weight: 1 for filters without negative lobes, more for
-    /// others.
+    /// Returns the magnitude of the sample weights: 1 for filters without negative lobes, greater
+    /// for others.
     pub fn gain(&self) -> f32 {
         match self.filter {
             Filter::Mitchell { .. } => self.gain,
@@ -190,18 +195,18 @@ impl FilterSampler {
         }
     }
 
-    /// Warps a uniform position in [0,1)^2 to an offset from the pixel's centre; also returns the
-    /// sample's weight.
+    /// Warps a uniform position in [0,1)^2 to an offset from the pixel's centre. Returns the offset
+    /// and the sample's weight.
     ///
-    /// The weight is 1 for filters without negative lobes; otherwise its magnitude is constant, its
-    /// sign the filter's, its mean 1. Offsets are monotonic in the positions, so stratification is
+    /// The weight is 1 for filters without negative lobes. For others it has a constant magnitude,
+    /// the filter's sign and mean 1. Offsets are monotonic in the positions, so stratification is
     /// preserved.
     pub fn sample(&self, position: Vec2) -> (Vec2, f32) {
         let offset = Vec2::new(self.warp(position.x), self.warp(position.y));
         (offset, self.weight(offset))
     }
 
-    /// Warps several positions in structure-of-arrays form: all x, then all y.
+    /// Warps several positions, stored as all x followed by all y.
     #[inline(always)]
     pub fn samples<const N: usize>(&self, positions: &[[f32; N]; 2]) -> ([[f32; N]; 2], [f32; N]) {
         let (mut offsets, mut weights) = ([[0.0; N]; 2], [1.0; N]);
@@ -224,7 +229,7 @@ impl FilterSampler {
         }
     }
 
-    /// Returns the offset for a uniform number, on the side of `u`.
+    /// Maps a uniform number in [0,1) to an offset along one axis; 1/2 is the centre.
     #[inline(always)]
     fn warp(&self, u: f32) -> f32 {
         let v = 2.0 * u - 1.0;

@@ -1,6 +1,6 @@
-//! Accumulation of samples in pixels: reconstruction filters and exact sums.
+//! Accumulation of samples in pixels: films with exact sums, reconstruction filters and AOVs.
 //!
-//! Pixel coordinates start at the top left corner; x runs right, y down.
+//! Pixel coordinates start at the top left corner; x increases to the right and y downwards.
 
 pub mod aov;
 pub mod bytes;

@@ -1,26 +1,27 @@
-//! Compact storage of film sums, which dominate the memory of a picture.
+//! Compact storage of film sums, which take most of a render's memory.
 
 use super::film::{Film, Pixel, WEIGHT_ONE};
 use durer_scene::math::Color;
 
-/// A film in compact form, while nothing is added. Unpacking returns exactly the same film.
+/// Film in the most compact of four lossless formats, for storage while no samples are added.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PackedFilm {
-    /// Each pixel has one covering sample of weight 1, which its colour determines.
+    /// Colours only: each pixel has one sample with weight 1 and full coverage.
     Single(Box<[Color]>),
-    /// [`PackedFilm::Small`] with samples of weight 1, as from filters without negative lobes.
+    /// [`PackedFilm::Small`] where all samples have weight 1, as with filters without negative
+    /// lobes.
     Even(Box<[EqualWeights]>),
-    /// Sums fit in 64 bits, and all samples hit something.
+    /// Colour sums fit in 64 bits, and all samples have full coverage.
     Small(Box<[Small]>),
-    /// Everything a film can hold.
+    /// The film as it is.
     Whole(Box<Film>),
 }
 
-/// The sums of [`Pixel`] that are not implied.
+/// Sums of one pixel in [`PackedFilm::Small`]; coverage equals the weight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Small {
     color: [i64; 3],
-    /// Two words, to avoid padding.
+    /// Lower and upper half; as an `i128` it would need padding.
     squares: [u64; 2],
     luminance: i64,
     weight: i64,
@@ -57,7 +58,8 @@ impl Small {
     }
 }
 
-/// Sums without the weight, in words, to avoid padding.
+/// Sums of one pixel in [`PackedFilm::Even`], where the weight equals the number of samples. Stored
+/// as 32-bit words to avoid padding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EqualWeights {
     color: [[u32; 2]; 3],
@@ -94,12 +96,12 @@ impl EqualWeights {
     }
 }
 
-/// Returns the lower and the upper half.
+/// Returns the lower and the upper 32 bits.
 fn halves(number: u64) -> [u32; 2] {
     [number as u32, (number >> 32) as u32]
 }
 
-/// Converts all pixels of a film, if each can be converted.
+/// Converts all pixels of a film. Returns `None` if one cannot be converted.
 fn all<T>(film: &Film, smaller: impl Fn(&Pixel) -> Option<T>) -> Option<Vec<T>> {
     let mut made = Vec::with_capacity(film.pixels.len());
     for pixel in &film.pixels {
@@ -108,14 +110,14 @@ fn all<T>(film: &Film, smaller: impl Fn(&Pixel) -> Option<T>) -> Option<Vec<T>> 
     Some(made)
 }
 
-/// Returns the lower and the upper half.
+/// Returns the lower and the upper 64 bits.
 fn words(number: i128) -> [u64; 2] {
     [number as u64, (number >> 64) as u64]
 }
 
 impl PackedFilm {
-    /// Packs a film; `samples` is the final number of samples per pixel. A format that stays wide
-    /// enough avoids memory fragmentation.
+    /// Packs a film. `samples` is the planned number of samples per pixel: the film gets a format
+    /// that is wide enough for it from the start, which avoids memory fragmentation.
     pub fn new(film: Film, samples: u32) -> Self {
         if film.rejected() > 0 {
             return PackedFilm::Whole(Box::new(film));
@@ -134,7 +136,7 @@ impl PackedFilm {
         }
     }
 
-    /// Unpacks the film; the window is left and upper edge, width and height.
+    /// Unpacks the film. The window is given as left, top, width and height.
     pub fn film(&self, [left, top, width, height]: [u32; 4]) -> Film {
         let film = |pixels: Vec<Pixel>| {
             let mut film = Film::window(left, top, width, height);
@@ -149,8 +151,8 @@ impl PackedFilm {
         }
     }
 
-    /// Visits the mean and the coverage of each pixel, row by row: as [`Film::resolve`] and
-    /// [`Film::coverage`].
+    /// Calls `offer` with the mean and coverage of each pixel, row by row. They equal
+    /// [`Film::resolve`] and [`Film::coverage`].
     pub fn means(&self, mut offer: impl FnMut(Color, f32)) {
         let mut offer_pixel = |pixel: &Pixel| offer(pixel.mean(), pixel.coverage());
         match self {
@@ -169,7 +171,7 @@ impl PackedFilm {
         }
     }
 
-    /// Returns the film if it has rejected samples.
+    /// Returns the film if it is stored unpacked, as every film with rejected samples is.
     pub fn with_rejected(&self) -> Option<&Film> {
         match self {
             PackedFilm::Whole(film) => Some(film),
@@ -177,7 +179,7 @@ impl PackedFilm {
         }
     }
 
-    /// Returns the typical size in bytes of a pixel with `samples` samples.
+    /// Returns the usual size in bytes of a packed pixel with `samples` samples.
     pub fn pixel_bytes(samples: u32) -> u64 {
         (if samples == 1 { size_of::<Color>() } else { size_of::<Small>() }) as u64
     }

@@ -1,7 +1,7 @@
-//! Ambient occlusion: the unoccluded fraction of the hemisphere above a surface.
+//! Ambient occlusion integrator: renders the unoccluded fraction of the hemisphere above a surface.
 //!
-//! Source: Zhukov, Iones and Kronin, *An Ambient Light Illumination Model*, EGWR 1998; directions
-//! are weighted by the cosine.
+//! Directions are cosine-weighted. Source: Zhukov, Iones and Kronin, *An Ambient Light Illumination
+//! Model*, EGWR 1998.
 
 use super::spawn::spawn_ray;
 use super::trace::{HitRecord, NodeId, RayKind, TermKind, TraceListener};
@@ -31,18 +31,18 @@ impl Parameters for AoParameters {
     }
 }
 
-/// Ambient occlusion integrator of one world.
+/// Ambient occlusion integrator for one world, created from [`AoParameters`].
 #[derive(Clone, Copy, Debug)]
 pub struct AmbientOcclusion<'w> {
-    /// The world.
+    /// World to render.
     pub world: &'w World,
     /// Maximum distance of occluders, in world units; infinite for no limit.
     pub radius: f32,
 }
 
 impl Integrate for AmbientOcclusion<'_> {
-    /// Returns 1 if a random direction is unoccluded, 0 if it is occluded, and 1 if the camera ray
-    /// hits nothing.
+    /// Traces one random direction from the camera ray's hit. Returns 0 if it is occluded and 1 if
+    /// it is not, or if the camera ray hits nothing.
     fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
         let node = tally.begin(NodeId::ROOT, || TermKind::Ray {
             from: RayKind::Camera,

@@ -1,28 +1,28 @@
-//! Stack of objects that a ray is inside: air, or nested glass.
+//! Tracking of the objects that a ray is inside, such as nested glass, for refraction.
 
 use crate::world::{SurfaceInteraction, World};
 use durer_scene::math::Vec3;
 use smallvec::SmallVec;
 
-/// Transmission through a surface.
+/// Refractive indices and media on both sides of a surface that a ray may pass.
 pub struct Passage {
     /// Index of refraction in front of the surface.
     pub here: f32,
     /// Index of refraction behind the surface.
     pub there: f32,
-    /// Media of the ray behind the surface.
+    /// Media of a ray behind the surface.
     pub behind: Media,
-    /// True if another object fills the space on both sides, so that the surface has no effect.
+    /// True if the surface is inside an object that displaces it, so that it has no effect.
     pub hidden: bool,
 }
 
 impl Passage {
-    /// Returns the index of refraction behind the surface over that in front.
+    /// Returns the index of refraction behind the surface divided by that in front of it.
     pub(crate) fn eta(&self) -> f32 {
         self.there / self.here
     }
 
-    /// Passage of a surface that ignores surrounding media: `ior` inside, 1 outside.
+    /// Returns the passage without surrounding media: the index is `ior` inside and 1 outside.
     pub(crate) fn across(self, ior: f32, leaving: bool) -> Passage {
         let (here, there) = if leaving { (ior, 1.0) } else { (1.0, ior) };
         Passage { here, there, hidden: false, ..self }
@@ -35,14 +35,15 @@ impl Default for Passage {
     }
 }
 
-/// An object that contains the ray.
+/// Object with an index of refraction that contains the ray, an entry of [`Media`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     /// Index of the object.
     pub object: u32,
     /// Index of refraction.
     pub ior: f32,
-    /// Half the surface area of its bounds; `None` for an open surface, which has no inside.
+    /// Half the surface area of the object's bounds. `None` for an open surface, which has no
+    /// inside.
     pub size: Option<f32>,
 }
 
@@ -51,9 +52,9 @@ impl Body {
         Body { object, ior, size: world.extent(object) }
     }
 
-    /// Returns true if this object fills the space that it shares with another one. Of two closed
-    /// objects that is the smaller one, so that ice displaces water wherever they overlap,
-    /// regardless of the ray's direction. Otherwise it is the one entered last.
+    /// Returns true if this object displaces `other` where they overlap. If both are closed, the
+    /// smaller one does: ice displaces water, whatever the ray's direction. Otherwise it is the one
+    /// that the ray entered later.
     fn fills(&self, other: &Body, met_later: bool) -> bool {
         match (self.size, other.size) {
             (Some(a), Some(b)) if a != b => a < b,
@@ -63,10 +64,10 @@ impl Body {
     }
 }
 
-/// Objects that contain the ray; the last one fills the space.
+/// Stack of the objects that contain a ray. The last one fills the space; an empty stack is air.
 ///
 /// Source of the idea: Charles M. Schmidt and Brian Budge, *Simple Nested Dielectrics in Ray Traced
-/// Images*, Journal of Graphics Tools 7(2), 2002, where explicit priorities define the order.
+/// Images*, Journal of Graphics Tools 7(2), 2002. There, explicit priorities define the order.
 #[derive(Debug, Default, PartialEq)]
 pub struct Media(SmallVec<[Body; 2]>);
 
@@ -78,7 +79,7 @@ impl Clone for Media {
 }
 
 impl Media {
-    /// Returns the media around a point.
+    /// Returns the objects that contain a point.
     pub fn around(world: &World, point: Vec3) -> Self {
         Media::within(world, world.bodies_around(point))
     }
@@ -88,12 +89,12 @@ impl Media {
         bodies.fold(Media::default(), |media, (object, ior)| media.entered(Body::new(world, object, ior)))
     }
 
-    /// A stack of a single object.
+    /// Creates a stack with a single object.
     pub fn only(medium: Body) -> Self {
         Media(SmallVec::from_slice(&[medium]))
     }
 
-    /// Leaves all objects.
+    /// Removes all objects, which leaves air.
     pub fn clear(&mut self) {
         self.0.clear();
     }
@@ -103,17 +104,17 @@ impl Media {
         self.0.is_empty()
     }
 
-    /// Returns the current index of refraction.
+    /// Returns the index of refraction of the space around the ray; 1 in air.
     pub fn ior(&self) -> f32 {
         self.0.last().map_or(1.0, |medium| medium.ior)
     }
 
-    /// Returns true if the ray is inside an object.
+    /// Returns true if the ray is inside this object.
     pub fn holds(&self, object: u32) -> bool {
         self.0.iter().any(|medium| medium.object == object)
     }
 
-    /// Returns the object that fills the space.
+    /// Returns the object that fills the space around the ray; `None` in air.
     pub fn object(&self) -> Option<u32> {
         self.0.last().map(|medium| medium.object)
     }
@@ -141,12 +142,14 @@ impl Media {
         Media(inside)
     }
 
-    /// Returns the transmission with nested and overlapping glass, as in Dürer's own dialect.
+    /// Returns the passage of a ray through the surface it hit, with nested and overlapping glass,
+    /// as in Dürer's own dialect.
     pub(crate) fn nested_passage(&self, world: &World, at: &SurfaceInteraction, ior: f32, leaving: bool) -> Passage {
         self.passage_into(world, (at.hit.object, at.ray.rounded.origin), ior, leaving)
     }
 
-    /// Returns the transmission through an object's surface, for light that starts at a point.
+    /// Returns the passage through an object's surface for a ray from `start`. See
+    /// [`Media::nested_passage`].
     pub(crate) fn passage_into(&self, world: &World, (object, start): (u32, Vec3), ior: f32, leaving: bool) -> Passage {
         let own = Body::new(world, object, ior);
         if !leaving {
@@ -159,11 +162,12 @@ impl Media {
         } else if own.size.is_none() {
             self.entered(own)
         } else if world.objects()[object as usize].contains(start) {
-            // A ray that leaves an object it never entered started inside it.
+            // The ray leaves an object that it never entered, so it started inside.
             let others = world.glass_around(start).filter(|&(other, _)| other != object);
             Media::within(world, others.chain([(object, ior)]))
         } else {
-            // With inverted normals, it is the wall of a cavity in the surrounding medium.
+            // The normals are inverted: the surface is the wall of a cavity in the surrounding
+            // medium.
             let behind = self.object().map_or(Media::default(), |around| self.left(around));
             return Passage {
                 here: if self.is_air() { own.ior } else { self.ior() },
@@ -196,7 +200,7 @@ mod tests {
             assert_eq!(all.left(3).ior(), 1.31);
             assert!(all.left(3).left(5).left(7).is_air());
         }
-        // An object that overlaps itself is entered twice.
+        // A ray can enter an object twice if its surface overlaps itself.
         let twice = Media::only(ICE).entered(ICE);
         assert!(twice.left(5).holds(5) && twice.left(5).left(5).is_air());
         assert_eq!(Media::default().left(2), Media::default());

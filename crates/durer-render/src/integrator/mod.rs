@@ -1,5 +1,5 @@
-//! Integrators: estimators of the radiance along a ray. One file each; the list is
-//! [`IntegratorKind`].
+//! Integrators, which estimate the radiance along camera rays: Whitted ray tracing, path tracing,
+//! photon mapping and ambient occlusion. [`IntegratorKind`] lists them.
 
 pub mod ao;
 pub mod media;
@@ -20,49 +20,51 @@ use std::sync::atomic::AtomicBool;
 pub use trace::{NodeId, TraceListener, TraceNode, TraceRecorder, Tree};
 pub use whitted::{Whitted, WhittedOptions, WhittedParameters, refract};
 
-/// Parameters of an integrator: a name and options, stated in a `described!` block. The command
-/// line derives its options from it.
+/// Options of one kind of integrator, which create it for a world. The command line gets the
+/// integrator's name and its options from [`Describe`].
 pub trait Parameters: Describe + Copy {
-    /// The integrator type.
+    /// Integrator that these parameters create.
     type Integrator<'w>: Integrate;
 
-    /// True if the radiance depends on random numbers, so that a pixel needs many samples.
+    /// True if the radiance depends on random numbers, so that each pixel needs many samples.
     const IS_RANDOM: bool = true;
 
-    /// True if the integrator prepares samples in advance: see [`Integrate::prepare`].
+    /// True if the integrator has work to do before the samples of a pass: see
+    /// [`Integrate::prepare`].
     const PREPARES: bool = false;
 
-    /// Creates the integrator.
+    /// Creates the integrator for a world.
     fn over(self, setup: IntegratorContext<'_>) -> Self::Integrator<'_>;
 
-    /// Returns the path tracing options, if the method traces paths.
+    /// Returns the path tracing options, or `None` if the integrator does not trace paths.
     fn transport(&self) -> Option<PathOptions> {
         None
     }
 }
 
-/// Data for every integrator.
+/// World and common settings from which every integrator is created.
 #[derive(Clone, Copy, Debug)]
 pub struct IntegratorContext<'w> {
-    /// The world.
+    /// World to render.
     pub world: &'w World,
-    /// Common settings.
+    /// Settings common to all integrators, such as the maximum depth.
     pub settings: WhittedOptions,
-    /// Footprint of a sample, if there are pixels.
+    /// Footprint of a camera sample, for texture filtering. `None` if there are no pixels.
     pub cone: Option<RayCone>,
-    /// Seed of random numbers that do not belong to a sample.
+    /// Seed for random numbers that do not belong to a sample, such as those of photons.
     pub seed: u64,
-    /// Once set, no more rays are traced, and results are meaningless.
+    /// Cancellation flag. Once it is set, no more rays are traced and results are meaningless.
     pub cancel: Option<&'w AtomicBool>,
 }
 
-/// Interface of integrators.
+/// Integrator: computes the radiance along camera rays.
 pub trait Integrate {
-    /// Returns the radiance along a camera ray, with the random numbers of a sample.
+    /// Returns the radiance along a camera ray. `id` selects the random numbers.
     fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color;
 
-    /// Computes the radiance of neighbouring camera rays, with the same results as tracing them one
-    /// by one. `begin` is called with the index of the next ray and returns its sample.
+    /// Computes the radiance of a batch of neighbouring camera rays. Results are the same as for
+    /// one ray at a time. `begin` is called with the index of each ray before it is shaded and
+    /// returns its sample.
     fn radiances<T: TraceListener>(
         &self,
         rays: &[Ray64],
@@ -73,11 +75,11 @@ pub trait Integrate {
         one_by_one(self, rays, begin, tally, colors);
     }
 
-    /// Prepares the samples with a given index, on all threads, before they are taken.
+    /// Prepares the samples with this index, on all threads, before they are taken.
     fn prepare(&self, _sample: u32) {}
 }
 
-/// [`Integrate::radiances`] for integrators that do not benefit from batches.
+/// Implements [`Integrate::radiances`] for integrators that gain nothing from batches.
 fn one_by_one<T: TraceListener>(
     integrator: &(impl Integrate + ?Sized),
     rays: &[Ray64],
@@ -93,7 +95,7 @@ fn one_by_one<T: TraceListener>(
 macro_rules! delegate {
     ($($variant:ident),+) => {
         impl IntegratorKind {
-            /// Returns the path tracing options, if the method traces paths.
+            /// Returns the path tracing options, or `None` if the integrator does not trace paths.
             pub fn transport(self) -> Option<PathOptions> {
                 match self { $(IntegratorKind::$variant(it) => it.transport(),)+ }
             }
@@ -104,13 +106,13 @@ macro_rules! delegate {
                 match self { $(IntegratorKind::$variant(it) => of(it),)+ }
             }
 
-            /// Returns true if the method prepares samples in advance.
+            /// Returns true if the integrator has work to do before the samples of a pass.
             pub fn prepares(self) -> bool {
                 fn of<P: Parameters>(_: P) -> bool { P::PREPARES }
                 match self { $(IntegratorKind::$variant(it) => of(it),)+ }
             }
 
-            /// Creates the integrator of a world.
+            /// Creates the integrator for a world.
             pub fn over(self, setup: IntegratorContext<'_>) -> Integrator<'_> {
                 match self { $(IntegratorKind::$variant(it) => Integrator::$variant(it.over(setup)),)+ }
             }
@@ -139,14 +141,14 @@ macro_rules! delegate {
 macro_rules! integrators {
     ($($variant:ident($type:ty),)+) => {
         described_list! {
-            /// Integrator of a picture, with its own options.
+            /// Kind of integrator that renders a picture, with its own options.
             IntegratorKind: Parameters => delegate { $($variant($type),)+ }
         }
 
-        /// Integrator for a world.
+        /// Integrator for one world, of any kind.
         #[derive(Clone, Debug)]
         pub enum Integrator<'w> {
-            $(#[doc = concat!("Integrator of `", stringify!($variant), "`.")]
+            $(#[doc = concat!("Integrator for `", stringify!($variant), "`.")]
             $variant(<$type as Parameters>::Integrator<'w>),)+
         }
     };
@@ -168,14 +170,14 @@ impl Default for IntegratorKind {
 }
 
 impl IntegratorKind {
-    /// Direct lighting, mirrors and glass.
+    /// Whitted ray tracing: direct lighting, mirrors and glass.
     pub const WHITTED: IntegratorKind = IntegratorKind::Whitted(WhittedParameters {});
 
     /// Path tracing with default options.
     pub const PATH: IntegratorKind =
         IntegratorKind::Path(PathOptions { clamp: None, color: ColorMode::Rgb, direct: Direct::Both });
 
-    /// Returns the method's name.
+    /// Returns the integrator's name on the command line.
     pub fn name(&self) -> &'static str {
         self.own_keyword()
     }

@@ -1,10 +1,10 @@
-//! Secondary rays that do not hit the surface they start from.
+//! Secondary rays, offset so that they do not hit the surface from which they start.
 //!
-//! A ray never starts behind an adjacent wall: a surface point is known in double precision in
-//! world space, and to a few roundings in the space of its object, whose coordinates have the
-//! object's own size ([`Shape::centered`] removes larger offsets). A shape keeps its points away
-//! from its own edges by more than that error, so moving one along the normal by twice the error
-//! leaves it in front of the adjacent face as well.
+//! A ray never starts behind an adjacent wall. A surface point is known in double precision in
+//! world space, and up to a few roundings in object space, where coordinates are as large as the
+//! object ([`Shape::centered`] removes larger offsets). A shape keeps its points away from its own
+//! edges by more than that error. A point moved along the normal by twice the error is therefore
+//! still in front of the adjacent face.
 //!
 //! [`Shape::centered`]: durer_scene::shape::Shape::centered
 
@@ -13,11 +13,11 @@ use durer_scene::math::{Ray, Ray64, Side, Vec3, gamma};
 use durer_scene::shape::Surface;
 use glam::DVec3;
 
-/// Creates a secondary ray.
+/// Creates a secondary ray that starts at a surface.
 ///
-/// With an `epsilon`, as in the course, the ray starts on the surface, and hits closer than
-/// `epsilon` do not count. Without it, the ray's origin is offset from the surface by a bound on
-/// the point's error, and every hit counts.
+/// With an `epsilon`, as in the course, the ray starts on the surface and ignores hits closer than
+/// `epsilon`. Without one, the origin is offset from the surface by a bound on the point's rounding
+/// error, and all hits count.
 #[inline(always)]
 pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<Epsilon>) -> Ray64 {
     match epsilon {
@@ -30,10 +30,10 @@ pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<Epsil
     from(surface, Vec3::ZERO, dir, t_max, dir.dot(surface.n_geo) < 0.0)
 }
 
-/// Creates a ray to a light at some distance, as [`spawn_ray`]. Without an `epsilon` it starts on
-/// the curved surface that a triangle with vertex normals approximates, on the side that faces the
-/// light. If the triangle itself faces away, it occludes the ray: no light leaks in along the
-/// terminator.
+/// Creates a shadow ray to a light at some distance, like [`spawn_ray`]. Without an `epsilon`, it
+/// starts on the curved surface that a triangle with vertex normals approximates, on the side
+/// facing the light. If the triangle itself faces away, it blocks the ray, so no light leaks in
+/// along the terminator.
 #[inline(always)]
 pub fn to_light(surface: &Surface, dir: Vec3, distance: f32, epsilon: Option<Epsilon>) -> Ray64 {
     match epsilon {
@@ -42,9 +42,9 @@ pub fn to_light(surface: &Surface, dir: Vec3, distance: f32, epsilon: Option<Eps
     }
 }
 
-/// Creates a ray to a point of an area light, on the geometric side of the light. A ray from a
-/// curved surface is aimed again: a parallel one would miss that point, and end behind an inclined
-/// light.
+/// Creates a shadow ray to a point on an area light, on the light's geometric side. From a curved
+/// surface, the ray is aimed again at the point. A parallel ray would miss it and could end behind
+/// an inclined light.
 pub fn to_point(surface: &Surface, dir: Vec3, distance: f32) -> Ray64 {
     let ray = from_bent_surface(surface, dir, distance, dir.dot(surface.n_geo) < 0.0);
     if surface.shadow_offsets == [Vec3::ZERO; 2] || !distance.is_finite() {
@@ -55,7 +55,8 @@ pub fn to_point(surface: &Surface, dir: Vec3, distance: f32) -> Ray64 {
     Ray64::new(ray.origin(), (way / length).as_vec3(), 0.0, length as f32 * (1.0 - gamma(4))).on_side(ray.side)
 }
 
-/// Creates a ray from the curved surface, on the side of the normals or `behind`.
+/// Creates a ray from the curved surface, on the side of its normals or, if `behind`, the other
+/// side.
 #[inline(always)]
 fn from_bent_surface(surface: &Surface, dir: Vec3, distance: f32, behind: bool) -> Ray64 {
     let [front, back] = surface.shadow_offsets;
@@ -63,7 +64,8 @@ fn from_bent_surface(surface: &Surface, dir: Vec3, distance: f32, behind: bool) 
     from(surface, lift, dir, distance - lift.dot(dir), behind)
 }
 
-/// Creates a ray from off the lifted point, on the side of the geometric normal or `behind`.
+/// Creates a ray from a point lifted off the surface, on the side of the geometric normal or, if
+/// `behind`, the other side.
 #[inline(always)]
 fn from(surface: &Surface, lift: Vec3, dir: Vec3, t_max: f32, behind: bool) -> Ray64 {
     let side = if behind { -surface.n_geo } else { surface.n_geo };
@@ -71,17 +73,18 @@ fn from(surface: &Surface, lift: Vec3, dir: Vec3, t_max: f32, behind: bool) -> R
     surface.solid.map_or(ray, |solid| ray.on_side(Side::of(solid, behind)))
 }
 
-/// Returns the surface's point, lifted, and offset along a unit normal by more than its error.
+/// Returns a surface point, lifted, and then offset along a unit normal by more than its rounding
+/// error.
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 6.8.6.
 #[inline(always)]
 fn offset_ray_origin(surface: &Surface, lift: Vec3, side: Vec3) -> DVec3 {
-    // Twice the bound: the next intersection rounds as well.
+    // Twice the error bound, because the next intersection also rounds.
     let offset = 2.0 * side.abs().dot(surface.error + gamma(1) * lift.abs()) * side;
     surface.point() + lift.as_dvec3() + offset.as_dvec3()
 }
 
-/// Returns the maximum distance from a flat surface at which a ray starts.
+/// Returns an upper bound on the distance between a flat surface and the origin of a ray from it.
 pub fn offset_bound(surface: &Surface) -> f32 {
     2.0 * surface.error.element_sum()
 }

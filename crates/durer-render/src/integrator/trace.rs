@@ -1,15 +1,15 @@
-//! Trace of a ray's light: the tree of all terms that contribute to it.
+//! Trace of a camera ray: a tree of all terms that contribute to its colour.
 //!
-//! An integrator reports each term to a [`TraceListener`] twice: when it begins, with its parent
-//! node, and when its value is known. Nodes are addressed by index, so terms of several rays may be
-//! in progress at once and end in any order. Counters ignore the reports at no cost; a
-//! [`TraceRecorder`] stores them. In every node,
+//! An integrator reports each term to a [`TraceListener`] twice: when the term begins, with its
+//! parent node, and when its value is known. Nodes are addressed by index, so terms of several rays
+//! can be in progress at once and end in any order. Listeners that only count ignore the reports at
+//! no cost; a [`TraceRecorder`] stores them. In every node,
 //!
 //! value = scale · (sum of the children's factor · value, in order).
 //!
-//! A tree adds up to the colour of the picture bit for bit, in the integrator's order of summation:
-//! see [`Tree::sum`]. In spectral mode, terms are radiances at the wavelengths of the sample, and
-//! [`Tree::sum`] is the colour of their sum.
+//! The terms of a tree add up to the picture's colour bit for bit, since they are summed in the
+//! integrator's order: see [`Tree::sum`]. In spectral mode, terms are radiances at the sample's
+//! wavelengths, and [`Tree::sum`] is the colour of their sum.
 
 use crate::world::emitters::LightId;
 use crate::world::{HighlightModel, SurfaceInteraction, World};
@@ -18,21 +18,21 @@ use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3};
 use durer_scene::spectrum::{Lanes, Spectrum};
 use serde::Serialize;
 
-/// Receives the terms of an integrator. The closures are called only by listeners that store terms.
+/// Receiver of the terms of light that an integrator reports, to count rays or explain a pixel.
+/// Only listeners that store terms call the closures.
 pub trait TraceListener: TraversalCounter {
-    /// True if terms without a contribution should also be reported.
+    /// True if terms that contribute nothing should also be reported.
     const LISTENS: bool = false;
 
-    /// Sets the meaning of the lanes of all terms; RGB by default.
+    /// Sets the meaning of the lanes of all terms; the default is RGB.
     fn lanes(&mut self, _lanes: &Lanes) {}
-    /// Adds a term below `parent` and returns its node. Siblings keep the order in which they
-    /// begin.
+    /// Adds a term below `parent` and returns its node. Siblings are ordered by when they begin.
     fn begin(&mut self, _parent: NodeId, _what: impl FnOnce() -> TermKind) -> NodeId {
         NodeId::NONE
     }
-    /// Records the hit of a ray's node.
+    /// Records the hit of a ray term.
     fn hit(&mut self, _node: NodeId, _hit: impl FnOnce() -> HitRecord) {}
-    /// Records the result of a term: see [`TraceNode`].
+    /// Records the result of a term; see the fields of [`TraceNode`].
     fn end(
         &mut self,
         _node: NodeId,
@@ -41,18 +41,18 @@ pub trait TraceListener: TraversalCounter {
         _value: impl Into<TermValue>,
     ) {
     }
-    /// Records, for a node of a path, the transmittance `scale` of the media before it, and the
-    /// throughput: the product of all factors from the camera to here, by which its value, or the
-    /// values of its terms, contribute to the pixel.
+    /// Records, for a node of a path, the transmittance `scale` of the media before it and its
+    /// throughput. The throughput is the product of all factors since the camera, by which the
+    /// node's value, or the values of its terms, contribute to the pixel.
     fn weigh(&mut self, _node: NodeId, _scale: impl Into<TermValue>, _throughput: impl Into<TermValue>) {}
 }
 
-/// Index of a node of a trace, in the order in which terms began.
+/// Index of a node in a trace, in the order in which terms began.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NodeId(u32);
 
 impl NodeId {
-    /// No node, returned by listeners that store nothing.
+    /// No node; returned by listeners that store nothing.
     pub const NONE: NodeId = NodeId(u32::MAX);
     /// Parent of the root term.
     pub const ROOT: NodeId = NodeId(u32::MAX - 1);
@@ -62,7 +62,7 @@ impl TraceListener for () {}
 impl TraceListener for RayCount {}
 impl TraceListener for TraversalStats {}
 
-/// Value of a term: a colour, or radiances at four wavelengths.
+/// Value in a trace: an RGB colour, or radiances at four wavelengths in spectral mode.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum TermValue {
@@ -79,7 +79,7 @@ impl From<Color> for TermValue {
 }
 
 impl TermValue {
-    /// Converts the lanes of a path.
+    /// Converts the lanes of a path to a value.
     pub fn of(lanes: &Lanes, light: Spectrum) -> Self {
         match lanes {
             Lanes::Rgb => TermValue::Color(light.truncate()),
@@ -87,7 +87,7 @@ impl TermValue {
         }
     }
 
-    /// Returns the value in the lanes of a path.
+    /// Returns the value as the lanes of a path.
     pub fn spectrum(self) -> Spectrum {
         match self {
             TermValue::Color(color) => color.extend(color.y),
@@ -95,7 +95,7 @@ impl TermValue {
         }
     }
 
-    /// Returns the numbers, by lane.
+    /// Returns the numbers of all lanes.
     pub fn numbers(&self) -> &[f32] {
         match self {
             TermValue::Color(color) => color.as_ref(),
@@ -108,6 +108,7 @@ impl TermValue {
         self.numbers().iter().all(|x| *x == number)
     }
 
+    /// Combines two values lane by lane.
     fn with(self, other: TermValue, apply: impl FnOnce(Spectrum, Spectrum) -> Spectrum) -> Self {
         let both = apply(self.spectrum(), other.spectrum());
         match (self, other) {
@@ -131,13 +132,13 @@ impl std::ops::Add for TermValue {
     }
 }
 
-/// The trace of a ray.
+/// Trace of a camera ray: the tree of all terms that contribute to its colour.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tree {
     /// The root term.
     #[serde(flatten)]
     pub root: TraceNode,
-    /// Meaning of the lanes; in JSON only for wavelengths.
+    /// Meaning of the lanes; written to JSON only in spectral mode.
     #[serde(rename = "waves", skip_serializing_if = "Lanes::is_rgb")]
     pub lanes: Lanes,
 }
@@ -148,44 +149,45 @@ impl Tree {
         self.lanes.color(light.spectrum())
     }
 
-    /// Computes the colour of the ray from the terms. It equals the picture bit for bit.
+    /// Computes the ray's colour from the terms. It equals the pixel's colour bit for bit.
     ///
-    /// For a path, adds throughput · value of each source in the order in which the path finds
-    /// them: [`TraceNode::added`]. In such a tree the values of rays are only as exact as rounded
-    /// sums. Other integrators have no throughputs; for them, sums the terms of each node:
+    /// For a path, adds throughput · value of each light source in the order in which the path
+    /// finds them; see [`TraceNode::added`]. The values of rays in such a tree have rounding
+    /// errors. Other integrators report no throughput; for them, sums the terms of each node, see
     /// [`TraceNode::sum`].
     pub fn sum(&self) -> Color {
         self.color(self.root.added().unwrap_or_else(|| self.root.sum()))
     }
 }
 
-/// A term: its kind, its value, and its parts.
+/// Node of a trace: one term of the light along a ray, with its value and the terms it consists of.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TraceNode {
     /// Kind of the term.
     pub what: TermKind,
-    /// Factor in the parent node.
+    /// Factor by which the value contributes to the parent node.
     pub factor: TermValue,
-    /// Factor of the sum of the terms below.
+    /// Factor by which the sum of `terms` is multiplied.
     pub scale: TermValue,
     /// Value of the term.
     pub value: TermValue,
-    /// Factor of the terms' values in the pixel, for paths; for a source of light, the factor of
-    /// its value.
+    /// For paths, the factor by which the values of `terms` contribute to the pixel, or for a light
+    /// source, its own value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub throughput: Option<TermValue>,
-    /// The terms that are summed, in order of addition; empty if `what` states how the value is
+    /// Terms that are summed, in order of addition. Empty if `what` tells how the value is
     /// computed.
     pub terms: Vec<TraceNode>,
 }
 
 impl TraceNode {
-    /// Returns a path node's contribution to the pixel: the sum of throughput · value over the
-    /// sources of light below, in order. `None` for integrators without throughputs.
+    /// Returns a path node's contribution to the pixel: throughput · value, summed in order over
+    /// the light sources below. `None` for integrators that report no throughput.
     pub fn added(&self) -> Option<TermValue> {
         self.throughput.map(|_| self.add_sources(TermValue::Color(Color::ZERO)))
     }
 
+    /// Adds throughput · value of each light source below to `sum`, in order.
     fn add_sources(&self, sum: TermValue) -> TermValue {
         match (&self.what, self.throughput) {
             (TermKind::Ray { .. } | TermKind::OneWavelength { .. }, _) => {
@@ -196,12 +198,12 @@ impl TraceNode {
         }
     }
 
-    /// Returns the contribution to the parent node.
+    /// Returns the node's contribution to its parent.
     pub fn contribution(&self) -> TermValue {
         self.factor * self.value
     }
 
-    /// Computes the sum of the terms again; returns `value` if there are none.
+    /// Sums the terms again. Returns `value` if there are none.
     pub fn sum(&self) -> TermValue {
         if self.terms.is_empty() {
             return self.value;
@@ -211,7 +213,7 @@ impl TraceNode {
     }
 }
 
-/// Origin of a ray.
+/// How a ray in a trace came about: from the camera or by a kind of scattering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RayKind {
@@ -225,12 +227,12 @@ pub enum RayKind {
     Scattered,
 }
 
-/// A ray as plain numbers.
+/// Ray in a trace, in single precision and serializable.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RayRecord {
     /// Origin.
     pub origin: Vec3,
-    /// Direction; not unit length in the space of a scaled object.
+    /// Direction. In the space of a scaled object, not of unit length.
     pub dir: Vec3,
     /// Minimum `t` of hits.
     pub t_min: f32,
@@ -250,7 +252,7 @@ impl From<&Ray> for RayRecord {
     }
 }
 
-/// A hit and its surface attributes.
+/// Hit of a ray in a trace, with the surface attributes there.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HitRecord {
     /// Index of the object in the world.
@@ -265,11 +267,11 @@ pub struct HitRecord {
     pub n_geo: Vec3,
     /// Unit shading normal of the surface.
     pub n_shade: Vec3,
-    /// Normal used for lighting: `n_shade`, flipped if a back is shaded.
+    /// Normal used for lighting: `n_shade`, flipped if the back is shaded.
     pub n: Vec3,
-    /// True if the ray hits the back.
+    /// True if the ray hits the back of the surface.
     pub from_behind: bool,
-    /// True if an old program leaves the back black.
+    /// True if the official program leaves the back of the surface black.
     pub black: bool,
     /// Texture coordinates, if the shape has any.
     pub uv: Option<Vec2>,
@@ -282,7 +284,7 @@ pub struct HitRecord {
 }
 
 impl HitRecord {
-    /// Records a hit; `n` is the normal used for lighting.
+    /// Records a hit. `n` is the normal used for lighting.
     pub(super) fn new(world: &World, at: &SurfaceInteraction, n: Vec3, from_behind: bool, black: bool) -> Self {
         let SurfaceInteraction { ray, hit, surface, material, .. } = at;
         let object = &world.objects()[hit.object as usize];
@@ -304,7 +306,7 @@ impl HitRecord {
     }
 }
 
-/// Sampling of a ray's direction.
+/// Record in a trace of how the direction of a ray was sampled at a path vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Bounce {
     /// Lobe that was sampled.
@@ -315,28 +317,28 @@ pub struct Bounce {
     pub pdf: f32,
     /// Survival probability of Russian roulette.
     pub survival: f32,
-    /// Number of directions followed from the vertex.
+    /// Number of directions that the path follows from the vertex.
     pub directions: u32,
 }
 
-/// Occlusion between a surface and a light.
+/// Shadow ray in a trace, from a surface to a light, and what it hits.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Shadow {
     /// The shadow ray.
     pub ray: RayRecord,
-    /// Index of the first object on it and the `t` of its hit; `None` if the light is unoccluded.
+    /// Index of the first object that the ray hits and the `t` of the hit; `None` if there is none.
     pub blocker: Option<(u32, f32)>,
-    /// Share of the light that arrives.
+    /// Fraction of the light that arrives.
     pub share: TermValue,
 }
 
-/// Kinds of terms.
+/// Kind of a term in a trace, with the data that explains its value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub enum TermKind {
     /// Radiance along a ray.
     Ray {
-        /// Origin of the ray.
+        /// How the ray came about.
         from: RayKind,
         /// The ray.
         ray: RayRecord,
@@ -344,16 +346,17 @@ pub enum TermKind {
         weight: f32,
         /// Hit of the ray.
         hit: Option<Box<HitRecord>>,
-        /// Random choice of its direction.
+        /// How its direction was sampled; `None` if it was not random.
         #[serde(skip_serializing_if = "Option::is_none")]
         bounce: Option<Bounce>,
     },
-    /// Emission of a surface; the factor is its MIS weight.
+    /// Light that a surface emits. The factor is its MIS weight.
     Emission {
         /// MIS weight.
         mis: f32,
     },
-    /// Radiance of a sampled light; the factor is bsdf · mis · visibility / (choice · pdf).
+    /// Radiance of a light that was sampled. The factor is BSDF · MIS weight · visibility / (choice
+    /// · pdf).
     Direct {
         /// The light.
         light: LightId,
@@ -363,8 +366,8 @@ pub enum TermKind {
         distance: f32,
         /// Probability of choosing this light.
         choice: f32,
-        /// Density per solid angle of the direction; 0 for a light without extent, whose density
-        /// counts as 1. For a direction resampled from several, the effective density.
+        /// Density of the direction per steradian; the effective density if it was selected from
+        /// several. 0 for a light without extent, whose density counts as 1.
         pdf: f32,
         /// BSDF times cosine.
         bsdf: TermValue,
@@ -373,28 +376,29 @@ pub enum TermKind {
         /// The shadow ray; `None` if shadows are off.
         shadow: Option<Shadow>,
     },
-    /// Light via mirrors and glass, estimated from nearby photons; the value is the estimate.
+    /// Light that mirrors and glass focus here, estimated from nearby photons. The value is the
+    /// estimate.
     Photons {
         /// Search radius.
         radius: f32,
         /// Number of photons.
         photons: usize,
     },
-    /// Light refracted by dispersive glass: only the hero wavelength continues, and the factor
-    /// makes up for the other three.
+    /// Dispersion by glass. Only the hero wavelength continues, and the factor makes up for the
+    /// other three.
     OneWavelength {
         /// Wavelength in nanometres.
         nm: f32,
     },
-    /// The background or sky, for rays that miss.
+    /// Background or sky, which rays see that hit nothing.
     Sky,
-    /// Ambient light. The value is the surface's colour; the factor is share · ambient light.
+    /// Ambient light. The value is the surface colour, the factor share · ambient light.
     Ambient {
-        /// The material's share at the point.
+        /// Share of the material at this point.
         share: f32,
     },
-    /// Light of one source: (diffuse + highlight) · arriving light, which is the scale. The factor
-    /// is share · visibility.
+    /// Light of one light source. The scale is the arriving light, which is multiplied by diffuse +
+    /// highlight; the factor is share · visibility.
     Light {
         /// Index of the light in the scene.
         light: usize,
@@ -402,32 +406,32 @@ pub enum TermKind {
         to_light: Vec3,
         /// Distance; `null` in JSON for lights at infinity.
         distance: f32,
-        /// The material's share at the point.
+        /// Share of the material at this point.
         share: f32,
         /// The shadow ray; `None` if shadows are off.
         shadow: Option<Shadow>,
     },
-    /// Diffuse term. The factor is max(0, N·L); the value is the surface's colour.
+    /// Diffuse term. The factor is max(0, N·L), the value the surface colour.
     Diffuse {
         /// N·L.
         cosine: f32,
     },
-    /// Highlight. The factor is max(0, base)^exponent; the value is the specular colour.
+    /// Highlight. The factor is max(0, base)^exponent, the value the specular colour.
     Highlight {
-        /// Name of the base.
+        /// Name of the base: `N·H` or `R·L`.
         model: &'static str,
-        /// N·H or R·L.
+        /// Value of N·H or R·L.
         base: f32,
         /// Exponent.
         exponent: f32,
     },
-    /// Reflected and transmitted light.
+    /// Sum of the reflected and the transmitted light.
     Secondary {
         /// Index of refraction on the ray's side.
         here: f32,
         /// Index of refraction behind the surface.
         there: f32,
-        /// Reflected share, if Fresnel's law splits the light.
+        /// Fraction reflected, if Fresnel's equations split the light.
         fresnel: Option<f32>,
         /// True for total internal reflection.
         total: bool,
@@ -437,12 +441,12 @@ pub enum TermKind {
         /// Weight of the ray.
         weight: f32,
     },
-    /// Reflected and transmitted light cut off by the maximum depth.
+    /// Reflected and transmitted light that the maximum depth cuts off.
     Spent,
 }
 
 impl TermKind {
-    /// Returns the name of a highlight model's base.
+    /// Returns the name of the cosine that a highlight model raises to its exponent.
     pub fn highlight(model: HighlightModel) -> &'static str {
         match model {
             HighlightModel::Blinn => "N·H",
@@ -451,7 +455,7 @@ impl TermKind {
     }
 }
 
-/// Listener that stores every term.
+/// Listener that stores all terms of a camera ray, from which it builds a [`Tree`].
 #[derive(Debug, Default)]
 pub struct TraceRecorder {
     /// Terms in the order in which they began, each with its parent.
@@ -463,11 +467,11 @@ impl TraceRecorder {
     /// Builds the tree; `None` if no term was reported.
     pub fn into_tree(mut self) -> Option<Tree> {
         let mut root = None;
-        // Parents precede their children: going backwards, each node is complete when it is
-        // reached, with its children in reverse.
+        // Parents precede their children. Going backwards, each node is complete when it is
+        // reached, with its children in reverse order.
         while let Some((parent, mut node)) = self.nodes.pop() {
             node.terms.reverse();
-            // A path knows the radiance along its rays only at its end.
+            // The radiance along the rays of a path is known only once all its terms are.
             if node.throughput.is_some() && !node.terms.is_empty() {
                 node.value = node.sum();
             }

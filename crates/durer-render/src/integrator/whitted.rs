@@ -1,11 +1,11 @@
-//! Whitted's ray tracing: direct light, a reflected and a transmitted ray.
+//! Whitted ray tracing: direct light, and one reflected and one transmitted ray per hit.
 //!
-//! Rays pass the stages of `Whitted::trace` in batches, even if there is only one. Spawned rays
-//! wait in a `Queue`, so nothing recurses. Each sum is computed in the order of its terms,
-//! independent of the batches.
+//! Rays pass through the stages of `Whitted::trace` in batches, even if there is only one ray.
+//! Secondary rays wait in a `Queue`, so there is no recursion. The terms of each sum are added in a
+//! fixed order, whatever the batches.
 //!
 //! Source: Turner Whitted, *An Improved Illumination Model for Shaded Display*, CACM 23(6), 1980,
-//! with the terms of the course.
+//! with the terms of the course's assignments.
 
 use super::media::Passage;
 use super::trace::{HitRecord, NodeId, RayKind, TermKind, TraceListener};
@@ -24,28 +24,29 @@ use smallvec::SmallVec;
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// Settings of the light transport.
+/// Light transport settings of a render, used by all integrators: depth, shadows and secondary
+/// rays.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WhittedOptions {
-    /// Maximum depth of secondary rays; 0 means direct light only.
+    /// Maximum depth of secondary rays; 0 gives direct light only.
     pub bounces: u32,
-    /// Casts shadows.
+    /// True if objects cast shadows.
     pub shadows: bool,
-    /// Shades surfaces seen from behind with a flipped normal.
+    /// True if surfaces seen from behind are shaded with a flipped normal.
     pub shade_back: bool,
-    /// Lets transparent objects cast coloured shadows.
+    /// True if transparent objects cast coloured shadows.
     pub transparent_shadows: bool,
-    /// Traces reflected rays.
+    /// True if reflected rays are traced.
     pub reflection: bool,
-    /// Traces transmitted rays.
+    /// True if transmitted rays are traced.
     pub refraction: bool,
-    /// Minimum throughput of a ray. A colour's throughput is its largest component; for old
-    /// programs, its length, as in the course.
+    /// Minimum weight of a ray in the pixel. The weight is the largest component of the throughput;
+    /// in the course's programs, it is the length.
     pub least_weight: f32,
 }
 
 impl WhittedOptions {
-    /// Largest maximum depth of a job.
+    /// Greatest maximum depth that a render job can have.
     pub const MAX_BOUNCES: u32 = 256;
 }
 
@@ -66,50 +67,50 @@ impl Parameters for WhittedParameters {
     }
 }
 
-/// Whitted's integrator of one world.
+/// Whitted ray tracing integrator for one world.
 #[derive(Clone, Copy, Debug)]
 pub struct Whitted<'w> {
-    /// The world.
+    /// World to render.
     pub world: &'w World,
-    /// Settings.
+    /// Depth, shadows and secondary rays.
     pub settings: WhittedOptions,
-    /// Once set, no more rays are traced, and results are meaningless. A single pixel that shows
-    /// many mirrors may take a long time.
+    /// Cancellation flag. Once it is set, no more rays are traced and results are meaningless. It
+    /// is needed because a single pixel that shows many mirrors can take a long time.
     pub cancel: Option<&'w AtomicBool>,
 }
 
-/// A material of a shaded point.
+/// One of the materials at a point that the Whitted integrator shades, with its lighting terms.
 struct ShadedMaterial<'w> {
     part: WeightedMaterial<'w>,
-    /// Diffuse colour, looked up once for all lights.
+    /// Diffuse colour, computed once for all lights.
     diffuse: Color,
-    /// Terms of the current light.
+    /// Terms of the light that is being added.
     direct: Direct,
 }
 
-/// A surface point to shade.
+/// Surface point that the Whitted integrator shades, one per hit of a batch.
 struct ShadingPoint {
-    /// Index of its segment.
+    /// Index of the segment that hit the point.
     segment: u32,
     at: SurfaceInteraction,
-    /// Transmission through the surface.
+    /// Refraction through the surface.
     passage: Passage,
     /// Normal used for lighting.
     n: Vec3,
-    /// True if an old program leaves it unlit.
+    /// True if the official program leaves the point black.
     black: bool,
-    /// Index of its first material in the list.
+    /// Index of the point's first material in the batch's list.
     first_part: usize,
-    /// Number of its materials.
+    /// Number of the point's materials.
     parts: usize,
     /// Radiance towards the ray's origin.
     color: Color,
 }
 
-/// Materials of the points of a batch, point by point.
+/// Materials of all points of a batch, ordered by point.
 type Parts<'w> = SmallVec<[ShadedMaterial<'w>; MAX_BATCH]>;
 
-/// Thread-local buffers, reused for each batch of camera rays.
+/// Thread-local buffers that are reused for each batch of camera rays.
 struct Scratch {
     queue: Queue,
     /// Buffer of [`MAX_BATCH`] shading points.
@@ -141,12 +142,12 @@ thread_local! {
     static SCRATCH: RefCell<Scratch> = RefCell::default();
 }
 
-/// The shaded side of a surface.
+/// Side of a surface that is shaded, with its normal.
 struct Side {
     /// Normal used for lighting.
     n: Vec3,
     from_behind: bool,
-    /// True if an old program leaves it black.
+    /// True if the official program leaves this side black.
     black: bool,
 }
 
@@ -177,9 +178,9 @@ impl<'w> Whitted<'w> {
         color[0]
     }
 
-    /// Traces camera rays and all rays that follow from them, batch by batch: first hits, then
-    /// lighting, then secondary rays. `begin` is called with the index of the camera ray in
-    /// progress.
+    /// Traces camera rays and their secondary rays in batches. For each batch, finds the first
+    /// hits, lights them and spawns secondary rays. `begin` is called with the index of the camera
+    /// ray that is worked on.
     fn trace<T: TraceListener>(&self, rays: &[Ray64], begin: impl Fn(usize), tally: &mut T, colors: &mut [Color]) {
         SCRATCH.with_borrow_mut(|Scratch { queue, points, rays: batch_rays }| {
             queue.clear();
@@ -213,8 +214,8 @@ impl<'w> Whitted<'w> {
         });
     }
 
-    /// Intersects the rays of a batch and collects the points to shade; returns their number. Rays
-    /// that miss are finished; rays that pass an ignored surface are queued again.
+    /// Intersects a batch of rays and collects the points to shade; returns their number. Finishes
+    /// rays that hit nothing, and queues rays again that hit an ignored surface.
     fn hit<T: TraceListener>(
         &self,
         batch: &[u32],
@@ -272,8 +273,8 @@ impl<'w> Whitted<'w> {
         count
     }
 
-    /// Computes the light that points scatter towards their rays: ambient light, then light by
-    /// light.
+    /// Computes the direct light that points scatter towards the rays' origins: first the ambient
+    /// light, then the lights one by one.
     fn shade<T: TraceListener>(
         &self,
         points: &mut [ShadingPoint],
@@ -296,7 +297,7 @@ impl<'w> Whitted<'w> {
                 point.color += ambient * met;
             }
         }
-        // Points that a light may reach: index, and the light as seen from there.
+        // Points that the light may reach: their index, and the light as seen from there.
         let mut lit = [(0, LightLiSample { to_light: Vec3::ZERO, distance: 0.0, color: Color::ZERO }); MAX_BATCH];
         for number in 0..self.world.lights().len() {
             let mut count = 0;
@@ -308,8 +309,8 @@ impl<'w> Whitted<'w> {
                     *direct = Direct::of(part.phong, *diffuse, point.n, ray.dir(), &seen);
                     dark &= direct.is_dark(part.phong);
                 }
-                // Only listeners need the visibility of a light that contributes nothing. An
-                // infinite light times 0 is NaN, as in the official programs.
+                // Only listeners need the visibility of a light that adds nothing. The exception is
+                // an infinite light: times 0 it is NaN, as in the official programs.
                 let adds_nothing = dark && seen.color.is_finite() || seen.color == Color::ZERO;
                 if adds_nothing && !T::LISTENS {
                     continue;
@@ -333,7 +334,7 @@ impl<'w> Whitted<'w> {
         }
     }
 
-    /// Adds the visible share of a light to a point's colour.
+    /// Adds the visible fraction of a light to a point's colour.
     #[inline(always)]
     fn add_light<T: TraceListener>(
         &self,
@@ -345,7 +346,7 @@ impl<'w> Whitted<'w> {
     ) {
         for ShadedMaterial { part, diffuse, direct } in parts {
             let share = part.share;
-            // Skip the computation if no light arrives.
+            // Skip the computation if the light is occluded.
             let dark = visible == Color::ZERO;
             let color = if dark { Color::ZERO } else { direct.color(part.phong, seen) };
             if T::LISTENS {
@@ -364,7 +365,7 @@ impl<'w> Whitted<'w> {
         }
     }
 
-    /// Returns true if secondary rays are still traced.
+    /// Returns true if secondary rays should still be traced.
     fn goes_on(&self, bounces: u32) -> bool {
         bounces > 0 && !self.cancel.is_some_and(|cancel| cancel.load(Relaxed))
     }
@@ -387,7 +388,8 @@ impl<'w> Whitted<'w> {
         at.ray.dir().dot(if shaded { at.surface.n_shade } else { at.surface.n_geo }) > 0.0
     }
 
-    /// Returns the diffuse colour at a hit, weighted over its materials: the albedo.
+    /// Returns the albedo: the diffuse colour at a hit, averaged over its materials by their
+    /// shares.
     pub fn albedo(&self, at: &SurfaceInteraction) -> Color {
         let parts = self.world.parts(at);
         parts.iter().map(|part| part.share * self.world.diffuse_color(part.phong, &at.surface)).sum()

@@ -1,4 +1,4 @@
-//! Adaptive sampling: distributes the samples of a render among its pixels after the pilot.
+//! Adaptive sampling, second step: decides the number of samples of each pixel after the pilot.
 
 use super::Crop;
 use super::allocation::{around, divided};
@@ -6,8 +6,8 @@ use super::part::PartialRender;
 use std::sync::Arc;
 
 impl PartialRender {
-    /// Decides the number of samples of each pixel, once all pixels have the pilot's samples.
-    /// Returns true if it is decided.
+    /// Decides the number of samples of each pixel once all pixels have their pilot samples.
+    /// Returns true if the numbers are decided.
     pub(super) fn allocate(&self) -> bool {
         let (samples, window) = (self.job.sampling.samples(), self.job.window());
         let blocks = self.state().samples.clone();
@@ -36,7 +36,7 @@ impl PartialRender {
         true
     }
 
-    /// Returns the number of samples of a pixel of the window, if it is decided.
+    /// Returns the number of samples decided for a pixel of the window, or `None` if undecided.
     pub(super) fn target(&self, x: u32, y: u32) -> Option<u32> {
         let (state, index) = (self.state(), self.blocks.at(x, y));
         let pixel = self.blocks.rect(index).places().position(|place| place == (x, y))?;

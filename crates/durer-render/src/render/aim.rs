@@ -1,4 +1,4 @@
-//! Camera rays for the samples of a job.
+//! Camera rays for the samples of a render job.
 
 use super::error::center;
 use super::sub_pixels::SubPixels;
@@ -11,60 +11,61 @@ use durer_scene::math::{Ray, Vec2};
 use durer_scene::sampler::{LENS_DIMENSION, PIXEL_DIMENSION, SampleId, Sampler, Sequence};
 use std::array::from_fn;
 
-/// A sample's position, weight and ray.
+/// Position, weight and camera ray of one sample of a pixel.
 pub(super) struct PixelSample {
     /// Position in the picture, in pixels from the upper left corner.
     pub(super) place: Vec2,
-    /// Position on the lens, from 0 to 1.
+    /// Position on the lens, in [0,1)^2.
     pub(super) lens: Vec2,
-    /// Weight in the pixel.
+    /// Weight of the sample in the pixel.
     pub(super) weight: f32,
-    /// Camera ray; `None` if the camera sees nothing there.
+    /// Camera ray; `None` if the camera has no ray there, as outside the circle of a fisheye.
     pub(super) ray: Option<Ray>,
 }
 
-/// Data shared by the samples of a pixel.
+/// Position and random sequence of a pixel, shared by all its samples.
 #[derive(Clone, Copy)]
 pub(super) struct Pixel {
     pub(super) x: u32,
     pub(super) y: u32,
-    /// Sample id of its samples.
+    /// Source of random numbers for the pixel's samples.
     pub(super) id: SampleId,
-    /// Centre, in pixels from the upper left corner, and in the camera's square.
+    /// Centre, in pixels from the upper left corner.
     center: Vec2,
+    /// Centre, in the camera's coordinates.
     point: Vec2,
-    /// Sobol positions in the pixel.
+    /// Sobol sequence of positions in the pixel.
     positions: Sequence,
 }
 
-/// Number of samples that are generated with SIMD.
+/// Number of samples whose rays are generated together with SIMD.
 pub(super) const BATCH: usize = 8;
 
-/// A group of samples to generate together.
+/// Group of samples whose rays are generated together.
 pub(super) trait SampleGroup {
     /// Returns the number of samples, at most [`BATCH`].
     fn len(&self) -> usize;
 
-    /// Returns the pixel of a sample; any pixel for unused slots.
+    /// Returns the pixel of a sample. For an unused slot, returns any pixel.
     fn pixel(&self, i: usize) -> &Pixel;
 
     /// Returns the index of a sample in its pixel.
     fn number(&self, i: usize) -> u32;
 }
 
-/// Samples of one or several pixels.
+/// Group of up to [`BATCH`] samples of one or several pixels.
 pub(super) struct Batch {
     of: [(Pixel, u32); BATCH],
     len: usize,
 }
 
 impl Batch {
-    /// Creates an empty batch; unused slots refer to the pixel `some`.
+    /// Creates an empty batch. Unused slots refer to the pixel `some`.
     pub(super) fn new(some: Pixel) -> Self {
         Batch { of: [(some, 0); BATCH], len: 0 }
     }
 
-    /// Adds a sample; returns `true` if the batch is full.
+    /// Adds a sample. Returns true if the batch is then full.
     pub(super) fn push(&mut self, pixel: &Pixel, sample: u32) -> bool {
         self.of[self.len] = (*pixel, sample);
         self.len += 1;
@@ -93,7 +94,7 @@ impl SampleGroup for Batch {
     }
 }
 
-/// [`BATCH`] consecutive samples of one pixel.
+/// Group of [`BATCH`] consecutive samples of one pixel.
 pub(super) struct Row<'a> {
     pub(super) pixel: &'a Pixel,
     pub(super) first: u32,
@@ -116,7 +117,7 @@ impl SampleGroup for Row<'_> {
     }
 }
 
-/// Generates camera rays for the samples of a job.
+/// Generator of the camera rays for a job's samples.
 pub(super) struct Aim<'a> {
     world: &'a World,
     job: &'a Job,
@@ -135,18 +136,18 @@ impl<'a> Aim<'a> {
         Aim { world, job, raster, warp, has_aperture: world.camera().has_aperture() }
     }
 
-    /// Returns the magnitude of a sample's weight.
+    /// Returns the magnitude of the sample weights.
     pub(super) fn gain(&self) -> f32 {
         self.warp.as_ref().map_or(1.0, FilterSampler::gain)
     }
 
-    /// Returns the shared data of a pixel.
+    /// Returns the position and random sequence of a pixel.
     pub(super) fn pixel(&self, x: u32, y: u32) -> Pixel {
         let (id, center) = (SampleId::new(self.job.seed, (x, y), 0), center(x, y));
         Pixel { x, y, id, center, point: self.raster.point(center), positions: id.sequence(PIXEL_DIMENSION) }
     }
 
-    /// Generates a sample, for samplings whose samples affect their own pixel only.
+    /// Generates a sample. Only for sampling methods whose samples affect their own pixel alone.
     pub(super) fn sample(&self, pixel: &Pixel, sample: u32) -> PixelSample {
         let middle = Vec2::splat(0.5);
         let (place, lens, weight) = match (self.job.sampling, &self.warp) {
@@ -158,14 +159,15 @@ impl<'a> Aim<'a> {
             (Sampling::Course2004 { sampler, samples, .. }, _) => {
                 return self.kept((sampler, sampler.round_up(samples)), pixel.x, pixel.y, sample).0;
             }
-            // One ray through the centres of pixel and lens.
+            // One ray through the centres of the pixel and the lens.
             _ => (pixel.center, middle, 1.0),
         };
         let at = CameraSample { point: self.raster.point(place), pixel: pixel.point, lens };
         PixelSample { place, lens, weight, ray: self.world.camera().ray(self.world.camera_frame(), &at) }
     }
 
-    /// Generates ray and weight of several samples, with the same results as [`Aim::sample`].
+    /// Generates the rays and weights of a group of samples. The results equal those of
+    /// [`Aim::sample`].
     pub(super) fn several(&self, of: &impl SampleGroup, mut take: impl FnMut(usize, Option<Ray>, f32)) {
         let mut take = |i: usize, ray, weight| {
             if i < of.len() {
@@ -187,6 +189,7 @@ impl<'a> Aim<'a> {
         }
     }
 
+    /// Generates the camera rays for positions on the film and on the lens.
     #[inline(always)]
     fn rays(
         &self,
@@ -199,8 +202,8 @@ impl<'a> Aim<'a> {
         self.world.camera().rays(self.world.camera_frame(), &samples, take);
     }
 
-    /// Generates a sample that affects several pixels through a filter; also returns its position
-    /// in the pixel.
+    /// Generates a sample that a filter spreads over several pixels. Also returns its position in
+    /// its pixel.
     pub(super) fn kept(&self, (sampler, samples): (Sampler, u32), x: u32, y: u32, sample: u32) -> (PixelSample, Vec2) {
         let position = sampler.pixel_position(self.job.seed, x, y, sample, samples);
         let (place, lens) = (Vec2::new(x as f32, y as f32) + position, self.lens(sampler, x, y, sample));
@@ -208,14 +211,14 @@ impl<'a> Aim<'a> {
         (PixelSample { place, lens, weight: 1.0, ray }, position)
     }
 
-    /// Generates the sample of a sub-pixel.
+    /// Generates the sample of a sub-pixel, for the course of 2012.
     pub(super) fn sub_pixel(&self, grid: &SubPixels, raster: &Raster, (x, y): (u32, u32)) -> PixelSample {
         let (place, lens) = (grid.place(self.job.seed, (x, y)), self.lens(Sampler::Random, x, y, 0));
         let ray = camera_ray(self.world, raster, (x, y), place, lens);
         PixelSample { place: place / grid.scale() as f32, lens, weight: 1.0, ray }
     }
 
-    /// Returns a sample's position on the lens. A pinhole needs no random numbers.
+    /// Returns a sample's position on the lens. For a pinhole camera, it is the centre.
     fn lens(&self, sampler: Sampler, x: u32, y: u32, sample: u32) -> Vec2 {
         match self.has_aperture {
             true => sampler.lens_position(self.job.seed, x, y, sample),
@@ -224,7 +227,7 @@ impl<'a> Aim<'a> {
     }
 }
 
-/// SIMD kernel for filtered sampling.
+/// SIMD kernel that generates the samples of a group for sampling with a reconstruction filter.
 struct AimKernel<'a, S, F> {
     aim: &'a Aim<'a>,
     warp: &'a FilterSampler,

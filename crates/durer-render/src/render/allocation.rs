@@ -1,20 +1,21 @@
-//! Adaptive allocation: more samples for noisier pixels.
+//! Adaptive allocation of samples: noisier pixels get more samples.
 //!
-//! For a fixed number of samples, the mean squared error is minimal if each pixel's number is
+//! For a fixed total, the mean squared error is minimal if each pixel's sample count is
 //! proportional to the standard deviation of its samples (Neyman 1934; Cochran, *Sampling
-//! Techniques*, 1977, section 5.5). First every pixel gets the same number, the pilot: a quarter.
-//! Then the final number of each is decided once, from exact sums and in a fixed order.
+//! Techniques*, 1977, section 5.5). First, all pixels get the same number of pilot samples, a
+//! quarter of the total. Then the final counts are decided once, from exact sums and in a fixed
+//! order.
 //!
-//! The relevant deviation is the one that remains as more samples are taken. For Sobol points it is
-//! far less than the deviation between samples at edges. So it is estimated from the change of a
-//! pixel's mean in the second half of the pilot, not from the variance of its samples.
+//! The relevant deviation is the one that remains as more samples are taken. With Sobol points, it
+//! is far smaller at edges than the deviation between samples. It is therefore estimated from the
+//! change of a pixel's mean in the second half of the pilot, not from the variance of its samples.
 //!
 //! A pixel's sample count never depends on its own samples. Otherwise, samples that found much
-//! light by chance would attract more samples and be weighted less, and the picture would be too
-//! dark (Kirk and Arvo, *Unbiased Sampling Techniques for Image Synthesis*, 1991). So pixels are
-//! split in a checkerboard pattern. Each colour has its share of all samples, and their
-//! distribution depends only on pixels of the other colour, whose samples are independent and whose
-//! variance is about the same. The estimate is therefore unbiased.
+//! light by chance would attract more samples and get a smaller weight, and the picture would be
+//! too dark (Kirk and Arvo, *Unbiased Sampling Techniques for Image Synthesis*, 1991). Pixels are
+//! therefore split in a checkerboard pattern. The samples of each colour are distributed according
+//! to pixels of the other colour only, whose samples are independent and whose variance is similar.
+//! This makes the estimate unbiased.
 
 #[cfg(test)]
 mod tests;
@@ -25,39 +26,39 @@ use crate::film::{Film, luminance_of};
 use durer_scene::sampler::Sampler;
 use std::sync::Arc;
 
-/// Minimum average number of samples per pixel for adaptive sampling.
+/// Minimum average number of samples per pixel with which adaptive sampling is allowed.
 pub const LEAST_ADAPTIVE: u32 = 16;
 
-/// Minimum number of samples in half a pilot.
+/// Minimum number of samples in half of the pilot.
 const LEAST_HALF: u32 = 4;
 
-/// Maximum number of samples of a pixel, relative to the average.
+/// Maximum number of samples of a pixel, as a multiple of the average.
 const MOST_TIMES: u32 = 64;
 
-/// Maximum number of samples of a pixel: a film can hold this many of any brightness.
+/// Maximum number of samples of a pixel. A film can hold this many of any brightness.
 const MOST: u32 = 1 << 20;
 
-/// Weights of the pixels up to six away, down and across: binomial coefficients. Their product
-/// approximates a normal distribution of standard deviation 1.7.
+/// Weights of the pixels up to six away along each axis: binomial coefficients. Their product
+/// approximates a normal distribution with a standard deviation of 1.7.
 const WEIGHTS: [f32; 13] = [1.0, 12.0, 66.0, 220.0, 495.0, 792.0, 924.0, 792.0, 495.0, 220.0, 66.0, 12.0, 1.0];
 
-/// Returns half the number of pilot samples, for an average of `samples`.
+/// Returns half the number of pilot samples per pixel. `samples` is the average number.
 pub(super) fn half(samples: u32) -> u32 {
     (samples / 8).max(LEAST_HALF)
 }
 
-/// Returns the number of pilot samples.
+/// Returns the number of pilot samples per pixel. `samples` is the average number.
 pub(super) fn pilot(samples: u32) -> u32 {
     2 * half(samples)
 }
 
-/// Returns the maximum number of samples of a pixel, for an average of `samples`.
+/// Returns the maximum number of samples of a pixel. `samples` is the average number.
 pub(super) fn most(samples: u32) -> u32 {
     samples.saturating_mul(MOST_TIMES).min(MOST.max(samples))
 }
 
-/// Returns the number of samples of a pixel when the average is `end` of `samples`: the pilot
-/// samples, plus a share of the remaining ones.
+/// Returns how many samples a pixel has when the average so far is `end` of `samples`: the pilot
+/// samples and a proportional part of the others.
 pub(super) fn count(samples: u32, target: u32, end: u32) -> u32 {
     let pilot = pilot(samples);
     if end <= pilot {
@@ -67,10 +68,10 @@ pub(super) fn count(samples: u32, target: u32, end: u32) -> u32 {
     pilot + (more * gone / all) as u32
 }
 
-/// Returns the reason why a job cannot be sampled adaptively, if any.
+/// Returns the reason why a job cannot be sampled adaptively, or `None` if it can.
 pub(super) fn refusal(job: &Job, is_whole: bool) -> Option<String> {
     let is_spread = match job.sampling {
-        // `Center` is rejected below, by its number of samples.
+        // `Center` is rejected below because it has only one sample.
         Sampling::Center | Sampling::Filtered { .. } => true,
         Sampling::Course2004 { sampler, filter: None, .. } => matches!(sampler, Sampler::Sobol | Sampler::Random),
         _ => false,
@@ -94,8 +95,9 @@ pub(super) fn refusal(job: &Job, is_whole: bool) -> Option<String> {
     Some(why)
 }
 
-/// Returns the variance of the mean luminance of each pixel in a block, from half a pilot and the
-/// whole: the square of half the difference between two independent halves is an unbiased estimate.
+/// Returns the variance of each pixel's mean luminance in a block after the pilot. `half` contains
+/// the first half of the pilot samples, `all` all of them. The square of half the difference
+/// between the two independent halves is an unbiased estimate.
 pub(super) fn variances(half: &Film, all: &Film, rect: Crop) -> Arc<[f32]> {
     let luminance = |film: &Film, (x, y)| luminance_of(film.resolve(x, y));
     let square = |place| {
@@ -105,7 +107,8 @@ pub(super) fn variances(half: &Film, all: &Film, rect: Crop) -> Arc<[f32]> {
     rect.places().map(square).map(|square| if square.is_finite() { square } else { 0.0 }).collect()
 }
 
-/// Estimates the variance of each pixel's mean from the neighbours of the other colour.
+/// Estimates the variance of each pixel's mean from its neighbours of the other checkerboard
+/// colour.
 pub(super) fn around(variances: &[f32], width: usize) -> Vec<f32> {
     let (height, reach) = (variances.len() / width, WEIGHTS.len() / 2);
     let mut row = vec![(0.0_f32, 0.0_f32); width];
@@ -116,7 +119,7 @@ pub(super) fn around(variances: &[f32], width: usize) -> Vec<f32> {
             let (source, down) = (&variances[from * width..][..width], from + reach - y);
             for across in (0..WEIGHTS.len()).filter(|across| (down + across) % 2 == 1) {
                 let weight = WEIGHTS[down] * WEIGHTS[across];
-                // Column x takes from x + across - reach.
+                // Column x gets the value of column x + across - reach.
                 let (to, from) = (reach.saturating_sub(across), across.saturating_sub(reach));
                 for ((sum, weights), variance) in row.iter_mut().skip(to).zip(source.iter().skip(from)) {
                     *sum += weight * variance;
@@ -129,13 +132,13 @@ pub(super) fn around(variances: &[f32], width: usize) -> Vec<f32> {
     found
 }
 
-/// Distributes an average of `samples` per pixel in proportion to standard deviations; each pixel
-/// gets at least the pilot samples. Samples that no pixel needs are left over.
+/// Distributes an average of `samples` per pixel in proportion to the standard deviations. Each
+/// pixel gets at least the pilot samples. Samples above the maximum of all pixels are not taken.
 pub(super) fn divided(deviations: &[f32], samples: u32) -> Vec<u32> {
     let (least, most) = (f64::from(pilot(samples)), f64::from(most(samples)));
     let wanted = |factor: f64, deviation: f32| (factor * f64::from(deviation)).clamp(least, most);
     let all = deviations.len() as f64 * f64::from(samples);
-    // Bisect for the greatest factor that stays within the budget. The bits of positive floats are
+    // Find the greatest factor within the budget by bisection. The bits of positive floats are
     // ordered like the floats.
     let (mut low, mut high) = (0, f64::MAX.to_bits());
     while low < high {

@@ -1,4 +1,4 @@
-//! Pictures larger than memory: rendered in bands of rows that are written and freed.
+//! Rendering of pictures that are larger than memory, in bands of rows that are written and freed.
 
 use super::{BLOCK, Control, Crop, Job, PartialRender, RenderError, RenderOutcome, Shard, Statistics};
 use crate::world::World;
@@ -7,18 +7,18 @@ use durer_scene::source::Digest;
 use std::io::{self, Write};
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Maximum bytes of a band; larger ones would not be faster.
+/// Maximum size of a band in bytes. Larger bands would not be faster.
 const ENOUGH: u64 = 256 << 20;
 
-/// The colour picture of a job, of any size.
+/// Render job whose colour picture is rendered in bands of rows to save memory.
 #[derive(Debug)]
 pub struct Bands {
     job: Job,
-    /// Rows of a band: a multiple of [`BLOCK`].
+    /// Number of rows in a band, a multiple of [`BLOCK`].
     rows: u32,
 }
 
-/// Error of a render in bands.
+/// Error from rendering a picture in bands and writing it.
 #[derive(Debug, thiserror::Error)]
 pub enum BandsError {
     /// The render failed.
@@ -33,11 +33,11 @@ pub enum BandsError {
 }
 
 impl Bands {
-    /// Divides the picture of a job into bands of at most `memory` bytes each.
+    /// Divides a job's picture into bands of at most `memory` bytes each.
     ///
     /// # Errors
-    /// [`RenderError::Bands`] for jobs that need all pixels at once, and [`RenderError::Memory`] if
-    /// not even one row of blocks fits.
+    /// [`RenderError::Bands`] if the job needs all pixels at once, and [`RenderError::Memory`] if
+    /// not even one row of blocks fits into memory.
     pub fn new(job: &Job, memory: u64) -> Result<Self, RenderError> {
         let refuse = |why: &str| Err(RenderError::Bands(why.into()));
         if !job.color || !job.aovs.is_empty() {
@@ -61,12 +61,12 @@ impl Bands {
         }
     }
 
-    /// Returns the bytes of a band.
+    /// Returns the memory needed for a band, in bytes.
     pub fn bytes_needed(&self) -> u64 {
         self.crops().first().map_or(0, |crop| PartialRender::bytes_needed(&self.band(*crop), Shard::WHOLE))
     }
 
-    /// Returns the bands from top to bottom. They end at block boundaries of the whole picture.
+    /// Returns the bands from top to bottom. They end at block boundaries of the full picture.
     fn crops(&self) -> Vec<Crop> {
         let window = self.job.window();
         let (mut crops, mut top, end) = (Vec::new(), window.top, window.top + window.height);
@@ -78,15 +78,16 @@ impl Bands {
         crops
     }
 
+    /// Returns the job of one band.
     fn band(&self, crop: Crop) -> Job {
         Job { crop: Some(crop), ..self.job.clone() }
     }
 
-    /// Renders and writes the picture. Returns statistics and, for top-down formats, the hash that
-    /// [`PartialRender::hash`] of the whole picture would have.
+    /// Renders and writes the picture band by band. Returns statistics and, for top-down formats,
+    /// the hash that [`PartialRender::hash`] would give for the full picture.
     ///
     /// # Errors
-    /// [`BandsError`]; the output is incomplete then.
+    /// [`BandsError`]. The output is then incomplete.
     pub fn write(
         &self,
         world: &World,
@@ -97,7 +98,8 @@ impl Bands {
     ) -> Result<(Statistics, Option<Digest>), BandsError> {
         let window = self.job.window();
         let bottom_up = format.rows.is_some_and(|rows| rows.bottom_up);
-        // Full coverage is only known at the end: if it is possibly incomplete, write alpha.
+        // Full coverage is known only at the end, so write an alpha channel unless the camera sees
+        // something everywhere.
         let (width, height, display) = (window.width, window.height, options.display);
         let strip = Strip { width, height, alpha: !sees_all(world, &self.job), display };
         let samples = u64::from(self.job.sampling.samples());
@@ -124,7 +126,8 @@ impl Bands {
     }
 }
 
-/// Returns true if the camera has a ray at each point of a grid that includes the corners.
+/// Returns true if the camera has a ray at all points of a grid over the window, including its
+/// corners.
 fn sees_all(world: &World, job: &Job) -> bool {
     const ACROSS: u32 = 256;
     let (window, raster) = (job.window(), super::raster(world, job.width, job.height));

@@ -1,8 +1,8 @@
-//! Subdivision of a picture: fixed blocks, tiles of blocks as tasks for threads, and shards.
+//! Division of a picture into blocks, into tiles of blocks as tasks for threads, and into shards.
 //!
-//! All decisions (which shard renders a pixel, where noise is low enough) use blocks of 8 x 8
-//! pixels, whose corners are at multiples of 8 in the whole picture. So the tile size does not
-//! affect the result.
+//! All decisions (which shard renders a pixel, or where noise is low enough) are made for blocks of
+//! 8 x 8 pixels, whose corners are at multiples of 8 in the full picture. The tile size therefore
+//! does not affect the result.
 
 use super::Crop;
 use serde::{Deserialize, Serialize};
@@ -11,14 +11,15 @@ use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
 
-/// Width and height of a block in pixels.
+/// Width and height of a block, in pixels.
 pub const BLOCK: u32 = 8;
 
-/// Blocks of a window in reading order. Blocks at the window's edges may be smaller.
+/// Division of a window of the picture into blocks of 8 x 8 pixels, in reading order. Blocks at the
+/// window's edges can be smaller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Blocks {
     window: Crop,
-    /// First column and row of blocks in the whole picture.
+    /// Column and row of the first block, counted in blocks from the corner of the full picture.
     first: (u32, u32),
     columns: u32,
     rows: u32,
@@ -38,7 +39,7 @@ impl Blocks {
         self.columns as usize * self.rows as usize
     }
 
-    /// Returns the pixels of a block.
+    /// Returns the rectangle of pixels in a block.
     pub fn rect(&self, index: usize) -> Crop {
         let (column, row) = (index as u32 % self.columns + self.first.0, index as u32 / self.columns + self.first.1);
         let side = |block: u32, start: u32, length: u32| {
@@ -50,7 +51,7 @@ impl Blocks {
         Crop { left, top, width, height }
     }
 
-    /// Returns the indices of the blocks in each row.
+    /// Iterates over the rows of blocks; each item is the range of block indices in a row.
     pub fn rows(&self) -> impl Iterator<Item = Range<usize>> {
         let columns = self.columns as usize;
         (0..self.count() / columns.max(1)).map(move |row| row * columns..(row + 1) * columns)
@@ -61,7 +62,7 @@ impl Blocks {
         (y / BLOCK - self.first.1) as usize * self.columns as usize + (x / BLOCK - self.first.0) as usize
     }
 
-    /// Groups blocks into tiles; tiles in reading order.
+    /// Groups the chosen blocks into tiles of `side` pixels. Both are in reading order.
     pub fn tiles(&self, chosen: impl Iterator<Item = usize>, side: u32) -> Vec<Vec<usize>> {
         let blocks_a_side = side.div_ceil(BLOCK).max(1);
         let mut tiles: BTreeMap<(u32, u32), Vec<usize>> = BTreeMap::new();
@@ -74,45 +75,46 @@ impl Blocks {
     }
 }
 
-/// Division of work between machines.
+/// How shards divide a render between machines: by pixels or by samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ShardBy {
-    /// Each shard renders some of the pixels.
+    /// Each shard renders some of the blocks of pixels.
     #[default]
     Tiles,
     /// Each shard renders some of the samples of every pixel.
     Samples,
 }
 
-/// One of several parts of the work.
+/// One of several parts of a render, for distributing it over machines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
-    /// Index, from 1.
+    /// Index of the shard, from 1.
     pub index: u32,
     /// Number of shards.
     pub count: u32,
-    /// Division of the work.
+    /// How the work is divided.
     pub by: ShardBy,
 }
 
 impl Shard {
-    /// Shard that contains the entire work.
+    /// The only shard of a render that is not divided.
     pub const WHOLE: Shard = Shard { index: 1, count: 1, by: ShardBy::Tiles };
 
-    /// Returns true if the shard has the pixels of a block. Neighbouring blocks belong to different
-    /// shards, which balances the work.
+    /// Returns true if the shard renders the pixels of a block. Neighbouring blocks belong to
+    /// different shards, which balances the work.
     pub fn has_block(self, index: usize) -> bool {
         self.by == ShardBy::Samples || self.has_rays(index)
     }
 
-    /// Returns true if the shard has the centre rays of a block, which are always divided by
+    /// Returns true if the shard traces the centre rays of a block. These are always divided by
     /// blocks.
     pub fn has_rays(self, index: usize) -> bool {
         index as u64 % u64::from(self.count) == u64::from(self.index - 1)
     }
 
-    /// Returns its half-open range of a pixel's samples.
+    /// Returns the range of a pixel's samples that the shard renders: first index and end
+    /// (exclusive).
     pub fn range(self, samples: u32) -> (u32, u32) {
         let end = |index: u32| (u64::from(samples) * u64::from(index) / u64::from(self.count)) as u32;
         if self.by == ShardBy::Tiles { (0, samples) } else { (end(self.index - 1), end(self.index)) }
@@ -128,7 +130,7 @@ impl fmt::Display for Shard {
 impl FromStr for Shard {
     type Err = String;
 
-    /// Parses `3/16`: the third of sixteen, by tiles.
+    /// Parses a shard such as `3/16`, the third of sixteen, divided by tiles.
     fn from_str(text: &str) -> Result<Self, String> {
         let numbers = text.split_once('/').and_then(|(i, n)| Some((i.trim().parse().ok()?, n.trim().parse().ok()?)));
         let (index, count) = numbers.ok_or("expected INDEX/COUNT, for example 3/16 for the third of sixteen")?;

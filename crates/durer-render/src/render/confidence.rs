@@ -1,16 +1,16 @@
-//! Error bounds of pixels from noise and bias.
+//! Error bounds for pixels, from noise and bias.
 //!
-//! The mean of n samples has a standard error. Photons also have a bias, because the estimate
-//! averages over a neighbourhood. The same photons with a second-order kernel (see
-//! [`crate::integrator::Photons::corrected`]) estimate it. With mean M, corrected mean C and the
-//! standard error s of C, the truth is within t s of C at some confidence, where t is Student's
-//! quantile with n - 1 degrees of freedom; so it is at most |M - C| + t s away from M.
+//! The mean of n samples has a standard error. Photon mapping also has a bias, since it averages
+//! over a neighbourhood. The bias is estimated from the same photons with a second-order kernel
+//! (see [`crate::integrator::Photons::corrected`]). Let M be the mean, C the corrected mean and s
+//! the standard error of C. At some confidence, the true value is within t s of C, where t is
+//! Student's quantile with n - 1 degrees of freedom. It is therefore within |M - C| + t s of M.
 //!
 //! Source: Hachisuka, Jarosz and Jensen, *A Progressive Error Estimation Framework for Photon
-//! Density Estimation*, 2010. There the bias comes from derivatives of a smooth kernel, here from
-//! two kernels over the same photons; with equal radii for all pixels (Knaus and Zwicker 2011) it
-//! is an ordinary mean over samples. As there, light is assumed to be smooth within the radius: at
-//! the sharp edge of a caustic, about six tenths of the bias are found.
+//! Density Estimation*, 2010. They take the bias from derivatives of a smooth kernel; here it comes
+//! from two kernels over the same photons. Since all pixels have equal radii (Knaus and Zwicker
+//! 2011), it is an ordinary mean over samples. As in the paper, light is assumed to be smooth
+//! within the radius: at the sharp edge of a caustic, about six tenths of the bias are found.
 
 use super::part::PartialRender;
 use super::run::whole;
@@ -22,25 +22,25 @@ use durer_image::{Image, Layer};
 use durer_scene::math::Vec3;
 use serde::Serialize;
 
-/// Confidence of the error bounds.
+/// Confidence level of the error bounds.
 pub const CONFIDENCE: f64 = 0.9;
 
-/// Error bound of a pixel's luminance.
+/// Bound on the error of a pixel's luminance, from its noise and from the bias of photon mapping.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ErrorBound {
-    /// Luminance.
+    /// Estimated luminance.
     pub luminance: f64,
-    /// Estimated bias in it; only photons have one. May be negative.
+    /// Estimated bias of the luminance, possibly negative. 0 without photons.
     pub bias: f64,
-    /// Standard error of the luminance without the bias.
+    /// Standard error of the luminance after subtracting the bias.
     pub standard_error: f64,
-    /// Bound of the absolute error of the luminance, with a confidence of [`CONFIDENCE`]; infinite
-    /// for one sample.
+    /// Bound on the absolute error of the luminance with confidence [`CONFIDENCE`]. Infinite for
+    /// one sample.
     pub bound: f64,
 }
 
 impl ErrorBound {
-    /// Computes the bound from a pixel's samples, and from its bias-corrected samples.
+    /// Computes the bound from a pixel's samples and from its bias-corrected samples.
     pub(super) fn new(own: &Sums, corrected: &Sums) -> Self {
         let (luminance, without) = (own.luminance(), corrected.luminance());
         let standard_error = corrected.variance().sqrt();
@@ -49,7 +49,7 @@ impl ErrorBound {
         ErrorBound { luminance, bias, standard_error, bound: bias.abs() + student(freedom) * standard_error }
     }
 
-    /// Returns the confidence interval of the true luminance, for a confidence of [`CONFIDENCE`].
+    /// Returns the interval that contains the true luminance with confidence [`CONFIDENCE`].
     pub fn interval(&self) -> (f64, f64) {
         let (middle, half) = (self.luminance - self.bias, self.bound - self.bias.abs());
         (middle - half, middle + half)
@@ -57,15 +57,15 @@ impl ErrorBound {
 }
 
 /// Returns the quantile of Student's distribution with upper tail probability (1 - [`CONFIDENCE`])
-/// / 2; infinite without degrees of freedom.
+/// / 2. Infinite for less than one degree of freedom.
 ///
-/// Source: Abramowitz and Stegun, *Handbook of Mathematical Functions*, 26.7.5. It is 5 % too small
-/// for one degree of freedom, and accurate to 0.3 % from two on.
+/// Source: Abramowitz and Stegun, *Handbook of Mathematical Functions*, 26.7.5. The result is 5 %
+/// too small for one degree of freedom, and accurate to 0.3 % for two or more.
 fn student(freedom: f64) -> f64 {
     if freedom < 1.0 {
         return f64::INFINITY;
     }
-    // The 0.95 quantile of the normal distribution.
+    // 0.95 quantile of the normal distribution.
     let z = 1.644_853_626_951_472_7_f64;
     let (square, mut power) = (z * z, z);
     // z and its odd powers up to the ninth.
@@ -86,7 +86,7 @@ fn student(freedom: f64) -> f64 {
     terms.iter().rev().fold(0.0, |sum, term| sum / freedom + term)
 }
 
-/// Returns the bias-corrected variant of a method, if it has a bias.
+/// Returns the bias-corrected variant of an integrator, or `None` if it is unbiased.
 pub(super) fn corrected(method: IntegratorKind) -> Option<IntegratorKind> {
     match method {
         IntegratorKind::Photons(photons) => {
@@ -97,13 +97,13 @@ pub(super) fn corrected(method: IntegratorKind) -> Option<IntegratorKind> {
 }
 
 impl PartialRender {
-    /// Computes the error bound of each pixel's luminance with a confidence of [`CONFIDENCE`]: the
-    /// values, and a heat map of them up to 0.1. Does not change the sums and hash of the part.
-    /// Traces photons a second time.
+    /// Computes the error bound of each pixel's luminance with confidence [`CONFIDENCE`]. Returns a
+    /// layer of values and a layer with a heat map of values up to 0.1. Photons are traced a second
+    /// time. The sums and the hash of this part do not change.
     ///
     /// # Errors
-    /// [`RenderError`], as for the picture itself; [`RenderError::Diagram`] for photons with
-    /// adaptive or time-limited sampling.
+    /// [`RenderError`] as for the picture itself. [`RenderError::Diagram`] for photons with a noise
+    /// threshold or a time limit.
     pub fn error(&self, world: &World, threads: Option<usize>) -> Result<[Layer; 2], RenderError> {
         let made = |job: &Job| whole(world, job, &Control { threads, ..Control::default() });
         let job = Job { color: true, aovs: Vec::new(), ..self.job.clone() };
@@ -128,8 +128,8 @@ impl PartialRender {
         Ok([Layer::data("error", values), Layer::data("error", shown)])
     }
 
-    /// Returns the bound of each pixel, given another part with the same samples corrected;
-    /// infinite without samples.
+    /// Returns the error bound of each pixel. `other` has the same samples, bias-corrected. Bounds
+    /// are infinite for pixels without samples.
     fn error_bounds(&self, other: Option<&PartialRender>) -> Vec<f32> {
         let (window, gain) = (self.job.window(), self.gain());
         let (state, other) = (self.state(), other.map(PartialRender::state));

@@ -1,42 +1,43 @@
-//! Execution options of a render.
+//! Execution options and progress counters of a render.
 
 use std::sync::atomic::{AtomicBool, AtomicU64};
 use std::time::Duration;
 
-/// Execution options and progress. They do not change a finished picture.
+/// Execution options, cancellation and progress of a render. They do not affect the finished
+/// picture.
 #[derive(Debug, Default)]
 pub struct Control {
-    /// Number of threads; `None`: one per processor.
+    /// Number of threads; `None` for one per processor.
     pub threads: Option<usize>,
-    /// Side length of a tile in pixels, rounded up to a multiple of 8; each thread works on one
-    /// tile at a time. `None`: automatic.
+    /// Width and height of a tile in pixels, rounded up to a multiple of 8. Each thread works on
+    /// one tile at a time. `None` for automatic.
     pub tile: Option<u32>,
-    /// Time limit after which no more samples are taken, once every pixel has one.
+    /// Time after which no more samples are taken, provided that every pixel has one.
     pub time: Option<Duration>,
-    /// Number of tiles after which the render stops as if cancelled, for tests of resuming.
+    /// Number of tiles after which the render stops as if cancelled. For tests of resuming.
     pub most_tiles: Option<u64>,
-    /// Interval at which the callback is asked to save.
+    /// Interval at which the callback is asked to save a checkpoint.
     pub save_every: Option<Duration>,
-    /// Memory limit in bytes; `None`: unlimited.
+    /// Memory limit in bytes; `None` for no limit.
     pub memory: Option<u64>,
-    /// Set by the caller to cancel.
+    /// Set by the caller to cancel the render.
     pub cancel: AtomicBool,
-    /// Total number of samples and data rays; see [`super::PartialRender::work`].
+    /// Total number of samples and data rays in the render; see [`super::PartialRender::work`].
     pub all: AtomicU64,
     /// Number of finished samples and data rays.
     pub done: AtomicU64,
     /// Number of rays traced so far.
     pub rays: AtomicU64,
-    /// True if `all` covers several renders, which all count in `done`.
+    /// True if `all` is the total for several renders, whose work accumulates in `done`.
     pub goes_on: bool,
 }
 
-/// End of a run.
+/// Point at which a call of [`super::PartialRender::render_to`] stops.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum RunLimit {
-    /// Until everything is done.
+    /// When everything is done.
     End,
-    /// Until all passes with at most this many samples per pixel are done.
+    /// When all passes with at most this many samples per pixel are done.
     Samples(u32),
     /// After the single pass that ends with this many samples per pixel.
     Pass(u32),

@@ -1,4 +1,4 @@
-//! Sampling of the course, Fall 2004 and 2012: samples that also affect other pixels.
+//! Sampling methods of the course, Fall 2004 and 2012, in which samples also affect other pixels.
 
 use super::aim::PixelSample;
 use super::error::MAX_KEPT;
@@ -14,7 +14,7 @@ use durer_scene::math::{Color, Vec3};
 use durer_scene::sampler::{SampleId, Sampler};
 use std::cell::Cell;
 
-/// Returns the positions and colours of a job's samples, for its diagram.
+/// Takes all samples of a job and returns their positions and colours, for a diagram of them.
 ///
 /// # Errors
 /// [`RenderError`], including [`RenderError::TooManySamples`].
@@ -37,38 +37,39 @@ pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<Sto
     threads::install(control.threads, work).map_err(|Cancelled| RenderError::Cancelled)
 }
 
-/// Returns the bytes of the samples stored at once for a tile, if samples affect other pixels.
+/// Returns the memory in bytes for the samples of a tile, if samples affect other pixels; else 0.
 pub(super) fn kept_bytes(job: &Job, side: u32) -> u64 {
     match job.sampling {
         Sampling::Course2004 { sampler, samples, filter: Some(filter) } => {
             let across = u64::from(side) + 2 * u64::from(filter.support());
             across * across * u64::from(sampler.round_up(samples)) * size_of::<StoredSample>() as u64
         }
-        // The picture, its blur along rows, and its blur along both axes.
+        // The picture, its blur along rows, and the blur of that along columns.
         Sampling::Course2012 { .. } => 3 * 9 * 12 * u64::from(side + 2) * u64::from(side + 2),
         _ => 0,
     }
 }
 
-/// Content of a picture sampled as in the course, which stores colours only. If the camera sees
-/// nothing at some sample, a second picture is rendered as a mask: white where the camera sees,
-/// black elsewhere.
+/// Quantity that the course's samples store: colours, or a mask for the coverage.
+///
+/// The course's films have no coverage. If the camera has no ray for some sample, a second picture
+/// is therefore rendered as a mask: white where the camera has a ray, black elsewhere.
 #[derive(Default)]
 struct SubPixelPicture {
     mask: bool,
-    /// True if the camera saw nothing at some sample.
+    /// True if the camera had no ray for some sample.
     blind: Cell<bool>,
 }
 
-/// Returns the coverage of a pixel from its value in the mask. Sums of filter weights are not
-/// exact, so almost complete coverage counts as complete.
+/// Returns a pixel's coverage from its value in the mask. Sums of filter weights are inexact, so
+/// almost full coverage counts as full.
 pub(super) fn share(white: Color) -> f32 {
     if white.x > 1.0 - 1e-6 { 1.0 } else { white.x.max(0.0) }
 }
 
 impl Samples<'_> {
-    /// Returns the finished pixels of a part with their coverage, for samplings whose samples
-    /// affect other pixels. Also takes the samples around the part that it needs.
+    /// Returns the finished pixels of a rectangle with their coverage, for sampling methods whose
+    /// samples affect other pixels. Also takes the samples that it needs around the rectangle.
     pub(super) fn finished(
         &self,
         part: Crop,
@@ -89,6 +90,7 @@ impl Samples<'_> {
         Ok(colors.into_iter().zip(mask).map(|(color, white)| (color, share(white))).collect())
     }
 
+    /// Renders the colours of a rectangle, or its mask.
     fn shown(
         &self,
         show: &SubPixelPicture,
@@ -105,13 +107,14 @@ impl Samples<'_> {
         }
     }
 
-    /// Returns the colour of a stored sample.
+    /// Returns the colour of a stored sample, or its value in the mask.
     fn kept(&self, show: &SubPixelPicture, aim: &PixelSample, id: SampleId, rays: &mut RayCount) -> Color {
         show.blind.set(show.blind.get() || aim.ray.is_none());
         let light = |ray| if show.mask { Vec3::ONE } else { self.integrator.radiance(&ray, id, rays) };
         aim.ray.map_or(Vec3::ZERO, light)
     }
 
+    /// Stores and reconstructs samples as in Fall 2004.
     fn course_2004(
         &self,
         show: &SubPixelPicture,
@@ -127,7 +130,8 @@ impl Samples<'_> {
         stored.try_reconstruct(filter, from, (part.width, part.height), || self.check())
     }
 
-    /// Takes all samples of a part of the picture; counts only rays of the requested pixels.
+    /// Takes all samples of a rectangle. Counts rays only for the pixels for which `counted` is
+    /// true.
     fn stored(
         &self,
         show: &SubPixelPicture,
@@ -149,8 +153,8 @@ impl Samples<'_> {
         })
     }
 
-    /// Applies `-jitter` and `-filter` of 2012. Blur without jitter works on the unenlarged
-    /// picture.
+    /// Applies `-jitter` and `-filter` of Fall 2012. Without jitter, the picture is blurred at its
+    /// own size.
     fn course_2012(
         &self,
         show: &SubPixelPicture,

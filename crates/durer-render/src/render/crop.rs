@@ -1,8 +1,9 @@
-//! Rectangular parts of pictures.
+//! Rectangles of pixels.
 
 use serde::{Deserialize, Serialize};
 
-/// Part of a picture, in pixels from its upper left corner.
+/// Rectangle of pixels in a picture, such as the part to render or a block. Coordinates are
+/// measured from the picture's upper left corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Crop {
     /// First column.
@@ -16,7 +17,7 @@ pub struct Crop {
 }
 
 impl Crop {
-    /// A single pixel.
+    /// Returns the rectangle of a single pixel.
     pub fn pixel((left, top): (u32, u32)) -> Crop {
         Crop { left, top, width: 1, height: 1 }
     }
@@ -26,7 +27,7 @@ impl Crop {
         u64::from(self.width) * u64::from(self.height)
     }
 
-    /// Returns the smallest crop that contains both.
+    /// Returns the smallest rectangle that contains both.
     pub fn around(self, other: Crop) -> Crop {
         let (left, top) = (self.left.min(other.left), self.top.min(other.top));
         let right = (self.left + self.width).max(other.left + other.width);
@@ -34,7 +35,7 @@ impl Crop {
         Crop { left, top, width: right - left, height: bottom - top }
     }
 
-    /// Returns the crop grown by some pixels on each side, clipped to another.
+    /// Returns the rectangle grown by some pixels on each side, clipped to the picture `within`.
     pub fn grown(self, by: u32, within: Crop) -> Crop {
         let (left, top) = (self.left.saturating_sub(by), self.top.saturating_sub(by));
         let right = self.left.saturating_add(self.width).saturating_add(by).min(within.width);
@@ -42,12 +43,12 @@ impl Crop {
         Crop { left, top, width: right - left, height: bottom - top }
     }
 
-    /// Returns true if it contains a pixel.
+    /// Returns true if the rectangle contains a pixel.
     pub fn holds(self, x: u32, y: u32) -> bool {
         x.wrapping_sub(self.left) < self.width && y.wrapping_sub(self.top) < self.height
     }
 
-    /// Index of a pixel inside the crop, in reading order.
+    /// Returns the index of a pixel in the rectangle, in reading order.
     pub(super) fn index(self, x: u32, y: u32) -> usize {
         (y - self.top) as usize * self.width as usize + (x - self.left) as usize
     }

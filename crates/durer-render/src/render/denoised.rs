@@ -1,4 +1,4 @@
-//! Denoised colour picture.
+//! Denoising of the colour picture.
 
 use super::part::PartialRender;
 use super::{Control, Job, RenderError, render};
@@ -11,29 +11,30 @@ use durer_scene::math::Vec3;
 /// AOVs that guide the denoiser.
 const GUIDES: [&str; 3] = ["albedo", "normals", "position"];
 
-/// A noisy colour picture with auxiliary data for denoisers.
+/// Noisy colour picture of a render, with the albedo, normals, positions and variances that guide a
+/// denoiser.
 #[derive(Clone, Debug)]
 pub struct NoisyPicture {
     /// The picture, as rendered.
     pub picture: Image,
     /// Coverage of each pixel.
     pub coverage: Vec<f32>,
-    /// Albedo of the surface.
+    /// Albedo of the surface in each pixel.
     pub albedo: Vec<Vec3>,
-    /// Normal of the surface; zero for misses.
+    /// Normal of the surface in each pixel; zero for misses.
     pub normal: Vec<Vec3>,
-    /// World-space position of the surface.
+    /// World-space position of the surface in each pixel.
     pub position: Vec<Vec3>,
-    /// Variance of the mean luminance.
+    /// Estimated variance of each pixel's mean luminance.
     pub variance: Vec<f32>,
 }
 
 impl PartialRender {
-    /// Returns the current colour picture with its guides, traced with one ray per pixel. Does not
-    /// change the sums and hash of the part.
+    /// Returns the current colour picture with guides, which are traced with one ray per pixel. The
+    /// sums and the hash of this part do not change.
     ///
     /// # Errors
-    /// [`RenderError`], as for a picture with one ray a pixel.
+    /// [`RenderError`] as for a picture with one ray per pixel.
     pub fn noisy(&self, world: &World, threads: Option<usize>) -> Result<NoisyPicture, RenderError> {
         let aovs = GUIDES.iter().filter_map(|name| Aov::from_name(name)).collect();
         let job = Job { color: false, aovs, noise: None, adaptive: false, ..self.job.clone() };
@@ -51,8 +52,8 @@ impl PartialRender {
 }
 
 impl NoisyPicture {
-    /// Denoises with Dürer's own denoiser: see [`denoise`]. The result has the same bits on any
-    /// number of threads.
+    /// Denoises the picture with Dürer's own denoiser; see [`denoise`]. The result is bit-identical
+    /// for any number of threads.
     pub fn denoised(self) -> Layer {
         let NoisyPicture { picture, albedo, normal, position, variance, .. } = &self;
         let clean = denoise(picture, &Guides { albedo, normal, position, variance });

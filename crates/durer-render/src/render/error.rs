@@ -1,4 +1,4 @@
-//! Errors of rendering.
+//! Errors from rendering.
 
 use durer_diag::{at_least, at_most};
 use durer_image::ImageError;
@@ -7,14 +7,14 @@ use durer_scene::math::Vec2;
 /// Maximum number of samples stored at once for a diagram.
 pub(super) const MAX_KEPT: u64 = 1 << 27;
 
-/// An error of a render.
+/// Error from rendering a picture or a part of it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
     /// The caller set [`super::Control::cancel`].
     #[error("cancelled")]
     Cancelled,
-    /// The picture is too large, or the part lies outside of it.
+    /// The picture is too large, or the crop is outside of it.
     #[error(transparent)]
     Image(#[from] ImageError),
     /// A value of the job is out of range.
@@ -23,16 +23,16 @@ pub enum RenderError {
     /// The crop is outside the picture.
     #[error("the crop must be inside the picture of {0} x {1} pixels")]
     CropOutside(u32, u32),
-    /// A diagram of samples stores them, and there are too many.
+    /// A diagram of samples would have to store too many.
     #[error("too many samples for a diagram: {0}, but at most {MAX_KEPT} are allowed")]
     TooManySamples(u64),
-    /// The requested diagram is not possible.
+    /// The diagram cannot be drawn.
     #[error("{0}")]
     Diagram(String),
-    /// The work cannot be divided this way.
+    /// The render cannot be divided in this way.
     #[error("{0}")]
     Shard(String),
-    /// The samples cannot be distributed adaptively.
+    /// The job cannot be sampled adaptively.
     #[error("{0}")]
     Adaptive(String),
     /// The picture is too large for memory and cannot be rendered in bands.
@@ -46,27 +46,27 @@ pub enum RenderError {
         /// Bytes allowed.
         allowed: u64,
     },
-    /// The system has less memory than the render needs.
-    #[error("rendering needs about {} of memory, and the system has less to give", at_least(*.0))]
+    /// The system has too little memory for the render.
+    #[error("rendering needs about {} of memory, but the system has less", at_least(*.0))]
     NoMemory(u64),
-    /// The part belongs to another scene.
+    /// The saved part belongs to another scene.
     #[error("this part belongs to a different scene")]
     OtherScene,
-    /// A bug in this program.
+    /// A thread panicked, which is a bug in Dürer.
     #[error(transparent)]
     Panic(#[from] Panicked),
 }
 
-/// A sample made a thread panic, which is a bug. All other work is kept.
+/// Error that reports a panic and the sample that caused it, which is a bug. Other work is kept.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("internal error: pixel {x},{y}{}: {message}", sample.map(|s| format!(", sample {s}")).unwrap_or_default())]
 pub struct Panicked {
-    /// Column.
+    /// Column of the pixel.
     pub x: u32,
-    /// Row.
+    /// Row of the pixel.
     pub y: u32,
-    /// Index of the sample; `None` for the ray through the pixel's centre, or if pixels share
-    /// samples.
+    /// Index of the sample. `None` for the ray through the pixel's centre, and for pixels that
+    /// share samples.
     pub sample: Option<u32>,
     /// Message of the panic.
     pub message: String,

@@ -1,4 +1,4 @@
-//! Explanation of a pixel's colour: every sample, and the tree of its terms.
+//! Explanation of a pixel's colour: all samples, each with the tree of terms that it consists of.
 
 pub mod check;
 mod course;
@@ -26,42 +26,43 @@ use serde::Serialize;
 use std::sync::atomic::AtomicBool;
 pub use text::{ExplainOptions, Names, TextLine, ray_text};
 
-/// A pixel and everything that contributed to it.
+/// Explanation of a pixel's colour for `durer explain`: its samples with everything that
+/// contributed to them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Explanation {
     /// Column from the left.
     pub x: u32,
     /// Row from the top.
     pub y: u32,
-    /// Colour, as in a floating-point file.
+    /// Colour of the pixel, as in a floating-point file.
     pub color: Color,
     /// Coverage.
     pub coverage: f32,
-    /// Combination of the samples; see [`Explanation::sum`].
+    /// How the samples are combined; see [`Explanation::sum`].
     pub mean: Mean,
-    /// Samples, in the order of summation.
+    /// Samples of the pixel, in the order of summation.
     pub samples: Vec<SampleAccount>,
-    /// Contribution of an old program's quirk `stale-texels`.
+    /// Colour that the quirk `stale-texels` of an official program adds.
     pub stale_texels: Option<Color>,
-    /// Error bound, for path tracing with more than one sample.
+    /// Bound on the pixel's error, for path tracing with more than one sample.
     pub error: Option<ErrorBound>,
 }
 
-/// Combination of samples to a pixel.
+/// How the samples of an explained pixel are combined into its colour.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub enum Mean {
     /// Weighted mean of the pixel's own samples, by the film's exact sums.
     Own,
-    /// 2004: samples of neighbouring pixels contribute too; the weighted mean is summed in double
+    /// Fall 2004: weighted mean of the samples of this pixel and its neighbours, summed in double
     /// precision.
     Around,
-    /// 2012: sub-pixels are blurred along rows, then along columns, then averaged. The weights
-    /// include all three steps.
+    /// Fall 2012: sub-pixels are blurred along rows, then along columns, and then averaged. The
+    /// samples' weights include all three steps.
     SubPixels(SubPixels),
 }
 
-/// A sample of a pixel.
+/// Sample of an explained pixel, with the trace of its light.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SampleAccount {
     /// Column and row of the pixel that the sample belongs to, usually the explained one.
@@ -70,16 +71,17 @@ pub struct SampleAccount {
     pub sample: u32,
     /// Position in the picture, in pixels from the upper left corner.
     pub place: Vec2,
-    /// Position on the lens, from 0 to 1.
+    /// Position on the lens, in [0,1)^2.
     pub lens: Vec2,
-    /// Weight in the pixel, not normalised.
+    /// Weight in the explained pixel, not normalized.
     pub weight: f32,
-    /// Trace of its light; `null` in JSON if the camera sees nothing.
+    /// Trace of the sample's light. `null` in JSON if the camera has no ray there.
     pub light: Option<Tree>,
 }
 
 impl Explanation {
-    /// Computes the pixel's colour and coverage from the traces, with the picture's own arithmetic.
+    /// Computes the pixel's colour and coverage from the traces, with the same arithmetic as a
+    /// render.
     pub fn sum(&self) -> (Color, f32) {
         let mut film = Film::window(self.x, self.y, 1, 1);
         let light =
@@ -95,37 +97,38 @@ impl Explanation {
         (film.resolve(self.x, self.y), film.coverage(self.x, self.y))
     }
 
-    /// Returns the index of the first sample with the largest weight.
+    /// Returns the index of the first sample with the greatest weight.
     pub fn heaviest(&self) -> usize {
         (1..self.samples.len())
             .fold(0, |best, i| if self.samples[i].weight > self.samples[best].weight { i } else { best })
     }
 }
 
-/// Returns the trace of any ray, with the random numbers of a sample.
+/// Returns the trace of any ray. `id` selects the random numbers.
 pub fn explain_ray(world: &World, job: &Job, ray: &Ray, id: SampleId) -> Option<Tree> {
     trace_tree(&job.integrator(world, None), ray, id)
 }
 
+/// Traces a camera ray and returns the tree of its terms.
 fn trace_tree(integrator: &Integrator, ray: &Ray, id: SampleId) -> Option<Tree> {
     let mut account = TraceRecorder::default();
     integrator.radiance(ray, id, &mut account);
     account.into_tree()
 }
 
-/// Explains a pixel of the job's colour picture.
+/// Explains a pixel of a job's colour picture.
 ///
 /// # Errors
 ///
-/// The pixel is outside the picture; [`RenderError`] if rendering for an adaptive sample count
-/// fails.
+/// [`RenderError`] if the pixel is outside the picture, or if rendering to find the adaptive sample
+/// count fails.
 pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, RenderError> {
     explain_of(world, job, (x, y), None)
 }
 
-/// Explains a pixel, given its number of samples if known. With a noise threshold or adaptive
-/// sampling, computing the number takes some rendering; for an adaptive picture, a quarter of all
-/// samples of the picture.
+/// Explains a pixel whose number of samples may be known. If it is not, a noise threshold makes it
+/// necessary to render the pixel's block, and adaptive sampling a quarter of all samples of the
+/// picture.
 ///
 /// # Errors
 /// See [`explain`].
@@ -173,8 +176,8 @@ pub fn explain_of(
     Ok(explanation)
 }
 
-/// Returns the error bound of a pixel from its samples, and for photons from the bias-corrected
-/// samples.
+/// Returns the error bound of a pixel from its samples and, for photons, from their bias-corrected
+/// versions.
 fn error(world: &World, job: &Job, source: &Samples, explanation: &Explanation) -> ErrorBound {
     let Explanation { x, y, ref samples, .. } = *explanation;
     let film = |color: &dyn Fn(&SampleAccount) -> Option<Color>| {
@@ -194,8 +197,8 @@ fn error(world: &World, job: &Job, source: &Samples, explanation: &Explanation) 
     ErrorBound::new(&sums(&own), &sums(twin.as_ref().unwrap_or(&own)))
 }
 
-/// Returns the number of samples of a pixel. With a noise threshold it depends on the pixel's
-/// block, and with adaptive sampling on the pilot of the full picture.
+/// Returns the number of samples of a pixel. With a noise threshold, renders the pixel's block to
+/// find it; with adaptive sampling, renders the pilot of the full picture.
 fn count(world: &World, job: &Job, (x, y): (u32, u32)) -> Result<u32, RenderError> {
     let samples = job.sampling.samples();
     let window = if job.window().holds(x, y) { job.window() } else { job.whole() };

@@ -1,4 +1,4 @@
-//! The course's picture of its uniform grid: the occupied cells as boxes.
+//! Picture of a uniform grid, as in the course's assignment: occupied cells are drawn as boxes.
 
 use super::{Control, Job, RenderError, center_ray, raster};
 use crate::threads;
@@ -11,8 +11,8 @@ use durer_scene::shape::Primitive;
 use rayon::prelude::*;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Colours of cells by the number of objects in them: white for one, then from cold to hot; the
-/// course leaves the choice open.
+/// Colours of cells by the number of objects in them: white for one, then from cold to hot. The
+/// course does not prescribe them.
 const COLORS: [Vec3; 8] = [
     Vec3::ONE,
     Vec3::new(1.0, 0.0, 1.0),
@@ -24,8 +24,8 @@ const COLORS: [Vec3; 8] = [
     Vec3::new(1.0, 0.0, 0.0),
 ];
 
-/// Draws the occupied cells of a world's grid, lit like its objects. Without a grid there is only
-/// the background.
+/// Draws the occupied cells of a world's grid, lit like objects. Without a grid, draws only the
+/// background.
 pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image, RenderError> {
     let count = checked_count(job.width, job.height)?;
     let raster = raster(world, job.width, job.height);
@@ -45,17 +45,17 @@ pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image
     Ok(Image::from_pixels(job.width, job.height, colors)?)
 }
 
-/// Returns the grid's cells with exact overlaps: the grid for rays has a margin for rounding.
+/// Returns the grid with exact overlaps. (The grid that rays use has a margin for rounding errors.)
 fn occupied(world: &World) -> Option<Grid> {
     let Accel::Grid { grid, parts, .. } = world.accel() else { return None };
     let object = |part: usize| &world.objects()[parts[part].0 as usize];
-    // Only the distance between the centres decides if a sphere occupies a cell, as in the course's
-    // programs, even beyond the sphere's bounds.
+    // As in the course's programs, only the distance between the centres decides whether a sphere
+    // occupies a cell, even outside the sphere's bounds.
     let half = 0.5 * grid.cell_bounds([0; 3]).size();
     let is_sphere = |object: &Object| {
         object.to_world.is_none() && matches!(object.geometry, Geometry::Primitive(Primitive::Sphere(_)))
     };
-    // Only bounded objects are in the grid.
+    // The grid contains only bounded objects.
     let bounds = |i: usize| match object(i).part_bounds(parts[i].1).unwrap_or(Aabb::EMPTY) {
         own if is_sphere(object(i)) => Aabb { min: own.min - half.length(), max: own.max + half.length() },
         own => own,
@@ -67,7 +67,7 @@ fn occupied(world: &World) -> Option<Grid> {
     })
 }
 
-/// Returns the colour of the first occupied cell along a ray.
+/// Returns the colour of the first occupied cell along a ray, or of the background.
 fn cell_color(world: &World, grid: &Grid, ray: &Ray) -> Color {
     let mut found = None;
     grid.walk_cells(ray, |grid, cell, t_max| {
@@ -82,7 +82,7 @@ fn cell_color(world: &World, grid: &Grid, ray: &Ray) -> Color {
     let bounds = grid.cell_bounds(cell);
     let Some((enter, _)) = bounds.clip(ray.origin, ray.dir) else { return world.sky(ray.dir) };
     let point = ray.at(enter);
-    // The entered face is the one whose plane is closest to the point, measured in cells.
+    // The ray enters through the face whose plane is closest to the point, measured in cells.
     let from_center = (point - bounds.center()) / bounds.size();
     let axis = (0..3).fold(0, |best, i| if from_center[i].abs() > from_center[best].abs() { i } else { best });
     let normal = Vec3::AXES[axis] * from_center[axis].signum();

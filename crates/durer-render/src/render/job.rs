@@ -1,4 +1,4 @@
-//! Job: everything that determines a picture besides the scene.
+//! Render job: everything besides the scene that determines a picture.
 
 use super::crop::Crop;
 use super::error::RenderError;
@@ -16,39 +16,40 @@ use durer_scene::sampler::Sampler;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::atomic::AtomicBool;
 
-/// Positions of samples in a pixel, and their combination.
+/// Sampling method of a picture: where samples lie in a pixel, and how they are combined.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Sampling {
     /// One ray through each pixel's centre.
     Center,
-    /// Sobol points, distributed by the filter: a sample affects its own pixel only.
+    /// Sobol points, distributed in proportion to the filter. Each sample affects only its own
+    /// pixel.
     Filtered {
         /// Samples per pixel.
         samples: u32,
         /// Reconstruction filter.
         filter: Filter,
     },
-    /// Fall 2004: samples are stored, and weighted by their offset from a pixel's centre.
+    /// Fall 2004: samples are stored and then weighted by their offset from a pixel's centre.
     Course2004 {
-        /// Positions of samples.
+        /// How samples are distributed in a pixel.
         sampler: Sampler,
         /// Samples per pixel.
         samples: u32,
-        /// Filter; without one, a pixel is the mean of the samples within it.
+        /// Filter. If `None`, a pixel is the mean of its own samples.
         filter: Option<CourseFilter>,
     },
-    /// Fall 2012: 3 x 3 jittered sub-pixels, blurred by five taps.
+    /// Fall 2012: 3 x 3 jittered sub-pixels, blurred with five taps and averaged.
     Course2012 {
-        /// Enables sub-pixels.
+        /// True for sub-pixels.
         jitter: bool,
-        /// Enables the blur.
+        /// True for the blur.
         blur: bool,
     },
 }
 
 impl Sampling {
-    /// Returns the final number of samples of a pixel. If samples affect several pixels, it is 1,
-    /// for the finished value.
+    /// Returns the number of samples per pixel that a finished render adds to the film. It is 1 if
+    /// samples affect several pixels, because the film then gets the finished pixel.
     pub fn samples(self) -> u32 {
         match self {
             Sampling::Filtered { samples, .. } => samples.max(1),
@@ -57,7 +58,8 @@ impl Sampling {
         }
     }
 
-    /// Returns the sampling with another number of samples per pixel, if it has one.
+    /// Returns the sampling method with another number of samples per pixel, if the number can
+    /// vary.
     pub fn with_samples(self, number: u32) -> Self {
         match self {
             Sampling::Filtered { filter, .. } => Sampling::Filtered { samples: number, filter },
@@ -66,55 +68,57 @@ impl Sampling {
         }
     }
 
-    /// Returns true if a pixel depends on its own samples only.
+    /// Returns true if a pixel depends only on its own samples.
     pub fn is_local(self) -> bool {
         !matches!(self, Sampling::Course2004 { filter: Some(_), .. } | Sampling::Course2012 { .. })
     }
 }
 
-/// Everything that determines the picture besides the scene. Plain data, independent of the
-/// machine.
+/// Render job: everything besides the scene that determines the pictures. Plain data, independent
+/// of the machine.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Job {
-    /// Width of the whole picture.
+    /// Width of the full picture in pixels.
     pub width: u32,
-    /// Height of the whole picture.
+    /// Height of the full picture in pixels.
     pub height: u32,
-    /// Part to render; `None`: the whole picture.
+    /// Rectangle to render; `None` for the full picture.
     pub crop: Option<Crop>,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// Sampling of the colour picture.
+    /// Sampling method for the colour picture.
     pub sampling: Sampling,
-    /// Noise threshold: a block stops when its estimated error is below it, see [`passes::error`].
-    /// `None`: never.
+    /// Noise threshold. A block gets no more samples once its estimated error is below it; see
+    /// [`passes::error`]. `None` for no threshold.
     pub noise: Option<f32>,
-    /// Adaptive sampling: the number of samples is an average; pixels that are noisier in the pilot
-    /// get more.
+    /// True for adaptive sampling. The number of samples is then an average, and pixels with more
+    /// noise in the pilot get more samples.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub adaptive: bool,
-    /// Integrator.
+    /// Integrator and its options.
     #[serde(default)]
     pub method: IntegratorKind,
-    /// Common settings of the integrators.
+    /// Settings shared by all integrators.
     pub settings: WhittedOptions,
-    /// Renders colour.
+    /// True to render the colour picture.
     pub color: bool,
-    /// Other pictures to render.
+    /// AOVs to render.
     #[serde(serialize_with = "aov_names", deserialize_with = "named_aovs")]
     pub aovs: Vec<&'static Aov>,
-    /// Depths shown as black and white; `None`: minimum and maximum of the picture, excluding the
-    /// horizon of a plane.
+    /// Depths shown as black and white. `None` for the minimum and maximum of the picture,
+    /// excluding the horizon of a plane.
     pub depth_range: Option<(f32, f32)>,
-    /// Scale of the false colours of light; `None`: from 0 to a percentile of the picture.
+    /// Range of false-colour pictures; `None` for 0 to a percentile of the picture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub light_scale: Option<LightScale>,
 }
 
+/// Serializes AOVs by their names.
 fn aov_names<S: Serializer>(aovs: &[&'static Aov], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(aovs.iter().map(|aov| aov.name))
 }
 
+/// Deserializes AOVs from their names.
 fn named_aovs<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<&'static Aov>, D::Error> {
     let unknown = |name: &str| serde::de::Error::custom(format!("unknown picture `{name}`"));
     let names = Vec::<String>::deserialize(deserializer)?;
@@ -122,7 +126,7 @@ fn named_aovs<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<&'static
 }
 
 impl Default for Job {
-    /// 512 x 512 pixels of colour, one ray each, with shadows and eight bounces.
+    /// Colour picture of 512 x 512 pixels, one ray per pixel, with shadows and up to eight bounces.
     fn default() -> Self {
         let settings = WhittedOptions {
             bounces: 8,
@@ -157,14 +161,14 @@ impl Job {
     /// Maximum radius of a filter in pixels.
     pub const MAX_FILTER_RADIUS: f32 = 64.0;
 
-    /// Checks all values: size at least 1 x 1, samples from 1 to [`Job::MAX_SAMPLES`], the filter's
-    /// radius more than 0 and at most [`Job::MAX_FILTER_RADIUS`], depth of recursion at most
-    /// [`WhittedOptions::MAX_BOUNCES`], thresholds and scales, and the integrator's options by
-    /// their rules. [`PartialRender::new`](super::PartialRender::new) calls this first.
+    /// Checks all values: the size is at least 1 x 1, samples are from 1 to [`Job::MAX_SAMPLES`],
+    /// the filter's radius is above 0 and at most [`Job::MAX_FILTER_RADIUS`], and the depth is at
+    /// most [`WhittedOptions::MAX_BOUNCES`]. Also checks thresholds, scales and the integrator's
+    /// options. [`PartialRender::new`](super::PartialRender::new) calls this first.
     ///
     /// # Errors
     ///
-    /// [`RenderError::Job`], which names the value.
+    /// [`RenderError::Job`] with the name of the value.
     pub fn validate(&self) -> Result<(), RenderError> {
         let refuse = |message: String| Err(RenderError::Job(message));
         if self.width == 0 || self.height == 0 {
@@ -187,7 +191,7 @@ impl Job {
         {
             return refuse(format!("the filter's sigma {sigma} must be more than 0"));
         }
-        // The course's filters may have radius 0.
+        // Unlike other filters, the course's filters can have radius 0.
         if let Sampling::Course2004 { filter: Some(filter), .. } = self.sampling {
             let (CourseFilter::Box { radius: size }
             | CourseFilter::Tent { radius: size }
@@ -226,22 +230,22 @@ impl Job {
         Ok(())
     }
 
-    /// Returns the part to render.
+    /// Returns the rectangle to render.
     pub fn window(&self) -> Crop {
         self.crop.unwrap_or(self.whole())
     }
 
-    /// Returns the whole picture.
+    /// Returns the rectangle of the full picture.
     pub fn whole(&self) -> Crop {
         Crop { left: 0, top: 0, width: self.width, height: self.height }
     }
 
-    /// Returns the names of its pictures, in order.
+    /// Returns the names of the job's pictures, in order.
     pub fn picture_names(&self) -> impl Iterator<Item = &'static str> {
         self.color.then_some("color").into_iter().chain(self.aovs.iter().map(|aov| aov.name))
     }
 
-    /// Creates the integrator of a world. Once `cancel` is set, no more rays are traced, and
+    /// Creates the job's integrator for a world. Once `cancel` is set, no more rays are traced and
     /// results are meaningless.
     pub fn integrator<'w>(&self, world: &'w World, cancel: Option<&'w AtomicBool>) -> Integrator<'w> {
         let raster = raster(world, self.width, self.height);
@@ -250,12 +254,12 @@ impl Job {
         self.method.over(IntegratorContext { world, settings: self.settings, cone, seed: self.seed, cancel })
     }
 
-    /// Returns true if samples are needed, for colour or for an AOV.
+    /// Returns true if colour samples are needed, for the colour picture or for an AOV.
     pub fn wants_samples(&self) -> bool {
         self.color || self.aovs.iter().any(|aov| matches!(aov.value, Value::Sums(_)))
     }
 
-    /// Returns the AOVs from rays through the pixels' centres.
+    /// Returns the AOVs that need rays through the pixels' centres, with their functions.
     pub fn ray_aovs(
         &self,
     ) -> impl Iterator<Item = (&'static Aov, fn(&crate::film::aov::AovInput) -> durer_scene::math::Vec3)> {
@@ -265,12 +269,12 @@ impl Job {
         })
     }
 
-    /// Returns the part for centre rays: the whole picture if an AOV depends on all of it.
+    /// Returns the rectangle for these rays: the full picture if an AOV depends on all its pixels.
     pub fn ray_window(&self) -> Crop {
         if self.ray_aovs().any(|(aov, _)| aov.relative) { self.whole() } else { self.window() }
     }
 
-    /// Returns true if the noise threshold ends a block before its last sample.
+    /// Returns true if the noise threshold stops a block after `samples` samples per pixel.
     pub(super) fn is_done(&self, film: &crate::film::Film, rect: Crop, samples: u32, gain: f32) -> bool {
         self.noise.is_some_and(|noise| samples >= passes::LEAST && passes::error(film, rect, gain) <= f64::from(noise))
     }

@@ -1,4 +1,4 @@
-//! Merging of shards.
+//! Merging of shards into a full picture.
 
 use super::blocks::{Shard, ShardBy};
 use super::part::{BlockSamples, PartialRender};
@@ -7,21 +7,21 @@ use crate::film::PackedFilm;
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// An error of merging; parts are identified by name.
+/// Error from merging parts of a render. Parts are identified by name.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MergeError {
-    /// No parts were passed.
+    /// There are no parts.
     #[error("give at least one part to merge")]
     NoParts,
-    /// A part belongs to a different picture than the first part.
+    /// A part belongs to another picture than the first part.
     #[error("`{name}` cannot be merged with `{first}`: {error}")]
     Foreign {
         /// Name of the part.
         name: String,
         /// Name of the first part.
         first: String,
-        /// Reason.
+        /// How the pictures differ.
         error: PartError,
     },
     /// Two parts contain the same work.
@@ -31,10 +31,10 @@ pub enum MergeError {
         first: String,
         /// Name of the other.
         second: String,
-        /// Description of the shared work.
+        /// Description of the work that both contain.
         what: String,
     },
-    /// Some work is in no part.
+    /// Some work is not in any part.
     #[error("parts of the picture are missing:\n{0}")]
     Missing(String),
     /// The merged picture would be too large.
@@ -42,14 +42,14 @@ pub enum MergeError {
     PartialRender(#[from] PartError),
 }
 
-/// Maximum number of missing places that are listed.
+/// Maximum number of missing places that an error lists.
 const LISTED: usize = 8;
 
-/// Merges parts of a whole picture, with the same bits as a single run. The order of parts does not
-/// matter.
+/// Merges parts into the full picture. The result is bit-identical to a single render, whatever the
+/// order of the parts.
 ///
 /// # Errors
-/// [`MergeError`]: parts of different pictures, duplicate work, or missing work.
+/// [`MergeError`] if parts belong to different pictures, overlap, or do not contain all work.
 pub fn merge(parts: &[(String, PartialRender)]) -> Result<PartialRender, MergeError> {
     let ((first, start), rest) = parts.split_first().ok_or(MergeError::NoParts)?;
     for (name, part) in rest {
@@ -68,6 +68,7 @@ pub fn merge(parts: &[(String, PartialRender)]) -> Result<PartialRender, MergeEr
     }
 }
 
+/// Merges the samples of all parts into `whole`, and describes missing ones in `missing`.
 fn merge_samples(
     parts: &[(String, PartialRender)],
     whole: &PartialRender,
@@ -77,7 +78,7 @@ fn merge_samples(
     let (samples, gain) = (whole.job.sampling.samples(), whole.gain());
     let mut state = whole.state();
     for (index, merged) in state.samples.iter_mut().enumerate() {
-        // The block's data in each part, by sample range.
+        // The block's data in each part, sorted by sample range.
         let mut pieces: Vec<(&str, BlockSamples)> = Vec::new();
         for (name, part) in parts {
             let piece = part.state().samples[index].clone();
@@ -123,6 +124,7 @@ fn merge_samples(
     Ok(())
 }
 
+/// Merges the centre rays of all parts into `whole`, and describes missing ones in `missing`.
 fn merge_rays(
     parts: &[(String, PartialRender)],
     whole: &PartialRender,
@@ -149,7 +151,7 @@ fn merge_rays(
     Ok(())
 }
 
-/// Describes missing or unfinished shards, if all parts come from one division.
+/// Describes missing or unfinished shards, if all parts come from the same division.
 fn shards_missing(parts: &[(String, PartialRender)]) -> String {
     let Shard { count, by, .. } = parts[0].1.shard;
     let mut text = String::new();

@@ -1,4 +1,4 @@
-//! Rendering of a world and a job to pictures.
+//! Rendering of a world to pictures, as described by a job.
 
 mod adaptive;
 mod aim;

@@ -1,4 +1,4 @@
-//! A partial render: exact sums, and a record of the work in them.
+//! Partial render: exact sums, with a record of the work they contain.
 
 use super::allocation::{self, count, half, pilot};
 use super::blocks::{Blocks, Shard, ShardBy};
@@ -12,49 +12,51 @@ use durer_scene::math::Vec3;
 use durer_scene::source::Digest;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A picture in progress, or a shard of one. It can be rendered step by step, saved, read again,
-/// and merged with others.
+/// Picture, or shard of one, while it is being rendered. It can be rendered in steps, saved, loaded
+/// and merged with other parts.
 ///
-/// Uses interior locking, so that one thread can render while another reads it.
+/// It locks internally, so one thread can render while others read it.
 #[derive(Debug)]
 pub struct PartialRender {
     pub(super) job: Job,
     pub(super) shard: Shard,
     pub(super) scene: Digest,
     pub(super) display: DisplayRules,
-    /// Blocks of the colour's window, and of the centre rays' window.
+    /// Blocks of the window for colour samples.
     pub(super) blocks: Blocks,
+    /// Blocks of the window for centre rays.
     pub(super) ray_blocks: Blocks,
     state: Mutex<State>,
-    /// Number of times the state was locked.
+    /// Number of times that `state` was locked.
     #[cfg(test)]
     pub(super) locked: std::sync::atomic::AtomicU64,
 }
 
-/// Results so far.
+/// Results of a [`PartialRender`] so far, block by block.
 #[derive(Clone, Debug, Default)]
 pub(super) struct State {
-    /// Samples of each block of the colour's window.
+    /// Colour samples of each block.
     pub(super) samples: Vec<BlockSamples>,
-    /// Results of the centre rays of each block, if they were traced.
+    /// Results of the centre rays of each block; `None` if not yet traced.
     pub(super) rays: Vec<Option<Box<BlockAovs>>>,
 }
 
-/// Samples of a block.
+/// Colour samples of one block of 8 x 8 pixels in a [`PartialRender`].
 #[derive(Clone, Debug, Default)]
 pub(super) struct BlockSamples {
-    /// Half-open range of each pixel's samples in the film.
+    /// First sample of each pixel in the film.
     pub(super) from: u32,
+    /// End (exclusive) of each pixel's samples in the film.
     pub(super) to: u32,
-    /// Number of rays traced for them.
+    /// Number of rays traced for the samples.
     pub(super) rays: u64,
-    /// Sums of the samples, if there are any. Shared, so that a reader holds the lock only to clone
-    /// the pointer.
+    /// Sums of the samples; `None` if there are none. Shared, so that readers hold the lock only to
+    /// clone the pointer.
     pub(super) film: Option<Arc<PackedFilm>>,
-    /// Variances of its pixels' means, once the pilot is complete.
+    /// Variances of the pixels' means, once the pilot is complete (adaptive sampling).
     pub(super) variances: Option<Arc<[f32]>>,
-    /// Final number of samples of each pixel, once decided; `to` and other counts are then averages
-    /// over the picture.
+    /// Final number of samples of each pixel, once it is decided (adaptive sampling). `to` is then
+    /// an average over the picture.
     pub(super) targets: Option<Arc<[u32]>>,
 }
 
@@ -64,8 +66,8 @@ impl BlockSamples {
         self.targets.as_ref().map_or(end, |targets| count(job.sampling.samples(), targets[pixel], end))
     }
 
-    /// Returns the number of samples of all its pixels when the average is `end`, without those
-    /// before `from`.
+    /// Returns the number of samples of all pixels in the block when the average is `end`, not
+    /// counting those before `from`.
     pub(super) fn total(&self, job: &Job, pixels: u64, end: u32) -> u64 {
         match &self.targets {
             None => pixels * u64::from(end - self.from),
@@ -73,36 +75,36 @@ impl BlockSamples {
         }
     }
 
-    /// Returns the sums of the block, if there are any.
+    /// Returns the unpacked film of the block, if there is one.
     pub(super) fn film(&self, Crop { left, top, width, height }: Crop) -> Option<Film> {
         self.film.as_ref().map(|film| film.film([left, top, width, height]))
     }
 }
 
-/// Results of the centre rays of a block.
+/// AOV values from the centre rays of one block in a [`PartialRender`].
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct BlockAovs {
-    /// Outcome of each pixel's ray.
+    /// Outcome of the ray of each pixel.
     pub(super) found: Vec<PrimaryHit>,
-    /// Values of each AOV, one AOV after the other.
+    /// Values of all pixels for the first AOV, then for the second, and so on.
     pub(super) values: Vec<Vec3>,
-    /// Number of rays traced for them.
+    /// Number of rays traced for the values.
     pub(super) rays: u64,
 }
 
-/// Outcome of a centre ray.
+/// Outcome of the ray through a pixel's centre.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(super) enum PrimaryHit {
     /// The camera has no ray there.
     Blind,
-    /// The ray misses.
+    /// The ray hits nothing.
     Nothing,
     /// The ray hits something.
     Hit,
 }
 
-/// Counters of a picture, independent of how it was rendered.
+/// Numbers of samples, rays and rejected samples of a picture, independent of how it was rendered.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {
     /// Number of samples in the picture.
@@ -111,7 +113,7 @@ pub struct Statistics {
     pub rays: u64,
     /// Number of samples that were rejected because they were not finite.
     pub rejected: u64,
-    /// The first rejected samples.
+    /// The first sixteen rejected samples, in reading order.
     pub first_rejected: Vec<Rejected>,
 }
 
@@ -131,12 +133,14 @@ impl PartialRender {
     /// Creates an empty part of a picture.
     ///
     /// # Errors
-    /// [`RenderError::Job`], [`RenderError::Image`], [`RenderError::CropOutside`], and
-    /// [`RenderError::Shard`] if the work cannot be divided this way.
+    /// [`RenderError::Job`], [`RenderError::Image`], [`RenderError::CropOutside`] and
+    /// [`RenderError::NoMemory`]; [`RenderError::Shard`] and [`RenderError::Adaptive`] if the job
+    /// cannot be divided or sampled like this.
     pub fn new(world: &World, job: &Job, shard: Shard) -> Result<Self, RenderError> {
         PartialRender::empty(job.clone(), shard, world.digest(), world.display_rules())
     }
 
+    /// Creates an empty part of a picture of the scene with this hash.
     pub(super) fn empty(job: Job, shard: Shard, scene: Digest, display: DisplayRules) -> Result<Self, RenderError> {
         job.validate()?;
         let window = job.window();
@@ -145,7 +149,7 @@ impl PartialRender {
         if !inside(window.left, window.width, job.width) || !inside(window.top, window.height, job.height) {
             return Err(RenderError::CropOutside(job.width, job.height));
         }
-        // Refuse oversized windows before computing anything; a part of a larger picture is fine.
+        // Reject oversized windows before any computation. The full picture may be larger.
         checked_count(window.width, window.height)?;
         let (blocks, ray_blocks) = (Blocks::new(window), Blocks::new(job.ray_window()));
         check_shard(&job, shard, blocks.count())?;
@@ -176,22 +180,23 @@ impl PartialRender {
         })
     }
 
-    /// Returns the job.
+    /// Returns the render job.
     pub fn job(&self) -> &Job {
         &self.job
     }
 
-    /// Returns the shard.
+    /// Returns the shard that this part renders.
     pub fn shard(&self) -> Shard {
         self.shard
     }
 
-    /// Returns the hash of the scene.
+    /// Returns the hash of the scene, including the files that it uses.
     pub fn scene(&self) -> Digest {
         self.scene
     }
 
-    /// Returns the hash of everything that determines the picture: scene, job and program version.
+    /// Returns a hash of everything that determines the picture: the scene, the job and the program
+    /// version.
     pub fn identity(&self) -> Digest {
         identity(self.scene, &job_text(&self.job))
     }
@@ -202,7 +207,7 @@ impl PartialRender {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns true if a block has all its samples; `gain` is the magnitude of the sample weights.
+    /// Returns true if a block has all its samples. `gain` is the magnitude of the sample weights.
     pub(super) fn is_done(&self, index: usize, block: &BlockSamples, gain: f32) -> bool {
         let end = self.shard.range(self.job.sampling.samples()).1;
         let rect = self.blocks.rect(index);
@@ -218,8 +223,8 @@ impl PartialRender {
         }
     }
 
-    /// Returns the total work and the finished work: samples and centre rays. A noise threshold may
-    /// end it early.
+    /// Returns the amounts of total and finished work, in samples and centre rays. A noise
+    /// threshold can end the work early.
     pub fn work(&self) -> (u64, u64) {
         let range = self.shard.range(self.job.sampling.samples());
         let (mut all, mut done) = (0, 0);
@@ -243,7 +248,7 @@ impl PartialRender {
         state.samples.iter().all(|block| block.film.is_some()) && state.rays.iter().all(Option::is_some)
     }
 
-    /// Returns true if no work is left.
+    /// Returns true if this part has no work left.
     pub fn is_finished(&self) -> bool {
         let (gain, state) = (self.gain(), self.state());
         let mut samples = state.samples.iter().enumerate().filter(|(index, _)| self.shard.has_block(*index));
@@ -251,7 +256,7 @@ impl PartialRender {
         samples.all(|(index, block)| self.is_done(index, block, gain)) && rays.all(|(_, block)| block.is_some())
     }
 
-    /// Returns the counters.
+    /// Returns the numbers of samples, rays and rejected samples so far.
     pub fn statistics(&self) -> Statistics {
         let state = self.state();
         let mut statistics = Statistics::default();
@@ -273,8 +278,8 @@ impl PartialRender {
         statistics
     }
 
-    /// Returns the visible error so far, which [`Job::noise`] limits: a root mean square over the
-    /// pixels. `None` unless every pixel has two samples.
+    /// Returns the visible error so far, as a root mean square over the pixels. It is compared with
+    /// [`Job::noise`]. `None` unless each pixel has at least two samples.
     pub fn noise(&self) -> Option<f64> {
         let (gain, state) = (self.gain(), self.state());
         let (mut squares, mut pixels) = (0.0, 0);
@@ -288,15 +293,16 @@ impl PartialRender {
         (pixels > 0).then(|| (squares / pixels as f64).sqrt())
     }
 
-    /// Returns the hash of the film: all sums and values of its window. Equal pictures have equal
-    /// hashes, however they were rendered; the cost is excluded.
+    /// Returns a hash of the film: all sums and AOV values except the cost. Equal pictures have
+    /// equal hashes, however they were rendered.
     pub fn hash(&self) -> Digest {
         let mut hasher = blake3::Hasher::new();
         self.hash_into(&mut hasher);
         Digest(hasher.finalize().into())
     }
 
-    /// Continues the hash of a picture with this part, whole rows of blocks.
+    /// Continues the hash of a picture with this part, which must consist of complete rows of
+    /// blocks.
     pub(super) fn hash_into(&self, hasher: &mut blake3::Hasher) {
         let (state, mut bytes) = (self.state(), Vec::new());
         for (index, block) in state.samples.iter().enumerate() {
@@ -305,7 +311,7 @@ impl PartialRender {
             hasher.update(&bytes);
             bytes.clear();
         }
-        // The cost depends on the acceleration structure.
+        // Exclude the cost, which depends on the acceleration structure.
         let names: Vec<&str> = self.job.ray_aovs().map(|(aov, _)| aov.name).collect();
         for block in state.rays.iter().flatten() {
             let values = block.values.chunks(block.found.len()).zip(&names).filter(|(_, name)| **name != "cost");
@@ -315,36 +321,38 @@ impl PartialRender {
         }
     }
 
-    /// Returns the final number of samples in a pixel's sums; 1 if samples affect several pixels,
-    /// because sums are stored finished.
+    /// Returns the final number of samples in the sums of a pixel. It is 1 if samples affect
+    /// several pixels, because only finished pixels are stored.
     pub(super) fn packed_samples(&self) -> u32 {
         if self.job.sampling.is_local() { self.job.sampling.samples() } else { 1 }
     }
 
-    /// Returns the peak memory in bytes, including the pictures made from it.
+    /// Returns the peak memory in bytes, including that of the finished pictures.
     pub fn bytes_needed(job: &Job, shard: Shard) -> u64 {
         let share = if shard.by == ShardBy::Tiles { u64::from(shard.count) } else { 1 };
         let (pixels, rays) = (job.window().pixels(), job.ray_window().pixels());
         let sums = if job.wants_samples() { PackedFilm::pixel_bytes(job.sampling.samples()) } else { 0 };
-        // Sample counts and variances of the pixels.
+        // Sample counts and variances of each pixel.
         let sums = if job.adaptive { sums + 24 } else { sums };
         let values = 12 * job.ray_aovs().count() as u64 + 1;
-        // Colours with coverage, eight-bit copy, and file; AOVs have both values and colours.
+        // Colours with coverage, an eight-bit copy and the file. AOVs have both values and colours.
         let pictures = 24 * u64::from(job.color) + 40 * job.aovs.len() as u64;
         let kept = pixels.saturating_mul(sums).saturating_add(rays.saturating_mul(values));
         (kept / share).saturating_add(pixels.saturating_mul(pictures))
     }
 }
 
-/// Serialises the job, for hashing, saving and picture attributes.
+/// Serializes a job for hashes, saved parts and picture attributes.
 pub(super) fn job_text(job: &Job) -> String {
     serde_json::to_string(job).unwrap_or_default()
 }
 
+/// Returns the hash of a scene, a serialized job and the program version.
 pub(super) fn identity(scene: Digest, job: &str) -> Digest {
     Digest::of(format!("durer {} {scene} {job}", env!("CARGO_PKG_VERSION")).as_bytes())
 }
 
+/// Returns an error if the job cannot be divided into shards like this.
 fn check_shard(job: &Job, shard: Shard, blocks: usize) -> Result<(), RenderError> {
     let refuse = |why: String| Err(RenderError::Shard(why));
     let samples = job.sampling.samples();
@@ -369,13 +377,13 @@ fn check_shard(job: &Job, shard: Shard, blocks: usize) -> Result<(), RenderError
     }
 }
 
-/// Returns a black film of a part of a picture.
+/// Creates a black film for a rectangle of the picture.
 pub(super) fn film_of(part: Crop) -> Film {
     Film::window(part.left, part.top, part.width, part.height)
 }
 
-/// Returns the passes of a shard, by the ends of their samples. Photons are traced again for each
-/// sample, so each sample is a pass.
+/// Returns the passes of a shard, given by the numbers of samples at which they end. With photon
+/// mapping, each sample is a pass, because it needs its own photons.
 pub(super) fn passes_of(job: &Job, shard: Shard) -> Passes<impl Iterator<Item = u32> + Send + use<>> {
     let samples = job.sampling.samples();
     let (from, to) = shard.range(samples);
@@ -390,6 +398,6 @@ pub(super) fn passes_of(job: &Job, shard: Shard) -> Passes<impl Iterator<Item = 
         None => Box::new(passes::ends(samples)),
     };
     let ends = ends.filter(move |&end| end > from && end < to).chain((to > from).then_some(to));
-    // A noise threshold is evaluated at the end of each pass.
+    // The noise threshold is checked at the end of each pass.
     Passes::new(ends, from, !singly && job.noise.is_none(), decides.unwrap_or_default())
 }

@@ -1,35 +1,37 @@
-//! Order of samples, and stopping criteria.
+//! Passes of a render, which determine the order of samples, and the noise estimate that stops it.
 
 use super::crop::Crop;
 use crate::clock::{Duration, Instant};
 use crate::film::{Film, luminance_of};
 use std::iter::Peekable;
 
-/// Minimum number of samples before a block may stop.
+/// Minimum number of samples per pixel before the noise threshold can stop a block.
 pub const LEAST: u32 = 16;
 
-/// Returns the number of samples of every pixel after each pass: 1, 2, 4, 8, 16, 24, 32, 48, 64, 96
-/// and so on, up to `samples`.
+/// Returns the number of samples per pixel after each pass: 1, 2, 4, 8, 16, 24, 32, 48, 64, 96 and
+/// so on, up to `samples`.
 ///
-/// The ends only depend on the number of samples, so decisions at the ends of passes do not depend
-/// on how the picture is rendered.
+/// The passes depend only on the number of samples. Decisions at the end of a pass therefore do not
+/// depend on how the picture is rendered.
 pub fn ends(samples: u32) -> impl Iterator<Item = u32> {
     let powers = (0..32).flat_map(|k| {
         let power = 1_u32 << k;
-        // Halfway to the next power of two, for large steps.
+        // For large steps, also stop halfway to the next power of two.
         [Some(power), (power >= LEAST).then(|| power.saturating_add(power / 2))]
     });
     powers.flatten().take_while(move |&end| end < samples).chain([samples])
 }
 
-/// Iterator over passes. Joins passes that are too short to be visible, if that does not change the
-/// result, since each pass packs and unpacks every block.
+/// Iterator over the passes of a render: the number of samples per pixel at the end of each.
+///
+/// Each pass packs and unpacks every block. If the result does not change, passes that are too
+/// short to be visible are therefore joined.
 pub struct Passes<I: Iterator<Item = u32>> {
     ends: Peekable<I>,
     joins: bool,
-    /// Ends that must not be skipped.
+    /// Ends of passes that must not be skipped.
     kept: [u32; 2],
-    /// End and number of samples of the latest pass, and its start time.
+    /// End and number of samples of the latest pass, and the time when it started.
     last: (u32, u32, Instant),
 }
 
@@ -37,8 +39,8 @@ pub struct Passes<I: Iterator<Item = u32>> {
 const SOON: Duration = Duration::from_millis(100);
 
 impl<I: Iterator<Item = u32>> Passes<I> {
-    /// Creates passes from their ends, starting at sample `from`; no pass extends beyond a kept
-    /// end.
+    /// Creates passes that end at `ends` and start at sample `from`. Passes are joined if `joins`
+    /// is true, but not across the ends in `kept`.
     pub fn new(ends: I, from: u32, joins: bool, kept: [u32; 2]) -> Self {
         Passes { ends: ends.peekable(), joins, kept, last: (from, 0, Instant::now()) }
     }
@@ -51,7 +53,7 @@ impl<I: Iterator<Item = u32>> Iterator for Passes<I> {
         let (done, samples, began) = self.last;
         let now = Instant::now();
         let mut end = self.ends.next()?;
-        // Without a clock, the duration of a pass is unknown.
+        // Without a clock (on WebAssembly), the duration of a pass is unknown.
         if self.joins && samples > 0 && !cfg!(target_family = "wasm") {
             let each = now.duration_since(began) / samples;
             let is_soon = |next: &u32| each.saturating_mul(next - done) < SOON;
@@ -66,13 +68,13 @@ impl<I: Iterator<Item = u32>> Iterator for Passes<I> {
     }
 }
 
-/// Estimates the visible error of a block: the root mean square over its pixels of the standard
-/// error of sqrt(Y).
+/// Estimates the visible error of a block: the standard error of sqrt(Y), as a root mean square
+/// over the block's pixels.
 ///
-/// Y is a pixel's luminance, at least 1/256, where 1 is white. The error of sqrt(Y), which
-/// approximates perception, is the error of Y divided by 2 sqrt(Y), as in Dammertz et al., *A
-/// Hierarchical Automatic Stopping Condition for Monte Carlo Global Illumination*, WSCG 2010.
-/// Computed from exact sums in a fixed order.
+/// Y is a pixel's luminance, at least 1/256, where 1 is white. The square root approximates
+/// perception, and the error of sqrt(Y) is the error of Y divided by 2 sqrt(Y). Source: Dammertz et
+/// al., *A Hierarchical Automatic Stopping Condition for Monte Carlo Global Illumination*, WSCG
+/// 2010. Computed from exact sums in a fixed order.
 pub fn error(film: &Film, rect: Crop, gain: f32) -> f64 {
     let square = |(x, y)| {
         let luminance = luminance_of(film.resolve(x, y)).max(1.0 / 256.0);
@@ -100,7 +102,7 @@ mod tests {
     fn short_passes_are_joined_unless_they_make_decisions() {
         let of = |joins| Passes::new(ends(100), 0, joins, [0; 2]).collect::<Vec<_>>();
         assert_eq!(of(false), ends(100).collect::<Vec<_>>());
-        // The passes take no time.
+        // These passes take no time.
         assert_eq!(of(true), [1, 100]);
         assert_eq!(Passes::new(ends(100), 0, true, [8, 24]).collect::<Vec<_>>(), [1, 8, 24, 100]);
         let mut slow = Passes::new(ends(8), 0, true, [0; 2]);
@@ -111,7 +113,8 @@ mod tests {
         assert_eq!([next(), next(), next(), next(), next()], [Some(1), Some(2), Some(4), Some(8), None]);
     }
 
-    /// Compares the estimate with the truth: the mean of n uniform numbers has variance 1 / (12 n).
+    /// Compares the estimate with the true error: the mean of n uniform numbers has variance 1 /
+    /// (12 n).
     #[test]
     fn error_estimate_matches_the_error_of_the_mean() {
         let rect = Crop { left: 0, top: 0, width: 8, height: 8 };
@@ -121,7 +124,8 @@ mod tests {
             (0..n).for_each(|s| film.add(x, y, s, Vec3::splat(random_2d(1, x, y, s, 0).x), 1.0));
         }
         let (estimate, truth) = (error(&film, rect, 1.0), (1.0 / (12.0 * f64::from(n)) / (4.0 * 0.5)).sqrt());
-        // 64 estimates with 63 degrees of freedom each: a standard error of about 1 %.
+        // There are 64 estimates with 63 degrees of freedom each, so the standard error is about 1
+        // %.
         assert!((estimate / truth - 1.0).abs() < 0.05, "{estimate} {truth}");
         let mut flat = Film::new(8, 8);
         for (x, y) in rect.places() {

@@ -1,4 +1,4 @@
-//! Conversion of sums and values to pictures.
+//! Conversion of a render's sums and AOV values to pictures.
 
 use super::error::RenderError;
 use super::part::{PartialRender, PrimaryHit, State, Statistics, job_text};
@@ -13,21 +13,21 @@ use std::io::Write;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Number of rows of blocks per thread that are held in memory when pictures are written in strips.
+/// Number of rows of blocks per thread that are converted at once when a picture is written in
+/// strips.
 const AT_ONCE: usize = 4;
 
-/// Pictures and counters.
+/// Finished pictures of a render, with statistics and file attributes.
 #[derive(Debug)]
 pub struct Rendered {
-    /// Colour first, if requested; then the AOVs in the job's order.
-    ///
-    /// Values as in floating-point files; [`Rendered::pictures`] has display values.
+    /// Pictures with the values for floating-point files: colour first, if requested, then the AOVs
+    /// in the job's order. See also [`Rendered::pictures`].
     pub layers: Vec<Layer>,
-    /// Pictures with display values from 0 to 1.
+    /// Pictures of the same layers with display values from 0 to 1.
     pub pictures: Vec<Layer>,
-    /// Counters.
+    /// Numbers of samples and rays.
     pub statistics: Statistics,
-    /// Attributes for files: names and texts.
+    /// Names and texts of attributes for picture files.
     pub attributes: Vec<(&'static str, String)>,
 }
 
@@ -76,7 +76,7 @@ impl PartialRender {
         Ok(rendered)
     }
 
-    /// Returns attributes for files, which do not depend on how the picture was rendered.
+    /// Returns attributes for picture files. They do not depend on how the picture was rendered.
     fn attributes(&self, statistics: &Statistics) -> Vec<(&'static str, String)> {
         let Statistics { samples, rays, rejected, .. } = statistics;
         vec![
@@ -87,11 +87,12 @@ impl PartialRender {
         ]
     }
 
-    /// Writes the colours so far, row by row, for formats that support it; the full picture is
-    /// never in memory. `display` is called on a few rows at a time, until all are done.
+    /// Writes the current colour picture row by row, in a format that supports this. The full
+    /// picture is never in memory. Calls `visit` with a few rows at a time, until all have been
+    /// written.
     ///
     /// # Errors
-    /// Errors of the file, and [`BandsError::Image`] for formats that need all rows at once.
+    /// Errors from writing, and [`BandsError::Image`] for formats that need all rows at once.
     pub fn write_colors(
         &self,
         format: &Format,
@@ -110,15 +111,17 @@ impl PartialRender {
         })
     }
 
+    /// Returns true if all pixels have full coverage.
     fn is_all_seen(&self, state: &State) -> bool {
         state.samples.iter().all(|block| block.film.as_ref().is_some_and(|film| film.is_covered()))
     }
 
-    /// Passes on the colours so far, some whole rows at a time, with the coverage of each pixel
-    /// (empty if complete); bottom rows first if `bottom_up`. Missing pixels are transparent.
+    /// Calls `strip` with the colours of some complete rows at a time, and with the coverage of
+    /// each pixel (empty if all are fully covered). Starts with the bottom rows if `bottom_up`.
+    /// Missing pixels are transparent.
     ///
     /// # Errors
-    /// The first error of `strip`.
+    /// The first error that `strip` returns.
     pub(super) fn try_strips<E>(
         &self,
         bottom_up: bool,
@@ -134,7 +137,8 @@ impl PartialRender {
         if bottom_up { parts.rev().try_for_each(&mut offer) } else { parts.try_for_each(&mut offer) }
     }
 
-    /// Returns colours and coverage; missing pixels are transparent. Empty coverage means complete.
+    /// Returns colours and coverage of all pixels. Missing pixels are transparent. The coverage is
+    /// empty if all pixels are fully covered.
     fn colors(&self, state: &State) -> (Vec<Color>, Vec<f32>) {
         self.colors_of(state, &self.blocks.rows().collect::<Vec<_>>(), self.is_all_seen(state))
     }
@@ -142,7 +146,7 @@ impl PartialRender {
     /// Returns colours and coverage of some rows of blocks.
     fn colors_of(&self, state: &State, rows: &[Range<usize>], is_seen: bool) -> (Vec<Color>, Vec<f32>) {
         let window = self.job.window();
-        // A row of blocks consists of whole rows of pixels.
+        // A row of blocks consists of complete rows of pixels.
         let pixels = |blocks: &Range<usize>| (self.blocks.rect(blocks.start).height * window.width) as usize;
         let count = rows.iter().map(pixels).sum();
         let (mut colors, mut coverage) = (vec![Color::ZERO; count], vec![0.0; if is_seen { 0 } else { count }]);
@@ -174,7 +178,7 @@ impl PartialRender {
         let state = self.state();
         let (colors, coverage) = self.colors(&state);
         let variance = self.summed(&state, |sums| Vec3::splat(sums.variance() as f32));
-        // With too few samples, use the pixel's own brightness as its error.
+        // If there are too few samples for a variance, use the pixel's brightness as its error.
         let sure = |(value, color): (&(Vec3, PrimaryHit), &Color)| match value.0.x.is_finite() {
             true => value.0.x,
             false => color.max_element() * color.max_element(),
@@ -183,7 +187,7 @@ impl PartialRender {
         (colors, coverage, variance)
     }
 
-    /// Returns the values of an AOV from samples.
+    /// Returns the values of an AOV that uses the colour samples.
     fn summed(&self, state: &State, value: fn(&Sums) -> Vec3) -> Vec<(Vec3, PrimaryHit)> {
         let (gain, lumens) = (self.gain(), self.display.lumens);
         let none = value(&Sums { pixel: None, gain, lumens });
@@ -195,6 +199,7 @@ impl PartialRender {
         pixels
     }
 
+    /// Calls `visit` for each pixel that has samples.
     fn each_sampled(&self, state: &State, mut visit: impl FnMut(usize, &Film, u32, u32)) {
         let window = self.job.window();
         for index in 0..state.samples.len() {
@@ -202,7 +207,7 @@ impl PartialRender {
         }
     }
 
-    /// Visits the pixels of a block that has samples.
+    /// Calls `visit` for each pixel of a block, if the block has samples.
     fn each_of_block(&self, state: &State, index: usize, mut visit: impl FnMut(&Film, u32, u32)) {
         let rect = self.blocks.rect(index);
         if let Some(film) = state.samples[index].film(rect) {
@@ -210,7 +215,7 @@ impl PartialRender {
         }
     }
 
-    /// Returns the values of an AOV from centre rays.
+    /// Returns the values of an AOV that uses the centre rays.
     fn traced(&self, state: &State, number: usize) -> Vec<(Vec3, PrimaryHit)> {
         let (window, blocks): (Crop, &Blocks) = (self.job.ray_window(), &self.ray_blocks);
         let mut pixels = vec![(Vec3::ZERO, PrimaryHit::Blind); window.pixels() as usize];
@@ -224,7 +229,7 @@ impl PartialRender {
         pixels
     }
 
-    /// Converts values to colours; also returns the scale of false colours.
+    /// Converts an AOV's values to display colours. Also returns the scale of false colours.
     fn shown(&self, aov: &Aov, values: &[(Vec3, PrimaryHit)]) -> (Vec<Color>, LightScale) {
         let light = aov.unit.map_or(&[][..], |_| values);
         let display = Display {
@@ -247,15 +252,16 @@ impl PartialRender {
     }
 }
 
-/// A hit counts as part of a horizon if its depth is more than this many times the 95th percentile.
+/// Ratio to the 95th percentile above which depths are part of a horizon.
 const HORIZON: f32 = 4.0;
 
+/// Iterates over the values at pixels with a hit.
 fn of_hits(values: &[(Vec3, PrimaryHit)]) -> impl Iterator<Item = Vec3> {
     values.iter().filter(|value| value.1 == PrimaryHit::Hit).map(|value| value.0)
 }
 
-/// Returns the range of the depths at hits, excluding the horizon of a plane, which would leave a
-/// single grey for everything else.
+/// Returns the range of depths at hits, excluding the horizon of a plane. With it, everything else
+/// would be the same grey.
 fn seen_depths(values: &[(Vec3, PrimaryHit)]) -> Aabb {
     let mut bounds = Aabb::around(of_hits(values));
     let mut depths: Vec<f32> = of_hits(values).map(|value| value.x).collect();
@@ -269,7 +275,7 @@ fn seen_depths(values: &[(Vec3, PrimaryHit)]) -> Aabb {
     bounds
 }
 
-/// Crops a picture.
+/// Crops a picture from one rectangle to another.
 fn cut<T: Copy>(pixels: Vec<T>, from: Crop, to: Crop) -> Vec<T> {
     if from == to { pixels } else { to.places().map(|(x, y)| pixels[from.index(x, y)]).collect() }
 }

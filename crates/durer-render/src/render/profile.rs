@@ -1,4 +1,4 @@
-//! Profiling: takes a few samples again, and then their rays alone.
+//! Profiling: times the samples of some pixels, and the intersections of their rays alone.
 
 use super::samples::Samples;
 use super::{Job, RenderError};
@@ -12,20 +12,20 @@ use durer_scene::sampler::SampleId;
 use std::hint::black_box;
 use std::sync::atomic::AtomicBool;
 
-/// Cost of some samples.
+/// Cost of some samples of a render: number of rays, and time with and without shading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Profile {
     /// Number of samples.
     pub samples: u64,
-    /// Number of rays by kind; the last are shadow rays.
+    /// Number of rays of each kind, with its name. The last kind is shadow rays.
     pub rays: [(&'static str, u64); 5],
-    /// Time on one thread.
+    /// Time for the samples on one thread.
     pub time: Duration,
-    /// Part of the time that intersects rays.
+    /// Part of the time that is needed to intersect the rays.
     pub kernel: Duration,
 }
 
-/// Records the rays that an integrator reports.
+/// Listener that records all rays of an integrator, for profiling.
 #[derive(Default)]
 struct RayLog(Vec<(Option<RayKind>, RayRecord)>);
 
@@ -46,8 +46,8 @@ impl TraceListener for RayLog {
     }
 }
 
-/// Takes the first sample of up to `most` evenly spread pixels of a job twice: completely, and
-/// their rays alone. `None` if samples affect several pixels.
+/// Measures the first sample of up to `most` evenly spread pixels of a job, once completely and
+/// once with only the intersections of its rays. `None` if samples affect several pixels.
 ///
 /// # Errors
 /// [`RenderError`] for invalid jobs.
@@ -59,7 +59,7 @@ pub fn profile(world: &World, job: &Job, most: u64) -> Result<Option<Profile>, R
     let never = AtomicBool::new(false);
     let samples = Samples::without_quirks(world, job, &never);
     samples.integrator.prepare(0);
-    // An odd step rarely shares a factor with the width, so it visits all columns.
+    // An odd step rarely has a common factor with the width, so it reaches all columns.
     let step = (job.window().pixels() / most.max(1)).max(1) | 1;
     let pixels: Vec<(u32, u32)> = job.window().places().step_by(step as usize).collect();
     let mut log = RayLog::default();
@@ -103,7 +103,7 @@ pub fn profile(world: &World, job: &Job, most: u64) -> Result<Option<Profile>, R
     }))
 }
 
-/// Returns the minimum time of three runs; disturbances only add time.
+/// Returns the minimum time of three runs, because disturbances only add time.
 fn fastest(work: impl Fn()) -> Duration {
     let time = || {
         let start = Instant::now();

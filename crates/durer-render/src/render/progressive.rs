@@ -1,4 +1,4 @@
-//! Progressive rendering, for callers that display intermediate pictures.
+//! Progressive rendering, for callers that show intermediate pictures.
 
 use super::control::RunLimit;
 use super::part::passes_of;
@@ -6,11 +6,11 @@ use super::{Control, Job, PartialRender, RenderError, RenderOutcome, Shard};
 use crate::world::World;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Progress after a pass over all pixels.
+/// Progress of a [`ProgressiveRender`] after a pass over all pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
-    /// Samples per pixel so far; fewer in blocks below the noise threshold.
+    /// Number of samples per pixel so far. Blocks below the noise threshold have fewer.
     pub samples: u32,
     /// Maximum number of samples per pixel.
     pub all_samples: u32,
@@ -18,12 +18,12 @@ pub struct Progress {
     pub rays: u64,
 }
 
-/// Render of a picture pass by pass. Its passes and its bits equal those of
-/// [`PartialRender::render`].
+/// Render of a picture in passes, controlled by the caller. The passes and the final bits are those
+/// of [`PartialRender::render`].
 pub struct ProgressiveRender {
     part: PartialRender,
     ends: Box<dyn Iterator<Item = u32> + Send>,
-    /// End of the pass that was stopped.
+    /// End of the pass that was cancelled, if there is one.
     stopped: Option<u32>,
     is_over: bool,
 }
@@ -45,14 +45,14 @@ impl ProgressiveRender {
         Ok(ProgressiveRender { part, ends: Box::new(passes_of(job, Shard::WHOLE)), stopped: None, is_over: false })
     }
 
-    /// Renders the next pass; `None` once the picture is finished, or a pass took longer than
-    /// [`Control::time`].
+    /// Renders the next pass. Returns `None` once the picture is finished, or after a pass that
+    /// exceeded [`Control::time`].
     ///
     /// # Errors
     ///
     /// [`RenderError::Cancelled`] after [`Control::cancel`] or [`Control::most_tiles`],
-    /// [`RenderError::OtherScene`], [`RenderError::Memory`], and [`RenderError::Panic`]. Finished
-    /// work is kept, and a later call continues it.
+    /// [`RenderError::OtherScene`], [`RenderError::Memory`] and [`RenderError::Panic`]. Finished
+    /// work is kept, and the next call continues it.
     pub fn next_pass(&mut self, world: &World, control: &Control) -> Result<Option<Progress>, RenderError> {
         if self.is_over {
             return Ok(None);
@@ -74,12 +74,12 @@ impl ProgressiveRender {
             RenderOutcome::Cancelled => RenderError::Cancelled,
             RenderOutcome::Panicked(panicked) => panicked.into(),
         };
-        // The next call repeats the pass for the remaining blocks.
+        // The next call repeats the pass for the blocks that are missing.
         self.stopped = Some(samples);
         Err(failed)
     }
 
-    /// Returns the work so far.
+    /// Returns the picture so far.
     pub fn part(&self) -> &PartialRender {
         &self.part
     }

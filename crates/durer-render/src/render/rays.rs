@@ -1,4 +1,4 @@
-//! AOVs from one ray through each pixel's centre.
+//! Centre rays: AOV values from one ray through each pixel's centre.
 
 use super::part::{BlockAovs, PrimaryHit};
 use super::samples::{Cancelled, SampleCursor, Samples};
@@ -10,7 +10,7 @@ use durer_bvh::{RayCount, TraversalStats};
 use durer_scene::math::Vec3;
 use durer_scene::sampler::SampleId;
 
-/// Traces the centre rays of a block.
+/// Traces the centre rays of a block and computes its AOVs.
 pub(super) fn trace(
     world: &World,
     job: &Job,
@@ -39,7 +39,7 @@ pub(super) fn trace(
         let albedo = hit.map_or(Vec3::ZERO, |at| samples.whitted.albedo(&at));
         let illuminance = match &hit {
             Some(at) if illuminance_wanted => {
-                // On the visible side.
+                // Irradiance on the visible side.
                 let side = if at.inside() { -at.surface.n_shade } else { at.surface.n_shade };
                 let (mut sum, count) = (Vec3::ZERO, job.sampling.samples().max(1));
                 for sample in 0..count {

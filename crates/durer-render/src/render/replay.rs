@@ -1,4 +1,4 @@
-//! Replays a single pixel or sample, to debug a panic or a rejected sample.
+//! Replay of a single pixel or sample, to debug a panic or a rejected sample.
 
 use super::allocation::most;
 use super::error::RenderError;
@@ -11,13 +11,13 @@ use durer_scene::math::Color;
 use std::cell::Cell;
 use std::sync::atomic::AtomicBool;
 
-/// Returns the colour of one sample of a job, if the camera sees anything there. If `sample` is
-/// `None`, replays the work of a pixel apart from its samples.
+/// Takes one sample of a job again and returns its colour, or `None` if the camera has no ray
+/// there. If `sample` is `None`, repeats the work of the pixel that does not belong to a sample.
 ///
-/// Panics if the sample panics.
+/// Panics if that work panics.
 ///
 /// # Errors
-/// [`RenderError`], including [`RenderError::Shard`] for pixels or samples outside the job.
+/// [`RenderError`], including [`RenderError::Shard`] for pixels or samples that are not in the job.
 pub fn replay(
     world: &World,
     job: &Job,
@@ -25,7 +25,7 @@ pub fn replay(
     (x, y): (u32, u32),
     sample: Option<u32>,
 ) -> Result<Option<Color>, RenderError> {
-    // Validate the job.
+    // This validates the job.
     PartialRender::new(world, job, Shard::WHOLE)?;
     if !job.window().holds(x, y) {
         return Err(RenderError::Shard(format!("the pixel {x},{y} is not in the picture")));

@@ -1,4 +1,5 @@
-//! Execution: tiles on threads, pass after pass, until the end or a stop.
+//! Execution of a render: threads work on tiles, pass after pass, until the end or until they are
+//! stopped.
 
 use super::allocation::{half, pilot, variances};
 use super::control::RunLimit;
@@ -20,12 +21,15 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 
-/// Side of a tile in pixels. Tiles are larger if they need samples around them, up to a memory
-/// limit for each.
+/// Default tile width and height in pixels.
 const TILE: u32 = 16;
+/// Default tile width and height if samples affect several pixels, so that tiles need samples
+/// around them. Smaller if these take more than [`MAX_BYTES`].
 const TILE_WITH_BORDER: u32 = 64;
+/// Maximum memory for the samples of one tile, in bytes.
 const MAX_BYTES: u64 = 64 << 20;
 
+/// Returns the default tile width and height for a job.
 fn usual_tile(job: &Job) -> u32 {
     if job.sampling.is_local() {
         return TILE;
@@ -34,15 +38,15 @@ fn usual_tile(job: &Job) -> u32 {
     sides.chain([BLOCK]).find(|&side| kept_bytes(job, side) <= MAX_BYTES).unwrap_or(BLOCK)
 }
 
-/// Poll interval for cancellation.
+/// Interval at which the calling thread checks for cancellation and time limits.
 const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
-/// Reason why a render ended.
+/// How a call of [`PartialRender::render`] ended: finished, cancelled, out of time or panicked.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RenderOutcome {
-    /// The work is done.
+    /// All work is done.
     Finished,
-    /// The caller cancelled it.
+    /// The caller cancelled the render.
     Cancelled,
     /// The time limit was reached.
     OutOfTime,
@@ -50,25 +54,25 @@ pub enum RenderOutcome {
     Panicked(Panicked),
 }
 
-/// Event for the callback of a render.
+/// Event reported to the callback of [`PartialRender::render`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RenderEvent {
-    /// Every pixel has the samples of a pass.
+    /// A pass has ended.
     PassDone,
-    /// The interval [`Control::save_every`] has passed since the last save.
+    /// [`Control::save_every`] has passed since the last save.
     SaveDue,
 }
 
-/// Renders the job's pictures of a world.
+/// Renders all pictures of a job.
 ///
 /// # Errors
-/// [`RenderError`]; partial results are dropped.
+/// [`RenderError`]. Partial results are lost.
 pub fn render(world: &World, job: &Job, control: &Control) -> Result<Rendered, RenderError> {
     whole(world, job, control)?.pictures()
 }
 
-/// Renders a job without converting it to pictures.
+/// Renders all work of a job without converting it to pictures.
 pub(super) fn whole(world: &World, job: &Job, control: &Control) -> Result<PartialRender, RenderError> {
     let part = PartialRender::new(world, job, Shard::WHOLE)?;
     match part.render(world, control, &mut |_, _| {})? {
@@ -79,7 +83,7 @@ pub(super) fn whole(world: &World, job: &Job, control: &Control) -> Result<Parti
 }
 
 impl PartialRender {
-    /// Returns the ends of the passes.
+    /// Returns the numbers of samples at which passes end.
     fn ends(&self, until: RunLimit) -> Box<dyn Iterator<Item = u32>> {
         match until {
             RunLimit::End => Box::new(passes_of(&self.job, self.shard)),
@@ -88,10 +92,12 @@ impl PartialRender {
         }
     }
 
-    /// Continues the work until it is finished or stopped. Results are kept tile by tile.
+    /// Continues the work until it is finished or stopped. The results of each finished tile are
+    /// kept.
     ///
     /// Calls `watch` in the calling thread at the end of each pass and when a save is due, while
-    /// the work continues. After a slow call, skips ends of passes for ten times as long.
+    /// the work continues. After a slow call, ends of passes are not reported for ten times as
+    /// long.
     ///
     /// # Errors
     /// [`RenderError::OtherScene`], [`RenderError::Memory`], [`RenderError::NoMemory`].
@@ -104,7 +110,7 @@ impl PartialRender {
         self.render_to(world, control, watch, RunLimit::End)
     }
 
-    /// Continues the work up to some point: see [`PartialRender::render`].
+    /// Continues the work up to `until`; see [`PartialRender::render`].
     pub(super) fn render_to(
         &self,
         world: &World,
@@ -154,11 +160,11 @@ impl PartialRender {
                     work.rays(None);
                     for end in self.ends(until) {
                         work.pass(end, None);
-                        // The receiver may be gone already.
+                        // The receiver may already be gone.
                         let _ = finished.send(());
                     }
                 });
-                // The last pass drops the sender.
+                // The sender is dropped after the last pass.
                 loop {
                     match passes.recv_timeout(POLL_INTERVAL) {
                         Ok(()) => clock.passed(self, watch),
@@ -167,7 +173,7 @@ impl PartialRender {
                     }
                 }
             }),
-            // Without threads, the calling thread does all work, and polls between tiles.
+            // Without threads, the calling thread does all the work and polls between tiles.
             None => {
                 work.rays(Some(&mut || clock.poll(self, watch)));
                 for end in self.ends(until) {
@@ -186,21 +192,23 @@ impl PartialRender {
     }
 }
 
-/// Work of the calling thread while others render: stopping them, and calling the callback.
+/// State of the calling thread while others render: it enforces limits and calls the callback.
 struct Clock<'a> {
     start: Instant,
-    /// Time of the last callback, and pause before the next one for a pass.
+    /// Time of the last callback.
     last: Instant,
+    /// Minimum time between the last callback and the next one for a pass.
     pause: Duration,
     control: &'a Control,
     stop: &'a AtomicBool,
-    /// True if every pixel has a sample, or if all pixels get one at once: until then, the picture
-    /// has holes.
+    /// True if every pixel has a sample, or if pixels get all their samples at once. Until then, a
+    /// time limit would leave holes in the picture.
     whole: bool,
     out_of_time: bool,
 }
 
 impl Clock<'_> {
+    /// Stops the render on cancellation or at the time limit, and reports that a save is due.
     fn poll(&mut self, part: &PartialRender, watch: &mut dyn FnMut(&PartialRender, RenderEvent)) {
         if self.control.cancel.load(Relaxed) {
             self.stop.store(true, Relaxed);
@@ -214,6 +222,7 @@ impl Clock<'_> {
         }
     }
 
+    /// Reports the end of a pass.
     fn passed(&mut self, part: &PartialRender, watch: &mut dyn FnMut(&PartialRender, RenderEvent)) {
         self.whole = true;
         self.poll(part, watch);
@@ -222,8 +231,9 @@ impl Clock<'_> {
         }
     }
 
+    /// Calls the callback and measures how long it takes.
     fn call(&mut self, part: &PartialRender, watch: &mut dyn FnMut(&PartialRender, RenderEvent), moment: RenderEvent) {
-        // Skip callbacks once cancelled; the caller saves the final state.
+        // Do not call back after cancellation; the caller saves the final state anyway.
         if self.stop.load(Relaxed) {
             return;
         }
@@ -234,10 +244,10 @@ impl Clock<'_> {
     }
 }
 
-/// Poll function to call between tiles if the caller's thread is the only one.
+/// Function to call between tiles, if the calling thread is the only one.
 type PollFn<'a> = Option<&'a mut dyn FnMut()>;
 
-/// State shared by the working threads.
+/// Data that all threads of a render share.
 struct Work<'a> {
     part: &'a PartialRender,
     world: &'a World,
@@ -251,7 +261,7 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Traces missing centre rays.
+    /// Traces the centre rays that are missing.
     fn rays(&self, alone: PollFn) {
         let part = self.part;
         let open = |(index, block): (usize, &Option<Box<BlockAovs>>)| {
@@ -320,8 +330,8 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Computes finished pixels of a tile for samplings in which a sample affects several pixels:
-    /// in one step if the tile is a rectangle, otherwise block by block.
+    /// Computes the finished pixels of a tile, for sampling methods in which a sample affects
+    /// several pixels. If the tile is a rectangle, computes all of it at once, else block by block.
     fn finish(&self, tile: &[usize], at: &SampleCursor) -> Result<(), Cancelled> {
         let blocks = &self.part.blocks;
         let rects: Vec<_> = tile.iter().map(|&index| blocks.rect(index)).collect();
@@ -349,29 +359,31 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Returns copies of a tile's blocks.
+    /// Returns copies of the blocks of a tile.
     fn taken(&self, tile: &[usize]) -> Vec<BlockSamples> {
         let state = self.part.state();
         tile.iter().map(|&index| state.samples[index].clone()).collect()
     }
 
+    /// Stores the blocks of a tile after more work was done on them.
     fn keep(&self, tile: &[usize], mut made: Vec<BlockSamples>, done: u64, rays: u64) {
         let mut state = self.part.state();
         for (&index, block) in tile.iter().zip(&mut made) {
             std::mem::swap(&mut state.samples[index], block);
         }
-        // Free the replaced blocks without the lock.
+        // Free the replaced blocks after the lock is released.
         drop(state);
         self.count(done, rays);
     }
 
+    /// Adds to the progress counters.
     fn count(&self, done: u64, rays: u64) {
         self.control.done.fetch_add(done, Relaxed);
         self.control.rays.fetch_add(rays, Relaxed);
     }
 
-    /// Renders tiles, in parallel if there are threads, until something stops it. A panic becomes
-    /// an error with its sample.
+    /// Renders tiles, in parallel if there are threads, until something stops the render. Turns a
+    /// panic into an error that names the sample.
     fn each(
         &self,
         tiles: &[Vec<usize>],
@@ -394,7 +406,7 @@ impl Work<'_> {
                 Err(Cancelled)
             })
         };
-        // The error only ends the loop; its cause is stored elsewhere.
+        // The error only ends the loop; its cause is stored in `panicked` or `stop`.
         let _ = match alone {
             None => tiles.par_iter().with_max_len(1).try_for_each(one),
             Some(poll) => tiles.iter().try_for_each(|tile| {

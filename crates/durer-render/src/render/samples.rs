@@ -1,4 +1,4 @@
-//! Sampling of a block, for each kind of sampling.
+//! Sampling of blocks, for all sampling methods.
 
 use super::aim::{Aim, BATCH, Batch, Pixel, PixelSample, Row, SampleGroup};
 use super::error::center;
@@ -15,15 +15,16 @@ use std::cell::{Cell, RefCell};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// The work was stopped before it was finished.
+/// Error of a function that stopped because the render was cancelled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Cancelled;
 
-/// Column, row and index of a thread's current sample.
+/// Column, row and index of the sample that a thread is working on, for panic messages.
 pub(super) type SampleCursor = Cell<(u32, u32, Option<u32>)>;
 
-/// Visits the samples of a pixel: position in the picture, position on the lens, and weight. For
-/// samples that affect other pixels too, visits only the pixel's own.
+/// Returns a function that visits the samples of a pixel with their position in the picture,
+/// position on the lens, and weight. If samples affect several pixels, it visits only the pixel's
+/// own.
 pub fn sample_places(world: &World, job: &Job) -> impl Fn(u32, u32, &mut dyn FnMut(Vec2, Vec2, f32)) + Sync {
     let (aperture, seed, sampling) = (world.camera().has_aperture(), job.seed, job.sampling);
     let warp = match sampling {
@@ -54,29 +55,33 @@ pub fn sample_places(world: &World, job: &Job) -> impl Fn(u32, u32, &mut dyn FnM
     }
 }
 
-/// Consecutive generated samples of a pixel.
+/// Consecutive samples of one pixel whose camera rays have been generated.
 struct Run {
     x: u32,
     y: u32,
     /// Id of the pixel's first sample.
     id: SampleId,
-    /// Index of the first generated sample, and of its weight.
+    /// Index of the first of these samples in its pixel.
     first: u32,
+    /// Index of its weight in [`SampleRays::weights`].
     start: usize,
 }
 
 /// Maximum number of samples that are generated before they are traced.
 const ROOM: usize = MAX_BATCH + BATCH;
 
-/// Generated samples.
+/// Buffer of samples with their camera rays, generated before they are traced together.
 struct SampleRays {
     runs: Vec<Run>,
-    /// Number of samples, and their weights.
+    /// Number of samples.
     count: usize,
+    /// Weight of each sample.
     weights: [f32; ROOM],
-    /// Number of samples with a camera ray: the rays, and for each the index of its run and sample.
+    /// Number of samples that have a camera ray.
     seen: usize,
+    /// Camera ray of each of these samples.
     rays: [Ray64; ROOM],
+    /// Index of the run and index in the pixel, for each of these samples.
     of: [(u32, u32); ROOM],
     colors: [Color; ROOM],
 }
@@ -102,7 +107,8 @@ impl SampleRays {
         (self.count, self.seen) = (0, 0);
     }
 
-    /// Returns the run of a sample whose weight will be at index `place`.
+    /// Returns the index of the run for a sample whose weight will be at index `place`. Starts a
+    /// new run unless the sample continues the last one.
     fn run_of(&mut self, pixel: &Pixel, number: u32, place: usize) -> u32 {
         let goes_on = |run: &Run| (run.x, run.y, run.first + (place - run.start) as u32) == (pixel.x, pixel.y, number);
         if !self.runs.last().is_some_and(goes_on) {
@@ -117,14 +123,16 @@ thread_local! {
     static AIMED: RefCell<Option<Box<SampleRays>>> = RefCell::default();
 }
 
-/// Takes the samples of a job.
+/// Source of the samples of a job: generates their camera rays, traces them and adds them to a
+/// film.
 pub(super) struct Samples<'a> {
     pub(super) world: &'a World,
     pub(super) job: &'a Job,
     pub(super) aim: Aim<'a>,
     pub(super) whitted: Whitted<'a>,
     pub(super) integrator: Integrator<'a>,
-    /// Contribution of [`stale`] to each pixel of the whole picture; empty if it does not apply.
+    /// Contribution of the quirk in [`stale`] to each pixel of the full picture. Empty if it does
+    /// not apply.
     stale: Vec<Color>,
     stop: &'a AtomicBool,
 }
@@ -138,23 +146,25 @@ impl<'a> Samples<'a> {
         samples
     }
 
-    /// [`Samples::new`] without the [`stale`] pass over the whole image.
+    /// Creates the source without the [`stale`] quirk, which needs a pass over the full picture.
     pub(super) fn without_quirks(world: &'a World, job: &'a Job, stop: &'a AtomicBool) -> Self {
         let whitted = Whitted { world, settings: job.settings, cancel: Some(stop) };
         let integrator = job.integrator(world, Some(stop));
         Samples { world, job, aim: Aim::new(world, job), whitted, integrator, stale: Vec::new(), stop }
     }
 
-    /// Returns the magnitude of a sample's weight.
+    /// Returns the magnitude of the sample weights.
     pub(super) fn gain(&self) -> f32 {
         self.aim.gain()
     }
 
+    /// Returns an error if the render was cancelled.
     pub(super) fn check(&self) -> Result<(), Cancelled> {
         if self.stop.load(Relaxed) { Err(Cancelled) } else { Ok(()) }
     }
 
-    /// Adds samples to the pixels of a film's part, which are numbered row by row.
+    /// Adds samples to the pixels of a film's rectangle. `ranges` returns the range of samples for
+    /// each pixel, numbered in reading order.
     pub(super) fn add(
         &self,
         film: &mut Film,
@@ -172,7 +182,7 @@ impl<'a> Samples<'a> {
                 let first = numbers.start;
                 at.set((x, y, Some(first)));
                 if batch.len() == 0 && numbers.len() >= BATCH {
-                    // Fast path: consecutive samples of one pixel share its data.
+                    // Fast path: consecutive samples of one pixel share their data.
                     self.aim_several(&Row { pixel: &pixel, first }, &mut aimed);
                     numbers.start += BATCH as u32;
                 } else {
@@ -191,11 +201,11 @@ impl<'a> Samples<'a> {
         self.aim_several(&batch, &mut aimed);
         self.add_aimed(film, &mut aimed, at, rays)?;
         AIMED.set(Some(aimed));
-        // Results after a cancel are meaningless.
+        // Results are meaningless after cancellation.
         self.check()
     }
 
-    /// Generates camera rays for some samples.
+    /// Generates the camera rays of a group of samples.
     fn aim_several(&self, of: &impl SampleGroup, aimed: &mut SampleRays) {
         let (start, mut runs) = (aimed.count, [0; BATCH]);
         for (i, run) in runs[..of.len()].iter_mut().enumerate() {
@@ -212,7 +222,7 @@ impl<'a> Samples<'a> {
         aimed.count += of.len();
     }
 
-    /// Traces and adds the generated samples, and clears them.
+    /// Traces the generated samples, adds them to the film and clears the buffer.
     fn add_aimed(
         &self,
         film: &mut Film,
@@ -254,8 +264,8 @@ impl<'a> Samples<'a> {
         Ok(())
     }
 
-    /// Takes one sample of a pixel: returns its colour, if the camera sees anything there, and its
-    /// weight.
+    /// Takes one sample of a pixel. Returns its weight and its colour, which is `None` if the
+    /// camera has no ray there.
     pub(super) fn sample(&self, x: u32, y: u32, sample: u32, rays: &mut RayCount) -> (Option<Color>, f32) {
         let pixel = self.aim.pixel(x, y);
         let PixelSample { ray, weight, .. } = self.aim.sample(&pixel, sample);
@@ -263,12 +273,13 @@ impl<'a> Samples<'a> {
         (color.map(|color| self.with_stale((x, y), color)), weight)
     }
 
+    /// Adds the contribution of the [`stale`] quirk to a colour.
     fn with_stale(&self, (x, y): (u32, u32), color: Color) -> Color {
         let stale = self.stale.get(y as usize * self.job.width as usize + x as usize);
         stale.map_or(color, |&stale| color + stale)
     }
 
-    /// Generates a sample, for samplings whose samples affect their own pixel only.
+    /// Generates a sample. Only for sampling methods whose samples affect their own pixel alone.
     pub(super) fn aim(&self, x: u32, y: u32, sample: u32) -> PixelSample {
         self.aim.sample(&self.aim.pixel(x, y), sample)
     }

@@ -1,4 +1,4 @@
-//! File format of partial renders: checkpoints, shards and merged pictures.
+//! File format of partial renders, for checkpoints, shards and merged pictures.
 //!
 //! | bytes | content |
 //! | --- | --- |
@@ -13,7 +13,7 @@
 //! | number | 0 |
 //! | 32 | BLAKE3 of everything before |
 //!
-//! Numbers are encoded as in [`crate::film::bytes`]; a text is its length and its bytes.
+//! Numbers are encoded as in [`crate::film::bytes`]. A text is its length followed by its bytes.
 
 use super::allocation::{half, most, pilot};
 use super::part::{BlockAovs, BlockSamples, PartialRender, PrimaryHit, film_of, job_text};
@@ -31,7 +31,7 @@ use std::sync::Arc;
 const FORMAT: u32 = 1;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// An error of reading or combining parts.
+/// Error from reading a saved part of a render, or from combining it with another part.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PartError {
@@ -41,13 +41,13 @@ pub enum PartError {
     /// The bytes are truncated or damaged.
     #[error("it is truncated or damaged: its checksum is wrong")]
     Damaged,
-    /// Another version wrote them.
+    /// Another version of Dürer wrote the part.
     #[error("it was written by Dürer {0}, but this is {VERSION}, so the pictures could differ")]
     OtherVersion(String),
-    /// The checksum is valid, but the content is not.
+    /// The checksum is right, but the content is invalid.
     #[error("it is malformed: {0}")]
     Malformed(String),
-    /// The job is invalid.
+    /// The job in the file is invalid.
     #[error(transparent)]
     Render(#[from] RenderError),
     /// The part belongs to another scene.
@@ -68,11 +68,11 @@ fn text<'a>(bytes: &mut Bytes<'a>) -> Option<&'a str> {
     std::str::from_utf8(bytes.take(length)?).ok()
 }
 
-/// Number of blocks that are written at once, which limits how long the lock is held.
+/// Number of blocks that are written at once. It limits how long the lock is held.
 const CHUNK: usize = 256;
 
 impl Content for PartialRender {
-    /// Writes the bytes in chunks; a complete copy would double the memory.
+    /// Writes the part in chunks, because a complete copy would double the memory.
     fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
         let (mut hasher, mut bytes) = (blake3::Hasher::new(), self.head());
         let mut flush = |bytes: &mut Vec<u8>| {
@@ -81,7 +81,7 @@ impl Content for PartialRender {
             bytes.clear();
             io::Result::Ok(())
         };
-        // Separate locks: taking both at once would deadlock.
+        // Lock twice: both locks in one expression would deadlock.
         let samples = self.state().samples.len();
         let rays = self.state().rays.len();
         let chunks = |count: usize| (0..count).step_by(CHUNK).map(move |start| start..count.min(start + CHUNK));
@@ -107,16 +107,17 @@ impl Content for &PartialRender {
 }
 
 impl PartialRender {
-    /// First bytes of a file.
+    /// First bytes of a saved part.
     pub const MAGIC: &[u8; 8] = b"DURERPRT";
 
-    /// Serialises the part. Equal work gives equal bytes.
+    /// Serializes the part. Equal work gives equal bytes.
     pub fn write(&self) -> Vec<u8> {
         let mut out = Vec::new();
         self.write_to(&mut out).expect("writing to memory never fails");
         out
     }
 
+    /// Returns everything that comes before the blocks.
     fn head(&self) -> Vec<u8> {
         let mut out = PartialRender::MAGIC.to_vec();
         put(&mut out, FORMAT.into());
@@ -128,7 +129,7 @@ impl PartialRender {
         out
     }
 
-    /// Writes the samples of some blocks.
+    /// Appends the samples of some blocks.
     fn put_samples(&self, blocks: Range<usize>, out: &mut Vec<u8>) {
         let state = self.state();
         for index in blocks {
@@ -145,7 +146,7 @@ impl PartialRender {
         }
     }
 
-    /// Writes the centre-ray results of some blocks.
+    /// Appends the centre-ray results of some blocks.
     fn put_rays(&self, blocks: Range<usize>, out: &mut Vec<u8>) {
         let state = self.state();
         for index in blocks {
@@ -158,10 +159,10 @@ impl PartialRender {
         }
     }
 
-    /// Reads a part.
+    /// Reads a saved part.
     ///
     /// # Errors
-    /// [`PartError`] for anything except the output of [`PartialRender::write`] of this version.
+    /// [`PartError`] for anything but the output of [`PartialRender::write`] of this version.
     pub fn read(bytes: &[u8]) -> Result<PartialRender, PartError> {
         if !bytes.starts_with(PartialRender::MAGIC) {
             return Err(if PartialRender::MAGIC.starts_with(bytes) { PartError::Damaged } else { PartError::NotAPart });
@@ -185,19 +186,20 @@ impl PartialRender {
         let job: Job = serde_json::from_str(job).map_err(wrong)?;
         let shard: Shard = serde_json::from_str(shard).map_err(wrong)?;
         let display = serde_json::from_str(display).map_err(wrong)?;
-        // Reject jobs that would allocate far more than the bytes justify.
+        // This rejects jobs that need far more memory than the size of the file justifies.
         let part = PartialRender::empty(job, shard, Digest(scene), display)?;
         part.read_blocks(rest).ok_or(malformed("its blocks"))?;
         if part.job.adaptive {
             part.allocate();
         }
-        // Reject alternative encodings.
+        // Reject encodings that `write` does not produce.
         if part.write() != bytes {
             return Err(malformed("Dürer would encode it differently"));
         }
         Ok(part)
     }
 
+    /// Reads the samples and centre-ray results of all blocks; `None` if they are invalid.
     fn read_blocks(&self, mut rest: Bytes) -> Option<()> {
         let (mut state, range) = (self.state(), self.shard.range(self.job.sampling.samples()));
         while let number @ 1.. = rest.whole::<usize>()? {
@@ -238,7 +240,7 @@ impl PartialRender {
         rest.0.is_empty().then_some(())
     }
 
-    /// Checks that a part continues this one's work: same scene, job and shard.
+    /// Checks that another part continues this one's work, with the same scene, job and shard.
     ///
     /// # Errors
     /// [`PartError::OtherScene`], [`PartError::OtherJob`].

@@ -1,25 +1,25 @@
-//! A quirk of Fall 2012: on a texture, ambient light uses the texel of the previous pixel with the
-//! same material, in rows from the bottom.
+//! Quirk of Fall 2012: on a texture, ambient light uses the texel of the previous pixel with the
+//! same material. Pixels are processed in rows from the bottom up.
 
 use super::{Job, Sampling, center_ray};
 use crate::world::{Material, World};
 use durer_scene::camera::Raster;
 use durer_scene::math::Color;
 
-/// Returns true if the quirk applies: one ray a pixel, in a dialect with the quirk.
+/// Returns true if the quirk applies: the dialect has it, and there is one ray per pixel.
 pub(super) fn applies(world: &World, job: &Job) -> bool {
     job.sampling == Sampling::Center && world.shading_rules().stale_texels
 }
 
-/// Index of a material, and the colour of its texture, noise or plain surface.
+/// Material at a pixel's centre, with the colour of its texture or noise there.
 struct Texel {
     material: u32,
     color: Color,
-    /// Colour of the material if no pixel came before.
+    /// Colour of the material without texture, used if no pixel came before.
     plain: Color,
 }
 
-/// Returns the texel at a pixel's centre; `None` for misses and solid patterns.
+/// Returns the texel at a pixel's centre. `None` for misses and for solid patterns.
 fn texel(world: &World, raster: &Raster, pixel: (u32, u32)) -> Option<Texel> {
     let ray = center_ray(world, raster, pixel)?;
     let at = world.intersect(&ray, &mut ())?;
@@ -28,8 +28,8 @@ fn texel(world: &World, raster: &Raster, pixel: (u32, u32)) -> Option<Texel> {
     Some(Texel { material: at.material, color, plain: phong.diffuse })
 }
 
-/// Returns the quirk's contribution to each pixel of the whole picture. Calls `stops` before each
-/// pixel; once it returns true, the rest is 0.
+/// Returns what the quirk adds to each pixel of the full picture. Calls `stops` before each pixel;
+/// once it returns true, the remaining pixels get 0.
 pub(super) fn differences(world: &World, job: &Job, raster: &Raster, stops: impl Fn() -> bool) -> Vec<Color> {
     let mut last: Vec<Option<Color>> = vec![None; world.materials().len()];
     let mut differences = vec![Color::ZERO; job.whole().pixels() as usize];
@@ -44,11 +44,11 @@ pub(super) fn differences(world: &World, job: &Job, raster: &Raster, stops: impl
     differences
 }
 
-/// Returns the quirk's contribution to one pixel.
+/// Returns what the quirk adds to one pixel.
 pub(super) fn difference(world: &World, job: &Job, raster: &Raster, (x, y): (u32, u32)) -> Option<Color> {
     let own = texel(world, raster, (x, y))?;
-    // Rows from the bottom: first the pixels of this row to the left, from right to left, then the
-    // rows below.
+    // Search backwards through rows that are processed from the bottom up: first this row,
+    // leftwards, and then the rows below.
     let row = |y: u32, end: u32| (0..end).rev().map(move |x| (x, y));
     let mut before = row(y, x).chain((y + 1..job.height).flat_map(|y| row(y, job.width)));
     let before = before.find_map(|pixel| texel(world, raster, pixel).filter(|found| found.material == own.material));

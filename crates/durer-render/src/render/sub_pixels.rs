@@ -1,4 +1,4 @@
-//! The sub-pixels of Fall 2012, assignment 5: 3 x 3 jittered sub-pixels, blurred and averaged.
+//! Sub-pixels of Fall 2012, assignment 5: 3 x 3 per pixel, jittered, blurred and averaged.
 
 use super::{Crop, Job, raster};
 use crate::film::course::{average_3x3, blur, jittered_position};
@@ -7,18 +7,18 @@ use durer_scene::camera::Raster;
 use durer_scene::math::{Color, Vec2};
 use serde::Serialize;
 
-/// The sub-pixels of a part of a picture.
+/// Sub-pixels that are needed for a rectangle of a picture, as in assignment 5 of Fall 2012.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SubPixels {
-    /// True for 3 x 3 sub-pixels a pixel, false for one.
+    /// True for 3 x 3 sub-pixels per pixel, false for one.
     pub jitter: bool,
     /// True if they are blurred.
     pub blurred: bool,
-    /// Sub-pixels inside the part.
+    /// Sub-pixels inside the rectangle.
     pub inner: Crop,
-    /// Sub-pixels that affect it.
+    /// Sub-pixels that affect the rectangle's pixels.
     pub around: Crop,
-    /// Sub-pixels of the whole picture.
+    /// Sub-pixels of the full picture.
     pub whole: Crop,
 }
 
@@ -36,17 +36,17 @@ impl SubPixels {
         SubPixels { jitter, blurred, inner, around, whole }
     }
 
-    /// Returns the raster of the sub-pixels in the camera's square.
+    /// Returns the mapping from sub-pixel positions to the camera's coordinates.
     pub(super) fn raster(&self, world: &World) -> Raster {
         raster(world, self.whole.width, self.whole.height)
     }
 
-    /// Returns the number of sub-pixels across a pixel.
+    /// Returns the number of sub-pixels across a pixel, 1 or 3.
     pub(super) fn scale(&self) -> u32 {
         if self.jitter { 3 } else { 1 }
     }
 
-    /// Returns the pixel of a sub-pixel.
+    /// Returns the pixel that contains a sub-pixel.
     pub(super) fn pixel(&self, (x, y): (u32, u32)) -> (u32, u32) {
         (x / self.scale(), y / self.scale())
     }
@@ -56,15 +56,15 @@ impl SubPixels {
         y % self.scale() * self.scale() + x % self.scale()
     }
 
-    /// Returns the position of a sub-pixel's ray, in sub-pixels from the upper left corner of the
-    /// picture.
+    /// Returns the position of a sub-pixel's ray in the picture, in sub-pixels from the upper left
+    /// corner.
     pub(super) fn place(&self, seed: u64, (x, y): (u32, u32)) -> Vec2 {
         let corner = if self.jitter { jittered_position(seed, x, y) } else { Vec2::new(x as f32, y as f32) };
         corner + 0.5
     }
 
-    /// Returns the pixels of the part in reading order, from the colours of all sub-pixels that
-    /// affect it.
+    /// Blurs and averages the colours of all sub-pixels in `around`. Returns the rectangle's pixels
+    /// in reading order.
     pub(super) fn develop(&self, mut colors: Vec<Color>) -> Vec<Color> {
         let (inner, around) = (self.inner, self.around);
         if self.blurred {

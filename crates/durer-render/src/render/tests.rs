@@ -1,4 +1,4 @@
-//! Tests that the film does not depend on how it is rendered, and of errors.
+//! Tests that the film does not depend on how it is rendered, and tests of errors.
 
 use super::verify::{RenderVariant, compare};
 use super::*;
@@ -40,7 +40,7 @@ fn filtered(samples: u32) -> Sampling {
     Sampling::Filtered { samples, filter: Filter::default() }
 }
 
-/// Returns jobs with every kind of sampling.
+/// Returns one job for each sampling method.
 fn jobs() -> Vec<Job> {
     let (sampler, filter) = (Sampler::Jittered, Some(CourseFilter::Tent { radius: 1.5 }));
     let samplings = [
@@ -82,7 +82,7 @@ fn film_does_not_depend_on_how_it_is_rendered() {
             let other = way.make(&world, &job, &AtomicBool::new(false)).unwrap();
             let difference = compare(&plain, &other);
             assert!(difference.is_none(), "{:?}, {way}: {difference:?}", job.sampling);
-            // Also compare the pictures and attributes, not only the sums.
+            // Compare the pictures and attributes too, not only the sums.
             let (a, b) = (plain.pictures().unwrap(), other.pictures().unwrap());
             assert_eq!((a.statistics, &a.attributes), (b.statistics, &b.attributes), "{way}");
             let bits = |layers: &[durer_image::Layer]| -> Vec<u32> {
@@ -94,7 +94,7 @@ fn film_does_not_depend_on_how_it_is_rendered() {
     assert_ne!(one_ray(1), one_ray(2));
 }
 
-/// Samples are generated and shaded in batches, but explained and replayed one at a time.
+/// Samples are generated and shaded in batches, but explained and replayed one by one.
 #[test]
 fn film_equals_the_sum_of_single_samples() {
     let folder = tempfile::tempdir().unwrap();
@@ -112,7 +112,7 @@ fn film_equals_the_sum_of_single_samples() {
         "Transform { Translate 0 0.5 0 TriangleMesh { obj_file ball.obj } }",
         &format!("Sphere {{ center 0 0.5 0 radius 0.9 }} {balls}"),
     );
-    // Enough objects for a tree.
+    // There are enough objects for a BVH.
     let many = |i: u8| {
         let [x, y] = [f32::from(i % 5) - 2.0, f32::from(i / 5) - 1.0];
         format!("MaterialIndex {} Sphere {{ center {x} {y} 1 radius 0.4 }} ", i % 4)
@@ -128,7 +128,7 @@ fn film_equals_the_sum_of_single_samples() {
     let mut deep = WhittedOptions { bounces: 7, ..through };
     (deep.reflection, deep.refraction) = (true, true);
     let own_rules = || Dialect::Durer.rules();
-    // No camera rays at the corners.
+    // The camera has no rays at the corners.
     let blind = TEXT.replace("PerspectiveCamera", "FisheyeCamera").replace("angle 40", "angle 180");
     let worlds = [
         (TEXT.to_string(), own_rules(), small().settings),
@@ -156,7 +156,7 @@ fn film_equals_the_sum_of_single_samples() {
             let films = [(); 2].map(|()| Film::window(part.left, part.top, part.width, part.height));
             let [mut together, mut alone] = films;
             let (at, mut rays) = (Cell::new((0, 0, None)), [RayCount::default(); 2]);
-            // Some pixels have fewer samples than a batch, others more.
+            // Some pixels have fewer samples than a batch, others have more.
             let all = |pixel: usize| match job.sampling {
                 Sampling::Filtered { .. } => 1..[3, 9, 7, 21][pixel % 4],
                 sampling => 1..sampling.samples().clamp(2, 7),
@@ -192,8 +192,8 @@ fn crop_equals_that_part_of_the_whole_picture() {
         let job = Job { light_scale: Some(scale), ..job };
         let whole = all(&world, &job).pictures().unwrap();
         let part = all(&world, &Job { crop: Some(crop), ..job.clone() }).pictures().unwrap();
-        // Maximum sample count and luminance are known for the crop alone; here all pixels have the
-        // same count.
+        // The maxima of sample count and luminance are those of the crop. Here they equal those of
+        // the full picture.
         for (whole, part) in whole.pictures.iter().zip(&part.pictures) {
             for ((x, y), pixel) in crop.places().zip(&part.image.pixels) {
                 assert_eq!(whole.image.get(x, y), Some(*pixel), "{} {:?} {x},{y}", whole.name, job.sampling);
@@ -212,8 +212,8 @@ fn noise_threshold_controls_the_number_of_samples() {
     let counts: Vec<f32> = part.pictures().unwrap().layers[1].image.pixels.iter().map(|p| p.x).collect();
     let (least, most) = counts.iter().fold((f32::MAX, 0.0_f32), |(a, b), &n| (a.min(n), b.max(n)));
     assert!(least == passes::LEAST as f32 && most >= 3.0 * least, "{least} {most}");
-    // The true error matches the threshold, measured against a picture with many more samples,
-    // pixel by pixel in sqrt(Y).
+    // The true error must be below the threshold. It is measured in sqrt(Y) against a picture with
+    // many more samples.
     let truth = all(&world, &Job { sampling: filtered(1024), noise: None, ..job.clone() }).pictures().unwrap();
     let (ours, truth) = (&part.pictures().unwrap().layers[0].image, &truth.layers[0].image);
     let seen = |p: &Vec3| (0.2126 * p.x + 0.7152 * p.y + 0.0722 * p.z).max(1.0 / 256.0).sqrt();
@@ -278,7 +278,7 @@ fn parts_survive_serialization_and_invalid_bytes_are_rejected() {
     let bytes = part.write();
     let back = PartialRender::read(&bytes).unwrap();
     assert_eq!((back.hash(), back.write() == bytes, back.identity()), (part.hash(), true, part.identity()));
-    // The checksum detects any truncation or change.
+    // The checksum detects all truncations and changes.
     for length in 0..bytes.len() {
         assert!(matches!(PartialRender::read(&bytes[..length]), Err(PartError::Damaged)), "{length}");
     }
@@ -288,8 +288,8 @@ fn parts_survive_serialization_and_invalid_bytes_are_rejected() {
         assert!(matches!(PartialRender::read(&changed), Err(PartError::Damaged)), "{at}");
     }
     assert!(matches!(PartialRender::read(b"P6 1 1 255 ..."), Err(PartError::NotAPart)));
-    // With a valid checksum, the content is arbitrary: reading it gives an error, or a canonical
-    // part that can be converted to pictures.
+    // If the checksum is valid, the content can be anything. Reading it must give an error, or a
+    // canonical part that can be converted to pictures.
     for at in (8..bytes.len() - 32).filter(|at| *at < 1500 || at % 7 == 0) {
         for new in [0, 0x80, 0xff, bytes[at] ^ 4] {
             let mut changed = bytes[..bytes.len() - 32].to_vec();
@@ -297,7 +297,7 @@ fn parts_survive_serialization_and_invalid_bytes_are_rejected() {
             changed.extend(Digest::of(&changed).0);
             if let Ok(read) = PartialRender::read(&changed) {
                 assert!(read.write() == changed, "{at}: written differently");
-                // Everything is finite, except the variance of a single sample.
+                // All values are finite, except the variance of a single sample.
                 let rendered = read.pictures().unwrap();
                 let finite =
                     |layer: &durer_image::Layer| layer.name == "variance" || layer.image.first_non_finite().is_none();
@@ -321,7 +321,7 @@ fn only_the_same_work_is_resumed() {
     assert!(matches!(other(&world, &more, Shard::WHOLE), Err(PartError::OtherJob(why)) if why.contains("sampling")));
     let half = Shard { index: 1, count: 2, by: ShardBy::Tiles };
     assert!(matches!(other(&world, &job, half), Err(PartError::OtherJob(why)) if why.contains("1/2")));
-    // Another version has a different character at this position.
+    // Change the character at which the version starts.
     let mut bytes = part.write();
     let version = env!("CARGO_PKG_VERSION").len();
     bytes[9 + version] = b'x';
@@ -334,7 +334,7 @@ fn only_the_same_work_is_resumed() {
 #[test]
 fn panic_is_an_error_with_its_sample_and_other_work_is_kept() {
     let mut broken = world();
-    // A tree that refers to a missing object: rays that hit the sphere's bounds panic.
+    // This BVH refers to an object that does not exist, so rays that hit the sphere's bounds panic.
     let mut boxes = vec![Aabb::EMPTY; 1000];
     boxes[999] = broken.objects()[0].bounds().unwrap();
     broken.accel = crate::world::Accel::Bvh(durer_bvh::Bvh::build(&boxes));
@@ -347,14 +347,14 @@ fn panic_is_an_error_with_its_sample_and_other_work_is_kept() {
     };
     assert_eq!(panicked.sample, Some(0), "{panicked}");
     assert!(panicked.message.contains("index out of bounds") && panicked.to_string().contains("pixel "), "{panicked}");
-    // Replaying the sample panics, too; distant neighbours do not panic.
+    // Replaying the sample panics too, but pixels far away do not.
     let alone = |x, y| {
         let one = || replay(&broken, &job, &Control::default(), (x, y), Some(0)).map(|color| color.is_some());
         std::panic::catch_unwind(std::panic::AssertUnwindSafe(one))
     };
     assert!(alone(panicked.x, panicked.y).is_err());
     assert!(alone(0, 0).unwrap().unwrap());
-    // Earlier tiles are kept; with the bug fixed, the film is correct.
+    // Tiles finished before are kept. Without the bug, the final film is correct.
     assert!(part.work().1 > 0);
     let mended = PartialRender::read(&part.write()).unwrap();
     mended.render(&world(), &control, &mut |_, _| {}).unwrap();
@@ -377,7 +377,7 @@ fn time_limit_and_cancel_stop_soon_and_the_callback_is_called() {
     }
     assert!(passes > 0 && saves > 0, "{passes} {saves}");
     assert!(part.is_whole() && !part.is_finished());
-    // A time limit of zero suffices for a picture without holes, and no more.
+    // A time limit of zero gives a picture without holes, and no more than that.
     let hasty = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
     let control = Control { time: Some(Duration::ZERO), ..Control::default() };
     assert_eq!(hasty.render(&world, &control, &mut |_, _| {}).unwrap(), RenderOutcome::OutOfTime);
@@ -392,7 +392,7 @@ fn time_limit_and_cancel_stop_soon_and_the_callback_is_called() {
         (stop, after.saturating_duration_since(before))
     });
     assert_eq!(stopped.0, RenderOutcome::Cancelled);
-    // The goal is 100 ms (`cargo xtask cost` measures it); allow for a busy machine.
+    // The goal is 100 ms (measured by `cargo xtask cost`), but the machine may be busy.
     assert!(stopped.1 < Duration::from_secs(2), "{:?}", stopped.1);
 }
 
@@ -403,10 +403,10 @@ fn memory_is_estimated_before_it_is_allocated() {
     let control = Control { memory: Some(1 << 30), ..Control::default() };
     let error = part.render(&world, &control, &mut |_, _| {}).unwrap_err();
     assert!(matches!(error, RenderError::Memory { needed, .. } if needed > 1 << 30), "{error}");
-    // A shard by tiles only stores the sums of the pixels in its tiles.
+    // A shard by tiles stores only the sums of its own tiles.
     let shard = Shard { index: 1, count: 100, by: ShardBy::Tiles };
     assert!(PartialRender::bytes_needed(&job, shard) < PartialRender::bytes_needed(&job, Shard::WHOLE));
-    // The stored samples of the course count as memory, too.
+    // The samples that the course's film stores also count.
     let filter = Some(CourseFilter::Gaussian { sigma: 30.0 });
     let course = Sampling::Course2004 { sampler: Sampler::Random, samples: 65536, filter };
     let part = PartialRender::new(&world, &Job { sampling: course, ..small() }, Shard::WHOLE).unwrap();
@@ -451,7 +451,7 @@ fn bands_give_the_same_picture() {
             PartialRender::bytes_needed(&Job { crop: Some(Crop { height: 1, ..window }), ..job.clone() }, Shard::WHOLE);
         let whole = all(&world, &job);
         let layer = whole.pictures().unwrap().pictures;
-        // Two rows of blocks, and everything at once.
+        // Bands of two rows of blocks, and a single band.
         for memory in [16 * one, u64::MAX] {
             let bands = Bands::new(&job, memory).unwrap();
             for format in FORMATS.iter().filter(|format| format.rows.is_some()) {
@@ -460,7 +460,7 @@ fn bands_give_the_same_picture() {
                 let made = bands.write(&world, &Control::default(), format, &options, &mut in_bands).unwrap();
                 format.write(&layer, &options, &mut at_once).unwrap();
                 let name = format!("x.{}", format.extensions[0]);
-                // PNG compresses differently, and OpenEXR not at all.
+                // In bands, PNG is compressed differently, and OpenEXR is not compressed.
                 assert_eq!(read(&in_bands, &name).unwrap(), read(&at_once, &name).unwrap(), "{name} {memory}");
                 assert!(matches!(format.name, "PNG" | "OpenEXR") || in_bands == at_once, "{name} {memory}");
                 assert_eq!(made.0, whole.statistics());
@@ -483,7 +483,7 @@ fn writing_row_by_row_gives_the_same_file() {
         (TEXT, small(), None),
         (TEXT, Job { sampling: filtered(3), crop, ..small() }, None),
         (TEXT, tall, None),
-        // Some pixels see nothing, and some are not rendered.
+        // Some pixels have no camera ray, and some are not rendered.
         (&fisheye, Job { sampling: filtered(4), ..small() }, None),
         (TEXT, small(), Some(2)),
     ] {
@@ -501,7 +501,7 @@ fn writing_row_by_row_gives_the_same_file() {
             format.write(&layers, &WriteOptions::default(), &mut at_once).unwrap();
             let name = format!("x.{}", format.extensions[0]);
             assert_eq!(read(&by_rows, &name).unwrap(), read(&at_once, &name).unwrap(), "{name}");
-            // OpenEXR compresses only complete pictures.
+            // OpenEXR is compressed only when written all at once.
             assert!(format.name == "OpenEXR" || by_rows == at_once, "{name}");
             assert_eq!(seen.len() as u64, job.window().pixels());
         }

@@ -1,4 +1,5 @@
-//! Renders a picture in many ways: threads, tiles, shards, interruptions, acceleration structures.
+//! Renders a picture in many ways (threads, tiles, shards, interruptions, acceleration structures)
+//! to verify that the result is always the same.
 
 use super::{Control, Job, MergeError, PartError, PartialRender, RenderError, RenderOutcome, Shard, ShardBy, merge};
 use crate::world::World;
@@ -7,22 +8,24 @@ use durer_scene::source::Digest;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// One way of rendering a picture.
+/// One way of rendering a picture, which must not affect the result: threads, tiles, shards and
+/// interruptions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RenderVariant {
-    /// Index among worlds of the same scene with different acceleration structures.
+    /// Index of the world to render. All worlds have the same scene but different acceleration
+    /// structures.
     pub world: usize,
     /// Number of threads.
     pub threads: usize,
-    /// Side of a tile in pixels.
+    /// Width and height of a tile in pixels.
     pub tile: u32,
     /// Number of shards.
     pub shards: u32,
-    /// Division into shards.
+    /// How the work is divided into shards.
     pub by: ShardBy,
-    /// Number of times each shard is interrupted, saved, and read again.
+    /// Number of times that the render of each shard is interrupted, saved and loaded again.
     pub interruptions: u32,
-    /// Seed for the points of interruption and the order of merging.
+    /// Seed for the points of interruption and for the order of merging.
     pub seed: u64,
 }
 
@@ -34,7 +37,7 @@ impl fmt::Display for RenderVariant {
     }
 }
 
-/// An error of rendering a variant.
+/// Error from rendering a picture as a [`RenderVariant`] specifies.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum VariantError {
@@ -53,11 +56,11 @@ pub enum VariantError {
 }
 
 impl RenderVariant {
-    /// Everything at once, on one thread.
+    /// Variant that renders everything at once on one thread.
     pub const PLAIN: RenderVariant =
         RenderVariant { world: 0, threads: 1, tile: 16, shards: 1, by: ShardBy::Tiles, interruptions: 0, seed: 0 };
 
-    /// Returns a numbered variant, determined by the job and the number of worlds.
+    /// Returns a pseudo-random variant for a number, suitable for the job and the number of worlds.
     pub fn numbered(number: u64, job: &Job, worlds: usize) -> RenderVariant {
         let pick = |dimension: u32, count: u64| hash(number, 0, 0, 0, dimension) % count.max(1);
         let samples = u64::from(job.sampling.samples());
@@ -69,7 +72,7 @@ impl RenderVariant {
             world: pick(0, worlds as u64) as usize,
             threads: [1, 2, 3, 4, 7][pick(1, 5) as usize],
             tile: [8, 16, 24, 32, 64, 200][pick(2, 6) as usize],
-            // Half of them have a single shard.
+            // Half of the variants have a single shard.
             shards: if pick(4, 2) == 0 { 1 } else { 1 + pick(5, most.min(7)) as u32 },
             by,
             interruptions: [0, 0, 1, 3][pick(6, 4) as usize],
@@ -77,7 +80,7 @@ impl RenderVariant {
         }
     }
 
-    /// Renders the job's picture as this variant specifies.
+    /// Renders a job's picture in the way of this variant.
     ///
     /// # Errors
     /// [`VariantError`].
@@ -92,7 +95,7 @@ impl RenderVariant {
         Ok(if self.shards == 1 { parts.swap_remove(0).1 } else { merge(&parts)? })
     }
 
-    /// Renders a shard with interruptions after some tiles, and continues each time from the saved
+    /// Renders a shard. Interrupts it several times after some tiles, and continues from the saved
     /// part.
     fn shard(
         &self,
@@ -108,7 +111,7 @@ impl RenderVariant {
             }
             let some = hash(self.seed, 2, shard.index, round, 0) % 24;
             let control = Control {
-                // A different number of threads each time.
+                // Use a different number of threads each time.
                 threads: Some(1 + (self.threads + round as usize - 1) % 7),
                 tile: Some(self.tile),
                 most_tiles: (round > 0).then_some(some),
@@ -123,18 +126,18 @@ impl RenderVariant {
     }
 }
 
-/// A variant that gives a different film.
+/// Difference between the expected film and the film of a [`RenderVariant`].
 #[derive(Clone, Debug)]
 pub struct Difference {
-    /// Expected hash.
+    /// Hash of the expected film.
     pub expected: Digest,
-    /// Actual hash.
+    /// Hash of the variant's film.
     pub found: Digest,
-    /// Description of the first pixel that differs, if a picture shows it.
+    /// Description of the first pixel that differs, if a picture shows the difference.
     pub place: String,
 }
 
-/// Compares two films of the same job.
+/// Compares two films of the same job. Returns `None` if they are equal.
 pub fn compare(expected: &PartialRender, found: &PartialRender) -> Option<Difference> {
     let (one, other) = (expected.hash(), found.hash());
     if one == other {

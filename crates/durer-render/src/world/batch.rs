@@ -1,4 +1,4 @@
-//! Batches of coherent rays, with the same results as single rays.
+//! Intersection of batches of coherent rays. The results are the same as for single rays.
 
 use super::{Geometry, Hit, Object, World};
 use durer_bvh::{PackHit, PrimitivePacks, TraversalCounter, TriangleHit};
@@ -9,23 +9,23 @@ use std::array::from_fn;
 /// Maximum number of rays in a batch.
 pub(crate) const MAX_BATCH: usize = 64;
 
-/// A world of few objects in a form for batches of rays, independent of the acceleration structure.
+/// Objects of a world with few of them, prepared for the intersection of batches of rays.
 #[derive(Clone, Debug)]
 pub(crate) struct SmallWorld {
-    /// Simple shapes, for eight rays at once.
+    /// Simple shapes, packed for intersection with eight rays at once.
     pub(crate) simple: PrimitivePacks,
     /// Indices of all other objects.
     pub(crate) others: Vec<u32>,
 }
 
-/// Number of rays below which they are traced one by one.
+/// Number of rays below which each is traced alone.
 const FEWEST: usize = 3;
 
-/// A ray that hits nothing.
+/// Ray that hits nothing, for unused slots of a batch.
 const NOWHERE: Ray = Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::X) };
 
 impl World {
-    /// Finds the first hits of up to [`MAX_BATCH`] rays. Modifies the rays temporarily.
+    /// Computes the first hits of up to [`MAX_BATCH`] rays. Changes the rays temporarily.
     pub(crate) fn first_hits<T: TraversalCounter>(
         &self,
         rays: &mut [Ray64],
@@ -39,7 +39,7 @@ impl World {
         self.closest_batch(rays, hits);
     }
 
-    /// Tests occlusion of up to [`MAX_BATCH`] rays.
+    /// Computes whether up to [`MAX_BATCH`] rays are occluded.
     pub(crate) fn any_hits<T: TraversalCounter>(&self, rays: &[Ray64], blocked: &mut [bool], counter: &mut T) {
         if T::COUNTS_WORK || rays.len() < FEWEST || self.small_world.is_none() {
             return blocked.iter_mut().zip(rays).for_each(|(hit, ray)| *hit = self.occluded_along(ray, counter));
@@ -48,7 +48,7 @@ impl World {
         self.occluded_batch(rays, blocked);
     }
 
-    /// Finds the first hits of up to [`MAX_BATCH`] rays, with the same results as
+    /// Computes the first hits of up to [`MAX_BATCH`] rays. The results equal those of
     /// [`World::closest`].
     pub(crate) fn closest_batch(&self, rays: &[Ray64], hits: &mut [Option<Hit>]) {
         let Some(small_world) = &self.small_world else {
@@ -67,7 +67,8 @@ impl World {
             if let Geometry::Mesh(tree) = &object.geometry {
                 let mut found = [const { None::<TriangleHit> }; MAX_BATCH];
                 let mut local = local_rays(object, rays.iter());
-                // Ties are broken by the order of hits, so a ray may reach exactly its current hit.
+                // Ties are broken by the order of hits, so a ray must be able to reach the `t` of
+                // its current hit.
                 for (local, hit) in local.iter_mut().zip(&*hits) {
                     local.t_max = hit.map_or(local.t_max, |hit| hit.t.next_up());
                 }
@@ -84,7 +85,8 @@ impl World {
         }
     }
 
-    /// Tests occlusion of up to [`MAX_BATCH`] rays, with the same results as [`World::occluded`].
+    /// Computes whether up to [`MAX_BATCH`] rays are occluded. The results equal those of
+    /// [`World::occluded`].
     pub(crate) fn occluded_batch(&self, rays: &[Ray64], blocked: &mut [bool]) {
         let Some(small_world) = &self.small_world else {
             blocked.iter_mut().zip(rays).for_each(|(blocked, ray)| *blocked = self.occluded_along(ray, &mut ()));
@@ -92,7 +94,7 @@ impl World {
         };
         let sound = |i: usize| durer_bvh::internal::is_sound(&rays[i].rounded);
         small_world.intersect(rays, |i, met| blocked[i] = met.is_some());
-        // Rays that are occluded already are skipped.
+        // Skip rays that are already occluded.
         let others = || small_world.others.iter().map(|&number| (number, &self.objects()[number as usize]));
         let is_mesh = |object: &Object| matches!(object.geometry, Geometry::Mesh(_));
         for (number, object) in others().filter(|(_, object)| !is_mesh(object)) {
@@ -114,7 +116,7 @@ impl World {
         }
     }
 
-    /// Converts a hit of a pack.
+    /// Converts a hit of packed shapes.
     #[inline]
     fn hit_of_pack(&self, PackHit { t, number }: PackHit, ray: &Ray64) -> Hit {
         let ShapeHit { t, uv } = self.objects()[number as usize].crossing_at(t, ray);
@@ -123,7 +125,7 @@ impl World {
 }
 
 impl SmallWorld {
-    /// Passes on the first hit of each ray with simple shapes, if there is one.
+    /// Calls `take` for each ray with its first hit on a simple shape.
     fn intersect(&self, rays: &[Ray64], mut take: impl FnMut(usize, Option<PackHit>)) {
         if self.simple.is_empty() {
             return (0..rays.len()).for_each(|i| take(i, None));
@@ -136,7 +138,7 @@ impl SmallWorld {
     }
 }
 
-/// Transforms rays to an object's space.
+/// Transforms rays into an object's space.
 fn local_rays<'r>(object: &Object, rays: impl Iterator<Item = &'r Ray64>) -> [Ray; MAX_BATCH] {
     let mut local = [NOWHERE; MAX_BATCH];
     let rays = local.iter_mut().zip(rays);

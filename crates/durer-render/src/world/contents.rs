@@ -1,4 +1,4 @@
-//! Contents of a world, and its identity.
+//! Contents of a world, which can be edited, and the hash that identifies them.
 
 use super::{DisplayRules, Geometry, HitRules, Material, Object, ShadingRules, World};
 use durer_scene::camera::{Camera, CameraBasis, CameraRules};
@@ -12,16 +12,17 @@ use durer_scene::texture::{CubeMap, Environment, Texture};
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// Data from the description, which may be [edited](World::edit).
+/// Contents of a world that come from the scene file: camera, lights, materials, objects and rules.
+/// They can be [edited](World::edit).
 #[derive(Clone, Debug)]
 pub struct Contents {
     /// Camera.
     pub camera: Camera,
-    /// Camera basis.
+    /// Basis vectors of the camera.
     pub frame: CameraBasis,
-    /// Colour of rays that miss.
+    /// Colour of rays that hit nothing.
     pub background: Color,
-    /// True if paths see a black background, because the scene defines none.
+    /// True if paths see a black background because the scene defines none.
     pub dark: bool,
     /// Ambient light.
     pub ambient: Color,
@@ -31,47 +32,50 @@ pub struct Contents {
     pub materials: Vec<Material>,
     /// Objects, by index.
     pub objects: Vec<Object>,
-    /// Rules of the camera and the raster.
+    /// Rules for the camera and pixel positions.
     pub camera_rules: CameraRules,
-    /// Hit rules of an official program, if its arithmetic is active.
+    /// Ray intersection rules of an official program, if its arithmetic is active.
     pub hits: Option<HitRules>,
-    /// Rules of hits and of Whitted's integrator.
+    /// Rules for shading and for the Whitted integrator.
     pub shading: ShadingRules,
-    /// Rules for displaying AOVs.
+    /// Rules for displaying AOVs as pictures.
     pub display: DisplayRules,
-    /// Rules of the dialect from which the others were resolved. They are not used for rendering,
-    /// but by checks, lessons and the student's tracer.
+    /// Dialect rules from which the other rules were derived. Not used for rendering, but for
+    /// checks, lessons and the student's tracer.
     pub(crate) rules: Rules,
 }
 
-/// Data from files.
+/// Contents of a world that come from other files than the scene file, such as textures and
+/// environment maps.
 #[derive(Clone, Debug, Default)]
 pub struct Assets {
-    /// Cube map that replaces the background's colour.
+    /// Cube map that replaces the background colour.
     pub cube_map: Option<CubeMap>,
-    /// Environment light, which replaces colour and cube map.
+    /// Environment map, which replaces the background colour and the cube map.
     pub environment: Option<Environment>,
-    /// Medium of the air, if there is fog.
+    /// Medium outside of all objects, if there is fog.
     pub fog: Option<Medium>,
-    /// Intensity profile of each light, if measured; by index, missing at the end.
+    /// Measured intensity profile of each light, if it has one, by index. Can be shorter than the
+    /// list of lights.
     pub profiles: Vec<Option<Arc<Profile>>>,
-    /// Measured spectrum of each light, if it has one; by index, missing at the end.
+    /// Measured spectrum of each light, if it has one, by index. Can be shorter than the list of
+    /// lights.
     pub illuminants: Vec<Option<Arc<Curve>>>,
     /// Textures, by index.
     pub textures: Vec<Texture>,
 }
 
 impl World {
-    /// Edits the description's data. Changes the world's [identity](World::digest); data derived
-    /// from objects, such as the acceleration structure, is kept.
+    /// Returns the contents for editing. This changes the world's [hash](World::digest). Data
+    /// computed from objects, such as the acceleration structure, does not change.
     pub fn edit(&mut self) -> &mut Contents {
         self.edited = true;
         self.extents.clear();
         &mut self.contents
     }
 
-    /// Replaces the camera. The new hash of the world combines the previous hash with the camera,
-    /// without looking at any object.
+    /// Replaces the camera. The world's new hash is computed from the old one and the camera,
+    /// without the cost of hashing objects.
     pub fn look_through(&mut self, camera: Camera) {
         let text = format!("{} {camera:?}", self.digest());
         self.contents.frame = CameraBasis::of(&camera, self.contents.camera_rules);
@@ -79,8 +83,8 @@ impl World {
         (self.source, self.edited) = (Digest::of(text.as_bytes()), false);
     }
 
-    /// Returns the hash of the contents. For an unedited world it is the hash of its sources:
-    /// description, files, rules.
+    /// Returns a hash that identifies the contents. For an unedited world, it is the hash of its
+    /// sources: the scene, the files and the rules.
     pub fn digest(&self) -> Digest {
         if !self.edited {
             return self.source;
@@ -105,17 +109,17 @@ impl World {
         &self.contents.camera
     }
 
-    /// Returns the camera basis.
+    /// Returns the basis vectors of the camera.
     pub fn camera_frame(&self) -> &CameraBasis {
         &self.contents.frame
     }
 
-    /// Returns the colour of rays that miss.
+    /// Returns the colour of rays that hit nothing.
     pub fn background(&self) -> Color {
         self.contents.background
     }
 
-    /// Returns true if paths see a black background, because the scene defines none.
+    /// Returns true if paths see a black background because the scene defines none.
     pub fn is_dark(&self) -> bool {
         self.contents.dark
     }
@@ -140,53 +144,55 @@ impl World {
         &self.contents.objects
     }
 
-    /// Returns the rules of the camera and the raster.
+    /// Returns the rules for the camera and pixel positions.
     pub fn camera_rules(&self) -> CameraRules {
         self.contents.camera_rules
     }
 
-    /// Returns the hit rules of an official program, if its arithmetic is active.
+    /// Returns the ray intersection rules of an official program, if its arithmetic is active.
     pub fn hit_rules(&self) -> Option<HitRules> {
         self.contents.hits
     }
 
-    /// Returns the rules of hits and of Whitted's integrator.
+    /// Returns the rules for shading and for the Whitted integrator.
     pub fn shading_rules(&self) -> &ShadingRules {
         &self.contents.shading
     }
 
-    /// Returns the rules for displaying AOVs.
+    /// Returns the rules for displaying AOVs as pictures.
     pub fn display_rules(&self) -> DisplayRules {
         self.contents.display
     }
 
-    /// Returns the dialect's rules with which the scene was compiled, for checks, lessons and the
+    /// Returns the dialect rules with which the scene was compiled, for checks, lessons and the
     /// student's tracer.
     pub fn rules(&self) -> &Rules {
         &self.contents.rules
     }
 
-    /// Returns the cube map that replaces the background's colour.
+    /// Returns the cube map that replaces the background colour.
     pub fn cube_map(&self) -> Option<&CubeMap> {
         self.assets.cube_map.as_ref()
     }
 
-    /// Returns the environment light, which replaces colour and cube map.
+    /// Returns the environment map, which replaces the background colour and the cube map.
     pub fn environment(&self) -> Option<&Environment> {
         self.assets.environment.as_ref()
     }
 
-    /// Returns the medium of the air, if there is fog.
+    /// Returns the medium outside of all objects, if there is fog.
     pub fn fog(&self) -> Option<&Medium> {
         self.assets.fog.as_ref()
     }
 
-    /// Returns the intensity profile of each light, if measured; by index, missing at the end.
+    /// Returns the measured intensity profile of each light, if it has one, by index. Can be
+    /// shorter than the list of lights.
     pub fn profiles(&self) -> &[Option<Arc<Profile>>] {
         &self.assets.profiles
     }
 
-    /// Returns the measured spectrum of each light, if it has one; by index, missing at the end.
+    /// Returns the measured spectrum of each light, if it has one, by index. Can be shorter than
+    /// the list of lights.
     pub fn illuminants(&self) -> &[Option<Arc<Curve>>] {
         &self.assets.illuminants
     }

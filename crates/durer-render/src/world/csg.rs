@@ -1,23 +1,23 @@
-//! Intersection of rays with solids of several parts (constructive solid geometry).
+//! Intersection of rays with solids composed of several parts (constructive solid geometry).
 //!
-//! All crossings of the ray's line with the surfaces of the parts are collected and sorted. Along
-//! the line, each crossing toggles one part's inside bit, and with it the counts of the operations
-//! above it. Where the bit of the whole changes, the line enters or leaves the solid. Source: Roth,
-//! *Ray Casting for Modeling Solids*, Computer Graphics and Image Processing 18, 1982; with counts
-//! for the operations, so that an operation with many parts is not slower.
+//! All intersections of the ray's line with the parts' surfaces are collected and sorted. Along the
+//! line, each one toggles the inside bit of its part, and with it the counts of the operations
+//! above. Where the bit of the whole solid changes, the line enters or leaves the solid. Source:
+//! Roth, *Ray Casting for Modeling Solids*, Computer Graphics and Image Processing 18, 1982. The
+//! counts are an addition, so that an operation with many parts is not slower.
 //!
 //! Coincident faces: crossings of different parts count as one if the faces are nearly parallel and
-//! their distance across the surfaces is at most what single precision can resolve there, about
-//! 2^-19 of the coordinates. All their bits toggle together, so no thin skin remains or appears
-//! where two faces share a plane. If the bit of the solid changes, the surface belongs to the first
-//! part in the file that could have made the change: alone, or as the last.
+//! their distance is at most what single precision can resolve there, about 2^-19 of the
+//! coordinates. All their bits toggle together, so that two faces in the same plane do not leave or
+//! create a thin skin. If the solid's bit changes, the visible surface is that of the first part in
+//! the file that could have caused the change, alone or as the last of the group.
 //!
-//! Faces that meet at an angle, as at an edge, count as one only within the rounding of the
-//! crossings, which is proportional to the parts' own size however far away they are. A larger
-//! tolerance would lose corners near the edge, and light would leak in.
+//! Faces that meet at an angle, as at an edge, count as one only within the rounding error of the
+//! crossings, which is proportional to the size of the parts, not to their distance. A larger
+//! tolerance would lose corners near the edge and let light leak in.
 //!
-//! A hit's `part` is the index of a triangle or shape among those of all parts, with two flag bits:
-//! the surface is inverted, and the ray enters the solid.
+//! In the result, `part` is the index of a triangle or shape among those of all parts, with two
+//! flag bits: [`TURNED`] if the surface is inverted, and [`ENTERS`] if the ray enters the solid.
 
 use super::solid::{BoolOp, Solid};
 use super::{Geometry, Object, ShadingRules};
@@ -27,64 +27,70 @@ use durer_scene::shape::{Axis, Shape, ShapeHit, Surface};
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// Flag in a hit's part: the surface is inverted, as for subtracted parts.
+/// Flag in a hit's part: the surface is inverted, as that of a subtracted part.
 pub const TURNED: u32 = 1 << 31;
 /// Flag in a hit's part: the ray enters the solid.
 pub const ENTERS: u32 = 1 << 30;
 
-/// Number of parts up to which all are tested; more have their own tree.
+/// Maximum number of bounded parts without a BVH over them.
 const FEW: usize = 8;
 
-/// A solid of several parts.
+/// Solid composed of several parts by boolean operations, prepared for ray intersection.
 #[derive(Debug)]
 pub struct Csg {
+    /// Parts, in the order of the file.
     leaves: Vec<Leaf>,
     /// Operations; the first one is the root.
     joins: Vec<Join>,
-    /// Initial count for each operation: its edges that hold outside all parts.
+    /// Count of each operation outside of all parts: the number of its subtracted operands.
     start: Vec<u32>,
-    /// Unbounded parts.
+    /// Indices of the unbounded parts.
     unbounded: Vec<u32>,
-    /// Indices of the bounded parts, and a tree over them if there are many.
+    /// Indices of the bounded parts.
     bounded: Vec<u32>,
+    /// BVH over the bounded parts, if there are more than [`FEW`].
     bvh: Option<Bvh>,
     bounds: Option<Aabb>,
-    /// Largest tolerance of two parts.
+    /// Largest tolerance for two parts to coincide, in world units.
     slack: f32,
 }
 
-/// A part and its place in the tree.
+/// Part of a solid, with its position in the tree of operations.
 #[derive(Debug)]
 struct Leaf {
     object: Arc<Object>,
-    /// The part's axis, computed once.
+    /// Axis of the part's shape, computed once.
     axis: Option<Axis>,
     edge: Edge,
-    /// Index of its first triangle.
+    /// Index of the part's first triangle or shape among those of all parts.
     first: u32,
-    /// Minimum tolerance for the position of its surface.
+    /// Minimum tolerance for the position of the part's surface, in world units.
     slack: f32,
-    /// Bound of the error of a crossing.
+    /// Bound on the rounding error of a crossing.
     rounding: f32,
 }
 
+/// Link from a part or operation to the operation above it in a solid's tree.
 #[derive(Clone, Copy, Debug)]
 struct Edge {
     /// Index of the parent operation.
     join: u32,
-    /// True for a subtracted part, whose edge holds outside of it.
+    /// True for a subtracted operand, which holds where the point is outside of it.
     cut: bool,
 }
 
+/// Boolean operation in a solid's tree.
 #[derive(Debug)]
 struct Join {
     rule: BoolOp,
+    /// Number of operands.
     edges: u32,
-    /// `None` for the root.
+    /// Link to the operation above; `None` for the root.
     edge: Option<Edge>,
 }
 
 impl Join {
+    /// Returns whether a point is inside the result, if it is inside `holding` operands.
     fn value(&self, holding: u32) -> bool {
         match self.rule {
             BoolOp::Any => holding > 0,
@@ -94,7 +100,7 @@ impl Join {
     }
 }
 
-/// A crossing of a part's surface.
+/// Crossing of a ray's line with the surface of a part of a solid.
 #[derive(Clone, Copy, Debug)]
 struct Event {
     t: f64,
@@ -103,32 +109,34 @@ struct Event {
     uv: Vec2,
 }
 
-/// Thread-local buffers, reused for each ray.
+/// Thread-local buffers for intersecting solids, reused for each ray.
 #[derive(Default)]
 struct Scratch {
     events: Vec<Event>,
     state: State,
 }
 
-/// For the current point, the parts that contain it.
+/// State of a walk along a ray's line through a solid: which parts contain the current point.
 #[derive(Default)]
 struct State {
+    /// For each operation, the number of its operands that hold.
     counts: Vec<u32>,
+    /// For each part, true if it contains the point.
     inside: Vec<bool>,
-    /// For each part, id of the last group of coincident crossings that includes a crossing of this
+    /// For each part, the id of the last group of coincident crossings that contained one of this
     /// part. Ids are never reused.
     groups: Vec<u64>,
     last_group: u64,
 }
 
 impl State {
-    /// Starts outside all parts.
+    /// Resets the state to a point outside of all parts.
     fn begin(&mut self, parts: usize, start: &[u32]) {
         self.counts.clear();
         self.counts.extend_from_slice(start);
         self.inside.clear();
         self.inside.resize(parts, false);
-        // Stale entries of other rays and solids match no future group id.
+        // Old entries from other rays and solids differ from all future group ids.
         self.groups.resize(self.groups.len().max(parts), 0);
     }
 }
@@ -138,10 +146,10 @@ thread_local! {
 }
 
 impl Csg {
-    /// Maximum number of triangles and shapes in all parts together.
+    /// Maximum total number of triangles and shapes in all parts.
     pub const MAX_PARTS: u64 = ENTERS as u64 - 1;
 
-    /// Prepares a solid for ray queries.
+    /// Prepares a solid for ray intersection.
     pub fn new(solid: Solid) -> Self {
         let bounds = solid.bounds();
         let mut csg = Csg {
@@ -154,15 +162,15 @@ impl Csg {
             bounds,
             slack: 0.0,
         };
-        // A single part becomes a join of one.
+        // A single part becomes an operation with one operand.
         let solid = match solid {
             Solid::Operand(_) => Solid::Join { rule: BoolOp::Any, parts: vec![solid], cut: Vec::new() },
             join => join,
         };
         csg.add(solid, None);
         csg.slack = csg.leaves.iter().map(|leaf| 2.0 * leaf.slack).fold(0.0, f32::max);
-        // Parts do not matter beyond the bounds of the whole, except that they may coincide with
-        // parts that do.
+        // Outside the solid's bounds, parts do not matter, except that they can coincide with parts
+        // that do.
         let margin = GRAZING as f32 * csg.slack;
         let matters = bounds.map(|whole| Aabb { min: whole.min - margin, max: whole.max + margin });
         let mut boxes = Vec::new();
@@ -179,6 +187,7 @@ impl Csg {
         csg
     }
 
+    /// Adds a part or an operation with all its operands.
     fn add(&mut self, solid: Solid, edge: Option<Edge>) {
         match (solid, edge) {
             (Solid::Operand(object), Some(edge)) => {
@@ -192,7 +201,7 @@ impl Csg {
             (Solid::Join { rule, parts, cut }, edge) => {
                 let join = self.joins.len() as u32;
                 self.joins.push(Join { rule, edges: (parts.len() + cut.len()) as u32, edge });
-                // Initially, only edges of subtracted parts hold.
+                // Outside of all parts, only subtracted operands hold.
                 self.start.push(cut.len() as u32);
                 parts.into_iter().for_each(|part| self.add(part, Some(Edge { join, cut: false })));
                 cut.into_iter().for_each(|part| self.add(part, Some(Edge { join, cut: true })));
@@ -200,7 +209,7 @@ impl Csg {
         }
     }
 
-    /// Returns the bounds.
+    /// Returns the world-space bounds, or `None` if the solid is unbounded.
     pub fn bounds(&self) -> Option<Aabb> {
         self.bounds
     }
@@ -210,17 +219,17 @@ impl Csg {
         self.leaves.iter().map(|leaf| &*leaf.object)
     }
 
-    /// Returns the part of a hit.
+    /// Returns the object that a hit's part belongs to.
     pub fn part(&self, part: u32) -> &Object {
         &self.leaves[self.leaf_of(part)].object
     }
 
-    /// Returns the index of the triangle in that part, or 0.
+    /// Returns the index of the hit triangle in its mesh, or 0 for other shapes.
     pub fn triangle(&self, part: u32) -> u32 {
         (part & !(TURNED | ENTERS)) - self.leaves[self.leaf_of(part)].first
     }
 
-    /// Returns the size in bytes, without meshes.
+    /// Returns the memory used in bytes, not counting meshes.
     pub fn bytes(&self) -> usize {
         let lists = size_of_val(&*self.leaves) + size_of_val(&*self.joins) + size_of_val(&*self.start);
         lists
@@ -229,9 +238,10 @@ impl Csg {
             + self.bvh.as_ref().map_or(0, Bvh::memory_usage)
     }
 
+    /// Returns the index of the leaf that a hit's part belongs to.
     fn leaf_of(&self, part: u32) -> usize {
         let number = part & !(TURNED | ENTERS);
-        // Fast path: with only shapes before it, the index is the position.
+        // Fast path: if only shapes come before it, the index of the part is that of the leaf.
         let begins = |place: usize| self.leaves.get(place).is_some_and(|leaf| leaf.first == number);
         if begins(number as usize) && !begins(number as usize + 1) {
             return number as usize;
@@ -239,12 +249,12 @@ impl Csg {
         self.leaves.partition_point(|leaf| leaf.first <= number).saturating_sub(1)
     }
 
-    /// Computes the surface at a hit in world space; its normals point out of the solid.
+    /// Computes the surface at a hit in world space. Its normals point out of the solid.
     pub fn surface(&self, ray: &Ray64, crossing: &ShapeHit, part: u32, rules: &ShadingRules) -> Surface {
         let (leaf, number) = (&self.leaves[self.leaf_of(part)], self.triangle(part));
         let point = leaf.object.local_line(ray).at(f64::from(crossing.t));
         let surface = leaf.object.surface(ray, point, crossing, number, rules);
-        // A mesh may be inverted itself, so use the ray's direction of crossing.
+        // The mesh itself may be inverted, so use the direction in which the ray crosses it.
         let turned = match leaf.object.geometry {
             Geometry::Mesh(_) => (surface.n_geo.dot(ray.dir()) < 0.0) != (part & ENTERS != 0),
             _ => part & TURNED != 0,
@@ -256,8 +266,8 @@ impl Csg {
         Surface { n_geo: -surface.n_geo, n_shade: -surface.n_shade, shadow_offsets: [back, front], ..surface }
     }
 
-    /// Returns the first hit in the ray's interval, and its part. `inside`: for a ray that leaves
-    /// the solid's surface, true if it starts inside.
+    /// Returns the first hit in the ray's interval and its part. For a ray that leaves the solid's
+    /// own surface, `inside` tells whether it starts inside.
     pub(super) fn closest<T: TraversalCounter>(
         &self,
         ray: &Ray64,
@@ -270,8 +280,7 @@ impl Csg {
         SCRATCH.with_borrow_mut(|scratch| {
             let complete = self.collect(ray, true, scratch, counter);
             let found = self.sweep(ray, inside, scratch);
-            // If the ray starts inside of a merge, the exit may be farther than the next part's
-            // entry.
+            // If the ray starts inside a union, its exit can be beyond the entry into another part.
             if complete < f32::INFINITY && found.is_none_or(|(crossing, _)| crossing.t > complete) {
                 self.collect(ray, false, scratch, counter);
                 return self.sweep(ray, inside, scratch);
@@ -280,11 +289,11 @@ impl Csg {
         })
     }
 
-    /// Collects the crossings of all parts that may matter up to the first hit.
+    /// Collects the crossings of all parts that can matter up to the first hit.
     ///
-    /// A ray from outside a merge enters it at the first entry into a part: with `shrink`, parts
-    /// beyond such an entry may be omitted. Returns the `t` up to which the crossings are complete,
-    /// or infinity.
+    /// A ray from outside a union enters it where it first enters a part. With `shrink`, parts
+    /// beyond such an entry can therefore be omitted. Returns the `t` up to which the crossings are
+    /// complete, or infinity.
     fn collect<T: TraversalCounter>(&self, ray: &Ray64, shrink: bool, scratch: &mut Scratch, counter: &mut T) -> f32 {
         let Scratch { events, .. } = scratch;
         events.clear();
@@ -299,12 +308,13 @@ impl Csg {
             events.sort_unstable_by(order);
             return f32::INFINITY;
         };
-        // Crossings within the tolerance of the interval's ends matter too.
+        // Crossings just outside the interval, within the tolerance, matter too.
         let reach = self.slack + 4.0 * f32::EPSILON * ray.rounded.origin.abs().max_element();
-        // Largest component as a lower bound of the direction's length, without a square root.
+        // The largest component is a lower bound on the direction's length that needs no square
+        // root.
         let pad = GRAZING as f32 * reach / ray.dir().abs().max_element();
         // Move the origin back, because traversal is faster for rays that start at their origin.
-        // The rounding of the origin is a thousandth of the pad.
+        // The rounding error of the new origin is a thousandth of the pad.
         let Ray { origin, dir, t_min, t_max } = ray.rounded;
         let wide = Ray { origin: origin - pad * dir, dir, t_min, t_max: t_max + 2.0 * pad };
         let shrink = shrink && self.joins[0].rule == BoolOp::Any;
@@ -316,7 +326,7 @@ impl Csg {
                 return t_max;
             }
             let own = &mut events[from..];
-            // Skip the sort for one or two events, which would stall on the fresh writes.
+            // Do not sort one or two events: that would stall on memory that was just written.
             if own.len() > 2 {
                 own.sort_unstable_by(order);
             }
@@ -333,12 +343,13 @@ impl Csg {
         complete
     }
 
-    /// Walks the sorted crossings to the first in the interval at which the whole changes.
+    /// Walks along the sorted crossings to the first one in the interval at which the solid's bit
+    /// changes.
     ///
-    /// A ray that leaves the solid knows its starting side. If the crossings disagree, it starts
-    /// closer to an edge than single precision can resolve, and a face is on the wrong side of its
-    /// origin. Then the ray hits a face that it should hit at once, and ignores a face that should
-    /// be behind it.
+    /// For a ray that leaves the solid's own surface, the starting side is known. If the crossings
+    /// disagree, the ray starts closer to an edge than single precision can resolve, and some face
+    /// is on the wrong side of the origin. If the ray should hit that face, it does so at once; if
+    /// the face should be behind the origin, it is ignored.
     fn sweep(&self, ray: &Ray64, inside: Option<bool>, scratch: &mut Scratch) -> Option<(ShapeHit, u32)> {
         let Scratch { events, state } = scratch;
         if events.is_empty() {
@@ -356,13 +367,13 @@ impl Csg {
             let t = f32::MIN_POSITIVE;
             ray.rounded.contains(t).then_some((ShapeHit { t, ..crossing }, part))
         };
-        // Last crossing behind the origin that leads to the other side.
+        // Last crossing behind the origin that leads to the opposite side.
         let mut behind: Option<(ShapeHit, u32)> = None;
         let mut known = inside;
         let (apart, speed) = self.apart(ray, events);
         let mut from = 0;
         while from < events.len() {
-            // Fast path: most crossings are isolated.
+            // Fast path: most crossings are far from the next one.
             let to = match events.get(from + 1) {
                 Some(next) if (next.t - events[from].t) * speed > apart => from + 1,
                 _ => self.coincident(ray, events, from, state),
@@ -398,7 +409,7 @@ impl Csg {
         behind.filter(|_| known.is_some_and(|inside| inside != whole)).and_then(at_once)
     }
 
-    /// Returns the hit at a crossing after which the whole is present or not.
+    /// Returns the hit at a crossing. `whole` is the solid's bit after it.
     fn change(&self, event: &Event, state: &State, whole: bool) -> (ShapeHit, u32) {
         let turned = state.inside[event.leaf as usize] != whole;
         let bits = if turned { TURNED } else { 0 } | if whole { ENTERS } else { 0 };
@@ -406,8 +417,8 @@ impl Csg {
         (ShapeHit { t: event.t as f32, uv: event.uv }, part)
     }
 
-    /// Returns true if a part in its current state adds to the whole: inside it, or outside of a
-    /// subtracted part.
+    /// Returns true if a part in its current state makes the solid larger: the point is inside it,
+    /// or outside of a subtracted part.
     fn adds(&self, leaf: u32, state: &State) -> bool {
         let mut adds = state.inside[leaf as usize];
         let mut edge = Some(self.leaves[leaf as usize].edge);
@@ -418,7 +429,7 @@ impl Csg {
         adds
     }
 
-    /// Toggles a part's inside bit; returns true if the bit of the whole changed.
+    /// Toggles the inside bit of a part. Returns true if the solid's bit changed.
     fn toggle(&self, leaf: u32, state: &mut State) -> bool {
         let bit = &mut state.inside[leaf as usize];
         *bit = !*bit;
@@ -439,18 +450,18 @@ impl Csg {
         }
     }
 
-    /// Returns an upper bound of the distance of coincident crossings, see [`Csg::coincide`], and a
-    /// lower bound of the ray's speed.
+    /// Returns an upper bound on the distance of coincident crossings (see [`Csg::coincide`]) and a
+    /// lower bound on the length of the ray's direction.
     fn apart(&self, ray: &Ray64, events: &[Event]) -> (f64, f64) {
         let (line, speed) = (ray.line(), f64::from(ray.dir().abs().max_element()));
         let farthest = events.first().map_or(0.0, |e| e.t.abs()) + events.last().map_or(0.0, |e| e.t.abs());
         let reach = line.origin.abs().max_element() + farthest * speed;
-        // A margin for different rounding there.
+        // The factor 1.001 allows for different rounding there.
         (1.001 * GRAZING * (f64::from(self.slack) + 4.0 * f64::from(f32::EPSILON) * reach), speed)
     }
 
-    /// Returns the end of the group of crossings that coincide with the first, each from a
-    /// different part: see the head of this file.
+    /// Returns the end of the group of crossings that coincide with the first one, each of a
+    /// different part. See the start of this file.
     fn coincident(&self, ray: &Ray64, events: &[Event], from: usize, state: &mut State) -> usize {
         state.last_group += 1;
         let State { groups, last_group: group, .. } = state;
@@ -466,6 +477,7 @@ impl Csg {
         to
     }
 
+    /// Returns true if two crossings coincide: see the start of this file.
     fn coincide(&self, ray: &Ray64, a: &Event, b: &Event) -> bool {
         let line = ray.line();
         let speed = line.dir.length();
@@ -482,12 +494,13 @@ impl Csg {
             let at = object.local_line(ray).at(event.t);
             object.surface(ray, at, &crossing, event.part, &ShadingRules::default()).n_geo.as_dvec3()
         });
-        // A grazing ray travels farther between faces at the same distance.
+        // A grazing ray covers more distance between two faces than their distance.
         let cosine = m.dot(line.dir).abs().max(n.dot(line.dir).abs()) / speed;
         m.dot(n).abs() >= ALIKE && gap * cosine <= slack
     }
 
-    /// Returns the crossing whose surface is visible, of a group that changed the whole together.
+    /// Returns the crossing with the visible surface, from a group that together changed the
+    /// solid's bit.
     fn choose<'e>(&self, events: &'e [Event], state: &mut State) -> &'e Event {
         let mut could: Vec<&Event> = Vec::new();
         // Crossings without which the change would not happen.
@@ -497,7 +510,7 @@ impl Csg {
             }
             self.toggle(event.leaf, state);
         }
-        // Crossings that cause the change alone: undo all, and redo each.
+        // Crossings that cause the change alone: undo all of them, and then redo each one.
         for event in events {
             self.toggle(event.leaf, state);
         }
@@ -517,18 +530,19 @@ impl Csg {
     }
 }
 
-/// Reciprocal sine of grazing rays: flatter ones exceed the tolerance.
+/// Reciprocal sine of the flattest angle for which the tolerance is sufficient.
 const GRAZING: f64 = 1000.0;
 
-/// Cosine of the largest angle between coincident faces, 3.6 degrees: the rotation that rounding of
-/// corners at 10^6 can cause for faces of size 1 that should share a plane.
+/// Cosine of the largest angle between coincident faces, 3.6 degrees. This is how much rounding of
+/// vertices at 10^6 can rotate faces of size 1 that should be in the same plane.
 const ALIKE: f64 = 0.998;
 
+/// Compares crossings by position on the line, then by part.
 fn order(a: &Event, b: &Event) -> std::cmp::Ordering {
     a.t.total_cmp(&b.t).then(a.leaf.cmp(&b.leaf)).then(a.part.cmp(&b.part))
 }
 
-/// Returns two roundings of an object's coordinates, in world and in object space.
+/// Returns the rounding error of an object's coordinates in world and in object space, times two.
 fn slack_of(object: &Object) -> f32 {
     let (Some(world), Some(local)) = (object.bounds(), object.local_bounds()) else { return 0.0 };
     let reach = |b: Aabb| b.min.abs().max(b.max.abs());

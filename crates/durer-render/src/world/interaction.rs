@@ -1,27 +1,27 @@
-//! Surface interactions of rays.
+//! Surface interactions: surface points hit by rays.
 
 use super::{Geometry, Hit, World};
 use durer_bvh::TraversalCounter;
 use durer_scene::math::{Ray, Ray64, Side, Vec2, Vec3};
 use durer_scene::shape::{ShapeHit, Surface};
 
-/// Surface point hit by a ray, computed once by [`World::interaction`] for all shading.
+/// Surface point hit by a ray, in world space, with everything that shading needs.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceInteraction {
     /// Surface at the hit, in world space.
     pub surface: Surface,
-    /// The ray.
+    /// Ray that hit the surface.
     pub ray: Ray64,
-    /// The hit.
+    /// Distance, object and part that were hit.
     pub hit: Hit,
     /// Index of the material.
     pub material: u32,
-    /// Width of a sample's footprint across the ray; 0 if unknown.
+    /// Width of a camera sample's footprint at the hit, perpendicular to the ray; 0 if unknown.
     pub width: f32,
 }
 
 impl SurfaceInteraction {
-    /// Placeholder without a hit.
+    /// Placeholder to be overwritten.
     pub(crate) const NOWHERE: SurfaceInteraction = SurfaceInteraction {
         surface: Surface::NOWHERE,
         ray: Ray64 {
@@ -34,25 +34,27 @@ impl SurfaceInteraction {
         width: 0.0,
     };
 
-    /// Returns true if the ray hits the side opposite to the geometric normal.
+    /// Returns true if the ray hits the back, which is opposite to the geometric normal.
     pub fn inside(&self) -> bool {
         self.ray.dir().dot(self.surface.n_geo) > 0.0
     }
 }
 
 impl World {
-    /// Finds the first hit in the ray's interval, with its surface.
+    /// Returns the surface interaction at the first hit in the ray's interval.
     pub fn intersect<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> Option<SurfaceInteraction> {
         let ray = ray.into();
         self.closest(ray, counter).map(|hit| self.interaction(ray, hit))
     }
 
-    /// Computes the interaction at `hit`. Official programs take the point from the rounded ray.
+    /// Computes the surface interaction at a hit. In official programs, the point is computed from
+    /// the rounded ray.
     pub fn interaction(&self, ray: impl Into<Ray64>, hit: Hit) -> SurfaceInteraction {
         self.interaction_along(&ray.into(), hit)
     }
 
-    /// Computes the interaction without copying the ray twice. See [`World::interaction`].
+    /// Computes the surface interaction at a hit without a second copy of the ray. See
+    /// [`World::interaction`].
     #[inline]
     pub(crate) fn interaction_along(&self, ray: &Ray64, hit: Hit) -> SurfaceInteraction {
         let mut at = SurfaceInteraction::NOWHERE;
@@ -60,7 +62,8 @@ impl World {
         at
     }
 
-    /// Writes the interaction at a hit into `at`, without a copy. See [`World::interaction`].
+    /// Writes the surface interaction at a hit into `at`, which avoids a copy. See
+    /// [`World::interaction`].
     #[inline]
     pub(crate) fn intersect_into(&self, ray: &Ray64, hit: Hit, at: &mut SurfaceInteraction) {
         let object = &self.objects()[hit.object as usize];

@@ -1,4 +1,4 @@
-//! Evaluation of the textures and vertex colours of layered materials.
+//! Lookup of textures and vertex colours of principled materials.
 
 use super::material::{Maps, Principled};
 use super::{Geometry, SurfaceInteraction, World};
@@ -11,8 +11,8 @@ use durer_scene::texture::{Channel, Mapping, Texture};
 use std::borrow::Cow;
 
 impl World {
-    /// Evaluates the parameters of a layered material at a hit. Without texture coordinates,
-    /// textures are ignored.
+    /// Returns the parameters of a principled material at a hit, changed by textures and vertex
+    /// colours. Without texture coordinates, textures are ignored.
     pub fn parameters_at<'a>(&self, own: &'a Principled, at: &SurfaceInteraction) -> Cow<'a, Parameters> {
         let [r, g, b, _] = at.surface.color;
         if own.maps.parameters.is_empty() && [r, g, b] == [1.0; 3] {
@@ -20,7 +20,7 @@ impl World {
         }
         let mut here = own.parameters;
         here.base_color *= Vec3::new(r, g, b);
-        // Textures that change several parameters are looked up once.
+        // A texture that changes several parameters is looked up once.
         let mut last: Option<(u32, [f32; 4])> = None;
         for map in &own.maps.parameters {
             let known = last.filter(|(number, _)| *number == map.texture).map(|(_, texel)| texel);
@@ -39,21 +39,23 @@ impl World {
         Cow::Owned(if own.maps.parameters.is_empty() { here } else { here.within_bounds() })
     }
 
-    /// Returns the number from 0 to 1 of a texture at a hit; 1 without texture coordinates.
+    /// Returns the value of a texture of numbers at a hit, from 0 to 1. 1 if there are no texture
+    /// coordinates.
     pub(super) fn number_at(&self, map: u32, at: &SurfaceInteraction) -> f32 {
         let Some(texel) = self.texel(Some(map), at) else { return 1.0 };
         let mapping = self.textures()[map as usize].mapping().copied().unwrap_or_default();
         mapping.ranged(mapping.channel.unwrap_or(Channel::Red).of(texel)).clamp(0.0, 1.0)
     }
 
-    /// Returns the factor of a texture on the emission.
+    /// Returns the factor by which texture and vertex colours multiply the emission.
     pub(super) fn emission_at(&self, own: &Principled, at: &SurfaceInteraction) -> Color {
         let picture = self.texel(own.maps.emission, at).map_or(Color::ONE, |[r, g, b, _]| Color::new(r, g, b));
         let [r, g, b, _] = at.surface.color;
         if own.written.emission_vertex_colors == Switch::On { picture * Color::new(r, g, b) } else { picture }
     }
 
-    /// Returns the opacity of a surface, from parameter, vertices and texture.
+    /// Returns the opacity at a hit: the product of parameter, vertex colours and textures, or 0 or
+    /// 1 with a cutoff.
     pub(super) fn opacity_at(&self, own: &Principled, at: &SurfaceInteraction) -> f32 {
         let alpha = self.texel(own.maps.base_color, at).map_or(1.0, |texel| texel[3]);
         let share = own.maps.opacity.and_then(|map| {
@@ -66,25 +68,27 @@ impl World {
         own.written.opacity_cutoff.map_or(opacity, |least| f32::from(u8::from(opacity >= least)))
     }
 
-    /// Returns true if a layered material may be partly transparent by opacity. Vertex colours may
-    /// add opacity to any material.
+    /// Returns true if a principled material can have an opacity below 1. Vertex colours, which can
+    /// lower the opacity of any material, are not considered.
     pub(super) fn is_cutout(&self, own: &Principled) -> bool {
         own.written.opacity < 1.0 || own.written.opacity_cutoff.is_some() || self.has_holes(own)
     }
 
-    /// Returns true if a texture defines the opacity.
+    /// Returns true if a texture controls the opacity.
     pub(super) fn has_holes(&self, own: &Principled) -> bool {
         own.maps.opacity.is_some() || own.maps.base_color.is_some_and(|map| self.textures()[map as usize].has_alpha())
     }
 
+    /// Returns the texel of a texture at a hit, filtered over the sample's footprint.
     fn texel(&self, map: Option<u32>, at: &SurfaceInteraction) -> Option<[f32; 4]> {
         let texture = &self.textures()[map? as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
         Some(texture.texel(&mapping, self.coordinates(texture, at)?, self.texels_seen(texture, &mapping, at)))
     }
 
-    /// Returns the width of a sample's footprint in texels, in its narrow direction. At grazing
-    /// angles the other direction is wider, which is left to supersampling.
+    /// Returns the width of the sample's footprint in texels, across its narrow direction. At
+    /// grazing angles the footprint is longer in the other direction, which supersampling takes
+    /// care of.
     fn texels_seen(&self, texture: &Texture, mapping: &Mapping, at: &SurfaceInteraction) -> f32 {
         if at.width <= 0.0 || !texture.has_levels() {
             return 0.0;
@@ -93,7 +97,7 @@ impl World {
         texture.texels_in(mapping, at.width / u.cross(v).length().sqrt())
     }
 
-    /// Returns the texture coordinates of a hit for a texture.
+    /// Returns the texture coordinates at a hit that a texture uses, first or second set.
     fn coordinates(&self, texture: &Texture, at: &SurfaceInteraction) -> Option<Vec2> {
         let SurfaceInteraction { hit, surface, .. } = at;
         match (texture.mapping().is_some_and(|mapping| mapping.second), &self.objects()[hit.object as usize].geometry) {
@@ -103,23 +107,25 @@ impl World {
         }
     }
 
-    /// Applies a bump map and then a normal map to the shading normal; `None` if there are none.
+    /// Returns the shading normal after the bump map and then the normal map; `None` if there is
+    /// neither.
     pub(super) fn mapped_normal(&self, maps: &Maps, at: &SurfaceInteraction) -> Option<Vec3> {
         let bumped = maps.bump.and_then(|map| self.bumped(map, maps.bump_height, at));
         let normal = bumped.unwrap_or(at.surface.n_shade);
         maps.normal.and_then(|map| self.leaning(map, at, normal)).or(bumped)
     }
 
-    /// Evaluates a normal map: x along increasing u of the picture, y along increasing v, upwards.
+    /// Applies a normal map. In it, x is along increasing u and y along increasing v, upwards in
+    /// the picture.
     fn leaning(&self, map: u32, at: &SurfaceInteraction, normal: Vec3) -> Option<Vec3> {
         let texture = &self.textures()[map as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
         let object = &self.objects()[at.hit.object as usize];
-        // No filtering: an averaged normal would belong to a smoother surface.
+        // Do not filter: averaged normals would make the surface look smoother than it is.
         let [r, g, b, _] = texture.texel(&mapping, self.coordinates(texture, at)?, 0.0);
         let grow = match &object.geometry {
             Geometry::Mesh(tree) => {
-                // Tangents in the file are relative to the object's own normal.
+                // Tangents in the file are relative to the normal in object space.
                 let own = object.to_world.as_ref().map_or(normal, |to_world| to_world.local_normal(normal));
                 let grow = tree.mesh.tangents(at.hit.part, at.surface.barycentric, own, mapping.second)?;
                 grow.map(|v| object.to_world.as_ref().map_or(v, |to_world| to_world.vector(v)))
@@ -128,7 +134,7 @@ impl World {
         };
         let [u, v] = mapping.directions(grow);
         let tangent = u.reject_from_normalized(normal).try_normalize()?;
-        // Perpendicular, on the side of increasing v.
+        // Perpendicular to normal and tangent, on the side of increasing v.
         let across = normal.cross(tangent);
         let bitangent = if across.dot(v) < 0.0 { -across } else { across };
         let signed = |x: f32| 2.0 * x - 1.0;
@@ -136,9 +142,9 @@ impl World {
         (x * tangent + y * bitangent + signed(b) * normal).try_normalize()
     }
 
-    /// Evaluates a bump map.
+    /// Applies a bump map.
     ///
-    /// Source: James Blinn, *Simulation of Wrinkled Surfaces*, SIGGRAPH 1978, with the gradient of
+    /// Source: James Blinn, *Simulation of Wrinkled Surfaces*, SIGGRAPH 1978; with the gradient of
     /// the height along the surface.
     fn bumped(&self, map: u32, height: f32, at: &SurfaceInteraction) -> Option<Vec3> {
         let texture = &self.textures()[map as usize];
@@ -148,8 +154,8 @@ impl World {
         (at.surface.n_shade - slope.x * u - slope.y * v).try_normalize()
     }
 
-    /// Returns the derivatives of the world position by the texture coordinates: from the file for
-    /// a mesh, otherwise by finite differences.
+    /// Returns the derivatives of the world-space position with respect to the texture coordinates:
+    /// from the file for a mesh, by finite differences for other shapes.
     fn derivatives(&self, at: &SurfaceInteraction, second: bool) -> Option<[Vec3; 2]> {
         let SurfaceInteraction { hit, surface, .. } = at;
         let object = &self.objects()[hit.object as usize];
@@ -165,13 +171,13 @@ impl World {
         let size = shape.bounds().map_or(1.0_f32.max(point.length()), |bounds| bounds.size().max_element());
         let step = 1e-3 * size;
         let here = surface.uv.get()?;
-        // Texture coordinates of a nearby point, hit by a ray against the normal.
+        // Texture coordinates of a nearby point, which a ray against the normal hits.
         let beside = |way: Vec3| {
             let mut ray = Ray::new(point + step * (way + normal), -normal);
             ray.t_max = 2.0 * step;
             let crossing = shape.intersect(&ray)?;
             let uv = shape.surface(ray.at(crossing.t).as_dvec3(), &crossing).uv.get()?;
-            // On a closed shape, 1 wraps around to 0.
+            // On a closed shape, the coordinates wrap around from 1 to 0.
             let around = |x: f32| if x.abs() > 0.5 { x - x.round() } else { x };
             Some(Vec2::new(around(uv.x - here.x), around(uv.y - here.y)) / step)
         };
@@ -186,8 +192,8 @@ impl World {
     }
 
     /// Returns the world-space direction of increasing u at a hit: from the texture coordinates of
-    /// a mesh, around the axis of a round shape, along the first edge of a rectangle; otherwise
-    /// horizontal.
+    /// a mesh, around the axis of a round shape, or along the first edge of a rectangle. Otherwise
+    /// a horizontal direction.
     pub(super) fn tangent(&self, at: &SurfaceInteraction) -> Vec3 {
         let SurfaceInteraction { hit, surface, .. } = at;
         let object = &self.objects()[hit.object as usize];
@@ -205,8 +211,8 @@ impl World {
     }
 }
 
-/// Returns the dual basis of two vectors in their plane: gradients from derivatives, and the
-/// reverse.
+/// Returns the dual basis of two vectors in their plane. It converts derivatives to gradients and
+/// back.
 fn dual([u, v]: [Vec3; 2]) -> Option<[Vec3; 2]> {
     let normal = u.cross(v);
     let duals = [v.cross(normal), normal.cross(u)].map(|dual| dual / normal.length_squared());

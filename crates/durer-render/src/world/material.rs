@@ -1,4 +1,4 @@
-//! Compiled materials, with the rules of their dialect applied.
+//! Compiled materials, after the dialect's rules have been applied.
 
 use durer_scene::bsdf::Tables;
 use durer_scene::bsdf::lobe::hair::Fibre;
@@ -12,81 +12,81 @@ use durer_scene::texture::Channel;
 use smallvec::SmallVec;
 use std::sync::Arc;
 
-/// A compiled material.
+/// Compiled material of a world: parameters for shading, or a pattern that mixes two materials.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Material {
-    /// A material of parameters.
+    /// A material with parameters; [`Phong::principled`] extends it for path tracing.
     Phong(Phong),
-    /// A mix of two materials; the matrix maps from world to pattern space, and a texture (by
-    /// index) multiplies the share of the first.
+    /// A mix of two other materials. The matrix transforms world space to pattern space. The
+    /// optional texture, by its index, multiplies the share of the first material.
     Solid(Solid, glam::DAffine3, Option<u32>),
 }
 
-/// Model of a highlight.
+/// Formula of a Phong material's highlight: Blinn's or Phong's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HighlightModel {
     /// max(0, N·H)^exponent where N·L > 0.
     Blinn,
-    /// max(0, R·L)^exponent; `behind`: also where N·L <= 0.
+    /// max(0, R·L)^exponent.
     Phong {
-        /// True if surfaces that face away have highlights too.
+        /// True if surfaces that face away from the light have highlights too.
         behind: bool,
     },
 }
 
-/// Textures of a layered material, by index in [`super::World::textures`].
+/// Textures of a principled material, by their indices in [`super::World::textures`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Maps {
-    /// Base colour; its alpha multiplies the opacity.
+    /// Base colour. Its alpha multiplies the opacity.
     pub base_color: Option<u32>,
-    /// Factor of the emission's colour.
+    /// Multiplies the emission colour.
     pub emission: Option<u32>,
-    /// Factor of the opacity.
+    /// Multiplies the opacity.
     pub opacity: Option<u32>,
-    /// Normals in tangent space.
+    /// Normal map in tangent space.
     pub normal: Option<u32>,
     /// Bump map.
     pub bump: Option<u32>,
-    /// Height of bump value 1 over 0, in units of the world.
+    /// Height difference between bump values 1 and 0, in world units.
     pub bump_height: f32,
-    /// Textures of parameters.
+    /// Textures of other parameters.
     pub parameters: Vec<Map>,
 }
 
-/// A texture of a parameter.
+/// Texture of one parameter of a principled material, such as its roughness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Map {
-    /// Row in [`TEXTURED`](durer_scene::material::parameters::TEXTURED), which defines the
-    /// parameter.
+    /// Row in [`TEXTURED`](durer_scene::material::parameters::TEXTURED), which tells the parameter.
     pub row: usize,
     /// Index of the texture.
     pub texture: u32,
-    /// Channel for numbers; `None`: as in its mapping, or red.
+    /// Channel to use for a number; `None` for that of the texture's mapping, or else red.
     pub channel: Option<Channel>,
 }
 
-/// A principled material with its files and tables loaded.
+/// Principled material for path tracing, with its textures, spectra and tables loaded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Principled {
-    /// Description.
+    /// Material as written in the scene.
     pub written: PrincipledMaterial,
     /// Textures.
     pub maps: Maps,
-    /// Parameters without textures.
+    /// Parameters before textures are applied.
     pub parameters: Parameters,
-    /// Reflectance tables of its boundaries.
+    /// Precomputed reflectances of the material's interfaces.
     pub tables: Tables,
-    /// Spectrum of its emission.
+    /// Spectrum of the light that the material emits, if it was given.
     pub illuminant: Option<Arc<Curve>>,
     /// Interior medium, if it absorbs or scatters.
     pub medium: Option<Medium>,
-    /// True if the surface has no effect between equal indices of refraction, as for smoke.
+    /// True if the surface has no effect when the indices of refraction on both sides are equal, as
+    /// for smoke.
     pub interface: bool,
 }
 
 impl Principled {
-    /// Returns true if some layer reflects or refracts into a single direction. Ignores roughness
-    /// textures.
+    /// Returns true if some layer reflects or refracts light in a single direction. Ignores
+    /// roughness textures.
     pub fn has_single_directions(&self) -> bool {
         let m = &self.written;
         let smooth = |roughness: f32| Ggx::new(roughness, 0.0).is_smooth();
@@ -95,31 +95,32 @@ impl Principled {
     }
 }
 
-/// Emission of a surface.
+/// Light that the surfaces of a principled material emit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emission {
-    /// Radiance, without texture.
+    /// Radiance before a texture is applied.
     pub radiance: Color,
-    /// True if a texture multiplies it.
+    /// True if a texture or vertex colours multiply the radiance.
     pub textured: bool,
-    /// True if both sides emit, false for the side of the normal only.
+    /// True if both sides emit, false if only the side of the normal does.
     pub two_sided: bool,
 }
 
-/// A Phong material with the rules of its dialect applied.
+/// Phong material after the dialect's rules were applied; for principled materials and hair, an
+/// approximation for the Whitted integrator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Phong {
-    /// Diffuse reflectance without texture and noise.
+    /// Diffuse reflectance before texture and noise.
     pub diffuse: Color,
-    /// Index of a texture that replaces the diffuse colour.
+    /// Index of the texture that replaces the diffuse colour, or multiplies it if `tinted`.
     pub texture: Option<u32>,
-    /// True if texture and vertex colours multiply the diffuse colour, as in layered materials.
+    /// True if texture and vertex colours multiply the diffuse colour, as in principled materials.
     pub tinted: bool,
     /// Noise that replaces the diffuse colour.
     pub noise: Option<ColorNoise>,
-    /// Ambient reflectance; `None`: the diffuse colour, texture or noise.
+    /// Ambient reflectance; `None` if it equals the diffuse colour, texture or noise.
     pub ambient: Option<Color>,
-    /// Strength, exponent and model of the highlight, if there is one.
+    /// Colour, exponent and formula of the highlight, if there is one.
     pub highlight: Option<(Color, f32, HighlightModel)>,
     /// Weight of the reflected ray.
     pub reflective: Color,
@@ -127,18 +128,18 @@ pub struct Phong {
     pub transparent: Color,
     /// Index of refraction.
     pub ior: f32,
-    /// True if Fresnel's law splits the light between the two rays.
+    /// True if Fresnel's equations split the light between the two rays.
     pub fresnel: bool,
-    /// Layered material, which path tracers use instead.
+    /// Principled material, which path tracing uses instead of this one.
     pub principled: Option<Arc<Principled>>,
-    /// Hair fibre, which path tracers use instead.
+    /// Hair fibre, which path tracing uses instead of this material.
     pub fibre: Option<Arc<Fibre>>,
-    /// Emission, which only path tracers see.
+    /// Emission, which only path tracing renders.
     pub emission: Option<Emission>,
 }
 
 impl Phong {
-    /// Returns true if paths enter objects of this material.
+    /// Returns true if paths can enter objects of this material.
     pub fn is_entered(&self) -> bool {
         match &self.principled {
             Some(own) => {
@@ -150,16 +151,16 @@ impl Phong {
     }
 }
 
-/// One of the materials of a surface point.
+/// One of the materials at a surface point, with its share of the point.
 #[derive(Clone, Copy, Debug)]
 pub struct WeightedMaterial<'w> {
     /// The material.
     pub phong: &'w Phong,
-    /// Weight; the weights of a point sum to 1.
+    /// Share of the material; the shares at a point sum to 1.
     pub share: f32,
 }
 
-/// The materials of a surface point, usually one.
+/// Materials at a surface point, usually a single one.
 pub type MaterialMix<'w> = SmallVec<[WeightedMaterial<'w>; 2]>;
 
 impl Default for Phong {

@@ -1,4 +1,4 @@
-//! The compiled scene: immutable, with indices instead of names, for queries from many threads.
+//! World: the compiled scene, with indices instead of names, for queries from many threads.
 
 mod batch;
 mod contents;
@@ -33,13 +33,14 @@ pub use rules::{DisplayRules, Epsilon, ShadingRules};
 pub use shading::Shading;
 use std::sync::OnceLock;
 
-/// A compiled scene, ready for ray tracing.
+/// Scene after compilation, with acceleration structure and light sampler. All rendering uses it.
 #[derive(Clone, Debug)]
 pub struct World {
     contents: Contents,
     assets: Assets,
-    /// Hash of its sources, and true if it was edited since.
+    /// Hash of the sources that the world was compiled from.
     source: Digest,
+    /// True if the contents were edited since.
     edited: bool,
     emitters: LightSampler,
     has_cutouts: bool,
@@ -47,56 +48,57 @@ pub struct World {
     has_interfaces: bool,
     /// True if light passes straight through some thin sheet.
     has_sheets: bool,
-    /// Objects with an interior medium; a camera may start inside one.
+    /// Indices of objects with an interior medium, in which a camera could be.
     bodies: Vec<u32>,
-    /// Extent of each object, computed on first use; empty if light enters no object.
+    /// [`Object::extent`] of each object, computed at first use. Empty if light enters no object.
     extents: Vec<OnceLock<Option<f32>>>,
-    /// Simple shapes outside the tree, tested eight at a time.
+    /// Simple shapes outside the acceleration structure, tested eight at a time.
     pub(crate) packs: PrimitivePacks,
-    /// The whole world in a form for batches of rays, if it has few objects.
+    /// Copy of all objects in a form for batches of rays, if there are few objects.
     pub(crate) small_world: Option<SmallWorld>,
-    /// Other objects outside the structure: unbounded ones, or all objects if there are too few for
-    /// a tree to pay off.
+    /// Other objects outside the acceleration structure: unbounded ones, or all if there are too
+    /// few for a tree to be faster.
     pub(crate) loose: Vec<u32>,
     pub(crate) accel: Accel,
-    /// Spheres of the tree in the order of its leaves, which saves a lookup. Other objects have
-    /// radius 0; empty without spheres.
+    /// Copies of the spheres in the BVH, in the order of its leaves, to save a lookup. Other
+    /// objects have radius
+    /// 0. Empty if there are no spheres.
     pub(crate) spheres: Vec<Sphere>,
 }
 
-/// Acceleration structure over all bounded objects.
+/// Acceleration structure over the bounded objects of a world.
 #[derive(Clone, Debug)]
 pub enum Accel {
-    /// A BVH over objects; meshes have their own trees.
+    /// A BVH over the objects. Meshes have their own BVHs.
     Bvh(Bvh),
-    /// A grid over the parts of all objects.
+    /// A uniform grid over the parts of all objects.
     Grid {
-        /// The cells.
+        /// Cells of the grid.
         grid: Grid,
-        /// Object and part of each element of the grid.
+        /// Object and part of each item in the grid.
         parts: Vec<(u32, u32)>,
-        /// Object and part number of the few parts that extend far beyond the grid. Every ray tests
-        /// them.
+        /// Object and part of the few items that extend far beyond the grid. Every ray tests them.
         wide: Vec<(u32, u32)>,
     },
-    /// Brute force.
+    /// No structure: every ray tests all objects.
     None,
     /// Tests every object, as an official program does.
     Course(CourseHits),
 }
 
-/// A hit of a ray.
+/// First intersection of a ray with a world: distance, object and part.
 ///
-/// Hits are ordered by `t`, then object, then part. All structures therefore return the same hit.
+/// Hits are ordered by `t`, then object, then part. Therefore all acceleration structures return
+/// the same hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Distance along the ray, in units of its direction's length.
+    /// Distance along the ray, as a multiple of the direction's length.
     pub t: f32,
     /// Surface coordinates on the part.
     pub uv: Vec2,
     /// Index of the object.
     pub object: u32,
-    /// Index of the triangle in a mesh; in a solid, as defined in [`csg`]; otherwise 0.
+    /// Index of the triangle in a mesh; for a solid see [`csg`]; otherwise 0.
     pub part: u32,
 }
 
@@ -107,7 +109,8 @@ impl Hit {
 }
 
 impl World {
-    /// Creates a world without an acceleration structure; `source` is the hash of its sources.
+    /// Creates a world without an acceleration structure. `source` is the hash of what it was
+    /// compiled from.
     pub(crate) fn new(contents: Contents, assets: Assets, source: Digest) -> Self {
         let mut world = World {
             contents,
@@ -137,48 +140,48 @@ impl World {
         world
     }
 
-    /// Returns the luminous efficacy by colour channel, if light is in watts.
+    /// Returns the luminous efficacy of each colour channel, if light is in watts.
     pub fn lumens(&self) -> Option<Vec3> {
         self.contents.display.lumens
     }
 
-    /// Returns the emitters.
+    /// Returns the light sampler.
     pub fn emitters(&self) -> &LightSampler {
         &self.emitters
     }
 
-    /// Returns true if some surface is partly transparent by opacity.
+    /// Returns true if some surface has an opacity below 1.
     pub fn has_cutouts(&self) -> bool {
         self.has_cutouts
     }
 
-    /// Returns true if cameras see through the backs of some faces.
+    /// Returns true if the backs of some surfaces are invisible to cameras.
     pub fn hides_backs(&self) -> bool {
         self.hides_backs
     }
 
-    /// Returns true if some object only bounds a medium, so that light enters it unrefracted.
+    /// Returns true if some surface only bounds a medium, so that light passes unrefracted.
     pub fn has_interfaces(&self) -> bool {
         self.has_interfaces
     }
 
-    /// Returns true if light may pass straight through some thin sheet, such as a pane.
+    /// Returns true if light can pass straight through some thin sheet, such as a pane.
     pub fn has_sheets(&self) -> bool {
         self.has_sheets
     }
 
-    /// Returns true if some texture has mipmaps, so that footprints of samples matter.
+    /// Returns true if some texture has mipmaps, which need the footprints of samples.
     pub fn has_mipmaps(&self) -> bool {
         self.textures().iter().any(Texture::has_levels)
     }
 
-    /// Finds the first hit in the ray's interval.
+    /// Returns the first hit in the ray's interval.
     pub fn closest<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> Option<Hit> {
         self.closest_along(&mut ray.into(), counter)
     }
 
-    /// Finds the first hit, shortening the ray meanwhile and restoring it at the end, which avoids
-    /// a slow copy.
+    /// Returns the first hit in the ray's interval. Shortens the ray and restores it at the end,
+    /// which avoids a slow copy.
     #[inline]
     pub(crate) fn closest_along<T: TraversalCounter>(&self, ray: &mut Ray64, counter: &mut T) -> Option<Hit> {
         counter.ray();
@@ -200,7 +203,7 @@ impl World {
 
     fn nearest<T: TraversalCounter>(&self, ray: &mut Ray64, counter: &mut T) -> Option<Hit> {
         let mut best: Option<Hit> = None;
-        // Ties are broken by the order of hits, so a later hit may be at the current t.
+        // Ties are broken by the order of hits, so another hit at the current `t` can still win.
         let offer = |best: &mut Option<Hit>, ray: &mut Ray64, object: u32, found: Option<(ShapeHit, u32)>| {
             if let Some((ShapeHit { t, uv }, part)) = found {
                 let hit = Hit { t, uv, object, part };
@@ -254,7 +257,7 @@ impl World {
         best
     }
 
-    /// Returns the index of an object of the tree, and its first hit in the ray's interval.
+    /// Returns the object of a BVH item and its first hit in the ray's interval.
     #[inline(always)]
     fn closest_of<T: TraversalCounter>(
         &self,
@@ -272,12 +275,12 @@ impl World {
         (number, self.objects()[number as usize].closest(number, ray, any, counter))
     }
 
-    /// Returns true if anything is hit in the ray's interval; ends at the first hit found.
+    /// Returns true if the ray hits anything in its interval. Stops at the first hit found.
     pub fn occluded<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> bool {
         self.occluded_along(&ray.into(), counter)
     }
 
-    /// Tests occlusion without copying the ray. See [`World::occluded`].
+    /// Computes occlusion without copying the ray. See [`World::occluded`].
     pub(crate) fn occluded_along<T: TraversalCounter>(&self, ray: &Ray64, counter: &mut T) -> bool {
         counter.ray();
         let outer = &ray.rounded;
@@ -327,24 +330,27 @@ impl World {
         self.around(point, 0..self.objects().len() as u32, |glass| glass.transparent != Color::ZERO)
     }
 
-    /// Iterates over the closed objects that paths enter and that contain a point, with their
-    /// indices of refraction; empty if no object absorbs or scatters.
+    /// Iterates over the closed objects that contain a point and that paths can enter, with their
+    /// indices of refraction. Empty if no object absorbs or scatters.
     pub fn bodies_around(&self, point: Vec3) -> impl Iterator<Item = (u32, f32)> {
         self.around(point, self.bodies.iter().copied(), Phong::is_entered)
     }
 
-    /// Returns the cached [`Object::extent`] of an object.
+    /// Returns [`Object::extent`] of an object, which is cached.
     pub(crate) fn extent(&self, object: u32) -> Option<f32> {
         let find = || self.objects()[object as usize].extent();
         self.extents.get(object as usize).map_or_else(find, |extent| *extent.get_or_init(find))
     }
 
+    /// Returns an empty cache of [`Object::extent`].
     fn forgotten_extents(&self) -> Vec<OnceLock<Option<f32>>> {
         let enters = |material: &Material| matches!(material, Material::Phong(phong) if phong.is_entered());
         let wanted = if self.materials().iter().any(enters) { self.objects().len() } else { 0 };
         vec![OnceLock::new(); wanted]
     }
 
+    /// Iterates over the closed objects among some candidates that contain a point, if their
+    /// material is `wanted`.
     fn around(
         &self,
         point: Vec3,
@@ -360,7 +366,7 @@ impl World {
         })
     }
 
-    /// Returns the index of the triangle at a hit in its mesh, else 0.
+    /// Returns the index of the hit triangle in its mesh, or 0 for other shapes.
     pub fn triangle(&self, hit: &Hit) -> u32 {
         match &self.objects()[hit.object as usize].geometry {
             Geometry::Solid(solid) => solid.triangle(hit.part),
@@ -368,8 +374,8 @@ impl World {
         }
     }
 
-    /// Iterates over all hits in the ray's interval, sorted by distance; only the first of several
-    /// at the same `t`.
+    /// Iterates over all hits in the ray's interval, in the order of distance. Of several hits at
+    /// the same `t`, only the first is included.
     pub fn all_hits(&self, ray: impl Into<Ray64>) -> impl Iterator<Item = Hit> {
         let mut rest = ray.into();
         std::iter::from_fn(move || {
@@ -379,14 +385,14 @@ impl World {
         })
     }
 
-    /// Iterates over the nearest hit of each object in the ray's interval, in the order of the
-    /// objects.
+    /// Iterates over the objects that the ray hits in its interval, with the first hit of each, in
+    /// the order of the objects.
     pub fn hits_of_each(&self, ray: impl Into<Ray64>) -> impl Iterator<Item = Hit> {
         let ray = ray.into();
         (0..self.objects().len() as u32).filter_map(move |object| self.hit_of(object, &ray))
     }
 
-    /// Returns the nearest hit of one object, ignoring all others.
+    /// Returns the first hit on one object, ignoring all others.
     pub fn hit_of(&self, object: u32, ray: &Ray64) -> Option<Hit> {
         let sound = durer_bvh::internal::is_sound(&ray.rounded);
         let (crossing, part) =
@@ -394,11 +400,11 @@ impl World {
         Some(Hit { t: crossing.t, uv: crossing.uv, object, part })
     }
 
-    /// Returns the light of a light source that arrives at a point without occlusion.
+    /// Returns the light from a light of the scene at a point, without occlusion.
     #[inline(always)]
     pub fn illuminate(&self, light: usize, point: DVec3) -> LightLiSample {
         let LightLiSample { to_light, distance, color } = match &self.lights()[light] {
-            // Fast path: most lights are points; keeps the result in registers.
+            // Fast path: most lights are point lights. This keeps the result in registers.
             Light::Point(emitter) => emitter.illuminate(point),
             emitter => emitter.illuminate(point),
         };
@@ -409,7 +415,7 @@ impl World {
         seen
     }
 
-    /// Returns the colour of a ray that misses.
+    /// Returns the radiance of the background in a direction.
     pub fn sky(&self, direction: Vec3) -> Color {
         if let Some(environment) = self.environment() {
             return environment.at(direction);
@@ -422,13 +428,14 @@ impl World {
     pub fn parts(&self, at: &SurfaceInteraction) -> MaterialMix<'_> {
         let mut parts = MaterialMix::new();
         match &self.materials()[at.material as usize] {
-            // Fast path: most materials are not mixed.
+            // Fast path: most materials are not mixtures.
             Material::Phong(phong) => parts.push(WeightedMaterial { phong, share: 1.0 }),
             Material::Solid(..) => self.mix(at.material, at, 1.0, &mut parts),
         }
         parts
     }
 
+    /// Adds the materials of a possibly nested mixture, with their shares.
     fn mix<'w>(&'w self, material: u32, at: &SurfaceInteraction, share: f32, parts: &mut MaterialMix<'w>) {
         match &self.materials()[material as usize] {
             Material::Phong(phong) => parts.push(WeightedMaterial { phong, share }),
@@ -449,7 +456,7 @@ impl World {
         }
     }
 
-    /// Returns the bounds of all bounded objects.
+    /// Returns the world-space bounds of all bounded objects.
     pub fn bounds(&self) -> Aabb {
         self.objects().iter().filter_map(Object::bounds).fold(Aabb::EMPTY, Aabb::union)
     }

@@ -1,4 +1,4 @@
-//! Objects of a world, and their intersection with rays.
+//! Objects of a world and their intersection with rays.
 
 use super::csg::Csg;
 use super::{Matrix, ShadingRules};
@@ -9,80 +9,80 @@ use durer_scene::shape::{Axis, Mesh, Primitive, Shape, ShapeHit, Sphere, Surface
 use glam::{DAffine3, DVec3};
 use std::sync::{Arc, OnceLock};
 
-/// An object of the world.
+/// Object of a world: geometry with a transform and a material.
 #[derive(Clone, Debug)]
 pub struct Object {
     /// Geometry, in object space.
     pub geometry: Geometry,
     /// Transform from object to world space; `None` for the identity.
     pub to_world: Option<Affine>,
-    /// Enclosing transforms as an official program multiplies them, outermost first; empty if its
-    /// arithmetic is not active. With a singular transform, `to_world` is `None`.
+    /// Enclosing transforms as an official program multiplies them, outermost first. Empty if its
+    /// arithmetic is not active. If a transform is singular, `to_world` is `None`.
     pub matrices: Vec<Matrix>,
-    /// Translation that moved the geometry to the origin of object space; [`Object::to_world`]
+    /// Vector by which the geometry was moved to the origin for precision; [`Object::to_world`]
     /// moves it back.
     pub center: Vec3,
-    /// Index of its material; the parts of a solid have their own.
+    /// Index of the material. The parts of a solid have their own materials instead.
     pub material: u32,
-    /// Length of its normals; 1 except under [`ShadingRules::raw_normals`].
+    /// Length of the surface normals: 1 except with [`ShadingRules::raw_normals`].
     pub normal_length: f32,
-    /// Span in the scene file.
+    /// Span of the object's definition in the scene file.
     pub span: durer_diag::Span,
 }
 
-/// Geometry of an object.
+/// Geometry of an [`Object`]: a primitive, a mesh or a CSG solid.
 #[derive(Clone, Debug)]
 pub enum Geometry {
-    /// A shape of one part.
+    /// A shape such as a sphere or a box.
     Primitive(Primitive),
-    /// A mesh, shared by all its instances.
+    /// A mesh. All objects that use the mesh share it.
     Mesh(Arc<MeshTree>),
-    /// Closed shapes and meshes combined; its parts are in world space.
+    /// A CSG solid of closed shapes and meshes. Its parts are in world space.
     Solid(Arc<Csg>),
 }
 
-/// A mesh with its own tree.
+/// Triangle mesh with its own BVH, shared by all objects that use the mesh.
 #[derive(Debug)]
 pub struct MeshTree {
     /// The mesh.
     pub mesh: Mesh,
-    /// BVH of its triangles.
+    /// BVH over the triangles.
     pub bvh: TriangleBvh,
-    /// True if the mesh is closed; computed on first use.
+    /// True if the mesh is closed, computed at first use.
     closed: OnceLock<bool>,
 }
 
 impl MeshTree {
-    /// Builds the tree of a mesh.
+    /// Builds the BVH of a mesh.
     pub fn new(mesh: Mesh, quality: BuildQuality) -> Self {
         let bvh = mesh.tree(quality);
         MeshTree { mesh, bvh, closed: OnceLock::new() }
     }
 
-    /// Ignores triangles seen edge-on: see `TriangleBvh::least_volume`.
+    /// Makes rays miss triangles that they hit edge-on; see `TriangleBvh::least_volume`.
     pub fn least_volume(self, least_volume: f64) -> Self {
         MeshTree { bvh: self.bvh.least_volume(least_volume), ..self }
     }
 
-    /// Returns the tree of the mesh with other normals.
+    /// Returns a copy of the mesh and BVH with other normals.
     pub fn with_normals(&self, rule: MeshNormals) -> Self {
         MeshTree { mesh: self.mesh.with_normals(rule), bvh: self.bvh.clone(), closed: self.closed.clone() }
     }
 
-    /// Returns the size in bytes.
+    /// Returns the memory used by mesh and BVH, in bytes.
     pub fn bytes(&self) -> usize {
         self.mesh.bytes() + self.bvh.memory_usage()
     }
 
-    /// Returns true if the mesh has an inside.
+    /// Returns true if the mesh is closed, so that it has an inside.
     pub fn is_closed(&self) -> bool {
         *self.closed.get_or_init(|| self.mesh.open_edge().is_none())
     }
 
-    /// Visits every crossing of a line with the index of its triangle, in any order.
+    /// Calls `offer` with each crossing of a line and the index of its triangle, in any order.
     ///
-    /// The line starts at its point nearest to the mesh, so that only the mesh's own coordinates
-    /// cause rounding.
+    /// Coordinates are computed relative to the line's point nearest to the mesh. Only the size of
+    /// the mesh's own coordinates therefore affects rounding errors.
     pub(super) fn crossings<T: TraversalCounter>(
         &self,
         line: &Line,
@@ -97,7 +97,7 @@ impl MeshTree {
         }
     }
 
-    /// Finds the first hit in the ray's interval; `any` stops at the first one found.
+    /// Returns the first hit in the ray's interval. With `any`, stops at the first hit found.
     #[inline]
     fn closest<T: TraversalCounter>(&self, ray: &Ray, any: bool, counter: &mut T) -> Option<(ShapeHit, u32)> {
         if any {
@@ -110,11 +110,13 @@ impl MeshTree {
 }
 
 impl Object {
+    /// Returns the ray in object space.
     pub(super) fn local_ray(&self, ray: &Ray64) -> Ray {
         self.to_world.as_ref().map_or_else(|| ray.rounded, |to_world| to_world.inverse_ray(ray))
     }
 
-    /// Returns the ray in the object's written space, if there is a transform.
+    /// Returns the ray in the coordinates of the object's definition, if the object has a
+    /// transform.
     pub fn own_ray(&self, ray: &Ray64) -> Option<Ray> {
         let local = self.to_world.as_ref()?.inverse_ray(ray);
         Some(Ray { origin: local.origin + self.center, ..local })
@@ -125,12 +127,12 @@ impl Object {
         self.to_world.as_ref().map_or(ray.line(), |to_world| to_world.inverse_line(ray))
     }
 
-    /// Returns the axis of a shape of revolution, for [`Object::crossings`].
+    /// Returns the axis of a shape of revolution; see [`Object::crossings`].
     pub(super) fn axis(&self) -> Option<Axis> {
         if let Geometry::Primitive(shape) = &self.geometry { shape.axis() } else { None }
     }
 
-    /// Visits every crossing of a ray's line with the index of its part, in any order.
+    /// Calls `offer` with each crossing of a ray's line and the index of its part, in any order.
     pub(super) fn crossings<T: TraversalCounter>(
         &self,
         axis: Option<&Axis>,
@@ -145,14 +147,14 @@ impl Object {
                 shape.crossings_about(axis, &line, &mut |t, uv| offer(t, uv, 0));
             }
             Geometry::Mesh(tree) => tree.crossings(&line, counter, offer),
-            // Nested solids are flattened into one.
+            // Solids in solids have been flattened.
             Geometry::Solid(_) => {}
         }
     }
 
-    /// Moves the object to another place in the world.
+    /// Replaces the object's transform.
     pub fn place_at(&mut self, place: DAffine3) {
-        // First move the geometry back from the origin of object space.
+        // First undo the move of the geometry to the origin.
         let centered = place * DAffine3::from_translation(self.center.as_dvec3());
         self.to_world = Affine::new(centered).filter(|affine| !affine.is_identity());
         if !self.matrices.is_empty() {
@@ -165,7 +167,7 @@ impl Object {
         self.to_world.as_ref().map_or(p, |to_world| to_world.point(p))
     }
 
-    /// Computes the surface in world space, at a crossing close to a point in object space.
+    /// Computes the surface in world space, at a hit close to a point in object space.
     pub(super) fn surface(
         &self,
         ray: &Ray64,
@@ -180,7 +182,7 @@ impl Object {
         surface
     }
 
-    /// Computes the surface before the transform: in object space, except for solids.
+    /// Computes the surface in object space or, for a solid, in world space.
     pub(super) fn own_surface(
         &self,
         ray: &Ray64,
@@ -190,7 +192,7 @@ impl Object {
         rules: &ShadingRules,
         surface: &mut Surface,
     ) {
-        // Each arm writes directly into the result; a shared temporary would be copied.
+        // Each arm writes directly into the result, because a common temporary would be copied.
         match &self.geometry {
             Geometry::Primitive(Primitive::Sphere(sphere)) => *surface = sphere.surface(point, crossing),
             Geometry::Primitive(Primitive::Plane(plane)) => *surface = plane.surface(point, crossing),
@@ -233,7 +235,7 @@ impl Object {
             let point = to_world.point64(surface.position);
             surface.position = point.as_vec3();
             surface.rest = (point - surface.position.as_dvec3()).as_vec3();
-            // Besides rounding, a curved surface deviates from its tangent plane quadratically.
+            // A curved surface also deviates from its tangent plane, by the square of the error.
             surface.error = error + to_world.spread(surface.bulge(to_world.inverse_spread(error)));
             surface.n_geo = to_world.normal(surface.n_geo);
             surface.n_shade = shading(to_world, surface.n_shade);
@@ -243,7 +245,8 @@ impl Object {
         }
     }
 
-    /// Finds the first hit of the object in the ray's interval; `number` is its index.
+    /// Returns the object's first hit in the ray's interval. `number` is the object's index. With
+    /// `any`, can return another hit.
     #[inline]
     pub(super) fn closest<T: TraversalCounter>(
         &self,
@@ -270,7 +273,7 @@ impl Object {
         }
     }
 
-    /// Intersects a single part of the object directly; a solid is tested as a whole.
+    /// Intersects a single part of the object. A solid is intersected as one part.
     pub(super) fn part<T: TraversalCounter>(
         &self,
         (number, part): (u32, u32),
@@ -281,7 +284,7 @@ impl Object {
         let local = self.local_ray(ray);
         let crossing = match &self.geometry {
             Geometry::Primitive(shape) => shape.intersect(&local),
-            // Reject the rays that the tree rejects, because they cannot hit anything.
+            // The BVH rejects such rays, which cannot hit anything.
             Geometry::Mesh(_) if !durer_bvh::internal::is_sound(&local) => None,
             Geometry::Mesh(tree) => tree
                 .bvh
@@ -293,8 +296,8 @@ impl Object {
         crossing.map(|crossing| (crossing, part))
     }
 
-    /// Returns the cost in spheres if the object is a simple shape without transform, which can be
-    /// tested in packs.
+    /// Returns the cost of intersecting the object, relative to a sphere, if it is a simple shape
+    /// that can be packed with others. `None` for others and for transformed objects.
     pub(crate) fn simple(&self) -> Option<usize> {
         use Primitive::{Cuboid, Disc, Plane, Rectangle, Sphere};
         match &self.geometry {
@@ -304,17 +307,17 @@ impl Object {
         }
     }
 
-    /// Returns the cost for packs with a single ray. Boxes take six divisions each, so a tree is
-    /// faster for them.
+    /// Returns [`Object::simple`] for packs that are tested with a single ray. Excludes boxes: they
+    /// need six divisions each, so a tree is faster for them.
     pub(crate) fn simple_for_one_ray(&self) -> Option<usize> {
         self.simple().filter(|_| !matches!(&self.geometry, Geometry::Primitive(Primitive::Cuboid(_))))
     }
 
-    /// Returns the crossing at a known first hit distance.
+    /// Returns the hit on a packed shape, given its distance.
     #[inline]
     pub(super) fn crossing_at(&self, t: f32, ray: &Ray64) -> ShapeHit {
         match &self.geometry {
-            // The hits of these shapes have surface coordinates.
+            // Only hits on these shapes have surface coordinates.
             Geometry::Primitive(shape @ (Primitive::Rectangle(_) | Primitive::Cuboid(_))) => {
                 shape.intersect(&ray.rounded).unwrap_or(ShapeHit { t, uv: Vec2::ZERO })
             }
@@ -322,7 +325,7 @@ impl Object {
         }
     }
 
-    /// Returns the untransformed sphere; otherwise one of radius 0.
+    /// Returns the sphere if the object is an untransformed one, otherwise a sphere with radius 0.
     pub(crate) fn sphere(&self) -> Sphere {
         match &self.geometry {
             Geometry::Primitive(Primitive::Sphere(sphere)) if self.to_world.is_none() => sphere.clone(),
@@ -330,7 +333,7 @@ impl Object {
         }
     }
 
-    /// Adds the object, which is [simple](Object::simple), to packs under an index.
+    /// Adds a [simple](Object::simple) object to packs. `number` identifies it in hits.
     pub(crate) fn add_to(&self, packs: &mut PrimitivePacks, number: u32) {
         match &self.geometry {
             Geometry::Primitive(Primitive::Plane(plane)) => packs.push_plane(number, plane.normal, plane.offset),
@@ -344,7 +347,7 @@ impl Object {
         }
     }
 
-    /// Returns true if the object is closed, so that containment is defined.
+    /// Returns true if the object is closed, so that it can contain points.
     fn is_closed(&self) -> bool {
         match &self.geometry {
             Geometry::Primitive(shape) => shape.inside(DVec3::ZERO).is_some(),
@@ -353,8 +356,8 @@ impl Object {
         }
     }
 
-    /// Returns half the surface area of its bounds, infinite for unbounded objects; `None` for open
-    /// objects.
+    /// Returns half the surface area of the object's bounds; infinite for unbounded objects, `None`
+    /// for open ones.
     pub fn extent(&self) -> Option<f32> {
         self.is_closed().then(|| self.bounds().map_or(f32::INFINITY, |bounds| bounds.half_area()))
     }
@@ -368,14 +371,14 @@ impl Object {
             let local = self.to_world.as_ref().map_or(point, |to_world| to_world.inverse_point(point));
             return shape.inside(local.as_dvec3()) == Some(true);
         }
-        // Any line from inside crosses a closed surface an odd number of times.
+        // A line from an inside point crosses a closed surface an odd number of times.
         let mut ray = Ray64::from(Ray::new(point, Vec3::new(0.48, 0.6, 0.64)));
         let next =
             |ray: &mut Ray64| self.closest(0, ray, false, &mut ()).map(|(crossing, _)| ray.rounded.t_min = crossing.t);
         std::iter::from_fn(|| next(&mut ray)).count() % 2 == 1
     }
 
-    /// Returns the number of parts that can be tested directly.
+    /// Returns the number of parts that can be intersected separately.
     pub fn parts(&self) -> u32 {
         match &self.geometry {
             Geometry::Primitive(_) | Geometry::Solid(_) => 1,
@@ -383,13 +386,13 @@ impl Object {
         }
     }
 
-    /// Returns the bounds in world space; `None` for unbounded shapes.
+    /// Returns the bounds in world space, or `None` for an unbounded object.
     pub fn bounds(&self) -> Option<Aabb> {
         let local = self.local_bounds()?;
         Some(if let Geometry::Solid(_) = self.geometry { local } else { self.moved(local) })
     }
 
-    /// Returns the bounds in object space; for a solid, in world space.
+    /// Returns the bounds in object space or, for a solid, in world space.
     pub(super) fn local_bounds(&self) -> Option<Aabb> {
         match &self.geometry {
             Geometry::Primitive(shape) => shape.bounds(),
@@ -405,15 +408,15 @@ impl Object {
             Geometry::Mesh(tree) => {
                 let corners = tree.mesh.corners(part);
                 let Some(to_world) = &self.to_world else { return Some(Aabb::around(corners)) };
-                // Tighter than transforming the bounds; an empty box at each corner adds the
-                // padding for rounding.
+                // This is tighter than transforming the bounds of the triangle. The empty box at
+                // each vertex adds padding for rounding errors.
                 let images = corners.map(|c| to_world.bounds(Aabb { min: c, max: c }));
                 Some(images.into_iter().fold(Aabb::EMPTY, Aabb::union))
             }
         }
     }
 
-    /// Bounds the distance between the true surface and traced hits, from rounding of its
+    /// Returns a bound on the distance between the true surface and hits on it, due to rounding of
     /// coordinates.
     pub(super) fn rounding(&self) -> f32 {
         let reach = self.local_bounds().map_or(Vec3::ZERO, |b| b.min.abs().max(b.max.abs()));
@@ -424,7 +427,8 @@ impl Object {
         error.max_element()
     }
 
-    /// Returns false if the object cannot be inside a world-space box that overlaps its bounds.
+    /// Returns false if the object certainly does not overlap a world-space box. The box must
+    /// overlap its bounds.
     pub fn overlaps(&self, cell: &Aabb) -> bool {
         match (&self.geometry, &self.to_world) {
             (Geometry::Primitive(shape), None) => shape.overlaps(cell),
@@ -432,6 +436,7 @@ impl Object {
         }
     }
 
+    /// Transforms bounds to world space.
     fn moved(&self, bounds: Aabb) -> Aabb {
         match &self.to_world {
             Some(to_world) if !bounds.is_empty() => to_world.bounds(bounds),

@@ -9,8 +9,8 @@ fn vector(random: &mut Random, size: f32) -> Vec3 {
     Vec3::new(random.between(-size, size), random.between(-size, size), random.between(-size, size))
 }
 
-/// Traces 10^5 rays through sets of up to 20 of each kind, with duplicates and rays along faces or
-/// edges: t and index are identical bit for bit, also for eight rays at once.
+/// Traces 10^5 rays through sets of up to 20 shapes of each kind, with duplicates, and with rays
+/// along faces or edges. Distances and indices must be bit-identical, also for eight rays at once.
 #[test]
 fn packs_return_the_hits_of_single_shapes() {
     let mut random = Random(8);

@@ -1,85 +1,86 @@
-//! Rules of shading and display, resolved from a scene's dialect when it is compiled.
+//! Rules for shading and display, which the dialect determines when a scene is compiled.
 
 use durer_scene::dialect::{DepthPicture, NormalsPicture};
 use durer_scene::math::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Rule of an official program that keeps a secondary ray off the surface that it leaves.
+/// How an official program prevents secondary rays from hitting the surface that they start from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Epsilon {
-    /// Hits count beyond this `t`.
+    /// Only hits beyond this `t` count.
     Least(f32),
-    /// The ray's origin is offset by this multiple of its direction.
+    /// The origin is moved along the direction by this multiple of it.
     Along(f32),
 }
 
-/// Rules of intersection and of Whitted's shading. Plain values, constant in a world; the default
-/// is Dürer's own, without the bugs of old programs.
+/// Rules for intersection and for shading in the Whitted integrator, which the dialect determines.
+/// The default rules are Dürer's own, without the bugs of the official programs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShadingRules {
-    /// Rule that keeps secondary rays off surfaces. `None`: they start next to the surface, by the
-    /// bound on its error, and every hit counts.
+    /// How secondary rays avoid the surface they start from. `None`: the origin is offset by the
+    /// error bound of the surface point, and all hits count.
     pub epsilon: Option<Epsilon>,
-    /// A hit's position is the rounded point on the ray, without an error bound.
+    /// Hit points are computed from the rounded ray, without an error bound.
     pub points_on_ray: bool,
-    /// A ray carries one index of refraction, and air is assumed behind glass. Otherwise, media
-    /// nest.
+    /// A ray has a single index of refraction, with air behind glass. If false, glass can be
+    /// nested.
     pub one_medium: bool,
-    /// A ray's throughput is multiplied by the length of a colour; otherwise, by its largest
+    /// The weight of a ray is multiplied by the length of a colour. If false, by its largest
     /// component.
     pub weight_by_length: bool,
-    /// The shading normal determines which side of a surface is seen; otherwise, the geometric
-    /// normal.
+    /// The shading normal decides which side of a surface is seen. If false, the geometric normal
+    /// does.
     pub shaded_sides: bool,
-    /// A surface seen from behind is black, unless it is shaded on both sides.
+    /// Surfaces seen from behind are black, unless both sides are shaded.
     pub black_backs: bool,
-    /// A surface with a NaN normal is black.
+    /// Surfaces with a NaN normal are black.
     pub spoiled_normals: bool,
-    /// Lighting uses unit normals, regardless of the length of the shading normal.
+    /// Lighting normalizes shading normals first.
     pub unit_light: bool,
-    /// Shading normals may not be unit length, so reflected directions are normalised.
+    /// Shading normals can have any length, so reflected directions must be normalized.
     pub raw_normals: bool,
-    /// Refraction uses such a normal without normalising it.
+    /// Refraction does not normalize such normals.
     pub raw_refraction: bool,
-    /// Mirrored directions are not normalised.
+    /// Reflected directions are not normalized.
     pub long_mirrors: bool,
-    /// R0 assumes that the ray's side of glass is air.
+    /// R0 is computed as if the index of refraction on the ray's side were 1.
     pub exit_r0: bool,
-    /// Only a blocker that is seen from its front casts a shadow.
+    /// Only surfaces whose front faces the shadow ray cast shadows.
     pub shadow_fronts: bool,
-    /// A ray that leaves glass without having entered it is assumed to start in air.
+    /// A ray that leaves glass that it did not enter is assumed to start in air.
     pub air_at_eye: bool,
-    /// Only meshes have texture coordinates.
+    /// Shapes other than meshes have no texture coordinates.
     pub mesh_textures: bool,
-    /// Shading normals are transformed by the matrix itself, not by its inverse transpose.
+    /// Shading normals are transformed by the matrix itself instead of its inverse transpose.
     pub moved_normals: bool,
-    /// Rings of wood are cones, with the formula of the program of 2004.
+    /// The rings of wood are cones, as in the program of 2004.
     pub conic_rings: bool,
     /// On a texture, ambient light uses the texel of the previous pixel. Implemented in
-    /// `render::course`, not by integrators.
+    /// `render::stale`, not in the integrators.
     pub stale_texels: bool,
 }
 
-/// Rules for displaying values, resolved from a scene's dialect at compilation.
+/// Rules for displaying AOVs as pictures, which the dialect determines.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DisplayRules {
-    /// Normals as colours.
+    /// How normals are converted to colours.
     pub normals: NormalsPicture,
-    /// Depth as grey.
+    /// How depths are converted to greys.
     pub depth: DepthPicture,
-    /// A given depth range is truncated to whole numbers.
+    /// A depth range set by the user is truncated to integers.
     #[serde(default)]
     pub whole_depths: bool,
-    /// The background of a depth picture is black, even if far is white.
+    /// The background of a depth picture is black, even if far objects are white.
     #[serde(default)]
     pub black_sky: bool,
-    /// At misses, a normal picture shows the previous hit's normal, in rows from the bottom.
+    /// At misses, a picture of normals shows the previous hit's normal. Rows are processed from the
+    /// bottom up.
     #[serde(default)]
     pub stale_normals: bool,
-    /// A depth is clamped to the given range before it is converted to grey.
+    /// Depths are clamped to the range set by the user before they are converted to greys.
     #[serde(default)]
     pub clamped_depths: bool,
-    /// Lumens per watt by colour channel, if light is in watts.
+    /// Luminous efficacy of each colour channel in lumens per watt, if light is in watts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lumens: Option<Vec3>,
 }

@@ -1,4 +1,4 @@
-//! Scattering and emission of surface points for path tracing.
+//! BSDFs and emission at surface points, for path tracing.
 
 use super::{Geometry, Material, Object, Phong, SurfaceInteraction, WeightedMaterial, World};
 use crate::world::HighlightModel;
@@ -16,23 +16,24 @@ use durer_scene::medium::Medium;
 use durer_scene::shape::Surface;
 use durer_scene::spectrum::{Curve, Lanes, Spectrum};
 
-/// Scattering at a surface point, seen from one direction.
+/// BSDF at a surface point with its shading frame and the direction it is seen from, for path
+/// tracing.
 #[derive(Clone, Debug)]
 pub struct Shading<'w> {
-    /// Shading frame; the visible side is up.
+    /// Shading frame whose z axis is the shading normal on the visible side.
     pub frame: Frame,
-    /// Geometric normal on that side.
+    /// Geometric normal on the visible side.
     pub n_geo: Vec3,
-    /// Unit view direction in the frame.
+    /// Unit direction to the ray's origin, in the shading frame.
     pub wo: Vec3,
-    /// The BSDF.
+    /// BSDF of all materials at the point.
     pub bsdf: Bsdf<'w>,
 }
 
 impl Shading<'_> {
-    /// Returns BSDF · cosine for a world-space direction, and its density. Zero if `wi` is on
-    /// different sides of the shading and geometric normals, because shading normals are
-    /// approximate.
+    /// Returns BSDF · cosine for a world-space direction, and its density per steradian. The value
+    /// is zero if `wi` is above only one of the shading and the geometric surface, since shading
+    /// normals are approximate.
     pub fn eval(&self, wi: Vec3) -> (Spectrum, f32) {
         let local = self.frame.to_local(wi);
         let (value, pdf) = self.bsdf.eval(self.wo, local);
@@ -41,12 +42,13 @@ impl Shading<'_> {
     }
 }
 
-/// Bends a shading normal towards the geometric one until the mirror direction points outwards.
-/// Interpolated and mapped normals may face away from the ray; the geometric normal does not.
+/// Bends a shading normal towards the geometric normal until the mirror direction points outwards.
+/// Interpolated and mapped normals can face away from the ray's origin; the geometric normal
+/// cannot.
 ///
-/// With angles from the geometric normal, in the plane of both: for a direction (x, z), a mirror at
-/// angle a reflects to height x sin 2a + z cos 2a above the surface, which should be at least
-/// `least`.
+/// In the plane of the geometric normal and `n`, let the view direction be (x, z) and the bent
+/// normal at angle a from the geometric one. The mirror direction then has the height x sin 2a + z
+/// cos 2a above the surface, which should be at least `least`.
 fn bent(n: Vec3, n_geo: Vec3, wo: Vec3) -> Vec3 {
     let (cosine, z) = (n.dot(n_geo), wo.dot(n_geo).max(1e-6));
     let least = (0.9 * z).min(0.01);
@@ -54,7 +56,7 @@ fn bent(n: Vec3, n_geo: Vec3, wo: Vec3) -> Vec3 {
         return n;
     }
     let across = n - cosine * n_geo;
-    // A difference due to rounding has no meaningful direction.
+    // A difference that is due to rounding has no meaningful direction.
     if across.length_squared() < 1e-8 {
         return n_geo;
     }
@@ -66,8 +68,9 @@ fn bent(n: Vec3, n_geo: Vec3, wo: Vec3) -> Vec3 {
 }
 
 impl World {
-    /// Returns noise, else texture, else the diffuse colour; or the diffuse colour times texture
-    /// and vertex colours.
+    /// Returns the diffuse colour at a surface point: noise, or else texture, or else the
+    /// material's colour. For `tinted` materials, the product of colour, texture and vertex
+    /// colours.
     #[inline]
     pub fn diffuse_color(&self, phong: &Phong, surface: &Surface) -> Color {
         let texture = phong.texture.and_then(|i| Some(self.textures()[i as usize].at(surface.uv.get()?)));
@@ -79,12 +82,12 @@ impl World {
         noise.or(texture).unwrap_or(phong.diffuse)
     }
 
-    /// Computes the BSDF at a hit for light towards the ray's origin; `eta` is the index behind the
-    /// surface over that in front.
+    /// Computes the BSDF at a hit, for light towards the ray's origin. `eta` is the index of
+    /// refraction behind the surface divided by that in front of it.
     pub fn shading(&self, at: &SurfaceInteraction, eta: f32, lanes: &Lanes) -> Shading<'_> {
         let (dir, surface, inside) = (at.ray.dir(), &at.surface, at.inside());
         let parts = self.parts(at);
-        // The first material of a mixture with a normal or bump map determines the normal of all.
+        // In a mixture, the first material with a normal or bump map determines the normal for all.
         let mut mapped = parts.iter().filter_map(|part| part.phong.principled.as_ref());
         let mapped = mapped.find(|own| own.maps.normal.is_some() || own.maps.bump.is_some());
         let n_shade = mapped.and_then(|own| self.mapped_normal(&own.maps, at)).unwrap_or(surface.n_shade);
@@ -121,10 +124,10 @@ impl World {
         shading
     }
 
-    /// Returns the frame around a normal; for anisotropic materials along u, rotated by their
-    /// angle.
+    /// Returns the shading frame for a normal. For anisotropic materials, the tangent is the
+    /// direction of u rotated by the material's angle.
     fn frame(&self, parts: &[WeightedMaterial], at: &SurfaceInteraction, n: Vec3) -> Frame {
-        // A texture cannot change 0.
+        // A texture cannot change an anisotropy of 0.
         if parts.iter().any(|part| part.phong.fibre.is_some()) {
             return Frame::along(n, self.tangent(at));
         }
@@ -137,8 +140,8 @@ impl World {
         Frame::along(n, cos as f32 * frame.tangent + sin as f32 * frame.bitangent)
     }
 
-    /// Returns the emission of a material if light sampling is possible: uniform, multiplied by the
-    /// opacity.
+    /// Returns the emission of a material, times its opacity, if it is uniform so that light
+    /// sampling can use it.
     pub(super) fn emission_of(&self, material: u32) -> Option<Emission> {
         let Material::Phong(phong) = self.materials().get(material as usize)? else { return None };
         let emission = phong.emission.as_ref().filter(|emission| !emission.textured)?;
@@ -148,7 +151,7 @@ impl World {
         chosen.then_some(Emission { radiance, ..*emission })
     }
 
-    /// Returns the radiance emitted by a surface towards the ray's origin.
+    /// Returns the radiance that a surface emits towards the ray's origin.
     pub fn emission(&self, at: &SurfaceInteraction) -> Color {
         let inside = at.inside();
         let own = |phong: &Phong| {
@@ -163,7 +166,7 @@ impl World {
         parts.iter().filter_map(|part| own(part.phong).map(|light| part.share * light)).sum()
     }
 
-    /// Returns the measured spectrum of an emitter, if it has one.
+    /// Returns the measured emission spectrum of a light or emissive surface, if it has one.
     pub fn illuminant(&self, light: LightId) -> Option<&Curve> {
         match light {
             LightId::Light(number) => self.illuminants().get(number as usize)?.as_deref(),
@@ -172,7 +175,7 @@ impl World {
         }
     }
 
-    /// Returns the measured spectrum of a material's emission, if it has one.
+    /// Returns the measured emission spectrum of a material, if it has one.
     pub fn own_illuminant(&self, material: u32) -> Option<&Curve> {
         match &self.materials()[material as usize] {
             Material::Phong(phong) => phong.principled.as_ref()?.illuminant.as_deref(),
@@ -180,17 +183,18 @@ impl World {
         }
     }
 
-    /// Returns true if a material may emit.
+    /// Returns true if a material can emit light. False for mixtures.
     pub fn may_emit(&self, material: u32) -> bool {
         matches!(&self.materials()[material as usize], Material::Phong(phong) if phong.emission.is_some())
     }
 
-    /// Returns true if an emissive material is two-sided; `None` if it does not emit.
+    /// Returns whether an emissive material emits on both sides. `None` if light sampling cannot
+    /// use it.
     pub fn emits_on_both_sides(&self, material: u32) -> Option<bool> {
         self.emission_of(material).map(|emission| emission.two_sided)
     }
 
-    /// Returns true if a hit may emit: a fast test for most materials.
+    /// Returns true if a surface may emit. This is a fast test that excludes most materials.
     fn has_emission(&self, at: &SurfaceInteraction) -> bool {
         match &self.materials()[at.material as usize] {
             Material::Phong(phong) => phong.emission.is_some(),
@@ -198,8 +202,8 @@ impl World {
         }
     }
 
-    /// Returns the index of refraction behind a surface that light can enter: that of the material
-    /// with the largest share.
+    /// Returns the index of refraction behind a surface that light can enter. In a mixture, it is
+    /// that of the material with the largest share. `None` if light cannot enter.
     pub fn refracts(&self, at: &SurfaceInteraction, lanes: &Lanes) -> Option<f32> {
         let of = |phong: &Phong| {
             let ior = || phong.principled.as_ref().map_or(phong.ior, |own| own.written.ior_at(lanes.hero()));
@@ -216,8 +220,8 @@ impl World {
         most.1
     }
 
-    /// Returns true if a hit glass uses its index of refraction relative to air, regardless of
-    /// surrounding media.
+    /// Returns true if the glass that was hit uses its index of refraction relative to air,
+    /// whatever medium surrounds it.
     pub fn ignores_surroundings(&self, at: &SurfaceInteraction) -> bool {
         let own = |phong: &Phong| {
             let principled = phong.principled.as_ref();
@@ -226,10 +230,10 @@ impl World {
         self.parts(at).iter().any(|part| own(part.phong))
     }
 
-    /// Returns the opacity of a surface.
+    /// Returns the opacity at a hit, from 0 to 1.
     pub fn opacity(&self, at: &SurfaceInteraction) -> f32 {
         let own = |phong: &Phong| match (&phong.fibre, &phong.principled) {
-            // The fibre's model computes all interior scattering at the entry point.
+            // The hair model computes all scattering inside the fibre at the entry point.
             (Some(_), _) => f32::from(u8::from(!at.inside())),
             (None, Some(own)) => self.opacity_at(own, at),
             (None, None) => 1.0,
@@ -237,18 +241,18 @@ impl World {
         self.parts(at).iter().map(|part| part.share * own(part.phong)).sum()
     }
 
-    /// Returns true if a camera, or a light without extent, sees through a face from the direction
-    /// `dir`, because it is a hidden back.
+    /// Returns true if a hit is on a hidden back, which is invisible to cameras and to lights
+    /// without extent. `dir` is the direction of view.
     pub fn is_hidden(&self, dir: Vec3, at: &SurfaceInteraction) -> bool {
         dir.dot(at.surface.n_geo) > 0.0 && self.parts(at).iter().all(|part| hides_backs(part.phong))
     }
 
-    /// Returns true if some material has hidden backs.
+    /// Returns true if the backs of some material are hidden.
     pub(crate) fn finds_hidden_backs(&self) -> bool {
         self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if hides_backs(phong)))
     }
 
-    /// Returns true if some material has partial opacity.
+    /// Returns true if some material or mesh has an opacity below 1.
     pub(crate) fn finds_cutouts(&self) -> bool {
         let own =
             |phong: &Phong| phong.fibre.is_some() || phong.principled.as_ref().is_some_and(|own| self.is_cutout(own));
@@ -260,7 +264,7 @@ impl World {
             || self.objects().iter().any(clear)
     }
 
-    /// Returns the medium inside an object, or of the air.
+    /// Returns the medium inside an object or, for `None`, that of the air.
     pub fn medium(&self, object: Option<u32>) -> Option<&Medium> {
         let Some(object) = object else { return self.fog() };
         match &self.materials()[self.objects()[object as usize].material as usize] {
@@ -269,28 +273,30 @@ impl World {
         }
     }
 
-    /// Returns true if light from emitters passes straight into a medium: the air, and objects that
-    /// only bound a medium.
+    /// Returns true if light reaches a medium without refraction, so that its points can be lit
+    /// directly. This holds for the air and for objects that only bound a medium.
     pub fn is_open(&self, object: Option<u32>) -> bool {
         object.is_none_or(|object| self.has_no_skin(self.objects()[object as usize].material))
     }
 
-    /// Returns true if a surface has no effect between equal indices of refraction.
+    /// Returns true if a surface has no effect when the indices of refraction on both sides are
+    /// equal.
     pub fn is_interface(&self, at: &SurfaceInteraction) -> bool {
         self.has_interfaces() && self.has_no_skin(at.material)
     }
 
+    /// Returns true if a material only bounds a medium.
     fn has_no_skin(&self, material: u32) -> bool {
         matches!(&self.materials()[material as usize],
             Material::Phong(phong) if phong.principled.as_ref().is_some_and(|own| own.interface))
     }
 
-    /// Returns true if some object only bounds a medium.
+    /// Returns true if some material only bounds a medium.
     pub(crate) fn finds_interfaces(&self) -> bool {
         (0..self.materials().len() as u32).any(|material| self.has_no_skin(material))
     }
 
-    /// Returns the objects that paths enter, if the interior of some material absorbs or scatters.
+    /// Returns the objects that paths can enter. Empty if no interior absorbs or scatters.
     pub(crate) fn finds_bodies(&self) -> Vec<u32> {
         let of = |number: u32| match &self.materials()[number as usize] {
             Material::Phong(phong) => Some(phong),
@@ -304,14 +310,15 @@ impl World {
         (0..).zip(self.objects()).filter(|(_, object)| enters(object)).map(|(number, _)| number).collect()
     }
 
-    /// Returns true if some material is a thin sheet that transmits light straight.
+    /// Returns true if some material is a thin sheet that transmits light straight through.
     pub(crate) fn finds_sheets(&self) -> bool {
         let is_sheet = |m: &PrincipledMaterial| m.walls == Walls::Thin && m.transmission_weight > 0.0;
         let own = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| is_sheet(&own.written));
         self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if own(phong)))
     }
 
-    /// Returns true if light may enter an object at a hit: a fast test for most materials.
+    /// Returns true if light may enter an object at a hit. This is a fast test that excludes most
+    /// materials.
     #[inline]
     pub fn may_enter(&self, at: &SurfaceInteraction) -> bool {
         match &self.materials()[at.material as usize] {
@@ -323,14 +330,14 @@ impl World {
         }
     }
 
-    /// Returns true if the surface disperses light.
+    /// Returns true if the surface that was hit disperses light.
     pub fn disperses(&self, at: &SurfaceInteraction) -> bool {
         let of = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| own.written.disperses());
         self.may_enter(at) && self.parts(at).iter().any(|part| of(part.phong))
     }
 }
 
-/// Adds the lobes of the course's material in physical units: matte with `diffuseColor` over pi,
+/// Adds the lobes of a Phong material, in physical units: a matte lobe with `diffuseColor` over pi,
 /// Blinn's or Phong's highlight, and delta lobes for mirror and glass. Scales all lobes down if
 /// they would reflect more light than arrives.
 fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, view: View) {
@@ -343,7 +350,7 @@ fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, view: Vie
         true => fresnel::dielectric(wo.z, eta),
         false => 1.0,
     };
-    // Without Fresnel's law both rays have full weight.
+    // Without Fresnel reflection, both rays have full weight.
     let passing = if phong.fresnel { 1.0 - reflected } else { 1.0 };
     let (mirror, through) = (reflected * reflective, passing * transparent);
     let all = color + Blinn::bound(exponent) * strength + mirror + through;
@@ -360,7 +367,7 @@ fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, view: Vie
     }
 }
 
-/// Returns true if cameras see through the backs of a material.
+/// Returns true if the backs of a material are invisible to cameras.
 fn hides_backs(phong: &Phong) -> bool {
     phong.principled.as_ref().is_some_and(|own| own.written.backs == Backs::Hidden)
 }

@@ -1,63 +1,63 @@
-//! Trees of Boolean operations on closed shapes, and their division into disjoint pieces, judged by
-//! the bounds of the parts.
+//! CSG solids as trees of boolean operations on closed shapes, and their division into disjoint
+//! pieces by the bounds of their parts.
 //!
-//! Parts with disjoint bounds do not affect each other. So a merge of many separate parts becomes
-//! many objects, which the world's tree finds as fast as any others, and a cut only affects the
-//! parts that it touches.
+//! Parts with disjoint bounds do not affect each other. A union of many separate parts can
+//! therefore be divided into many objects, which the world's acceleration structure handles like
+//! any others, and a subtraction affects only the parts that it touches.
 
 use super::Object;
 use durer_scene::math::Aabb;
 use std::sync::Arc;
 
-/// Boolean rule by the number of parts that contain a point.
+/// Boolean operation of a CSG solid, by how many of its parts must contain a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoolOp {
-    /// At least one.
+    /// At least one part.
     Any,
-    /// Every part, and none of the subtracted ones.
+    /// All parts, and none of the subtracted ones.
     All,
-    /// An odd number.
+    /// An odd number of parts.
     Odd,
 }
 
-/// A closed shape, or a combination.
+/// CSG solid before it is prepared for rendering: a closed shape, or a boolean operation on solids.
 #[derive(Clone, Debug)]
 pub enum Solid {
-    /// A closed shape or mesh, placed in the world.
+    /// A closed shape or mesh, with its transform to world space.
     Operand(Arc<Object>),
-    /// A combination.
+    /// A boolean operation.
     Join {
-        /// Boolean rule.
+        /// Which points belong to the result.
         rule: BoolOp,
-        /// Parts in the order of the file.
+        /// Operands, in the order of the file.
         parts: Vec<Solid>,
-        /// Subtracted parts; only for [`BoolOp::All`].
+        /// Subtracted operands; only for [`BoolOp::All`].
         cut: Vec<Solid>,
     },
 }
 
-/// Number of pairs of pieces above which they are not divided.
+/// Maximum number of pairs of pieces to compare. With more, solids are not divided.
 const MAX_PAIRS: usize = 1 << 22;
 
-/// Number of copies of parts above which pieces are not divided.
+/// Maximum number of copies of parts that division may need. With more, solids are not divided.
 const MAX_COPIES: usize = 1 << 18;
 
-/// A solid and its bounds; `None` if unbounded.
+/// Solid with its bounds, which are `None` if it is unbounded.
 type Piece = (Solid, Option<Aabb>);
 
 impl Solid {
-    /// Returns the union of solids; empty without parts.
+    /// Returns the union of solids, which is empty if there are none.
     pub fn any(parts: Vec<Solid>) -> Solid {
         Solid::join(BoolOp::Any, parts)
     }
 
-    /// Returns the points in an odd number of solids.
+    /// Returns the solid of all points that are in an odd number of solids.
     pub fn odd(parts: Vec<Solid>) -> Solid {
         Solid::join(BoolOp::Odd, parts)
     }
 
-    /// Returns the intersection of `parts` without `cut`. Nested intersections and subtractions are
-    /// flattened.
+    /// Returns the intersection of `parts` minus all solids in `cut`. Flattens nested intersections
+    /// and subtractions.
     pub fn all(parts: Vec<Solid>, cut: Vec<Solid>) -> Solid {
         let (mut flat, mut flat_cut) = (Vec::new(), Vec::new());
         for part in parts {
@@ -81,6 +81,7 @@ impl Solid {
         }
     }
 
+    /// Creates an operation and flattens operands with the same operation.
     fn join(rule: BoolOp, parts: Vec<Solid>) -> Solid {
         let mut flat = Vec::with_capacity(parts.len());
         for part in parts {
@@ -92,7 +93,7 @@ impl Solid {
         if flat.len() == 1 { flat.remove(0) } else { Solid::Join { rule, parts: flat, cut: Vec::new() } }
     }
 
-    /// Returns the bounds, as tight as the operation allows: `None` if unbounded.
+    /// Returns the bounds, as tight as the operation allows. `None` if the solid is unbounded.
     pub fn bounds(&self) -> Option<Aabb> {
         match self {
             Solid::Operand(object) => object.bounds(),
@@ -103,7 +104,7 @@ impl Solid {
         }
     }
 
-    /// Returns the shapes and meshes in it.
+    /// Returns all shapes and meshes that the solid consists of.
     pub fn parts(&self) -> Vec<&Object> {
         match self {
             Solid::Operand(object) => vec![object],
@@ -111,18 +112,19 @@ impl Solid {
         }
     }
 
-    /// Divides the solid into disjoint pieces, in the order of their first parts. An empty solid
-    /// has no pieces.
+    /// Divides the solid into disjoint pieces, ordered by their first parts. An empty solid has no
+    /// pieces.
     pub fn pieces(self) -> Vec<Solid> {
         self.boxed_pieces().into_iter().map(|piece| piece.0).collect()
     }
 
+    /// Divides the solid into disjoint pieces with their bounds.
     fn boxed_pieces(self) -> Vec<Piece> {
         match self {
             Solid::Operand(_) => vec![boxed(self)],
             Solid::Join { rule: BoolOp::All, parts, cut } => intersected(parts, cut),
             Solid::Join { rule, parts, .. } => {
-                // Each piece keeps the index of its part.
+                // Keep the index of the part with each of its pieces.
                 let pieces: Vec<(usize, Piece)> = parts
                     .into_iter()
                     .enumerate()
@@ -140,12 +142,13 @@ impl Solid {
     }
 }
 
+/// Computes the bounds of a solid.
 fn boxed(solid: Solid) -> Piece {
     let bounds = solid.bounds();
     (solid, bounds)
 }
 
-/// Combines pieces of several parts into one solid; pieces of the same part are disjoint.
+/// Combines pieces of several parts into one solid. Pieces of the same part are disjoint.
 fn rejoined(rule: BoolOp, cluster: Vec<(usize, Solid)>) -> Solid {
     let mut parts: Vec<(usize, Vec<Solid>)> = Vec::new();
     for (part, solid) in cluster {
@@ -157,11 +160,12 @@ fn rejoined(rule: BoolOp, cluster: Vec<(usize, Solid)>) -> Solid {
     Solid::join(rule, parts.into_iter().map(|(_, pieces)| Solid::any(pieces)).collect())
 }
 
-/// Intersects the pieces of the first part with those of the others that they touch.
+/// Intersects each piece of the first part with the pieces of the other parts that it touches, and
+/// subtracts the pieces of `cut`.
 fn intersected(parts: Vec<Solid>, cut: Vec<Solid>) -> Vec<Piece> {
     let mut parts = parts.into_iter();
     let first = parts.next().map_or(Vec::new(), Solid::boxed_pieces);
-    // Join the intersections at the end: doing it part by part would be quadratic.
+    // Build the operations at the end, because adding part by part would take quadratic time.
     let mut found: Vec<(Vec<Solid>, Option<Aabb>)> =
         first.into_iter().map(|(solid, bounds)| (vec![solid], bounds)).collect();
     let whole = |pieces: Vec<Piece>| Solid::any(pieces.into_iter().map(|piece| piece.0).collect());
@@ -192,16 +196,17 @@ fn intersected(parts: Vec<Solid>, cut: Vec<Solid>) -> Vec<Piece> {
     found.into_iter().zip(near).map(cut_off).collect()
 }
 
+/// Returns copies of some pieces.
 fn copies(pieces: &[Piece], which: &[usize]) -> Vec<Solid> {
     which.iter().map(|&i| pieces[i].0.clone()).collect()
 }
 
-/// Intersects two boxes; an unbounded box has no effect.
+/// Intersects two boxes. `None` stands for all space.
 fn common(a: Option<Aabb>, b: Option<Aabb>) -> Option<Aabb> {
     a.zip(b).map(|(a, b)| Aabb { min: a.min.max(b.min), max: a.max.min(b.max) }).or(a).or(b)
 }
 
-/// Returns for each box the pieces whose boxes touch it; `None` if there are too many.
+/// Returns, for each box, the indices of the pieces that touch it. `None` if there are too many.
 fn touching(boxes: &[Option<Aabb>], others: &[Piece]) -> Option<Vec<Vec<usize>>> {
     if boxes.len() * others.len() > MAX_PAIRS {
         return None;
@@ -216,7 +221,7 @@ fn touching(boxes: &[Option<Aabb>], others: &[Piece]) -> Option<Vec<Vec<usize>>>
     boxes.iter().map(near).collect()
 }
 
-/// Returns true if two boxes touch, within the precision of floats.
+/// Returns true if two boxes touch, within single precision. `None` stands for all space.
 fn touch(a: Option<Aabb>, b: Option<Aabb>) -> bool {
     let (Some(a), Some(b)) = (a, b) else { return true };
     let reach = |b: &Aabb| b.min.abs().max(b.max.abs()).max_element();
@@ -224,10 +229,10 @@ fn touch(a: Option<Aabb>, b: Option<Aabb>) -> bool {
     (a.min - pad).cmple(b.max).all() && (b.min - pad).cmple(a.max).all()
 }
 
-/// Returns for each box the index of its cluster: boxes that touch directly or through others.
-/// Clusters are numbered by their first box.
+/// Returns, for each box, the index of its cluster. Boxes are in the same cluster if they touch
+/// directly or through others. Clusters are numbered by their first boxes.
 fn clusters_of(boxes: &[Option<Aabb>]) -> Vec<usize> {
-    // Union-find forest; a root is the first box of its cluster.
+    // Union-find forest. The root of a cluster is its first box.
     let mut parents: Vec<usize> = (0..boxes.len()).collect();
     fn root(parents: &mut [usize], mut i: usize) -> usize {
         while parents[i] != i {
@@ -236,7 +241,7 @@ fn clusters_of(boxes: &[Option<Aabb>]) -> Vec<usize> {
         }
         i
     }
-    // Sweep over x: only active boxes may touch the next one. Unbounded boxes stay active.
+    // Sweep along x: only active boxes can touch the next one. Unbounded boxes stay active.
     let mut order: Vec<usize> = (0..boxes.len()).collect();
     let begin = |i: usize| boxes[i].map_or(f32::NEG_INFINITY, |b| b.min.x);
     order.sort_by(|&a, &b| begin(a).total_cmp(&begin(b)).then(a.cmp(&b)));

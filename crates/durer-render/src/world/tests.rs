@@ -1,4 +1,4 @@
-//! Tests that the three structures return identical hits, bit for bit.
+//! Tests that the acceleration structures return identical hits, bit for bit.
 
 use super::*;
 use crate::compile::{AccelKind, testing};
@@ -8,7 +8,7 @@ use durer_scene::math::random::{Random, rounds};
 use std::fmt::Write;
 use std::path::Path;
 
-/// Returns a sphere of 12 * 4^n triangles as an OBJ file: a subdivided cube, projected outwards.
+/// Returns an OBJ file of a sphere with 12 * 4^n triangles: a subdivided cube, projected outwards.
 fn ball_file(cuts: usize) -> String {
     let mut text = String::new();
     let n = 1usize << cuts;
@@ -37,8 +37,8 @@ fn ball_file(cuts: usize) -> String {
 const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
     f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 4 8 7 3\nf 1 5 8 4\nf 2 3 7 6\n";
 
-/// Returns a scene of many shapes and meshes under nested groups and transforms, with coincident
-/// objects.
+/// Returns a scene of many shapes and meshes in nested groups and transforms. Some objects
+/// coincide.
 fn scene(random: &mut Random, size: f32) -> String {
     let mut text = String::from("PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }\nGroup {\n");
     let words = |v: Vec3| format!("{:?} {:?} {:?}", v.x, v.y, v.z);
@@ -63,8 +63,8 @@ fn scene(random: &mut Random, size: f32) -> String {
                     || format!("Sphere {{ center {} radius {:?} }}", words(size * random.point()), size * 0.2);
                 format!("Merge {{ {} }}", (0..30).map(|_| ball()).collect::<String>())
             }
-            // An axis-aligned sheet at integers, like a floor: its rays run in the faces of its
-            // box.
+            // An axis-aligned triangle at integer coordinates, like a floor. Rays can lie in the
+            // faces of its box.
             _ => "Triangle { vertex0 -2 0 -2 vertex1 2 0 -2 vertex2 -2 0 2 }".into(),
         };
         let object = match random.below(3) {
@@ -75,7 +75,7 @@ fn scene(random: &mut Random, size: f32) -> String {
                 format!("Transform {{ {a} Transform {{ Translate {} {b} {object} }} }}", words(random.point()))
             }
         };
-        // Some objects occur two or three times.
+        // Some objects are repeated once or twice.
         for _ in 0..[1, 1, 1, 2, 3][random.below(5)] {
             text += &object;
             text.push('\n');
@@ -89,8 +89,8 @@ fn scene(random: &mut Random, size: f32) -> String {
     text + "Sphere { center 0 0 0 radius 1 }" + &"}\n".repeat(nested + 1)
 }
 
-/// Returns rays of all kinds: random, at corners, along axes and in faces of boxes, orthographic,
-/// from far away.
+/// Returns a ray of one of many kinds: random, towards corners, along axes, in faces of boxes,
+/// orthographic, or from far away.
 fn ray(world: &World, random: &mut Random, size: f32) -> Ray {
     let object = &world.objects()[random.below(world.objects().len())];
     let bounds = object.bounds().unwrap_or(Aabb { min: Vec3::splat(-size), max: Vec3::splat(size) });
@@ -148,7 +148,7 @@ fn all_structures_return_the_same_hit() {
                 assert_eq!(world.occluded(&ray, &mut ()), expected.is_some(), "{kind:?} {ray:?}");
             }
             hits += usize::from(expected.is_some());
-            // Ties: another object at the same t.
+            // Count ties, where another object is hit at the same t.
             ties += expected.map_or(0, |hit| {
                 let other = |i: &usize| *i != hit.object as usize;
                 let same = |i: usize| {
@@ -199,7 +199,8 @@ fn transforms_apply_last_to_first_and_preserve_t() {
         Group { Transform { Translate 10 0 0 ZRotate 90 Scale 2 1 1
         Transform { Translate 1 0 0 Sphere { center 0 0 0 radius 1 } } } }";
     let world = testing::read(text);
-    // The sphere at 1, stretched to 2, rotated to +y, moved to (10, 2, 0): half axes 1, 2, 1.
+    // The sphere at 1 is stretched to 2, rotated to +y, and moved to (10, 2, 0). Its half axes are
+    // 1, 2 and 1.
     let hit =
         |origin: [f32; 3], dir: [f32; 3]| world.closest(&Ray::new(origin.into(), dir.into()), &mut ()).map(|h| h.t);
     assert_eq!(hit([10.0, -5.0, 0.0], [0.0, 1.0, 0.0]), Some(5.0));
@@ -235,8 +236,8 @@ fn edited_world_has_the_digest_of_its_contents() {
     assert_eq!(all.len(), 6);
 }
 
-/// Simple shapes, solids and meshes, some of them rotated or distant, with batches of coherent and
-/// random rays, valid or not: the same results as one by one, and as brute force.
+/// Traces batches of coherent, random and invalid rays through simple shapes, solids and meshes,
+/// some of them rotated or distant. The hits must equal those of single rays and of brute force.
 #[test]
 fn batches_of_rays_match_single_rays() {
     let folder = tempfile::tempdir().unwrap();

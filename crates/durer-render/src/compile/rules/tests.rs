@@ -1,11 +1,11 @@
-//! Tests of lights in each dialect.
+//! Tests of lights as each dialect interprets them.
 
 use durer_scene::dialect::Dialect;
 use durer_scene::light::{Illuminate as _, PointLight};
 use durer_scene::math::Vec3;
 use glam::DVec3;
 
-/// Returns the light of strength 1 that arrives at distance 2.
+/// Returns the light that arrives at a distance of 2 from a point light of colour 1.
 fn arriving(dialect: Dialect, attenuation: Option<Vec3>, falloff: Option<f32>) -> f32 {
     let light = PointLight { position: Vec3::Z * 2.0, color: Vec3::ONE, attenuation, falloff, ..PointLight::default() };
     let seen = super::light(&light.into(), dialect.rules()).illuminate(DVec3::ZERO);
@@ -25,11 +25,11 @@ fn point_lights_attenuate_by_their_dialect() {
         assert_eq!(arriving(dialect, None, Some(0.0)), 1.0);
     }
     assert_eq!(arriving(Dialect::F12a4, a, Some(0.75)), 1.0);
-    // Without the constant 1.
+    // These dialects have no constant 1 in the divisor.
     assert_eq!(arriving(Dialect::F16, None, Some(0.5)), 0.5);
     assert_eq!(arriving(Dialect::F23, None, Some(0.5)), 0.5);
     assert_eq!(arriving(Dialect::F23, None, None), 1.0 / 80.0);
-    // The official program of 2016 divides by zero; sane rules have no attenuation.
+    // The official program of 2016 divides by zero; without its bugs there is no attenuation.
     assert!(!arriving(Dialect::F16, None, None).is_finite());
     let light = super::light(&PointLight::default().into(), &Dialect::F16.rules().without_quirks());
     assert_eq!(light.illuminate((Vec3::X * 7.0).as_dvec3()).color, Vec3::ONE);

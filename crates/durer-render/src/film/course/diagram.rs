@@ -1,6 +1,6 @@
-//! Diagrams of the 2004 course: positions of samples in their pixels, and weights of a filter.
+//! Diagrams of the 2004 course: sample positions within pixels, and filter weights.
 //!
-//! Both enlarge each pixel to `zoom` times `zoom` pixels.
+//! Both show each pixel enlarged to `zoom` times `zoom` pixels.
 
 use super::stored::{CourseFilter, StoredSamples};
 use durer_scene::math::{Color, Vec2, Vec3};
@@ -8,14 +8,14 @@ use durer_scene::math::{Color, Vec2, Vec3};
 #[cfg(test)]
 mod tests;
 
-/// Picture of a diagram, row 0 at the top.
+/// Picture of sample positions or filter weights, as the 2004 course draws them; row 0 at the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagram {
     /// Number of columns.
     pub width: u32,
     /// Number of rows.
     pub height: u32,
-    /// Colours from 0 to 1, to be written as trunc(255 c).
+    /// Colours from 0 to 1; a byte of the file is trunc(255 c).
     pub pixels: Vec<Color>,
 }
 
@@ -26,11 +26,11 @@ impl Diagram {
     }
 }
 
-/// Draws one dot in the sample's colour for each sample, on a chessboard of black and dark grey
-/// pixels, the bottom left one grey.
+/// Draws each sample as a dot of its colour. The background is a checkerboard of black and dark
+/// grey pixels; the bottom left pixel is grey.
 ///
-/// The course's `-render_samples`: `width * zoom` columns. A `zoom` of 0 counts as 1; the caller
-/// limits the size.
+/// This is the course's `-render_samples`. The diagram has `width * zoom` columns. A `zoom` of 0 is
+/// treated as 1; the caller must limit the size.
 pub fn samples(samples: &StoredSamples, zoom: u32) -> Diagram {
     let zoom = zoom.max(1);
     let (width, height) = samples.size();
@@ -51,16 +51,17 @@ pub fn samples(samples: &StoredSamples, zoom: u32) -> Diagram {
     diagram
 }
 
-/// Draws a filter's weights in grey over the pixels of its support around the middle pixel. Other
-/// pixels are dark blue, and blue lines separate the pixels.
+/// Draws a filter's weights in grey over its support around the middle pixel. Other pixels are dark
+/// blue, and blue lines separate the pixels.
 ///
-/// The course's `-render_filter`: `width * zoom + 1` columns. A `zoom` of 0 counts as 1; the caller
-/// limits the size.
+/// This is the course's `-render_filter`. The diagram has `width * zoom + 1` columns. A `zoom` of 0
+/// is treated as 1; the caller must limit the size.
 pub fn filter(width: u32, height: u32, zoom: u32, filter: CourseFilter) -> Diagram {
     weights(width, height, zoom, filter.support(), |offset| filter.weight(offset))
 }
 
-/// Draws any function of the offset (right and down, in pixels) with maximum 1. See [`filter`].
+/// Draws a function of the offset from the middle pixel (right and down, in pixels) with a maximum
+/// of 1, like [`filter`].
 pub fn weights(width: u32, height: u32, zoom: u32, support: u32, weight: impl Fn(Vec2) -> f32) -> Diagram {
     let zoom = zoom.max(1);
     // Middle pixel, counted from the left and from the bottom.

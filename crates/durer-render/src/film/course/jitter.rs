@@ -1,4 +1,5 @@
-//! Fall 2012, assignment 5: three by three jittered sub-pixels, blurred and averaged.
+//! Film of Fall 2012, assignment 5: three by three jittered samples per pixel, blurred and
+//! averaged.
 
 use durer_scene::math::{Color, Vec2, Vec3};
 use durer_scene::sampler::random_2d;
@@ -6,26 +7,25 @@ use durer_scene::sampler::random_2d;
 #[cfg(test)]
 mod tests;
 
-/// Position of a sub-pixel's sample, in sub-pixels of the enlarged picture (three times as wide and
-/// high) that `-jitter` renders: a uniform number between -1/2 and 1/2 is added to each integer
-/// coordinate.
+/// Returns a sample position for `-jitter`, in sub-pixels. There are three by three sub-pixels per
+/// pixel. A uniform number between -1/2 and 1/2 is added to each integer coordinate.
 pub fn jittered_position(seed: u64, x: u32, y: u32) -> Vec2 {
     Vec2::new(x as f32, y as f32) + (random_2d(seed, x, y, 0, 0) - 0.5)
 }
 
-/// Five weights of `-filter`, from two left to two right. The published weights sum to 1.0011; the
-/// brightness of official pictures needs a sum of 1.
+/// Five weights of `-filter`, from two sub-pixels left to two right. The published weights sum to
+/// 1.0011, but official pictures have the brightness that a sum of 1 gives.
 const BLUR: [f32; 5] = [0.1201 / SUM, 0.2339 / SUM, 0.2931 / SUM, 0.2339 / SUM, 0.1201 / SUM];
 const SUM: f32 = 1.0011;
 
-/// Blurs a picture with five taps along rows, then along columns. Border pixels are repeated beyond
-/// the edges.
+/// Blurs a picture along its rows and then its columns, with five taps. Border pixels are repeated
+/// beyond the edges.
 ///
 /// Panics if there are not `width * height` pixels.
 pub fn blur(pixels: &[Color], width: u32, height: u32) -> Vec<Color> {
     let (w, h) = (width as usize, height as usize);
     assert_eq!(pixels.len(), w * h, "the size must be that of the pixels");
-    // `at` is the tap's position plus 2, before clamping.
+    // `at` is the tap's position plus 2, before it is clamped to the picture.
     let tap = |at: usize, length: usize| at.saturating_sub(2).min(length - 1);
     let along_rows = by_pixels(w, h, |x, y| (0..5).map(|k| BLUR[k] * pixels[y * w + tap(x + k, w)]).sum());
     by_pixels(w, h, |x, y| (0..5).map(|k| BLUR[k] * along_rows[tap(y + k, h) * w + x]).sum())
@@ -41,12 +41,13 @@ pub fn average_3x3(pixels: &[Color], width: u32, height: u32) -> Vec<Color> {
     })
 }
 
-/// Applies `-jitter -filter` to a picture three times as wide and high.
+/// Applies `-jitter -filter`: turns a picture of sub-pixels, three times as wide and high, into
+/// pixels.
 pub fn blur_and_average(pixels: &[Color], width: u32, height: u32) -> Vec<Color> {
     average_3x3(&blur(pixels, width, height), width, height)
 }
 
-/// Picture of a function of column and row.
+/// Returns a picture, computed pixel by pixel from column and row.
 fn by_pixels(width: usize, height: usize, color: impl Fn(usize, usize) -> Color) -> Vec<Color> {
     (0..width * height).map(|i| color(i % width, i / width)).collect()
 }

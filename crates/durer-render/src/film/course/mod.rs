@@ -1,7 +1,7 @@
-//! Films, filters and diagrams of the course's assignments, unchanged.
+//! Films, filters and diagrams that reproduce the course's assignments exactly.
 //!
-//! They are plain functions of samples and pixels. A job selects them, and they do not depend on
-//! the dialect.
+//! They are plain functions of samples and pixels, selected by the render job. They do not depend
+//! on the dialect.
 
 pub mod diagram;
 mod jitter;

@@ -1,8 +1,8 @@
-//! Film of Fall 2004, assignment 7: stored samples, weighted by their offset from the centre of the
-//! target pixel, also from neighbouring pixels.
+//! Film of Fall 2004, assignment 7. It stores all samples; a pixel is the weighted mean of its own
+//! samples and those of neighbouring pixels.
 //!
-//! Each pixel is summed in a fixed order, so it does not depend on which part of the picture is
-//! rendered.
+//! Each pixel is summed in a fixed order, so the result is the same when only a part of the picture
+//! is rendered.
 
 use durer_scene::math::{Color, Vec2, fp};
 use glam::DVec3;
@@ -12,7 +12,7 @@ use std::convert::Infallible;
 #[cfg(test)]
 mod tests;
 
-/// Sample of the 2004 film.
+/// Position and colour of one sample on the film of the 2004 course.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoredSample {
     /// Position in its pixel, in [0,1)^2, right and down.
@@ -21,26 +21,26 @@ pub struct StoredSample {
     pub color: Color,
 }
 
-/// Samples of a picture, with an equal number in each pixel.
+/// All samples of a picture on the film of the 2004 course, the same number in each pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StoredSamples {
     width: u32,
     height: u32,
     per_pixel: u32,
-    /// Samples of each row, pixel by pixel.
+    /// Samples of each row, ordered by pixel.
     rows: Vec<Vec<StoredSample>>,
 }
 
 impl StoredSamples {
-    /// Takes every sample by `sample(x, y, number)`, rows from the top. Takes at least one per
-    /// pixel.
+    /// Takes all samples by calling `sample(x, y, number)`, row by row from the top. `per_pixel` is
+    /// at least 1.
     pub fn take(width: u32, height: u32, per_pixel: u32, sample: impl Fn(u32, u32, u32) -> StoredSample) -> Self {
         let sample = |x, y, number| Ok::<_, Infallible>(sample(x, y, number));
         let Ok(all) = StoredSamples::try_take(width, height, per_pixel, sample);
         all
     }
 
-    /// Takes samples until one fails. See [`StoredSamples::take`].
+    /// Takes samples like [`StoredSamples::take`], but stops at the first that fails.
     pub fn try_take<E>(
         width: u32,
         height: u32,
@@ -54,7 +54,7 @@ impl StoredSamples {
         Ok(StoredSamples { width, height, per_pixel, rows: rows? })
     }
 
-    /// Returns the numbers of columns and rows.
+    /// Returns width and height in pixels.
     pub fn size(&self) -> (u32, u32) {
         (self.width, self.height)
     }
@@ -66,21 +66,21 @@ impl StoredSamples {
         &self.rows[y as usize][x as usize * n..][..n]
     }
 
-    /// Returns the picture, row 0 at the top: each pixel is the weighted mean of the samples of all
-    /// pixels within the filter's support, inside the picture.
+    /// Reconstructs the picture, row 0 at the top. Each pixel is the weighted mean of the samples
+    /// in all pixels within the filter's support.
     ///
-    /// If all weights are zero (a filter narrower than the gaps between samples), a pixel is the
-    /// mean of the samples within it.
+    /// If all weights are zero (when the filter is narrower than the gaps between samples), the
+    /// pixel is the mean of its own samples.
     pub fn reconstruct(&self, filter: CourseFilter) -> Vec<Color> {
         let Ok(pixels) = self.try_reconstruct(filter, (0, 0), self.size(), || Ok::<_, Infallible>(()));
         pixels
     }
 
-    /// Returns a part of the picture from a column and row on; regularly checks with `go_on` if it
-    /// should continue.
+    /// Reconstructs a rectangle of the picture. Calls `go_on` regularly and stops at its first
+    /// error.
     ///
-    /// The part equals that of the whole picture if the samples extend around it by the filter's
-    /// support, or to the picture's edge.
+    /// The result equals that part of the full picture if there are samples around the rectangle as
+    /// far as the filter's support or the picture's edge.
     pub fn try_reconstruct<E>(
         &self,
         filter: CourseFilter,
@@ -97,12 +97,13 @@ impl StoredSamples {
             .collect()
     }
 
+    /// Returns the mean of a pixel's own samples.
     fn mean(&self, x: u32, y: u32) -> Color {
         let sum: DVec3 = self.pixel(x, y).iter().map(|s| s.color.as_dvec3()).sum();
         (sum / f64::from(self.per_pixel)).as_vec3()
     }
 
-    /// Returns the weighted mean around a pixel; `None` if no sample has a weight.
+    /// Returns the weighted mean around a pixel, or `None` if all weights are zero.
     fn filtered<E>(
         &self,
         filter: CourseFilter,
@@ -126,21 +127,21 @@ impl StoredSamples {
     }
 }
 
-/// Filter of the 2004 course. Lengths are in pixels; weights are not normalised, their maximum is
-/// 1.
+/// Reconstruction filter of the 2004 course. Lengths are in pixels. The maximum weight is 1;
+/// weights are not normalized.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum CourseFilter {
-    /// 1 if both distances are at most the radius.
+    /// 1 if the offset along both axes is at most the radius, else 0.
     Box {
         /// Half the width.
         radius: f32,
     },
-    /// A cone: 1 at the centre, 0 at the radius.
+    /// A cone that falls from 1 at the centre to 0 at the radius.
     Tent {
         /// Radius of the cone's base.
         radius: f32,
     },
-    /// exp(-d^2 / (2 sigma^2)), limited by the pixels of the support instead of cut at 2 sigma.
+    /// exp(-d^2 / (2 sigma^2)). Cut off at the border of the support's pixels, not at 2 sigma.
     Gaussian {
         /// Standard deviation.
         sigma: f32,
@@ -148,7 +149,7 @@ pub enum CourseFilter {
 }
 
 impl CourseFilter {
-    /// Returns the weight of a sample at an offset from the centre of the pixel.
+    /// Returns the weight of a sample at this offset from the pixel's centre.
     pub fn weight(self, offset: Vec2) -> f32 {
         match self {
             CourseFilter::Box { radius } => f32::from(offset.abs().max_element() <= radius),
@@ -160,20 +161,20 @@ impl CourseFilter {
         }
     }
 
-    /// Returns the weight in pixel (x, y) of a sample at a position in another pixel.
+    /// Returns the weight, in pixel (x, y), of a sample in pixel (column, row).
     pub fn weight_between(self, (column, row): (u32, u32), position: Vec2, (x, y): (u32, u32)) -> f32 {
-        // From the centre of the pixel to the corner of the other.
+        // Offset from the centre of the target pixel to the corner of the sample's pixel.
         let corner = Vec2::new(column as f32 - x as f32, row as f32 - y as f32) - 0.5;
         self.weight(corner + position)
     }
 
-    /// Returns the number of pixels of the support on each side of the pixel.
+    /// Returns how many pixels the support extends beyond the pixel on each side.
     pub fn support(self) -> u32 {
         let reach = match self {
             CourseFilter::Box { radius } | CourseFilter::Tent { radius } => radius,
             CourseFilter::Gaussian { sigma } => 2.0 * sigma,
         };
-        // Negative numbers become 0.
+        // The cast turns negative numbers into 0.
         (reach - 0.5).ceil() as u32
     }
 }

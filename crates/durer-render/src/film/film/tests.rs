@@ -7,7 +7,7 @@ struct Sample(u32, u32, u32, Vec3, f32);
 
 fn film(samples: &[Sample]) -> Film {
     let mut film = Film::new(3, 2);
-    // Some samples are misses.
+    // Some samples are transparent.
     let seen = |s: u32, color| if s % 4 == 3 { None } else { Some(color) };
     samples.iter().for_each(|&Sample(x, y, s, color, weight)| film.add_if_seen(x, y, s, seen(s, color), weight));
     film
@@ -30,7 +30,7 @@ fn samples() -> impl Strategy<Value = Vec<Sample>> {
 proptest! {
     #[test]
     fn packing_preserves_films(samples in samples()) {
-        // All samples, typical ones, and one in each pixel.
+        // Films with all samples, with usual ones, and with one usual sample in each pixel.
         let usual = samples.iter().copied().filter(|s| s.3.is_finite() && s.2 % 4 != 3);
         let usual: Vec<Sample> = usual.map(|s| Sample(s.0, s.1, s.2, s.3.clamp(Vec3::splat(-7.0), Vec3::splat(7.0)), 1.0)).collect();
         let single: Vec<Sample> = (0..6).zip(&usual).map(|(i, &Sample(_, _, s, color, weight))| Sample(i % 3, i / 3, s, color, weight)).collect();
@@ -59,7 +59,7 @@ proptest! {
     ) {
         let whole = film(&given);
         prop_assert_eq!(&whole, &film(&shuffled));
-        // Parts of the shuffled samples, merged in reverse order.
+        // Merge parts of the shuffled samples in reverse order.
         let mut ends: Vec<usize> = cuts.iter().map(|c| (c * shuffled.len() as f64) as usize).collect();
         ends.extend([0, shuffled.len()]);
         ends.sort_unstable();
@@ -93,7 +93,7 @@ fn misses_are_transparent_black_by_their_weight() {
     film.add_if_seen(1, 0, 0, None, 1.0);
     assert_eq!((film.coverage(1, 0), film.resolve(1, 0)), (0.0, Vec3::ZERO));
     assert_eq!((film.coverage(2, 0), film.resolve(2, 0)), (1.0, Vec3::ZERO));
-    // Weights that sum to zero, with a miss among the samples.
+    // The weights sum to zero, and one of the samples is transparent.
     film.add(2, 0, 0, Vec3::ONE, 1.0);
     film.add_if_seen(2, 0, 1, None, -1.0);
     assert_eq!((film.coverage(2, 0), film.resolve(2, 0)), (1.0, Vec3::ZERO));
@@ -123,7 +123,7 @@ fn rejected_samples_are_counted_and_the_first_are_listed() {
     film.add(0, 1, 0, Vec3::splat(1e30), 1.0);
     film.add(1, 0, 77, Vec3::splat(0.25), 1.0);
     assert_eq!((film.rejected(), film.first_rejected().len()), (41, REMEMBERED));
-    // Excessive brightness is clamped.
+    // Colours that are too bright are clamped.
     assert_eq!(film.resolve(0, 1), Vec3::splat(GREATEST_COLOR as f32));
     assert_eq!(film.first_rejected()[..2], [Rejected { y: 0, x: 0, sample: 9 }, Rejected { y: 0, x: 1, sample: 0 }]);
     assert_eq!((film.resolve(1, 0), film.samples(1, 0)), (Vec3::splat(0.25), 1));
@@ -138,7 +138,7 @@ fn variance_is_finite_for_finite_samples_and_zero_for_equal_ones() {
             film.add(1, 0, s, Vec3::splat(if s % 2 == 0 { size } else { -size }), 1.0);
         }
         let (equal, mixed) = (film.variance(0, 0, 1.0), film.variance(1, 0, 1.0));
-        // The mean's rounding to single precision leaves a residue.
+        // Rounding the mean to single precision leaves a small residue.
         let most = f64::from(size).min(GREATEST_LUMINANCE);
         assert!(equal <= 1e-12 * most * most, "{size}: {equal}");
         assert!(mixed.is_finite() && mixed <= most * most, "{size}: {mixed}");

@@ -1,4 +1,4 @@
-//! Light of photons at a vertex.
+//! Caustics: light from photons near a path vertex.
 
 use super::Path;
 use super::photons::DensityEstimate;
@@ -9,7 +9,7 @@ use crate::integrator::trace::{TermKind, TraceListener};
 use durer_scene::spectrum::Spectrum;
 
 impl Path<'_> {
-    /// Adds the light of photons near a vertex.
+    /// Adds the light of photons near a vertex to the path's radiance.
     pub(super) fn add_caustic<T: TraceListener>(
         &self,
         vertex: &Vertex,

@@ -1,4 +1,4 @@
-//! Bound on the light of emitters that light sampling misses, for honest error estimates.
+//! Upper bound on light that samples rarely find, used for error estimates.
 
 use super::{Direct, Path};
 use crate::world::emitters::emitter_of;
@@ -8,10 +8,13 @@ use durer_scene::math::Color;
 use std::f32::consts::PI;
 
 impl Path<'_> {
-    /// Maximum contribution of one irradiance sample from light that samples rarely find: emitters
-    /// with a picture or partial opacity, solids, and infinite shapes; all emissive surfaces if
-    /// something mirrors or refracts and no photons are sent; and the dimmest part of the
-    /// environment with light sampling alone. `brightness` weights colours.
+    /// Returns the maximum contribution of one irradiance sample from light that samples rarely
+    /// find. `brightness` maps colours to numbers.
+    ///
+    /// Such light comes from emitters that light sampling does not choose: those with a texture or
+    /// partial opacity, solids, and infinite shapes. If something mirrors or refracts and no
+    /// photons are sent, it comes from all emissive surfaces. With light sampling alone, it also
+    /// comes from the dimmest part of the environment.
     pub fn most_by_chance(&self, brightness: impl Fn(Color) -> f32) -> f32 {
         let shows = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
         let mut phongs = self.world.materials().iter().filter_map(|material| match material {
@@ -31,10 +34,11 @@ impl Path<'_> {
             }
             Direct::Both | Direct::Bsdf => 0.0,
         };
-        // Directions are sampled by their cosine, so a hit counts pi times.
+        // Directions are sampled in proportion to their cosine, so a hit counts pi times.
         sky.max(PI * brightest)
     }
 
+    /// Returns the maximum brightness that a material emits.
     fn brightest(&self, material: u32, brightness: &impl Fn(Color) -> f32) -> f32 {
         match &self.world.materials()[material as usize] {
             Material::Phong(phong) => phong.emission.as_ref().map_or(0.0, |emission| brightness(emission.radiance)),

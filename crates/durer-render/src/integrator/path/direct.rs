@@ -1,8 +1,8 @@
-//! Light sampling: a point on a light, its MIS weight, and the shadow ray.
+//! Direct light at a path vertex: a point sampled on a light, its MIS weight and its shadow ray.
 //!
-//! Lights are found by sampling points on them and by the directions that BSDFs sample; the power
-//! heuristic weights the lights that both can find. Source: Veach, *Robust Monte Carlo Methods for
-//! Light Transport Simulation*, 1997, chapter 9.
+//! Paths find lights in two ways, by sampling a point on a light and by sampling a direction from
+//! the BSDF. The power heuristic weights the lights that both can find. Source: Veach, *Robust
+//! Monte Carlo Methods for Light Transport Simulation*, 1997, chapter 9.
 
 use super::Path;
 use super::radiance::{Contribution, Output};
@@ -18,31 +18,32 @@ use durer_scene::math::{Color, Ray64, Vec2};
 use durer_scene::medium::Segment;
 use durer_scene::spectrum::Spectrum;
 
-/// Sampled point of a light, as seen from a vertex.
+/// Point sampled on a light, with the BSDF value and densities for its direction from a path
+/// vertex.
 struct LightLiSample {
     light: LightSample,
-    /// BSDF · cosine at the vertex.
+    /// BSDF times cosine at the vertex.
     value: Spectrum,
-    /// Density per steradian with which the BSDF samples this direction.
+    /// Density per steradian with which BSDF sampling chooses this direction.
     bsdf_pdf: f32,
-    /// Density per steradian of the light sample; a probability for a light without extent.
+    /// Density per steradian of the light sample; a probability for lights without extent.
     pdf: f32,
-    /// Density per steradian of a candidate, selected or not. MIS weights use this one.
+    /// Density per steradian of all candidates, before one is selected. MIS weights use this one.
     candidate_pdf: f32,
 }
 
-/// Step between the random numbers of several candidates, which stratifies them (R2 sequence).
+/// Offset between the random numbers of successive candidates (R2 sequence), which stratifies them.
 ///
 /// Source: Martin Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018.
 const R2_STEP: Vec2 = Vec2::new(0.754_877_7, 0.569_840_3);
 
 impl Path<'_> {
-    /// Chooses a light for a vertex.
+    /// Chooses one light for a vertex at random; `None` if no light can reach it.
     pub(super) fn choose_light(&self, vertex: &Vertex) -> Option<Choice> {
         self.world.emitters().choose(self.world, &vertex.receiver, vertex.random(Dimension::Choices).y)
     }
 
-    /// Samples a point on a chosen light and adds the light from it that arrives and is scattered.
+    /// Samples a point on the chosen light and adds the light that the vertex scatters from there.
     pub(super) fn add_direct<T: TraceListener>(
         &self,
         choice: &Choice,
@@ -57,14 +58,15 @@ impl Path<'_> {
         if value == Spectrum::ZERO || light.radiance == Color::ZERO {
             return;
         }
-        // No direction hits a light without extent.
+        // BSDF sampling never hits a light without extent.
         let bsdf_pdf = if light.pdf > 0.0 { bsdf_pdf } else { 0.0 };
         let weight_of = |bsdf_pdf| self.transport.direct.of_light(candidate_pdf, bsdf_pdf);
         if weight_of(bsdf_pdf) == 0.0 && !self.world.has_sheets() {
             return;
         }
         let (visibility, sheets) = self.visibility(&light, vertex, state, context, output.tally);
-        // A path needs one bounce per sheet. With too few left, it never hits the light.
+        // Each sheet costs a path one bounce. With too few bounces left, BSDF sampling never hits
+        // the light.
         let mis = weight_of(if state.depth + sheets > self.max_depth() { 0.0 } else { bsdf_pdf });
         let contribution = Contribution {
             factor: value * (mis / pdf) * visibility,
@@ -84,7 +86,7 @@ impl Path<'_> {
         self.add(contribution, what, state, context, output);
     }
 
-    /// Samples a point on a chosen light.
+    /// Samples a point on the chosen light.
     fn sample_li(&self, choice: &Choice, vertex: &Vertex) -> Option<LightLiSample> {
         if choice.is_sky() && vertex.tries > 1.0 {
             return self.resample_environment(choice, vertex);
@@ -101,7 +103,7 @@ impl Path<'_> {
         Some(LightLiSample { light, value, bsdf_pdf, pdf, candidate_pdf: pdf })
     }
 
-    /// Samples several directions to the environment and selects one of them in proportion to its
+    /// Samples several directions towards the environment and selects one in proportion to its
     /// unoccluded, MIS-weighted contribution.
     ///
     /// Source: Talbot, Cline and Egbert, *Importance Resampling for Global Illumination*, EGSR
@@ -140,7 +142,8 @@ impl Path<'_> {
         Some(LightLiSample { light, value, bsdf_pdf, pdf, candidate_pdf })
     }
 
-    /// Fraction of a light that arrives at a vertex, by lane, and the number of sheets it passes.
+    /// Returns the fraction of a light that reaches a vertex, by lane, and the number of sheets in
+    /// between.
     fn visibility<T: TraceListener>(
         &self,
         light: &LightSample,
@@ -154,7 +157,8 @@ impl Path<'_> {
         }
         let media = vertex.kind.media_behind(light.wi).unwrap_or(&state.media);
         let mut ray = vertex.kind.shadow_ray(light);
-        // Rounding hides surfaces closer than this, such as another point of the same sphere.
+        // Surfaces closer than rounding errors are skipped, such as another point on the same
+        // sphere.
         if ray.rounded.t_max <= ray.rounded.t_min {
             return (Spectrum::ZERO, 0);
         }
@@ -167,7 +171,7 @@ impl Path<'_> {
             }
             None => Spectrum::ONE,
         };
-        // A direction can hit both sides of a light, so light samples must also reach both sides.
+        // A BSDF sample can hit a light on both sides, so light samples must reach both sides too.
         let hides_backs = self.world.hides_backs() && light.pdf == 0.0;
         if !self.world.has_cutouts() && !self.world.has_interfaces() && !self.world.has_sheets() {
             match self.world.occluded(&ray, tally) {
@@ -177,7 +181,7 @@ impl Path<'_> {
             }
         }
         let mut media = media.clone();
-        // After 64 layers, count the light as occluded.
+        // After 64 layers the light counts as occluded.
         for _ in 0..64 {
             let Some(hit) = self.world.closest(&ray, tally) else {
                 return (left * pass(&media, &ray, ray.rounded.t_max), sheets);
@@ -201,8 +205,8 @@ impl Path<'_> {
         (Spectrum::ZERO, 0)
     }
 
-    /// Fraction of light that passes straight through an open surface, such as a pane. If photons
-    /// are sent to the surface, they account for that light.
+    /// Returns the fraction of light that passes straight through an open surface, such as a pane.
+    /// If photons are sent to the surface, they account for that light instead.
     fn straight_transmittance(&self, at: &SurfaceInteraction, context: &SampleContext) -> Spectrum {
         let opacity = self.world.opacity(at);
         let around = Spectrum::splat(1.0 - opacity);
@@ -212,18 +216,18 @@ impl Path<'_> {
         around + opacity * self.world.shading(at, 1.0, &context.lanes).bsdf.straight()
     }
 
-    /// Returns true if a lobe transmits light as in [`Path::straight_transmittance`]: light samples
-    /// of the previous vertex already include what lies behind.
+    /// Returns true if this lobe transmits light as [`Path::straight_transmittance`] does. Light
+    /// samples at the previous vertex then already include the lights behind the surface.
     pub(super) fn is_seen_through(&self, vertex: &Vertex, lobe: usize, state: &PathState) -> bool {
         self.world.has_sheets() && !state.prev_is_target && vertex.kind.goes_straight(lobe)
     }
 
-    /// Returns true if photons are sent to the hit object.
+    /// Returns true if photons are sent to the object that was hit.
     pub(super) fn is_photon_target(&self, at: &SurfaceInteraction) -> bool {
         self.photons.as_ref().is_some_and(|photons| photons.reaches(at.hit.object))
     }
 
-    /// Shadow ray for the trace.
+    /// Returns the shadow ray of a light sample for the trace.
     fn shadow(&self, vertex: &VertexKind, light: &LightSample, share: TermValue) -> Shadow {
         let ray = vertex.shadow_ray(light);
         let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
@@ -232,19 +236,19 @@ impl Path<'_> {
 }
 
 impl Direct {
-    /// MIS weight of a light sample with density `light`, if the BSDF samples its direction with
-    /// density `bsdf`.
+    /// Returns the MIS weight of a light sample with density `light` in whose direction BSDF
+    /// sampling has density `bsdf`.
     fn of_light(self, light: f32, bsdf: f32) -> f32 {
         match self {
             Direct::Both => power_heuristic(light, bsdf),
             Direct::Lights | Direct::Middle => 1.0,
-            // Light samples keep only the lights that no direction hits.
+            // Light samples count only for lights that BSDF sampling cannot hit.
             Direct::Bsdf => f32::from(u8::from(bsdf == 0.0)),
         }
     }
 
-    /// MIS weight of a light hit by a direction with density `bsdf`, if light sampling has density
-    /// `light`.
+    /// Returns the MIS weight of a light that a BSDF sample with density `bsdf` hit, where light
+    /// sampling has density `light`.
     pub(super) fn of_direction(self, bsdf: f32, light: f32) -> f32 {
         match self {
             Direct::Both => power_heuristic(bsdf, light),
@@ -254,8 +258,8 @@ impl Direct {
     }
 }
 
-/// The power heuristic: MIS weight of a strategy with density `a`, combined with one of density
-/// `b`.
+/// Returns the MIS weight of a strategy with density `a` against one with density `b`, by the power
+/// heuristic.
 fn power_heuristic(a: f32, b: f32) -> f32 {
     if b == 0.0 {
         return 1.0;

@@ -1,4 +1,4 @@
-//! Light at the end of a ray: the background, suns, and the emission of surfaces.
+//! Light at the end of a path's ray: background, suns and emissive surfaces.
 
 use super::Path;
 use super::radiance::{Contribution, Output};
@@ -9,7 +9,7 @@ use durer_scene::math::Color;
 use durer_scene::spectrum::Spectrum;
 
 impl Path<'_> {
-    /// Adds the background and suns in the direction of a ray that left the scene.
+    /// Adds the background and the suns in the direction of a ray that left the scene.
     pub(super) fn add_background<T: TraceListener>(
         &self,
         state: &PathState,
@@ -20,7 +20,8 @@ impl Path<'_> {
         let dir = state.ray.dir();
         let (sky, pdf) = emitters.sky(self.world, dir);
         let mut light = context.lanes.light(sky);
-        // The camera sees suns, also through delta lobes; elsewhere they are sampled as lights.
+        // Suns are visible to the camera, also through delta lobes. Other vertices sample them as
+        // lights.
         if state.camera_distance.is_some() {
             let suns = emitters.suns(dir);
             light += suns
@@ -35,7 +36,7 @@ impl Path<'_> {
         self.add(contribution, || TermKind::Sky, state, context, output);
     }
 
-    /// Adds the light that a hit surface emits.
+    /// Adds the light that a surface emits where a ray hit it.
     pub(super) fn add_emission<T: TraceListener>(
         &self,
         at: &SurfaceInteraction,
@@ -54,8 +55,9 @@ impl Path<'_> {
         self.add(contribution, || TermKind::Emission { mis }, state, context, output);
     }
 
-    /// MIS weight of a light hit by a sampled direction. `is_sampled`: photons are sent from it;
-    /// `light_pdf`: density per steradian with which it is sampled as a light.
+    /// Returns the MIS weight of a light that a BSDF sample hit. `is_sampled` is true if photons
+    /// are sent from the light. `light_pdf` returns the density per steradian with which light
+    /// sampling finds it.
     fn hit_weight(&self, state: &PathState, is_sampled: bool, light_pdf: impl Fn(&PrevVertex) -> f32) -> f32 {
         match &state.prev_vertex {
             Some(prev) => self.transport.direct.of_direction(prev.pdf, light_pdf(prev)),
@@ -64,7 +66,8 @@ impl Path<'_> {
         }
     }
 
-    /// Density per steradian with which light sampling at the previous vertex chooses a hit.
+    /// Returns the density per steradian with which light sampling at the previous vertex finds the
+    /// hit point.
     fn pdf_of_hit(&self, at: &SurfaceInteraction, prev: &PrevVertex) -> f32 {
         let SurfaceInteraction { ray, hit, .. } = at;
         let way = ray.origin() + f64::from(hit.t) * ray.dir().as_dvec3() - prev.receiver.point;

@@ -1,16 +1,19 @@
-//! Path tracing with next-event estimation, multiple importance sampling and Russian roulette.
+//! Path tracer with next-event estimation, multiple importance sampling and Russian roulette.
 //!
-//! A path is a loop over a `PathState`, as in pbrt and Mitsuba. Each bounce runs these stages. None
-//! of them calls another bounce, so a wavefront can run each over an array of states:
+//! As in pbrt and Mitsuba, a path is a loop over a `PathState`. Each bounce runs the stages below.
+//! No stage calls another bounce, so a wavefront renderer could run each one over an array of
+//! states.
 //!
-//! 1. `Path::propagate`: the ray travels to the next vertex, through media and past surfaces that
-//!    have no effect.
-//! 2. `Path::add_background`, `Path::add_emission`: light at the end of the ray, weighted
-//!    against light sampling at the previous vertex.
-//! 3. `Path::choose_light`, `Path::add_direct`: a point on a light, with its shadow ray.
-//! 4. `Path::add_caustic`: light of photons.
-//! 5. `Path::scatter`: a sampled direction, roulette, and the next ray. With an environment,
-//!    the first glossy vertex follows several directions; they wait on the `PathStack`.
+//! 1. `Path::propagate` moves the ray to its next vertex, through media and past surfaces without
+//!    effect.
+//! 2. `Path::add_background` and `Path::add_emission` add the light at the end of the ray, with an
+//!    MIS weight against light sampling at the previous vertex.
+//! 3. `Path::choose_light` and `Path::add_direct` sample a point on a light and trace its shadow
+//!    ray.
+//! 4. `Path::add_caustic` adds the light of photons.
+//! 5. `Path::scatter` samples a direction, applies Russian roulette and starts the next ray. If
+//!    there is an environment, the first glossy vertex follows several directions, which wait on
+//!    the `PathStack`.
 //!
 //! The radiance of a camera ray is the sum of throughput · light over all terms, in the order in
 //! which they are found.
@@ -40,27 +43,27 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use vertex::{DIRECTIONS, VertexKind};
 
-/// Path tracer of one world.
+/// Path tracing integrator for one world, with or without photons for caustics.
 #[derive(Clone, Debug)]
 pub struct Path<'w> {
-    /// Scene to render.
+    /// World to render.
     pub world: &'w World,
     /// Maximum depth, and whether objects cast shadows.
     pub settings: WhittedOptions,
-    /// Sampling of lights, colour mode, clamp.
+    /// Light sampling strategy, colour mode and clamp.
     pub transport: PathOptions,
-    /// Photons for caustics; without them, paths find caustics by chance.
+    /// Photons for caustics. If `None`, paths find caustics only by chance.
     pub photons: Option<Arc<Photons>>,
-    /// Footprint of a sample, if a texture is filtered by it.
+    /// Footprint of a camera sample; `None` if no texture is filtered.
     pub cone: Option<RayCone>,
-    /// Once set, no more rays are traced and all results are meaningless.
+    /// Cancellation flag. Once it is set, no more rays are traced and results are meaningless.
     pub cancel: Option<&'w AtomicBool>,
 }
 
-/// Branches of a camera ray: the active one and the pending ones.
+/// Stack of the branches of one camera path: the one being traced and those still to trace.
 struct PathStack {
     active: PathState,
-    /// Branches of the first vertex, the next one last.
+    /// Branches that start at the first glossy vertex; the next one is last.
     pending: SmallVec<[PathState; DIRECTIONS as usize]>,
 }
 
@@ -82,7 +85,7 @@ impl Integrate for Path<'_> {
         context.lanes.color(self.trace(state, hit, &context, tally))
     }
 
-    /// First hits of camera rays are found together.
+    /// Traces a batch of camera rays. Their first hits are computed together.
     fn radiances<T: TraceListener>(
         &self,
         rays: &[Ray64],
@@ -113,18 +116,18 @@ impl Integrate for Path<'_> {
 }
 
 impl<'w> Path<'w> {
-    /// Path tracer without photons that is never cancelled.
+    /// Creates a path tracer without photons or cancellation.
     pub fn new(world: &'w World, settings: WhittedOptions, transport: PathOptions) -> Self {
         Path { world, settings, transport, photons: None, cone: None, cancel: None }
     }
 
-    /// Irradiance at a point, on the side of a unit normal, with the random numbers of a sample: pi
-    /// times the radiance of a white matte surface.
+    /// Returns the irradiance at a point on the side of a unit normal: pi times the radiance of a
+    /// white matte surface. `id` selects the random numbers.
     pub fn irradiance<T: TraceListener>(&self, point: DVec3, normal: Vec3, id: SampleId, tally: &mut T) -> Color {
         self.irradiance_on(&Surface::around(point, normal), normal, id, tally)
     }
 
-    /// Irradiance at a surface point, on the side of a unit normal for shading. See
+    /// Returns the irradiance at a surface point on the side of a unit shading normal. See
     /// [`Path::irradiance`].
     pub fn irradiance_on<T: TraceListener>(
         &self,
@@ -149,7 +152,7 @@ impl<'w> Path<'w> {
         std::f32::consts::PI * context.lanes.color(output.radiance)
     }
 
-    /// State shared by the branches of a camera ray.
+    /// Returns the data shared by all branches of a camera path.
     fn context(&self, id: SampleId) -> SampleContext {
         match &self.photons {
             Some(photons) => {
@@ -160,18 +163,18 @@ impl<'w> Path<'w> {
         }
     }
 
-    /// State of a path that starts along a ray from any point.
+    /// Returns the state of a path that starts with a ray from any point.
     fn start(&self, ray: Ray64, id: SampleId) -> PathState {
         let media = Media::around(self.world, ray.origin().as_vec3());
         PathState::new(ray, id, media)
     }
 
-    /// Vertices of greater depth scatter no light.
+    /// Returns the maximum depth of vertices that scatter light.
     fn max_depth(&self) -> u32 {
         self.settings.bounces
     }
 
-    /// Radiance along the ray of a state, by lane, from its first hit on.
+    /// Returns the radiance along the ray of a state, by lane. `hit` is its first hit.
     fn trace<T: TraceListener>(
         &self,
         active: PathState,
@@ -184,7 +187,7 @@ impl<'w> Path<'w> {
         output.radiance
     }
 
-    /// Follows all branches to their end, one bounce at a time, depth first.
+    /// Traces all branches to their end, one bounce at a time, depth first.
     fn follow<T: TraceListener>(
         &self,
         hit: Option<Hit>,
@@ -200,8 +203,8 @@ impl<'w> Path<'w> {
         }
     }
 
-    /// First hit of the active ray, or of the next pending one if the active path has ended; `None`
-    /// when all have ended.
+    /// Returns the first hit of the active branch's ray. If that branch has ended, continues with a
+    /// pending one, or returns `None` if there is none.
     fn intersect_next<T: TraceListener>(
         &self,
         goes_on: bool,
@@ -214,8 +217,8 @@ impl<'w> Path<'w> {
         Some(self.world.closest_along(&mut stack.active.ray, tally))
     }
 
-    /// Runs one bounce: traces the ray to the next vertex, adds the light found there, and turns
-    /// the active state into that of the next ray. Returns false when the active path has ended.
+    /// Runs one bounce: moves the ray to its next vertex, adds the light there, and turns the
+    /// active state into that of the next ray. Returns false if the active branch has ended.
     fn bounce<T: TraceListener>(
         &self,
         hit: Option<Hit>,
@@ -251,8 +254,8 @@ impl<'w> Path<'w> {
         }
     }
 
-    /// Adds the light that reaches a vertex from lights and photons, and scatters the path. Returns
-    /// false when the active path has ended.
+    /// Adds the light that a vertex scatters from lights and photons, and continues the path.
+    /// Returns false if the active branch has ended.
     fn shade<T: TraceListener>(
         &self,
         kind: VertexKind<'_, 'w>,
@@ -266,8 +269,8 @@ impl<'w> Path<'w> {
         }
         let vertex = self.vertex(kind, state);
         let is_broad = kind.is_broad();
-        // With many lights, the chosen one is rarely in the cache; the direction is sampled while
-        // it is fetched.
+        // If there are many lights, the chosen one is rarely in the CPU cache. Sample the direction
+        // while it is being fetched.
         let light = if is_broad { self.choose_light(&vertex) } else { None };
         let sample = if vertex.directions == 1 { vertex.sample_bsdf() } else { None };
         if let Some(light) = light {

@@ -1,4 +1,4 @@
-//! Options of the path tracer, with and without photons.
+//! Options of path tracing and of photon mapping.
 
 use super::{Path, Photons};
 use crate::integrator::{IntegratorContext, Parameters};
@@ -30,7 +30,7 @@ impl Parameters for PathOptions {
     type Integrator<'w> = Path<'w>;
 
     fn over(self, IntegratorContext { world, settings, cone, cancel, .. }: IntegratorContext<'_>) -> Path<'_> {
-        // Without mipmaps the footprint is unused.
+        // The footprint is needed only for mipmaps.
         let cone = cone.filter(|_| world.has_mipmaps());
         Path { cancel, cone, ..Path::new(world, settings, self) }
     }
@@ -40,17 +40,17 @@ impl Parameters for PathOptions {
     }
 }
 
-/// Options of path tracing with photons.
+/// Options of path tracing with photons for caustics (`--integrator photons`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PhotonParameters {
-    /// Options of path tracing.
+    /// Options of the path tracer.
     #[serde(flatten)]
     pub transport: PathOptions,
     /// Number of photons per sample.
     pub count: u32,
-    /// Search radius of the first sample, in world units.
+    /// Search radius for photons in the first sample, in world units.
     pub radius: Option<f32>,
-    /// Removes the bias to second order, with more noise: see [`Photons::corrected`].
+    /// Removes the bias to second order at the cost of more noise; see [`Photons::corrected`].
     pub corrected: bool,
 }
 
@@ -119,8 +119,8 @@ impl Parameters for PhotonParameters {
     }
 }
 
-/// Strategy for direct light from emitters with extent. All except [`Direct::Middle`] have the same
-/// mean; they differ in noise.
+/// Strategy for sampling direct light from emitters with extent: light sampling, BSDF sampling or
+/// both. All except [`Direct::Middle`] have the same mean and differ only in noise.
 ///
 /// Source: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapter 9.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -129,23 +129,23 @@ pub enum Direct {
     /// Light and BSDF sampling, combined by the power heuristic.
     #[default]
     Both,
-    /// Light sampling alone; BSDF samples count only for emitters that light sampling never finds.
+    /// Light sampling alone. BSDF samples count only for emitters that light sampling never finds.
     Lights,
-    /// BSDF sampling alone; light samples count only for lights that no direction hits.
+    /// BSDF sampling alone. Light samples count only for lights that BSDF sampling cannot hit.
     Bsdf,
-    /// [`Direct::Lights`] with a fixed point of each emitter: the centre of a sphere, disc or
-    /// rectangle. Shadows are hard; wrong, for teaching only.
+    /// [`Direct::Lights`] with a fixed point on each emitter: the centre of a sphere, disc or
+    /// rectangle. Shadows become hard. Biased; for teaching only.
     Middle,
 }
 
 impl Direct {
-    /// The public choices.
+    /// Strategies that users can choose.
     pub const CHOICES: [Direct; 3] = [Direct::Both, Direct::Lights, Direct::Bsdf];
 
-    /// Names of the choices.
+    /// Names of [`Direct::CHOICES`].
     const NAMES: [&str; 3] = [Direct::CHOICES[0].name(), Direct::CHOICES[1].name(), Direct::CHOICES[2].name()];
 
-    /// Returns the name.
+    /// Returns the strategy's name in options.
     pub const fn name(self) -> &'static str {
         match self {
             Direct::Both => "both",

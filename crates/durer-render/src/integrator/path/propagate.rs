@@ -1,4 +1,4 @@
-//! Propagation of a ray to the next vertex: through media, and past surfaces that have no effect.
+//! Propagation of a path's ray to its next vertex, through media and past surfaces without effect.
 
 use super::Path;
 use super::state::{PathState, SampleContext};
@@ -11,15 +11,17 @@ use durer_scene::spectrum::{Lanes, Spectrum};
 use glam::DVec3;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Outcome of propagating a ray.
+/// Next event along a path's ray: a surface hit, scattering in a medium, or the end of the path.
 pub(super) enum Event {
-    /// Roulette or absorption ended the path.
+    /// The path ended inside a medium, by Russian roulette or after too many scatterings.
     Absorbed,
     /// The ray left the scene.
     Escaped,
-    /// A medium that does not hide lights scattered the ray at a point, along a unit direction.
+    /// The ray scattered at a point in an open medium, in which lights are visible. The vector is
+    /// the ray's unit direction.
     Medium(DVec3, Vec3, HenyeyGreenstein),
-    /// The ray hit a surface; with a passage if light may enter or leave the object.
+    /// The ray hit a surface. The passage is `None` if light cannot enter or leave the object
+    /// there.
     Surface(Option<Passage>),
 }
 
@@ -27,9 +29,9 @@ pub(super) enum Event {
 const MAX_WALK: u32 = 10_000;
 
 impl Path<'_> {
-    /// Follows a state's ray from its first hit to the next vertex. Updates the ray, throughput,
-    /// media and camera distance. Writes the hit surface into `at`, which is reused to avoid slow
-    /// copies.
+    /// Follows the ray of a state from its first hit to the next vertex. Updates the state's ray,
+    /// throughput, media and camera distance. Writes the surface that was hit into `at`, which is
+    /// reused because copies are slow.
     pub(super) fn propagate<T: TraceListener>(
         &self,
         hit: Option<Hit>,
@@ -43,7 +45,7 @@ impl Path<'_> {
         event
     }
 
-    /// [`Path::propagate`], also returning the transmittance.
+    /// Implements [`Path::propagate`], and also returns the transmittance.
     #[inline(always)]
     fn propagate_inner<T: TraceListener>(
         &self,
@@ -54,7 +56,7 @@ impl Path<'_> {
         tally: &mut T,
     ) -> (Event, Spectrum) {
         let lanes = &context.lanes;
-        // Ray from the last surface that was passed.
+        // Ray that starts at the last scattering and skips the surfaces passed since.
         let mut rest = state.ray;
         let mut transmittance = Spectrum::ONE;
         let (mut walked, mut layers, mut scatterings) = (0.0, 0, 0);
@@ -72,14 +74,14 @@ impl Path<'_> {
                         DistanceSample::Scattered(distance, left) => {
                             transmittance *= left;
                             state.throughput = before * transmittance;
-                            // Stay in front of the surface that bounds the medium.
+                            // Stay in front of the surface that encloses the medium.
                             let distance = distance.min(length * (1.0 - gamma(16)));
                             let point = way.origin + f64::from(distance) * way.dir.as_dvec3();
                             if self.world.is_open(state.media.object()) {
                                 return (Event::Medium(point, way.dir, medium.phase), transmittance);
                             }
-                            // Lights are not visible from inside: continue the walk until it leaves
-                            // the object.
+                            // Lights are not visible from inside this object, so continue the
+                            // random walk until it leaves.
                             scatterings += 1;
                             let survival = match scatterings {
                                 0..16 => 1.0,
@@ -113,7 +115,7 @@ impl Path<'_> {
                 if self.world.has_cutouts() {
                     let opacity = self.world.opacity(at);
                     layers += 1;
-                    // A cutout is not a bounce.
+                    // Passing through a cutout does not count as a bounce.
                     if opacity < 1.0 && state.sample.layer(state.depth, layers) >= opacity {
                         rest.rounded.t_min = hit.t;
                         break 'passed;
@@ -138,7 +140,7 @@ impl Path<'_> {
         self.cancel.is_some_and(|cancel| cancel.load(Relaxed))
     }
 
-    /// Passage of light through a surface; `None` if no light enters the object.
+    /// Returns the passage of a ray through a surface, or `None` if light cannot enter the object.
     pub(super) fn passage(&self, at: &SurfaceInteraction, media: &Media, lanes: &Lanes) -> Option<Passage> {
         let ior = self.world.refracts(at, lanes)?;
         let passage = media.nested_passage(self.world, at, ior, at.inside());
@@ -148,7 +150,7 @@ impl Path<'_> {
         })
     }
 
-    /// Returns true if a surface only bounds a medium and does not deflect light.
+    /// Returns true if a surface has no effect on the ray except for a change of medium.
     pub(super) fn is_nothing(&self, at: &SurfaceInteraction, passage: &Passage) -> bool {
         passage.hidden || passage.here == passage.there && self.world.is_interface(at)
     }

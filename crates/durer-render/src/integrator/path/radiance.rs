@@ -1,30 +1,30 @@
-//! Sum of the light along a path.
+//! Summation of the light that a path finds.
 
 use super::Path;
 use super::state::{PathState, SampleContext};
 use crate::integrator::trace::{TermKind, TraceListener};
 use durer_scene::spectrum::Spectrum;
 
-/// Accumulated radiance along a camera ray, and the trace listener.
+/// Output of tracing a path: the sum of the radiance found so far, and the trace listener.
 pub(super) struct Output<'t, T> {
     /// Sum of throughput · light over all terms so far, by lane.
     pub(super) radiance: Spectrum,
-    /// Counts rays; may record every term.
+    /// Counts rays and can record each term.
     pub(super) tally: &'t mut T,
 }
 
-/// Light that arrives at the current vertex.
+/// Light found at a path vertex, to be added to the camera ray's radiance.
 pub(super) struct Contribution {
-    /// Factor at the vertex: MIS weight, BSDF · cosine / pdf, visibility.
+    /// Factor at the vertex: MIS weight · BSDF · cosine / pdf · visibility.
     pub(super) factor: Spectrum,
-    /// Radiance of the source.
+    /// Radiance of the light source.
     pub(super) light: Spectrum,
-    /// Number of scatterings between the source and the camera.
+    /// Number of scattering events between the source and the camera.
     pub(super) scatterings: u32,
 }
 
 impl Path<'_> {
-    /// Adds light to the sum: throughput · factor · light, clamped.
+    /// Adds throughput · factor · light, clamped, to the radiance of the camera ray.
     #[inline(always)]
     pub(super) fn add<T: TraceListener>(
         &self,

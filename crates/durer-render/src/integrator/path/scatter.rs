@@ -1,4 +1,4 @@
-//! Scattering at a vertex: the next direction, Russian roulette, and the next ray.
+//! Scattering at a path vertex: direction sampling, Russian roulette and the next ray.
 
 use super::state::{Dimension, PathState, PrevVertex, SampleContext};
 use super::vertex::{BsdfSample, Vertex};
@@ -11,8 +11,8 @@ use durer_scene::spectrum::Spectrum;
 const MAX_SURVIVAL: f32 = 0.95;
 
 impl Path<'_> {
-    /// Follows the sampled direction from a vertex, or several if the vertex splits: then all
-    /// branches are pending. Returns true if the active state continues.
+    /// Continues the path in the sampled direction, or in several if the vertex splits; these
+    /// become pending branches. Returns true if the active branch continues.
     pub(super) fn scatter<T: TraceListener>(
         &self,
         vertex: &Vertex,
@@ -33,13 +33,13 @@ impl Path<'_> {
                 stack.pending.push(branch);
             }
         }
-        // Depth first, in ascending order.
+        // Trace the branches depth first, in ascending order.
         stack.pending.reverse();
         false
     }
 
-    /// Turns a state into the state of the ray along a sampled direction. Returns false if roulette
-    /// ends the path; the state is undefined then.
+    /// Turns a state into that of the ray in a sampled direction. Returns false if Russian roulette
+    /// ends the path, which leaves the state undefined.
     fn spawn<T: TraceListener>(
         &self,
         vertex: &Vertex,
@@ -58,7 +58,7 @@ impl Path<'_> {
         }
         let is_delta = sample.pdf == 0.0;
         if is_delta {
-            // No light sample competes with a delta lobe, unless light samples see through it.
+            // Light samples do not compete with a delta lobe, unless they see through the surface.
             state.prev_vertex = state.prev_vertex.filter(|_| self.is_seen_through(vertex, sample.lobe, state));
             state.is_caustic |= state.had_rough_bounce;
         } else {
@@ -94,8 +94,8 @@ impl Path<'_> {
         true
     }
 
-    /// Ends all wavelengths but the hero at a dispersive surface: the others would refract in other
-    /// directions. The hero then counts four times.
+    /// At a dispersive surface, ends all wavelengths but the hero, because they would refract in
+    /// other directions. The hero's weight is multiplied by four to make up for them.
     pub(super) fn select_hero<T: TraceListener>(
         &self,
         at: &SurfaceInteraction,

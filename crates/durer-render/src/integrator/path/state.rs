@@ -1,4 +1,4 @@
-//! State of a path between two stages.
+//! State of a path between two stages of a bounce.
 
 use super::PhotonMap;
 use crate::integrator::media::Media;
@@ -9,90 +9,92 @@ use durer_scene::sampler::SampleId;
 use durer_scene::spectrum::{Lanes, Spectrum};
 use std::sync::Arc;
 
-/// Pairs of random numbers of one vertex, by their purpose.
+/// Index of a pair of random numbers at a path vertex, by purpose.
 #[derive(Clone, Copy)]
 pub(super) enum Dimension {
-    /// x: lobe of the BSDF; y: light.
+    /// x selects the BSDF lobe, y the light.
     Choices,
     /// Direction within the lobe.
     Direction,
     /// Point on the light.
     LightPoint,
-    /// x: Russian roulette; y: choice among several candidate directions to the environment.
+    /// x is for Russian roulette, y selects one of several candidate directions to the environment.
     Survival,
 }
 
-/// Pairs of random numbers per vertex.
+/// Number of pairs of random numbers per vertex.
 pub(super) const DIMENSIONS: usize = 4;
 
-/// Data shared by all branches of a camera ray.
+/// Data shared by all branches of a camera path: the meaning of spectrum lanes, and the photons.
 pub(super) struct SampleContext {
     /// Meaning of the four lanes of a spectrum: RGB, or wavelengths.
     pub(super) lanes: Lanes,
-    /// Photons of the sample; `None` for an integrator without photons.
+    /// Photon map of the sample; `None` without photon mapping.
     pub(super) photons: Option<Arc<PhotonMap>>,
 }
 
 impl SampleContext {
-    /// Spectrum for the trace.
+    /// Converts a spectrum to a value for the trace.
     pub(super) fn term(&self, light: Spectrum) -> TermValue {
         TermValue::of(&self.lanes, light)
     }
 }
 
-/// State of a path, or of one branch of it, between two stages.
+/// State of a path, or of one of its branches, between two stages of a bounce.
 ///
-/// Holds no references, so that states can be stored in an array. Only the list of media allocates,
-/// if more than two objects overlap.
+/// It holds no references, so states can be stored in an array. Only the list of media allocates
+/// memory, and only if more than two objects overlap.
 #[derive(Clone, Debug)]
 pub(super) struct PathState {
-    /// Ray to the next vertex; world space. Camera rays may have a direction of any length.
+    /// Ray to the next vertex, in world space. The direction of a camera ray can have any length.
     pub(super) ray: Ray64,
-    /// Product of BSDF · cosine / pdf, 1 / survival and transmittance since the camera, by lane.
-    /// Dimensionless, at least 0. Roulette and media sample by it.
+    /// Product of BSDF · cosine / pdf, 1 / survival probability and transmittance since the camera,
+    /// by lane; at least 0. Russian roulette and media depend on it.
     pub(super) throughput: Spectrum,
-    /// Fraction of the pixel that this branch represents, in (0, 1]: 1 / (number of branches).
-    /// Separate from `throughput`, so that splitting does not make roulette end branches sooner.
+    /// Share of the pixel that this branch represents: 1 / (number of branches). Separate from
+    /// `throughput`, so that Russian roulette does not end branches sooner than unsplit paths.
     pub(super) share: f32,
-    /// Number of scatterings since the camera, from 0; vertices deeper than `max_depth` scatter no
+    /// Number of scattering events since the camera. Vertices deeper than `max_depth` scatter no
     /// light.
     pub(super) depth: u32,
-    /// Source of the random numbers; each branch has its own.
+    /// Random numbers of the path; each branch has its own.
     pub(super) sample: SampleId,
-    /// Objects that contain the ray, by number; the last one fills the space.
+    /// Objects that contain the ray. The last one fills the space.
     pub(super) media: Media,
-    /// Last vertex with light sampling, for MIS with lights that the ray hits. `None` if no light
-    /// sample competes: from the camera, and after delta lobes.
+    /// Last vertex that sampled lights, for the MIS weight of lights that the ray hits. `None` if
+    /// no light sample competes: after the camera and after delta lobes.
     pub(super) prev_vertex: Option<PrevVertex>,
     /// True if photons are sent to the last surface that scattered the path.
     pub(super) prev_is_target: bool,
-    /// True after a bounce off a lobe with a density.
+    /// True after scattering from a lobe that is not a delta lobe.
     pub(super) had_rough_bounce: bool,
-    /// True if delta lobes follow a rough bounce: photons account for the lights that the path
-    /// sees.
+    /// True if delta lobes follow a rough bounce. Photons then account for the lights that the path
+    /// hits.
     pub(super) is_caustic: bool,
-    /// True if dispersion has ended all wavelengths but the hero, lane 0.
+    /// True after dispersion, when only the hero wavelength in lane 0 is left.
     pub(super) monochromatic: bool,
-    /// Length of the path from the camera in units of the world, at least 0, while only delta lobes
-    /// scattered it; `None` after that.
+    /// Length of the path from the camera in world units. `None` after the first scattering from a
+    /// lobe that is not a delta lobe.
     pub(super) camera_distance: Option<f32>,
-    /// Parent node in the trace for the next terms.
+    /// Trace node to which the next terms belong.
     pub(super) node: NodeId,
 }
 
-/// Vertex at which lights were sampled, for later MIS. Source: Veach 1997, chapter 9.
+/// Vertex where lights were sampled, kept for the MIS weight of lights that the next ray hits.
+/// Source: Veach 1997, chapter 9.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PrevVertex {
-    /// Point and normal that lights were sampled for; world space.
+    /// Point and normal for which lights were sampled, in world space.
     pub(super) receiver: Receiver,
-    /// Density of the sampled direction per steradian, times the number of directions; above 0.
+    /// Density of the sampled direction per steradian, times the number of directions; greater than
+    /// 0.
     pub(super) pdf: f32,
     /// Number of candidate directions to the environment; at least 1.
     pub(super) tries: f32,
 }
 
 impl PathState {
-    /// Start of a path along a ray.
+    /// Creates the state at the start of a path.
     pub(super) fn new(ray: Ray64, sample: SampleId, media: Media) -> Self {
         PathState {
             ray,
@@ -111,13 +113,13 @@ impl PathState {
         }
     }
 
-    /// Random numbers of the next vertex; see [`Dimension`].
+    /// Returns the random numbers of the next vertex; see [`Dimension`].
     pub(super) fn vertex_sample(&self) -> SampleId {
         self.sample.at(self.depth * DIMENSIONS as u32)
     }
 
-    /// Branch `number` of `count` at a vertex that splits. Branches extend the pixel's sequence of
-    /// samples, so that all of them together stay stratified.
+    /// Returns branch `number` of `count` at a vertex that splits. Branches continue the pixel's
+    /// sample sequence, so that all of them are stratified together.
     pub(super) fn branch(&self, number: u32, count: u32) -> Self {
         let sample = self.sample.of_sample(self.sample.sample.wrapping_mul(count).wrapping_add(number));
         PathState { sample, share: self.share / count as f32, ..self.clone() }

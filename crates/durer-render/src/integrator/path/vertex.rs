@@ -1,4 +1,4 @@
-//! Vertices of a path: points on surfaces and in media that scatter light.
+//! Vertices of a path, on surfaces and in media.
 
 use super::Path;
 use super::state::{DIMENSIONS, Dimension, PathState};
@@ -13,48 +13,49 @@ use durer_scene::shape::Surface;
 use durer_scene::spectrum::Spectrum;
 use glam::DVec3;
 
-/// Number of candidate directions to the environment for a glossy BSDF; one of them is used.
-/// (Measured: the variance of a rough metal is 0.72 with two, 0.59 with four, 0.54 with eight; four
-/// take 1.2 times as long as one for a picture.) For other BSDFs, one is as good.
+/// Number of candidate directions to the environment for a glossy BSDF; one of them is used. For
+/// other BSDFs, one candidate is as good. (Measured for a rough metal: the variance is 0.72 with
+/// two candidates, 0.59 with four and 0.54 with eight. A picture takes 1.2 times as long with four
+/// as with one.)
 pub(super) const TRIES: u32 = 4;
 
-/// Number of directions followed from a glossy first vertex if there is an environment: most of
-/// these paths end soon, and they share the cost of the first vertex.
+/// Number of directions followed from a glossy first vertex if there is an environment. Most of
+/// these paths end soon, so the cost of the first vertex is shared.
 ///
 /// Source: Arvo and Kirk, *Particle Transport and Image Synthesis*, SIGGRAPH 1990 (splitting).
 pub(super) const DIRECTIONS: u32 = 2;
 
-/// Vertex, and its sampling.
+/// Path vertex with everything needed to sample lights and directions from it.
 #[derive(Clone, Copy)]
 pub(super) struct Vertex<'a, 'w> {
     /// Surface or medium.
     pub(super) kind: VertexKind<'a, 'w>,
-    /// Random numbers in [0, 1)^2; by [`Dimension`].
+    /// Random numbers in [0, 1)^2, indexed by [`Dimension`].
     pub(super) random: [Vec2; DIMENSIONS],
     /// Number of candidate directions to the environment; at least 1.
     pub(super) tries: f32,
     /// Number of directions to follow; at least 1.
     pub(super) directions: u32,
-    /// Point and normal that lights are sampled for.
+    /// Point and normal for which lights are sampled.
     pub(super) receiver: Receiver,
 }
 
-/// Surface or medium that scatters light at a vertex.
+/// Scatterer at a path vertex: a surface with its BSDF, or a medium with its phase function.
 #[derive(Clone, Copy)]
 pub(super) enum VertexKind<'a, 'w> {
-    /// A surface; with a passage, light may go through it into another medium.
+    /// A surface. With a passage, light can pass through it into another medium.
     Surface(&'a Surface, &'a Shading<'w>, Option<&'a Passage>),
-    /// A point in a medium, reached along a unit direction.
+    /// A point in a medium, and the unit direction in which the ray arrives.
     Medium(DVec3, Vec3, HenyeyGreenstein),
 }
 
-/// Direction sampled from a BSDF or a phase function.
+/// Direction sampled at a path vertex from a BSDF or a phase function, with weight and density.
 pub(super) struct BsdfSample {
-    /// Unit direction of the light, away from the vertex; world space.
+    /// Unit direction away from the vertex, in world space.
     pub(super) wi: Vec3,
     /// BSDF · cosine / pdf.
     pub(super) weight: Spectrum,
-    /// Density per steradian over all lobes; 0 for a delta lobe.
+    /// Density per steradian, summed over all lobes; 0 for a delta lobe.
     pub(super) pdf: f32,
     /// True if the direction leads behind the surface.
     pub(super) transmits: bool,
@@ -63,7 +64,7 @@ pub(super) struct BsdfSample {
 }
 
 impl<'w> Path<'w> {
-    /// Vertex at the end of a state's ray.
+    /// Creates the vertex at the end of a state's ray.
     pub(super) fn vertex<'a>(&self, kind: VertexKind<'a, 'w>, state: &PathState) -> Vertex<'a, 'w> {
         let is_narrow = self.world.environment().is_some() && kind.is_glossy();
         let (tries, directions) = match (is_narrow, state.depth) {
@@ -93,8 +94,8 @@ impl Vertex<'_, '_> {
         self.kind.sample(self.random(Dimension::Choices).x, self.random(Dimension::Direction))
     }
 
-    /// BSDF · cosine for a direction, and its density per steradian, summed over the directions to
-    /// follow.
+    /// Returns BSDF · cosine for a direction, and its density per steradian times the number of
+    /// directions followed.
     pub(super) fn eval(&self, wi: Vec3) -> (Spectrum, f32) {
         let (value, pdf) = self.kind.eval(wi);
         (value, self.directions as f32 * pdf)
@@ -109,7 +110,7 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Normal for light sampling; zero if light arrives from all sides.
+    /// Returns the normal for light sampling; zero if light from all directions counts.
     fn normal(&self) -> Vec3 {
         match self {
             VertexKind::Surface(_, shading, _) if !shading.bsdf.passes_light() => shading.frame.normal,
@@ -117,7 +118,7 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Returns true if a lobe has a density, so that light sampling makes sense.
+    /// Returns true if some lobe is not a delta lobe, so that light sampling is useful.
     pub(super) fn is_broad(&self) -> bool {
         match self {
             VertexKind::Surface(_, shading, _) => shading.bsdf.is_broad(),
@@ -130,7 +131,7 @@ impl VertexKind<'_, '_> {
         matches!(self, VertexKind::Surface(_, shading, _) if shading.bsdf.is_glossy())
     }
 
-    /// BSDF · cosine for a direction, and its density per steradian.
+    /// Returns BSDF · cosine for a direction, and its density per steradian.
     fn eval(&self, wi: Vec3) -> (Spectrum, f32) {
         match self {
             VertexKind::Surface(_, shading, _) => shading.eval(wi),
@@ -141,7 +142,7 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Samples a direction with a number in [0, 1) for the lobe and a pair for the direction.
+    /// Samples a direction. `choice` in [0, 1) selects the lobe, `u` the direction in it.
     pub(super) fn sample(&self, choice: f32, u: Vec2) -> Option<BsdfSample> {
         match self {
             VertexKind::Surface(_, shading, _) => {
@@ -161,7 +162,7 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Name of a lobe, and its sampling probability.
+    /// Returns the name of a lobe, and the probability of sampling it.
     pub(super) fn lobe(&self, number: usize) -> (&'static str, f32) {
         match self {
             VertexKind::Surface(_, shading, _) => {
@@ -172,13 +173,12 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Returns true if a lobe refracts, so that radiance changes with the index of refraction
-    /// squared.
+    /// Returns true if a lobe refracts, which scales radiance by the squared index of refraction.
     pub(super) fn refracts(&self, lobe: usize) -> bool {
         self.nth_lobe(lobe).is_some_and(|lobe| lobe.is_delta() && lobe.kind().eta.is_some())
     }
 
-    /// Returns true if a lobe passes light straight through an open surface, such as a pane.
+    /// Returns true if a lobe transmits light straight through an open surface, such as a pane.
     pub(super) fn goes_straight(&self, lobe: usize) -> bool {
         let is_sheet = matches!(self, VertexKind::Surface(_, _, None));
         is_sheet && self.nth_lobe(lobe).is_some_and(|lobe| lobe.kind().is_straight)
@@ -191,7 +191,7 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Ray from the vertex in a direction.
+    /// Returns the ray that leaves the vertex in a direction.
     pub(super) fn spawn(&self, wi: Vec3) -> Ray64 {
         match self {
             VertexKind::Surface(surface, ..) => spawn_ray(surface, wi, f32::INFINITY, None),
@@ -199,8 +199,8 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Ray from the vertex to a sampled point of a light. It ends before the light, so that
-    /// surfaces at the same place do not block it.
+    /// Returns the shadow ray to a point sampled on a light. The ray ends just before the light, so
+    /// that surfaces at the same place do not block it.
     pub(super) fn shadow_ray(&self, light: &LightSample) -> Ray64 {
         match self {
             VertexKind::Surface(surface, ..) => to_point(surface, light.wi, light.shadow_reach(offset_bound(surface))),
@@ -208,7 +208,7 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Media behind the surface, if a direction leads there and they differ from those in front.
+    /// Returns the media behind the surface if a direction leads there and light can pass.
     pub(super) fn media_behind(&self, wi: Vec3) -> Option<&Media> {
         match self {
             VertexKind::Surface(_, shading, Some(passage)) if wi.dot(shading.n_geo) < 0.0 => Some(&passage.behind),

@@ -1,4 +1,4 @@
-//! Direct light.
+//! Direct light of the Whitted integrator: shadow rays, diffuse terms and highlights.
 
 use super::{ShadedMaterial, ShadingPoint, Whitted};
 use crate::integrator::spawn::{spawn_ray, to_light};
@@ -13,18 +13,19 @@ use durer_scene::shape::Surface;
 const MOST_LAYERS: u32 = 64;
 
 impl Whitted<'_> {
-    /// The shadow ray to a light, for listeners.
+    /// Returns the shadow ray to a light for the trace.
     pub(super) fn shadow(&self, surface: &Surface, light: usize, seen: &LightLiSample, share: Color) -> Shadow {
         let ray = self.shadow_ray(surface, light, seen);
         let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
         Shadow { ray: (&ray).into(), blocker, share: share.into() }
     }
 
+    /// Returns the shadow ray to a light.
     #[inline(always)]
     pub(super) fn shadow_ray(&self, surface: &Surface, light: usize, seen: &LightLiSample) -> Ray64 {
         let epsilon = self.world.shading_rules().epsilon;
         if epsilon.is_none() {
-            // Objects exactly at the light do not block it.
+            // End before the light, so that objects exactly at the light do not block it.
             return to_light(surface, seen.to_light, seen.distance * (1.0 - gamma(16)), None);
         }
         let way = self.world.course_way(light, surface.position);
@@ -32,8 +33,8 @@ impl Whitted<'_> {
         to_light(surface, dir, distance, epsilon)
     }
 
-    /// Computes the visibility of lights along shadow rays: 0 if occluded, or the transmittance of
-    /// transparent objects.
+    /// Computes the visibility of lights along shadow rays: 0 if occluded, else the transmittance
+    /// of transparent objects in between.
     pub(super) fn visible<T: TraceListener>(&self, shadows: &mut [Ray64], shares: &mut [Color], tally: &mut T) {
         let mut found = [None; MAX_BATCH];
         if self.world.shading_rules().shadow_fronts {
@@ -57,13 +58,14 @@ impl Whitted<'_> {
         }
     }
 
-    /// Returns the transmittance of a shadow ray, given its first hit.
+    /// Returns the transmittance of the transparent objects along a shadow ray. `found` is its
+    /// first hit.
     fn let_through<T: TraceListener>(&self, mut ray: Ray64, mut found: Option<Hit>, tally: &mut T) -> Color {
         let (to_light, mut share) = (ray.dir(), Color::ONE);
         // Limits the number of layers.
         for layer in 1.. {
             let Some(hit) = found else { return share };
-            // An opaque material ends the search early.
+            // An opaque material ends the search early, without computing the surface.
             match &self.world.materials()[self.world.material_of(&hit) as usize] {
                 Material::Phong(phong) if phong.transparent == Color::ZERO => break,
                 _ => {}
@@ -82,20 +84,21 @@ impl Whitted<'_> {
     }
 }
 
-/// Terms of one light at a point, without occlusion.
+/// Diffuse and highlight terms of one light at a shaded point, without occlusion.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Direct {
     /// Cosine between the normal and the direction to the light.
     cosine: f32,
-    /// Base of the highlight's power: a cosine, negative without a highlight. `None`: no highlight.
+    /// Cosine that is raised to the highlight's exponent, possibly negative. `None` without a
+    /// highlight.
     base: Option<f32>,
-    /// The highlight's power, after [`take_powers`].
+    /// Cosine to the power of the exponent, computed by [`take_powers`].
     strength: f32,
     diffuse: Color,
 }
 
 impl Direct {
-    /// Computes the terms except the highlight's power.
+    /// Computes all terms except the highlight's power.
     #[inline(always)]
     pub(super) fn of(phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, seen: &LightLiSample) -> Self {
         let cosine = n.dot(seen.to_light);
@@ -109,18 +112,19 @@ impl Direct {
         Direct { cosine, base, strength: 0.0, diffuse: cosine.max(0.0) * diffuse }
     }
 
-    /// Returns true if both terms are 0 for any light.
+    /// Returns true if both terms are 0 for a light of any colour.
     #[inline(always)]
     pub(super) fn is_dark(&self, phong: &Phong) -> bool {
         let highlight = |(specular, exponent, _)| {
-            // Exponent 0 gives 1. A base above 1, from a normal longer than 1, may give infinity.
+            // An exponent of 0 gives 1. A base above 1, from a normal longer than 1, can give
+            // infinity.
             let shows = |base: f32| base > if specular == Color::ZERO { 1.0 } else { 0.0 };
             self.base.is_some_and(shows) || specular != Color::ZERO && exponent <= 0.0
         };
         self.diffuse == Color::ZERO && !(self.base.is_some() && phong.highlight.is_some_and(highlight))
     }
 
-    /// Returns the radiance towards the ray's origin.
+    /// Returns the radiance that the point scatters towards the ray's origin.
     #[inline(always)]
     pub(super) fn color(&self, phong: &Phong, seen: &LightLiSample) -> Color {
         match (self.base, phong.highlight) {
@@ -129,7 +133,7 @@ impl Direct {
         }
     }
 
-    /// Reports both terms. `parent` is the light's node in the trace.
+    /// Reports both terms to a listener. `parent` is the light's node in the trace.
     pub(super) fn report<T: TraceListener>(&self, phong: &Phong, diffuse: Color, parent: NodeId, tally: &mut T) {
         let cosine = self.cosine;
         let node = tally.begin(parent, || TermKind::Diffuse { cosine });
@@ -142,7 +146,7 @@ impl Direct {
     }
 }
 
-/// Computes the powers of the highlights of several points with SIMD.
+/// Computes the highlight powers of several points with SIMD.
 pub(super) fn take_powers(points: &[ShadingPoint], parts: &mut [ShadedMaterial], some: impl Iterator<Item = usize>) {
     let mut powers = Powers { bases: [0.0; MAX_BATCH], exponents: [1.0; MAX_BATCH], count: 0 };
     let mut places = [0; MAX_BATCH];
@@ -165,7 +169,7 @@ pub(super) fn take_powers(points: &[ShadingPoint], parts: &mut [ShadedMaterial],
     powers.give(&places, parts);
 }
 
-/// A batch of powers.
+/// Batch of bases and exponents of highlights, whose powers are computed with SIMD.
 struct Powers {
     bases: [f32; MAX_BATCH],
     exponents: [f32; MAX_BATCH],
@@ -173,7 +177,7 @@ struct Powers {
 }
 
 impl Powers {
-    /// Computes the powers, stores them, and starts a new batch.
+    /// Computes the powers of the batch, stores them in `parts` and empties the batch.
     fn give(&mut self, places: &[usize; MAX_BATCH], parts: &mut [ShadedMaterial]) {
         let count = std::mem::take(&mut self.count);
         if count == 0 {
@@ -182,13 +186,14 @@ impl Powers {
         let powers = run_plain(PowerKernel(self, count));
         for (i, &place) in places[..count].iter().enumerate() {
             let power = powers[i];
-            // Leave special values to the scalar function.
+            // The scalar function handles special values.
             let power = if power.is_nan() { fp::pow(self.bases[i], self.exponents[i]) } else { power };
             parts[place].direct.strength = power;
         }
     }
 }
 
+/// Kernel that computes a batch of powers, for the CPU's best instruction set.
 struct PowerKernel<'p>(&'p Powers, usize);
 
 impl PlainKernel for PowerKernel<'_> {

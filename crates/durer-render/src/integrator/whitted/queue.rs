@@ -1,4 +1,4 @@
-//! Queue of rays to trace, and the sums of their light.
+//! Queue of rays that the Whitted integrator traces, with the sums of their light.
 
 use crate::integrator::media::Media;
 use crate::integrator::trace::{NodeId, TraceListener};
@@ -8,34 +8,34 @@ use durer_scene::math::{Color, Ray, Ray64, Vec3};
 /// Parent index of a camera ray.
 const CAMERA: u32 = u32::MAX;
 
-/// A ray and the radiance found along it so far.
+/// Ray in the queue of the Whitted integrator, with the light found along it so far.
 pub(super) struct Segment {
     pub(super) ray: Ray64,
-    /// Minimum `t` of hits: beyond surfaces that were ignored.
+    /// Minimum `t` of hits. It skips surfaces that were ignored.
     pub(super) t_min: f32,
     /// Objects that contain the ray.
     pub(super) media: Media,
-    /// Remaining depth of secondary rays.
+    /// Maximum depth of secondary rays from this one.
     pub(super) bounces: u32,
-    /// Throughput relative to the pixel; see [`super::WhittedOptions::least_weight`].
+    /// Weight in the pixel; see [`super::WhittedOptions::least_weight`].
     pub(super) weight: f32,
-    /// Index of its camera ray.
+    /// Index of the camera ray from which it descends.
     pub(super) camera: u32,
     /// Index of the parent segment, or [`CAMERA`].
     pub(super) parent: u32,
-    /// Branch of the parent: 0 reflected, 1 transmitted.
+    /// Kind of ray: 0 for reflected, 1 for transmitted.
     pub(super) branch: usize,
-    /// Weight in the parent's sum.
+    /// Weight in the parent's radiance.
     pub(super) factor: Color,
     /// Node in the trace.
     pub(super) node: NodeId,
-    /// Light at its own hit: ambient light and lights.
+    /// Light at the segment's own hit: ambient light and direct light.
     pub(super) local: Color,
-    /// Weighted radiance of its branches.
+    /// Weighted radiance of the reflected and the transmitted ray.
     pub(super) branches: [Color; 2],
-    /// Number of unfinished branches.
+    /// Number of these rays that are not finished.
     pub(super) pending: u32,
-    /// Trace node of the sum of its branches.
+    /// Trace node for the sum of these rays.
     pub(super) secondary: NodeId,
 }
 
@@ -60,14 +60,14 @@ impl Default for Segment {
     }
 }
 
-/// Segments in progress. Waiting segments form a stack, so that at most one batch for each level of
-/// secondary rays is in progress, and nothing recurses.
+/// Rays that the Whitted integrator is tracing. Waiting ones form a stack, so that at most one
+/// batch per level of secondary rays is in progress, and there is no recursion.
 #[derive(Default)]
 pub(super) struct Queue {
-    /// The first `used` are in use or free; the others are kept for reuse.
+    /// The first `used` segments are in use or free. Later ones are kept for reuse.
     segments: Vec<Segment>,
     used: u32,
-    /// Indices of finished segments, for reuse.
+    /// Indices of finished segments among the first `used`.
     free: Vec<u32>,
     waiting: Vec<u32>,
 }
@@ -84,7 +84,7 @@ impl Queue {
         &mut self.segments[number as usize]
     }
 
-    /// Adds a camera ray, to be traced next.
+    /// Adds a camera ray as the next ray to trace.
     #[inline]
     pub(super) fn push_camera(&mut self, ray: &Ray64, camera: u32, bounces: u32, node: NodeId) {
         let segment = self.push(ray, node);
@@ -93,9 +93,9 @@ impl Queue {
         (segment.camera, segment.parent) = (camera, CAMERA);
     }
 
-    /// Adds a segment, to be traced next. Fills it in place, since copying a segment costs as much
-    /// as a hit. The caller sets the remaining fields except the sums, which [`super::secondary`]
-    /// initializes.
+    /// Adds a segment as the next one to trace. The segment is filled in place, since copying one
+    /// costs as much as an intersection. The caller sets the remaining fields except the sums,
+    /// which [`super::secondary`] initializes.
     #[inline]
     pub(super) fn push(&mut self, ray: &Ray64, node: NodeId) -> &mut Segment {
         let number = self.free.pop().unwrap_or_else(|| {
@@ -111,7 +111,7 @@ impl Queue {
         segment
     }
 
-    /// Queues a segment to be traced further.
+    /// Queues a segment that passed an ignored surface again.
     pub(super) fn push_again(&mut self, number: u32) {
         self.waiting.push(number);
     }
@@ -125,7 +125,7 @@ impl Queue {
         count
     }
 
-    /// Finishes a segment with its radiance, and all ancestors whose sums are complete with it.
+    /// Finishes a segment with its radiance, and each ancestor whose sum is then complete.
     pub(super) fn finish<T: TraceListener>(
         &mut self,
         mut number: u32,

@@ -1,4 +1,4 @@
-//! Reflected and transmitted light.
+//! Reflected and transmitted rays of the Whitted integrator.
 
 use super::queue::{Queue, Segment};
 use super::{ShadedMaterial, ShadingPoint, Whitted};
@@ -9,20 +9,20 @@ use crate::world::{Material, SurfaceInteraction, WeightedMaterial};
 use durer_scene::math::{Color, Vec3, reflect};
 use durer_scene::shape::Surface;
 
-/// Split of light at a hit: directions and weights.
+/// Directions and weights of the reflected and the transmitted ray at a hit.
 struct SecondaryRays {
     mirrored: Vec3,
     reflective: Color,
-    /// `None` for total reflection or opaque materials.
+    /// `None` for total internal reflection and for opaque materials.
     transmitted: Option<Vec3>,
     transparent: Color,
-    /// Reflected share, if Fresnel's law splits the light.
+    /// Fraction reflected, if Fresnel's equations split the light.
     fresnel: Option<f32>,
 }
 
 impl Whitted<'_> {
-    /// Spawns the reflected and the transmitted ray of a point; finishes its segment if there are
-    /// none.
+    /// Spawns the reflected and the transmitted ray of a point. If there are none, finishes the
+    /// point's segment.
     pub(super) fn secondary<T: TraceListener>(
         &self,
         point: &mut ShadingPoint,
@@ -77,7 +77,7 @@ impl Whitted<'_> {
         }
     }
 
-    /// Splits the light at a hit.
+    /// Computes the directions and weights of the secondary rays at a hit.
     #[inline]
     fn secondary_rays(
         &self,
@@ -87,27 +87,27 @@ impl Whitted<'_> {
     ) -> SecondaryRays {
         let Blend { mut reflective, mut transparent, fresnel, .. } = blend;
         let (rules, leaving, dir) = (self.world.shading_rules(), self.sees_back(at), at.ray.dir());
-        // Normals on the ray's side.
+        // Use the normals on the ray's side.
         let [n, n_geo] = [at.surface.n_shade, at.surface.n_geo].map(|n| if leaving { -n } else { n });
         // An interpolated normal may point away from the ray; the geometric normal does not. A NaN
         // normal, which only the official programs' arithmetic yields, is passed on.
         let n = if dir.dot(n) < 0.0 || n.is_nan() { n } else { n_geo };
-        // Without `shade_back`, a mirror reflects about the unflipped normal; the direction is the
-        // same.
+        // Without `shade_back`, mirrors reflect about the unflipped normal, which gives the same
+        // direction.
         let mirrored = reflect(dir, n);
-        // With a normal that is not unit length, the reflected direction differs.
+        // If the normal is not of unit length, the reflected direction is not either.
         let mirrored = if rules.raw_normals && !rules.long_mirrors { mirrored.normalize_or(n_geo) } else { mirrored };
         let n = if rules.raw_normals && !rules.raw_refraction { n.normalize_or(n_geo) } else { n };
         let transmitted = match transparent == Color::ZERO {
             true => None,
-            // With a normal that is not unit length, the transmitted direction differs too.
+            // If the normal is not of unit length, the transmitted direction is not either.
             false if rules.raw_refraction => refract_raw(dir, n, here / there).map(|through| through.normalize_or(dir)),
             false => refract(dir, n, here / there),
         };
-        // If one of the two is switched off, the other gets all the light.
+        // If reflection or refraction is switched off, the other one gets all the light.
         let divides = fresnel && self.settings.reflection && self.settings.refraction;
         let share = divides.then(|| {
-            // Total reflection has weight 1.
+            // Total internal reflection has weight 1.
             let before = if rules.exit_r0 { 1.0 } else { here };
             transmitted.map_or(1.0, |through| fresnel_share(dir, n, through, (here, there), before))
         });
@@ -118,7 +118,7 @@ impl Whitted<'_> {
         SecondaryRays { mirrored, reflective, transmitted, transparent, fresnel: share }
     }
 
-    /// Returns the transmission at a hit; `None` if the surface is opaque.
+    /// Returns the refraction at a hit, or `None` if the surface is opaque.
     #[inline]
     pub fn passage(&self, at: &SurfaceInteraction, media: &Media) -> Option<Passage> {
         if !self.world.may_enter(at) {
@@ -138,8 +138,8 @@ impl Whitted<'_> {
         })
     }
 
-    /// Returns the transmission as in the course: a ray carries a single index, and there is air
-    /// behind glass.
+    /// Returns the refraction as in the course's programs: a ray has only one index of refraction,
+    /// and there is air behind glass.
     fn official_passage(&self, object: u32, blend: Blend, leaving: bool, media: &Media) -> Passage {
         let (known, ior) = (media.ior(), blend.ior);
         let (here, there) = match (leaving, blend.fresnel) {
@@ -151,14 +151,14 @@ impl Whitted<'_> {
         Passage { here, there, behind: Media::only(Body { object, ior: there, size: None }), hidden: false }
     }
 
-    /// Returns the throughput of a ray after a weight. The course uses the length of the colour,
-    /// which for grey exceeds the remaining light.
+    /// Returns the weight of a ray after multiplication by a colour: its largest component or, in
+    /// the course's programs, its length. For grey, the length exceeds the light that is left.
     pub fn weight_after(&self, before: f32, weight: Color) -> f32 {
         let by_length = self.world.shading_rules().weight_by_length;
         before * if by_length { weight.length() } else { weight.max_element() }
     }
 
-    /// Spawns a secondary ray, unless its throughput is too small.
+    /// Spawns a secondary ray, unless its weight in the pixel is too small.
     fn spawn<T: TraceListener>(
         &self,
         (parent, from): (u32, RayKind),
@@ -168,7 +168,7 @@ impl Whitted<'_> {
         queue: &mut Queue,
         tally: &mut T,
     ) {
-        // Schlick's formula can be below 0 if the normal is not of length 1.
+        // Schlick's formula can give less than 0 if the normal is not of unit length.
         if factor == Color::ZERO {
             return;
         }
@@ -191,17 +191,17 @@ impl Whitted<'_> {
     }
 }
 
-/// Reflectance and transmittance of all materials at a point, weighted by their shares. The index
-/// of refraction is that of the material with the largest share.
+/// Mirror and glass properties at a point for the Whitted integrator, averaged over its materials
+/// by their shares. The index of refraction is that of the material with the largest share.
 #[derive(Clone, Copy)]
 pub struct Blend {
-    /// Fraction of the light that a mirror reflects, per channel.
+    /// Fraction of light reflected as by a mirror, per channel.
     pub reflective: Color,
-    /// Fraction of the light that passes through, per channel.
+    /// Fraction of light transmitted, per channel.
     pub transparent: Color,
     /// Index of refraction.
     pub ior: f32,
-    /// True if Schlick's Fresnel term splits the light between the two.
+    /// True if Schlick's Fresnel approximation splits the light between the two.
     pub fresnel: bool,
 }
 
@@ -211,7 +211,7 @@ impl Blend {
         self.reflective != Color::ZERO || self.transparent != Color::ZERO
     }
 
-    /// Blends the materials of a point.
+    /// Averages the materials of a point.
     #[inline]
     pub fn of<'a, 'w: 'a>(parts: impl IntoIterator<Item = &'a WeightedMaterial<'w>>) -> Self {
         let mut blend = Blend { reflective: Color::ZERO, transparent: Color::ZERO, ior: 1.0, fresnel: false };
@@ -227,11 +227,11 @@ impl Blend {
     }
 }
 
-/// Returns the reflected share by Schlick's approximation: R0 + (1 - R0) (1 - c)^5; `zero` sets R0
-/// to 0.
+/// Returns the fraction of light reflected, by Schlick's approximation R0 + (1 - R0) (1 - c)^5.
 ///
-/// c is the cosine on the side of the lower index. Source: Schlick, *An Inexpensive BRDF Model for
-/// Physically-based Rendering*, Eurographics 1994.
+/// c is the cosine on the side with the lower index. R0 is computed from the indices `before` and
+/// `there`, so `before` equal to `there` makes it 0. Source: Schlick, *An Inexpensive BRDF Model
+/// for Physically-based Rendering*, Eurographics 1994.
 #[inline(always)]
 pub fn fresnel_share(dir: Vec3, n: Vec3, transmitted: Vec3, (here, there): (f32, f32), before: f32) -> f32 {
     let ratio = (there - before) / (there + before);
@@ -242,17 +242,18 @@ pub fn fresnel_share(dir: Vec3, n: Vec3, transmitted: Vec3, (here, there): (f32,
     r0 + (1.0 - r0) * square * square * rest
 }
 
-/// [`refract`] in the order of the program of 2012, which rounds otherwise.
+/// Computes [`refract`] in the order of operations of the program of 2012, which rounds
+/// differently.
 fn refract_raw(d: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
     let cosine = -d.dot(n);
     let radicand = 1.0 - eta * eta * (1.0 - cosine * cosine);
     if radicand >= 0.0 { Some((eta * cosine - radicand.sqrt()) * n + eta * d) } else { None }
 }
 
-/// Refracts a direction by Snell's law at a surface whose normal `n` is on the ray's side; `None`
-/// for total reflection.
+/// Refracts a direction by Snell's law. The normal `n` must be on the ray's side. Returns `None`
+/// for total internal reflection.
 ///
-/// eta is the index in front over the index behind; t = eta (d - n (d·n)) - n sqrt(1 - eta^2 (1 -
+/// With eta = index in front / index behind, t = eta (d - n (d·n)) - n sqrt(1 - eta^2 (1 -
 /// (d·n)^2)).
 #[inline(always)]
 pub fn refract(d: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {

@@ -1,4 +1,4 @@
-//! Tests of scenes with closed-form radiance.
+//! Tests of the Whitted integrator with scenes whose radiance is known in closed form.
 
 mod nested;
 
@@ -40,7 +40,7 @@ fn refraction_follows_snells_law_and_ends_at_the_critical_angle() {
         let expected = sine * f64::from(eta);
         match refract(d, n, eta) {
             Some(t) => {
-                // The root loses half the digits near the critical angle.
+                // The square root loses half the digits near the critical angle.
                 assert!(expected < 1.0 + 1e-6 && (t.length() - 1.0).abs() < 1e-3, "{expected} {t}");
                 assert!((t.as_dvec3().cross(n.as_dvec3()).length() - expected).abs() < 2e-6);
                 assert!(
@@ -52,7 +52,7 @@ fn refraction_follows_snells_law_and_ends_at_the_critical_angle() {
         }
     }
     assert_eq!(refract(Vec3::NEG_Y, Vec3::Y, 0.7), Some(Vec3::NEG_Y));
-    // Equal indices leave the direction unchanged.
+    // With equal indices, the direction does not change.
     let d = Vec3::new(0.6, -0.8, 0.0);
     assert!((refract(d, Vec3::Y, 1.0).unwrap() - d).length() < 1e-6);
 }
@@ -80,19 +80,19 @@ fn schlicks_reflectance_is_r0_at_normal_and_one_at_grazing_incidence() {
     close(share(false, 1.0, 1.5, 1.0), 0.04);
     close(share(false, 0.5, 1.0, 1.5), 0.04 + 0.96 / 32.0);
     close(share(false, 0.0, 1.0, 1.5), 1.0);
-    // When leaving, the angle outside counts: sin = 1.5 sin 30 degrees.
+    // For a ray that leaves, the angle outside counts: sin = 1.5 sin 30 degrees.
     let inside = 0.75f32.sqrt();
     let outside = 1.0 - (1.0f32 - 0.5625).sqrt();
     close(share(false, inside, 1.5, 1.0), 0.04 + 0.96 * outside * outside * outside * outside * outside);
     assert_eq!(share(false, 0.7, 1.5, 1.0), None);
-    // An old program uses 0 for R0 when leaving.
+    // An official program uses an R0 of 0 for rays that leave.
     close(share(true, 1.0, 1.5, 1.0), 0.0);
     close(share(true, 1.0, 1.33, 1.5), 0.04);
 }
 
 #[test]
 fn facing_mirrors_sum_a_geometric_series() {
-    // Each wall has radiance 1 from ambient light and reflects one half.
+    // Each wall has radiance 1 from ambient light, and reflects one half.
     let hall = "Background { color 0 0 0 ambientLight 1 1 1 }
         Lights { DirectionalLight { direction 0 -1 0 color 0.001 0.001 0.001 } }
         Materials { Material { diffuseColor 1 1 1 reflectiveColor 0.5 0.5 0.5 } }
@@ -107,10 +107,11 @@ fn facing_mirrors_sum_a_geometric_series() {
     }
     let off = WhittedOptions { reflection: false, ..ALL };
     assert!((seen(hall, off, [0.0; 3], [1.0, 0.0, 0.0]).x - 1.0).abs() < 1e-5);
-    // With Dürer's own rules the throughput is 1/2 after one bounce, and 1/4 after two.
+    // With Dürer's own rules, the weight is 1/2 after one bounce and 1/4 after two.
     let cut = WhittedOptions { least_weight: 0.3, ..ALL };
     assert!((seen(hall, cut, [0.0; 3], [1.0, 0.0, 0.0]).x - 1.5).abs() < 1e-5);
-    // The course uses the length of the colour: sqrt(3) / 2 after one bounce, 3/4 after two.
+    // The course uses the length of the colour, which is sqrt(3) / 2 after one bounce and 3/4 after
+    // two.
     let mut world = testing::read(&format!("{CAMERA}{hall}"));
     let rules = Dialect::Durer.rules();
     world.edit().set_rules(durer_scene::dialect::Rules { epsilon: Some(1e-4), ..rules.clone() });
@@ -121,7 +122,7 @@ fn facing_mirrors_sum_a_geometric_series() {
 
 #[test]
 fn deep_recursion_needs_no_deep_stack() {
-    // A hall of two perfect mirrors, each of which has radiance 1.
+    // Two perfect mirrors face each other; each has radiance 1.
     let hall = "Background { color 0 0 0 ambientLight 1 1 1 }
         Lights { DirectionalLight { direction 0 -1 0 color 0.001 0.001 0.001 } }
         Materials { Material { diffuseColor 1 1 1 reflectiveColor 1 1 1 } }
@@ -129,7 +130,7 @@ fn deep_recursion_needs_no_deep_stack() {
     let settings = WhittedOptions { bounces: WhittedOptions::MAX_BOUNCES, ..ALL };
     let world = &testing::read(&format!("{CAMERA}{hall}"));
     let light = || Whitted { world, settings, cancel: None }.radiance(&Ray::new(Vec3::ZERO, Vec3::X), &mut ());
-    // A kilobyte of stack for each level would overflow this.
+    // One kilobyte of stack per level would overflow this stack.
     let thread = std::thread::Builder::new().stack_size(192 << 10);
     let light = std::thread::scope(|scope| thread.spawn_scoped(scope, light).unwrap().join().unwrap());
     assert_eq!(light, Vec3::splat(WhittedOptions::MAX_BOUNCES as f32 + 1.0));
@@ -145,12 +146,12 @@ fn shadows_end_at_the_light() {
         );
         seen(&text, ALL, [0.0, 1.0, 0.0], [0.0, -1.0, 0.0])
     };
-    // In front of the light, exactly at it, just behind it, far behind it.
+    // The wall is in front of the light, exactly at it, just behind it, and far behind it.
     assert_eq!(lit(1.99), Vec3::ZERO);
     for wall in [2.0, 2.0f32.next_up(), 2.001, 50.0] {
         assert_eq!(lit(wall), Vec3::ONE, "{wall}");
     }
-    // A directional light has no end: everything above occludes it.
+    // A directional light is at infinity, so everything above occludes it.
     let text =
         "Lights { DirectionalLight { direction 0 -1 0 color 1 1 1 } } Materials { Material { diffuseColor 1 1 1 } }
         Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } Sphere { center 0 1e6 0 radius 1 } }";
@@ -175,14 +176,14 @@ fn sphere_with_the_index_of_air_is_invisible() {
             let origin = 3.0 * random.direction();
             let dir = (0.7 * random.point() - origin).to_array();
             let color = seen(&text, ALL, origin.to_array(), dir);
-            // Schlick's share for equal indices is (1 - c)^5, with the same c when entering and
-            // leaving.
+            // For equal indices, Schlick's approximation gives (1 - c)^5, with the same c on
+            // entering and leaving.
             let dir = Vec3::from(dir).normalize();
             let beside = origin - origin.dot(dir) * dir;
             let rest = 1.0 - (1.0 - beside.length_squared()).max(0.0).sqrt();
             let lost = if glass.contains("refractionIndex") { rest * rest * rest * rest * rest } else { 0.0 };
-            // Rays that graze the sphere within 1e-3 may miss it; there a cosine loses half its
-            // digits.
+            // Rays that graze the sphere within 1e-3 may miss it, because a cosine loses half its
+            // digits there.
             let slack = if beside.length() > 0.99 { 0.1 } else { 1e-5 };
             let expected =
                 Vec3::new(0.2, 0.4, 0.8) * if beside.length() < 1.0 { (1.0 - lost) * (1.0 - lost) } else { 1.0 };
@@ -206,11 +207,11 @@ fn diffuse_light_and_highlight_follow_their_models() {
     let close = |a: f32, b: f32| assert!((a - b).abs() < 1e-5, "{a} {b}");
     let down = [0.0, -1.0, 0.0];
     close(lit("diffuseColor 1 1 1", down), 0.8);
-    // From behind, no light arrives.
+    // From behind, the surface receives no light.
     close(lit("diffuseColor 1 1 1", [0.0, 1.0, 0.0]), 0.0);
-    // Blinn: the cosine between the half vector of (0.6, 0.8) and straight up is sqrt(0.9).
+    // Blinn: the half vector between (0.6, 0.8) and straight up has the cosine sqrt(0.9).
     close(lit("diffuseColor 0 0 0 specularColor 1 1 1 exponent 4", down), 0.81);
-    // Phong: the view direction reflects to straight up.
+    // Phong: the view direction is reflected straight up.
     close(lit("diffuseColor 0 0 0 specularColor 1 1 1 shininess 2", down), 0.64);
     close(lit("diffuseColor 0 0 0 specularColor 1 1 1 shininess 7", [0.6, -0.8, 0.0]), 1.0);
 }
@@ -222,7 +223,7 @@ fn coloured_glass_casts_coloured_shadows_if_enabled() {
         Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 3 0 radius 1 } }";
     let down = |settings| seen(text, settings, [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]);
     assert_eq!(down(ALL), Vec3::ZERO);
-    // Through two walls of the sphere.
+    // The light passes through two walls of the sphere.
     assert_eq!(down(WhittedOptions { transparent_shadows: true, ..ALL }), Vec3::new(0.25, 1.0, 0.0));
 }
 
@@ -240,8 +241,8 @@ fn coarse_smooth_sphere_casts_no_shadow_on_points_that_face_the_light() {
         let rules = durer_scene::dialect::Rules { epsilon: compat.then_some(1e-4), ..rules.clone() };
         testing::try_read(&text("ball80-smooth.obj", wall), &rules, AccelKind::Bvh, &folder).0.unwrap()
     };
-    // Returns the number of dark points whose normals face the light, and the number of all such
-    // points.
+    // Returns the number of dark points whose normals face the light, and of all points whose
+    // normals do.
     let dark = |world: &World| {
         let (mut random, mut dark, mut all) = (Random(5), 0, 0);
         let whitted = Whitted { world, settings: ALL, cancel: None };
@@ -251,7 +252,7 @@ fn coarse_smooth_sphere_casts_no_shadow_on_points_that_face_the_light() {
             let Some(at) = world.intersect(&ray, &mut ()) else { continue };
             let surface = at.surface;
             let seen = world.illuminate(0, surface.point());
-            // Exclude the wall.
+            // Skip points on the wall.
             if surface.position.y < 1.0 && surface.n_shade.dot(seen.to_light) > 1e-3 {
                 all += 1;
                 let mut share = [Color::ZERO];
@@ -263,10 +264,10 @@ fn coarse_smooth_sphere_casts_no_shadow_on_points_that_face_the_light() {
     };
     let (lost, all) = dark(&read("", false));
     assert!(lost == 0 && all > 5_000, "{lost} of {all}");
-    // Without shadow offsets, whole triangles are dark.
+    // Without shadow offsets, entire triangles are dark.
     let (lost, all) = dark(&read("", true));
     assert!(lost > all / 100, "{lost} of {all}");
-    // Occluders still count if they are farther than the offset of the curved surface.
+    // Objects still cast shadows if they are farther away than the offset of the curved surface.
     let (lost, all) = dark(&read("Plane { normal 0 1 0 offset 1.05 }", false));
     assert!(lost == all, "{lost} of {all}");
 }
@@ -290,7 +291,7 @@ fn backs_are_black_only_with_the_quirk_black_backs() {
     assert_eq!(below(Dialect::Durer, true), 1.5);
 }
 
-/// Asserts that every node below equals the sum of its terms, bit for bit.
+/// Asserts that each node of a tree equals the sum of its terms, bit for bit.
 #[track_caller]
 fn adds_up(node: &TraceNode) {
     assert_eq!(node.sum(), node.value, "{node:?}");

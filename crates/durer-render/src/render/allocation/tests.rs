@@ -1,4 +1,4 @@
-//! Tests of adaptive allocation: sample counts, and unbiased results.
+//! Tests of adaptive allocation: sample counts and unbiased results.
 
 use super::*;
 use crate::compile::testing;
@@ -16,8 +16,7 @@ fn all(world: &World, job: &Job) -> PartialRender {
     RenderVariant::PLAIN.make(world, job, &AtomicBool::new(false)).unwrap()
 }
 
-/// A sphere lit by an area light out of view, found by BSDF sampling only, in front of a uniform
-/// sky.
+/// A sphere in front of a uniform sky, lit by an area light that is out of view.
 const UNEVEN: &str = "PerspectiveCamera { center 0 0 4 direction 0 0 -1 up 0 1 0 angle 60 }
 Lights { numLights 0 }
 Background { color 0.5 0.6 0.7 }
@@ -27,7 +26,7 @@ Group { numObjects 2
   MaterialIndex 0 Sphere { center -0.8 0 0 radius 0.9 }
   MaterialIndex 1 Sphere { center -2.2 0.5 3 radius 0.4 } }";
 
-/// Returns a job that uses BSDF sampling only, which rarely hits the light.
+/// Returns a job with BSDF sampling alone, which rarely hits the light.
 fn uneven(adaptive: bool, seed: u64) -> Job {
     let IntegratorKind::Path(paths) = IntegratorKind::PATH else { unreachable!("`PATH` is a path tracer") };
     let method = IntegratorKind::Path(PathOptions { direct: Direct::Bsdf, ..paths });
@@ -51,7 +50,7 @@ fn adaptive_sampling_keeps_the_count_and_reduces_the_error() {
     let counts: Vec<f32> = rendered.layers[1].image.pixels.iter().map(|p| p.x).collect();
     let (least, most) = counts.iter().fold((f32::MAX, 0.0_f32), |(a, b), &n| (a.min(n), b.max(n)));
     assert!(least == 8.0 && most >= 64.0, "{least} {most}");
-    // For two independent pictures, half the squared difference estimates one's squared error.
+    // Half the squared difference of two independent pictures estimates the squared error of one.
     let colors = |adaptive, seed| made(adaptive, seed).pictures().unwrap().layers[0].image.pixels.clone();
     let error = |adaptive: bool| -> f64 {
         let pair = |seed| {
@@ -64,8 +63,8 @@ fn adaptive_sampling_keeps_the_count_and_reduces_the_error() {
     assert!(divided < 0.8 * even, "{divided} {even}");
 }
 
-/// Compares the means of many pictures: samples that influenced their own pixel's count would
-/// darken it.
+/// Compares the means of many pictures. Samples that influence the sample count of their own pixel
+/// would darken it.
 #[test]
 fn adaptive_sampling_has_no_bias() {
     let world = testing::read(UNEVEN);
@@ -110,7 +109,7 @@ fn adaptive_renders_resume_from_any_point() {
     let alone = [("x".to_string(), PartialRender::read(&part.write()).unwrap())];
     let merged = merge(&alone).unwrap();
     assert_eq!((merged.hash(), merged.statistics(), merged.write()), (plain.hash(), plain.statistics(), part.write()));
-    // With a valid checksum, bytes may contain anything.
+    // If the checksum is valid, the bytes can contain anything.
     let bytes = part.write();
     for at in (0..bytes.len() - 32).step_by(11) {
         let mut changed = bytes[..bytes.len() - 32].to_vec();
@@ -154,10 +153,10 @@ fn unsuitable_jobs_for_adaptive_sampling_are_rejected() {
 
 #[test]
 fn samples_follow_the_standard_deviation() {
-    // No pixel gets fewer than the pilot samples; the remaining ones are distributed by deviation.
+    // Each pixel gets the pilot samples. The others are distributed in proportion to the deviation.
     assert_eq!(divided(&[0.0, 1.0, 3.0, 0.0], 64), [16, 56, 168, 16]);
     assert_eq!(divided(&[1.0; 5], 100), [100; 5]);
-    // No pixel needs more, or one gets its maximum.
+    // No pixel needs more samples, or one pixel gets the maximum.
     assert_eq!(divided(&[0.0; 3], 64), [16; 3]);
     let mut one = [0.0; 1000];
     one[7] = 1e30;
@@ -192,7 +191,7 @@ fn pixels_of_the_other_colour_estimate_the_variance() {
         assert!((0..found.len()).all(|i| (found[i] > 0.0) == tells(i)), "{at}");
         variances[at] = 0.0;
     }
-    // A uniform variance stays uniform, also at borders.
+    // A uniform variance stays uniform, also at the borders.
     assert!(around(&[2.0; 15], 5).iter().all(|value| (value - 2.0).abs() < 1e-5));
     assert_eq!(around(&[2.0], 1), [0.0]);
 }

@@ -1,4 +1,4 @@
-//! Checks that explanations sum to the pictures that they explain.
+//! Check that explanations sum to the pixels that they explain.
 
 use super::{Explanation, explain};
 use crate::film::Filter;
@@ -9,7 +9,7 @@ use crate::world::World;
 use durer_scene::math::Color;
 use durer_scene::sampler::{Sampler, hash};
 
-/// A sampling, its noise threshold, and true for adaptive sampling.
+/// Sampling method, noise threshold and adaptive flag of a picture to check.
 type SamplingCase = (Sampling, Option<f32>, bool);
 
 const fn kept(sampler: Sampler, samples: u32, filter: Option<CourseFilter>) -> SamplingCase {
@@ -24,7 +24,8 @@ const fn sub_pixels(jitter: bool, blur: bool) -> SamplingCase {
     (Sampling::Course2012 { jitter, blur }, None, false)
 }
 
-/// Every way of combining samples. One filter is so narrow that often no sample has a weight.
+/// Sampling methods to check, which include all ways of combining samples. One filter is so narrow
+/// that often all weights are zero.
 pub const SAMPLINGS: [SamplingCase; 12] = [
     (Sampling::Center, None, false),
     filtered(3, None, false),
@@ -40,8 +41,8 @@ pub const SAMPLINGS: [SamplingCase; 12] = [
     sub_pixels(false, false),
 ];
 
-/// Explains random pixels of a job's picture, the same number for each sampling. Returns the
-/// differences, pixel by pixel.
+/// Explains random pixels of a job's picture, `pixels` for each entry of [`SAMPLINGS`]. Returns a
+/// message for each pixel that differs.
 ///
 /// # Errors
 /// [`RenderError`].
@@ -64,7 +65,7 @@ pub fn check(world: &World, job: &Job, pixels: u32, seed: u64) -> Result<Vec<Str
     Ok(differences)
 }
 
-/// Compares an explanation, the sum of its terms, and the pixel of the picture.
+/// Compares an explanation with the sum of its terms and with the pixel of the picture.
 fn difference(explanation: &Explanation, stored: Color) -> Option<String> {
     let bits = |color: Color| color.to_array().map(f32::to_bits);
     let (color, coverage) = explanation.sum();
@@ -79,7 +80,7 @@ fn difference(explanation: &Explanation, stored: Color) -> Option<String> {
     Some(format!("the terms below sum to {:?}: {odd:?}", odd.sum()))
 }
 
-/// Returns the first node of a tree whose value differs from the sum of its terms.
+/// Returns the first node in a tree whose value differs from the sum of its terms.
 fn uneven(node: &TraceNode) -> Option<&TraceNode> {
     if node.sum() != node.value { Some(node) } else { node.terms.iter().find_map(uneven) }
 }

@@ -1,4 +1,4 @@
-//! Pixels that combine neighbours' samples, as in the course's assignments.
+//! Explanation of pixels that combine the samples of neighbours, as in the course's assignments.
 
 use super::{Mean, SampleAccount};
 use crate::film::course::CourseFilter;
@@ -12,8 +12,8 @@ use durer_scene::math::{Color, Vec3};
 use durer_scene::sampler::Sampler;
 use glam::DVec3;
 
-/// Returns the samples of Fall 2004: all within the filter's support, each with its weight in this
-/// pixel.
+/// Returns the samples of a pixel of Fall 2004: all samples within the filter's support, with their
+/// weights in this pixel.
 pub(super) fn around(
     source: &Samples,
     job: &Job,
@@ -28,7 +28,7 @@ pub(super) fn around(
         (of, sample, PixelSample { weight: filter.weight_between(of, position, here), ..aim })
     };
     let aims: Vec<_> = all(Crop::pixel(here).grown(filter.support(), job.whole())).map(aim).collect();
-    // If no sample counts, the pixel is the mean of the samples within it.
+    // If all weights are zero, the pixel is the mean of its own samples.
     if aims.iter().all(|(.., aim)| aim.weight == 0.0) {
         let own = |(of, sample, aim)| account(of, sample, PixelSample { weight: 1.0, ..aim });
         return (Mean::Around, aims.into_iter().filter(|aim| aim.0 == here).map(own).collect());
@@ -36,7 +36,7 @@ pub(super) fn around(
     (Mean::Around, aims.into_iter().map(|(of, sample, aim)| account(of, sample, aim)).collect())
 }
 
-/// Returns the sub-pixels of Fall 2012.
+/// Returns the sub-pixels that contribute to a pixel of Fall 2012.
 pub(super) fn sub_pixels(
     source: &Samples,
     world: &World,
@@ -45,7 +45,8 @@ pub(super) fn sub_pixels(
 ) -> (Mean, Vec<SampleAccount>) {
     let (raster, count) = (grid.raster(world), grid.around.pixels() as usize);
     let one = |(i, place): (usize, (u32, u32))| {
-        // Developing is linear: the response to a single white sub-pixel is its weight.
+        // Blurring and averaging are linear, so the weight of a sub-pixel is the response to it
+        // being white.
         let mut white = vec![Color::ZERO; count];
         white[i] = Color::ONE;
         let aim = source.aim.sub_pixel(&grid, &raster, place);
@@ -55,7 +56,7 @@ pub(super) fn sub_pixels(
     (Mean::SubPixels(grid), samples)
 }
 
-/// Returns the finished pixel and its coverage.
+/// Returns the colour and the coverage of the finished pixel.
 pub(super) fn finished(
     mean: &Mean,
     samples: &[SampleAccount],
@@ -71,6 +72,7 @@ pub(super) fn finished(
     (color, share(combined(mean, samples, mask)))
 }
 
+/// Combines the samples' colours into a pixel.
 fn combined(mean: &Mean, samples: &[SampleAccount], colors: Vec<Color>) -> Color {
     if let Mean::SubPixels(grid) = mean {
         return grid.develop(colors)[0];

@@ -1,5 +1,5 @@
-//! Explanation of fireflies: the path of a sample's brightest term, and the improbable choice on
-//! it.
+//! Explanation of fireflies: finds a sample's brightest term, the path to it, and the improbable
+//! choice on that path.
 
 use super::Explanation;
 use super::numbers::number;
@@ -8,8 +8,8 @@ use crate::integrator::trace::TermKind;
 use crate::integrator::{TraceNode, Tree};
 
 impl Explanation {
-    /// Returns the sample that adds the most light, and its contribution to the pixel's luminance;
-    /// `None` for a black pixel.
+    /// Returns the index of the sample that adds the most light, and what it adds to the pixel's
+    /// luminance. `None` for a black pixel.
     pub fn brightest(&self) -> Option<(usize, f64)> {
         let all: f64 = self.samples.iter().map(|s| f64::from(s.weight)).sum();
         let adds = |i: usize| {
@@ -21,16 +21,17 @@ impl Explanation {
         (adds(best) > 0.0).then(|| (best, adds(best)))
     }
 
-    /// Returns the sample that stands out from the others, and its share of the pixel's luminance.
+    /// Returns the index of a sample that is far brighter than the others, and its share of the
+    /// pixel's luminance.
     pub fn outlier(&self) -> Option<(usize, f64)> {
-        // A share below this, or below four times the even share, is normal.
+        // A share below this, or below four times the average share, is normal.
         let usual = (4.0 / self.samples.len() as f64).clamp(0.2, 0.9);
         let (number, adds) = self.brightest()?;
         let share = adds / luminance_of(self.color);
         (self.samples.len() > 1 && share >= usual).then_some((number, share))
     }
 
-    /// Explains in sentences why that sample is so bright; empty if none stands out.
+    /// Explains in sentences why that sample is so bright. Empty if there is no such sample.
     pub fn firefly(&self) -> Vec<String> {
         let Some((number, share)) = self.outlier() else { return Vec::new() };
         let mut causes = vec![format!("sample {number} alone is {:.0} % of the pixel", 100.0 * share)];
@@ -43,7 +44,7 @@ impl Explanation {
     }
 }
 
-/// Follows the brightest terms to their source.
+/// Follows the brightest terms from a tree's root to their source, and explains their weight.
 fn cause(light: &Tree) -> Vec<String> {
     let (mut node, mut chosen) = (&light.root, Vec::new());
     let adds = |node: &TraceNode| luminance_of(light.color(node.contribution()));

@@ -1,4 +1,4 @@
-//! An explanation as lines of text.
+//! Text form of explanations, one line per term.
 
 use super::numbers::{number, rgb, vector};
 use super::origins::origins;
@@ -14,41 +14,42 @@ use durer_scene::math::{Color, LUMINANCE, Vec3, reflect};
 use durer_scene::scene::Scene;
 use durer_scene::spectrum::{Lanes, Spectrum};
 
-/// Names of objects, materials and lights, and their lines in the scene.
+/// Looks up the names of objects, materials and lights, and where the scene file defines them, for
+/// explanations.
 #[derive(Clone, Copy, Debug)]
 pub struct Names<'a> {
-    /// The files that were read.
+    /// Files that were read.
     pub files: &'a Files,
-    /// The scene as written.
+    /// Scene as written in the file.
     pub scene: &'a Scene,
-    /// The compiled scene.
+    /// World compiled from the scene.
     pub world: &'a World,
 }
 
-/// A line of an explanation.
+/// Line of text in an explanation of a pixel: a term of the trace or a detail of one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextLine {
     /// Indentation depth.
     pub depth: usize,
-    /// Contribution of the term: to the pixel in a path, else to the parent term. `None` for lines
-    /// that add detail to the line before.
+    /// Contribution of the term: to the pixel for a path, else to its parent term. `None` for lines
+    /// with details about the line before.
     pub adds: Option<TermValue>,
     /// Colour of the contribution.
     pub color: Color,
-    /// Share of the total brightness, from 0 to 1.
+    /// Share of the tree's total brightness, from 0 to 1.
     pub share: f32,
     /// Text of the line.
     pub text: String,
 }
 
-/// Level of detail.
+/// Options for the text of an explanation: which terms to omit, and how to show eight-bit values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExplainOptions {
-    /// Minimum share of the total; terms below are omitted.
+    /// Minimum share of the total brightness. Terms with less are omitted.
     pub least: f32,
-    /// Maximum depth; deeper terms are omitted.
+    /// Maximum depth of terms. Deeper ones are omitted.
     pub deepest: usize,
-    /// Transfer curve for eight-bit values.
+    /// Transfer curve for the eight-bit colour.
     pub transfer: Transfer,
 }
 
@@ -60,26 +61,30 @@ impl TextLine {
 }
 
 impl Default for ExplainOptions {
-    /// Full detail.
+    /// Options that omit nothing.
     fn default() -> Self {
         ExplainOptions { least: 0.0, deepest: usize::MAX, transfer: Transfer::default() }
     }
 }
 
-/// Context of a term.
+/// Data from the nodes above a trace node that its text needs, such as the enclosing ray.
 #[derive(Clone, Copy)]
 struct Context<'a> {
-    /// The tree.
+    /// Trace that the node belongs to.
     tree: &'a Tree,
-    /// Factor of its contribution in the total.
+    /// Factor by which the node's contribution is multiplied in the total.
     gain: TermValue,
     /// Brightness of the total.
     whole: f32,
-    /// Ray, normal and light direction of the enclosing terms.
+    /// Direction of the enclosing ray.
     dir: Vec3,
+    /// Normal at the enclosing ray's hit.
     n: Vec3,
+    /// Direction to the enclosing light.
     to_light: Vec3,
+    /// Material at the enclosing ray's hit.
     material: Option<u32>,
+    /// Fresnel reflectance at that hit.
     fresnel: Option<f32>,
 }
 
@@ -88,6 +93,7 @@ fn brightness(color: Color) -> f32 {
 }
 
 impl Names<'_> {
+    /// Returns the file name, line and column of a span.
     fn place(&self, span: Span) -> String {
         let name = self.files.name(span.file).unwrap_or("?");
         match self.files.position(span) {
@@ -96,13 +102,14 @@ impl Names<'_> {
         }
     }
 
-    /// Returns lines that derive the numbers in a term. `dir` and `n`: direction of the ray that
-    /// the term belongs to, and normal.
+    /// Returns lines that derive the numbers in a term. `dir` is the direction of the ray that the
+    /// term belongs to, and `n` the normal at its hit.
     pub fn origins(&self, node: &TraceNode, dir: Vec3, n: Vec3) -> Vec<String> {
         origins(node, (self.scene, self.world), dir, n)
     }
 
-    /// Returns the line of a span, with the file's name if it is not the scene's file.
+    /// Returns the line number of a span, or its full position if it is in another file than the
+    /// camera.
     fn line(&self, span: Span) -> String {
         let scene = self.scene.camera_span.file;
         match self.files.position(span) {
@@ -117,8 +124,8 @@ impl Names<'_> {
         String::from_utf8_lossy(bytes.unwrap_or(b"object")).into_owned()
     }
 
-    /// Names an object without a keyword in the file, as in JSON: by its kind and, if it has one,
-    /// its name.
+    /// Names an object that has no keyword in the scene file, as in JSON: by its kind and, if it
+    /// has one, its name. `None` if it has a keyword.
     pub fn unworded(&self, object: u32) -> Option<String> {
         let object = &self.world.objects()[object as usize];
         let kind = match &object.geometry {
@@ -133,18 +140,19 @@ impl Names<'_> {
         }
     }
 
+    /// Returns the keyword or kind of an object, and its span.
     fn keyword(&self, object: u32) -> (String, Span) {
         let span = self.world.objects()[object as usize].span;
         (self.unworded(object).unwrap_or_else(|| self.word(span)), span)
     }
 
-    /// Names an object by keyword and line.
+    /// Names an object by keyword and line number.
     pub fn short_object(&self, number: u32) -> String {
         let (keyword, span) = self.keyword(number);
         format!("{keyword} {}", self.line(span))
     }
 
-    /// Names a material by index and line.
+    /// Names a material by index and line number.
     fn short_material(&self, number: u32) -> String {
         match self.scene.materials.get(number as usize) {
             Some(material) => format!("material {number} {}", self.line(material.span)),
@@ -152,7 +160,7 @@ impl Names<'_> {
         }
     }
 
-    /// Names a light by keyword and line.
+    /// Names a light by keyword and line number.
     fn short_light(&self, number: usize) -> String {
         match self.scene.lights.iter().flatten().nth(number) {
             Some(light) => format!("{} {}", light.value.keywords()[0].0, self.line(light.span)),
@@ -160,7 +168,7 @@ impl Names<'_> {
         }
     }
 
-    /// Names an emitter, and the line in which it is written.
+    /// Names an emitter and the line that defines it.
     fn emitter(&self, light: LightId) -> String {
         match light {
             LightId::Light(number) => self.short_light(number as usize),
@@ -169,13 +177,13 @@ impl Names<'_> {
         }
     }
 
-    /// Names an object by keyword and position.
+    /// Names an object by keyword and position in the file.
     pub fn object(&self, number: u32) -> String {
         let (keyword, span) = self.keyword(number);
         format!("{keyword} {}", self.place(span))
     }
 
-    /// Names a material by index and position.
+    /// Names a material by index and position in the file.
     pub fn material(&self, number: u32) -> String {
         match self.scene.materials.get(number as usize) {
             Some(material) => format!("material {number} {}", self.place(material.span)),
@@ -183,7 +191,7 @@ impl Names<'_> {
         }
     }
 
-    /// Names a light by keyword and position.
+    /// Names a light by keyword and position in the file.
     pub fn light(&self, number: usize) -> String {
         match self.scene.lights.iter().flatten().nth(number) {
             Some(light) => format!("{} {}", light.value.keywords()[0].0, self.place(light.span)),
@@ -193,8 +201,8 @@ impl Names<'_> {
 }
 
 impl Explanation {
-    /// Returns the explanation as lines: the pixel, its samples, and the tree of the sample at
-    /// index `wanted`.
+    /// Returns the explanation as lines of text: the pixel, its samples, and the tree of the sample
+    /// with index `wanted`.
     pub fn lines(&self, names: &Names, wanted: usize, options: &ExplainOptions) -> Vec<TextLine> {
         let mut lines = Vec::new();
         let mut say = |depth, text: String| lines.push(TextLine::plain(depth, text));
@@ -225,7 +233,7 @@ impl Explanation {
             say(1, format!("luminance {luminance}, error at most {bound} with 90 % confidence: {parts}"));
         }
         if let Some(stale) = self.stale_texels {
-            say(1, format!("plus {} by the quirk `stale-texels`", rgb(stale)));
+            say(1, format!("plus {} from the quirk `stale-texels`", rgb(stale)));
         }
         let nothing = |i: usize| i != wanted && self.samples[i].weight == 0.0 && self.mean != Mean::Own;
         for (i, sample) in self.samples.iter().enumerate().filter(|(i, _)| !nothing(*i)) {
@@ -241,7 +249,7 @@ impl Explanation {
         lines
     }
 
-    /// Names a sample: its index, and its pixel if the list has samples of several pixels.
+    /// Names a sample by its index, and by its pixel if the samples belong to several pixels.
     fn number(&self, index: usize) -> String {
         let SampleAccount { of: (x, y), sample, .. } = self.samples[index];
         match self.mean {
@@ -251,6 +259,7 @@ impl Explanation {
     }
 }
 
+/// Appends the line of a sample and, if `whole` is given, its tree.
 fn sample_lines(
     sample: &SampleAccount,
     name: String,
@@ -267,13 +276,14 @@ fn sample_lines(
     }
 }
 
-/// Returns the lines of a tree.
+/// Returns the trace of a ray as lines of text.
 pub fn ray_text(light: &Tree, names: &Names, options: &ExplainOptions) -> Vec<TextLine> {
     let mut lines = Vec::new();
     tree_lines(light, names, 0, options, &mut lines);
     lines
 }
 
+/// Appends the lines of a tree.
 fn tree_lines(tree: &Tree, names: &Names, depth: usize, options: &ExplainOptions, lines: &mut Vec<TextLine>) {
     if let Lanes::Waves(waves) = &tree.lanes {
         let list = |numbers: Spectrum| numbers.to_array().map(number).join(", ");
@@ -295,6 +305,7 @@ impl<'a> Context<'a> {
     }
 }
 
+/// Appends the lines of a node and of the terms below it.
 fn node_lines(
     node: &TraceNode,
     names: &Names,
@@ -432,7 +443,7 @@ fn node_lines(
     }
 }
 
-/// Describes the choice of a direction.
+/// Describes how the direction of a ray was sampled.
 fn bounce_line(bounce: &Bounce) -> String {
     let Bounce { lobe, probability, pdf, survival, directions } = bounce;
     let density = if *pdf > 0.0 { format!(", density {} /sr", number(*pdf)) } else { String::new() };
@@ -443,7 +454,7 @@ fn bounce_line(bounce: &Bounce) -> String {
     format!("chosen by {lobe} (probability {}){density}{survived}{shared}", number(*probability))
 }
 
-/// Describes a MIS weight other than 1.
+/// Describes an MIS weight other than 1.
 fn weight_text(mis: f32) -> String {
     if mis == 1.0 { String::new() } else { format!(" (MIS weight {})", number(mis)) }
 }
@@ -452,8 +463,8 @@ fn terms(count: usize) -> String {
     if count == 1 { "1 term".into() } else { format!("{count} terms") }
 }
 
-/// Describes the factor of a secondary ray: with Fresnel's law, the material's colour and the
-/// share.
+/// Describes the factor of a secondary ray. If Fresnel's equations split the light, it is the
+/// material's colour times the Fresnel factor.
 fn split(node: &TraceNode, from: &str, at: &Context, names: &Names) -> String {
     let phong = at.material.and_then(|i| names.world.materials().get(i as usize));
     match (at.fresnel, phong) {
@@ -467,6 +478,7 @@ fn split(node: &TraceNode, from: &str, at: &Context, names: &Names) -> String {
     }
 }
 
+/// Describes the hit of a ray.
 fn struck_lines(hit: &HitRecord, names: &Names) -> Vec<String> {
     let (object, t) = (names.short_object(hit.object), number(hit.t));
     let mut lines = vec![format!("hits {object} at t = {t}, point {}", vector(hit.position))];
@@ -497,6 +509,7 @@ fn struck_lines(hit: &HitRecord, names: &Names) -> Vec<String> {
     lines
 }
 
+/// Describes what a shadow ray hits.
 fn shadow_line(shadow: &Shadow, names: &Names) -> String {
     let Some((object, t)) = shadow.blocker else { return "the shadow ray is unoccluded".into() };
     let (object, t) = (names.short_object(object), number(t));

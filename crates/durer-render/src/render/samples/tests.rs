@@ -1,5 +1,5 @@
-//! Tests that the loop over samples neither allocates nor locks too often, which would serialise
-//! threads.
+//! Tests that taking samples does not allocate memory, and that tiles lock rarely. Either would
+//! make threads wait for each other.
 
 use super::*;
 use crate::compile::{AccelKind, testing};
@@ -8,7 +8,7 @@ use crate::integrator::IntegratorKind;
 use crate::render::{Control, PartialRender, Shard};
 use durer_scene::dialect::Dialect;
 
-/// Mirrors, glass and layers under a point light and an area light.
+/// Scene of mirrors, glass and principled materials under a point light and an area light.
 const TEXT: &str = "PerspectiveCamera { center 0 1 8 direction 0 -0.1 -1 up 0 1 0 angle 40 }
 Lights { PointLight { position 3 6 4 color 0.9 0.9 0.8 } }
 Background { color 0.2 0.1 0.5 ambientLight 0.2 0.2 0.2 }
@@ -23,7 +23,7 @@ Group {
   MaterialIndex 2 Transform { YRotate 30 Box { min 0.4 -0.5 -1 max 1.6 0.7 0.2 } }
   MaterialIndex 3 Rectangle { corner -1 4 -1 edge0 2 0 0 edge1 0 0 2 } }";
 
-/// Returns a job of `width` columns with `samples` samples.
+/// Returns a job with `width` columns and `samples` samples per pixel.
 fn job(width: u32, samples: u32, method: IntegratorKind) -> Job {
     let sampling = Sampling::Filtered { samples, filter: Filter::default() };
     Job { width, height: 32, sampling, method, ..Job::default() }
@@ -50,7 +50,7 @@ fn samples_do_not_allocate() {
         let mut take = |range: std::ops::Range<u32>| {
             samples.add(&mut film, part, |_| range.clone(), &at, &mut RayCount::default()).unwrap()
         };
-        // Warm up thread-local buffers, which grow to the needs of a block.
+        // Warm up the thread-local buffers, which grow to the size that a block needs.
         take(0..16);
         let made = allocation_counter::measure(|| take(16..32));
         assert_eq!(made.count_total, 0, "{method:?}");
@@ -66,6 +66,6 @@ fn tile_locks_twice_per_pass() {
         part.render(&world, &control, &mut |_, _| {}).unwrap();
         part.locked.load(Relaxed)
     };
-    // One sample is one pass: four more tiles are eight more locks.
+    // One sample is one pass, so four more tiles lock eight more times.
     assert_eq!(locks(96) - locks(64), 8);
 }

@@ -1,12 +1,12 @@
-//! Single-precision 4 x 4 matrices with the products, inverses and decompositions of the course's
-//! programs.
+//! Single-precision 4 x 4 matrices with the arithmetic of the course's programs for products,
+//! inverses and decompositions.
 
 use super::Vectors;
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::{MatrixOp, MatrixRules};
 use glam::DAffine3;
 
-/// A 4 x 4 matrix, stored by columns.
+/// Single-precision 4 x 4 transform matrix of the course's programs, stored by columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matrix([[f32; 4]; 4]);
 
@@ -15,7 +15,7 @@ impl Matrix {
     pub const IDENTITY: Matrix =
         Matrix([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]);
 
-    /// Returns the product of the matrices of one transform.
+    /// Returns the product of the matrices in one transform.
     pub fn of(ops: &[MatrixOp], rules: MatrixRules, vectors: Vectors) -> Self {
         let product = ops.iter().fold(Matrix::IDENTITY, |product, op| {
             let own = Matrix::from(op);
@@ -31,7 +31,7 @@ impl Matrix {
         }
     }
 
-    /// Returns the product with a matrix that applies before this one.
+    /// Returns the product `self` · `other`, which applies `other` first.
     pub fn times(&self, other: &Matrix, vectors: Vectors) -> Matrix {
         let entry = |row: usize, column: usize| {
             let [a, b, c, d] = [0, 1, 2, 3].map(|i| self.0[i][row] * other.0[column][i]);
@@ -40,7 +40,7 @@ impl Matrix {
         Matrix([0, 1, 2, 3].map(|column| [0, 1, 2, 3].map(|row| entry(row, column))))
     }
 
-    /// Transforms a point.
+    /// Transforms a point, with the arithmetic of the given vector library.
     pub fn point(&self, p: Vec3, vectors: Vectors) -> Vec3 {
         let row = |row: usize| {
             let [x, y, z, w] = self.0.map(|column| column[row]);
@@ -52,7 +52,7 @@ impl Matrix {
         Vec3::new(row(0), row(1), row(2))
     }
 
-    /// Transforms a vector in the course's own arithmetic.
+    /// Transforms a vector, with the arithmetic of the course's own library.
     pub fn vector(&self, v: Vec3) -> Vec3 {
         let row = |row: usize| {
             let [x, y, z] = [0, 1, 2].map(|column| self.0[column][row] * v[column]);
@@ -70,14 +70,14 @@ impl Matrix {
         Vec3::new(x, y, z)
     }
 
-    /// True if the matrix and its inverse are finite.
+    /// Returns true if all entries of the matrix and its inverse are finite.
     pub fn is_regular(&self) -> bool {
         let inverse = self.inverse(Vectors::Vecmath);
         [self, &inverse].iter().all(|matrix| matrix.0.iter().flatten().all(|x| x.is_finite()))
     }
 
-    /// Returns the inverse: cofactors times the reciprocal of the determinant. For a singular
-    /// matrix its entries are infinite or NaN.
+    /// Returns the inverse, computed as cofactors times the reciprocal of the determinant. For a
+    /// singular matrix, its entries are infinite or NaN.
     pub fn inverse(&self, vectors: Vectors) -> Matrix {
         match vectors {
             Vectors::Vecmath => self.inverse_by_minors(),
@@ -85,8 +85,8 @@ impl Matrix {
         }
     }
 
-    /// Inverts by cofactors as 3 x 3 determinants, each starting after its own row and column and
-    /// wrapping around the matrix.
+    /// Inverts the matrix with cofactors that are 3 x 3 determinants. The rows and columns of each
+    /// start after its own row and column and wrap around the matrix.
     fn inverse_by_minors(&self) -> Matrix {
         let m = |row: usize, column: usize| self.0[column][row];
         let cofactor = |row: usize, column: usize| {
@@ -99,11 +99,11 @@ impl Matrix {
         };
         let [a, b, c, d] = [0, 1, 2, 3].map(|column| m(0, column) * cofactor(0, column));
         let reciprocal = 1.0 / (a + b + c + d);
-        // The inverse has transposed cofactors.
+        // The inverse consists of the transposed cofactors.
         Matrix([0, 1, 2, 3].map(|column| [0, 1, 2, 3].map(|row| cofactor(column, row) * reciprocal)))
     }
 
-    /// Inverts by the products of pairs that glm shares between cofactors.
+    /// Inverts the matrix as glm does, from products of pairs that several cofactors share.
     fn inverse_by_factors(&self) -> Matrix {
         let m = &self.0;
         // 2 x 2 determinants of columns i and j, rows p and q.
@@ -133,7 +133,8 @@ impl Matrix {
         Matrix(cofactors.map(|column| column.map(|x| x * reciprocal)))
     }
 
-    /// Removes the shear: glm's `decompose` into translation, rotation and scale, recomposed.
+    /// Removes the shear, as glm's `decompose` into translation, rotation and scale does when
+    /// recomposed.
     ///
     /// Source: Spencer W. Thomas, *Decomposing a Matrix into Simple Transformations*, Graphics Gems
     /// II (1991), VII.1.
@@ -218,7 +219,7 @@ impl From<&MatrixOp> for Matrix {
 }
 
 impl From<DAffine3> for Matrix {
-    /// Rounds once.
+    /// Rounds each entry to single precision once.
     fn from(map: DAffine3) -> Self {
         let column = |v: glam::DVec3, w: f32| [v.x as f32, v.y as f32, v.z as f32, w];
         let m = map.matrix3;
@@ -226,7 +227,7 @@ impl From<DAffine3> for Matrix {
     }
 }
 
-/// Rodrigues' rotation about a unit axis.
+/// Returns the matrix of a rotation about a unit axis, by Rodrigues' formula.
 fn rotation(Vec3 { x, y, z }: Vec3, degrees: f32) -> Matrix {
     let radians = (std::f64::consts::PI * f64::from(degrees) / 180.0) as f32;
     let (sin, cos) = fp::sin_cos_f64(f64::from(radians));

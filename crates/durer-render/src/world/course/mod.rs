@@ -1,9 +1,9 @@
-//! Hits as in the course's programs of 2012 to 2023: object by object, in single precision,
-//! operation by operation. The last bit matters in pictures of objects that are distant, seen at a
-//! grazing angle or as large as the ground.
+//! Ray intersection as in the course's programs of 2012 to 2023: object by object, in single
+//! precision, and with the same order of operations. The last bit is visible in pictures of objects
+//! that are distant, seen at a grazing angle, or as large as the ground.
 //!
 //! Sources: the starter code of the assignments, whose spheres, groups, cameras and octree the
-//! official programs share; pictures of these programs for the rest.
+//! official programs share, and for the rest pictures of these programs.
 
 mod matrix;
 mod octree;
@@ -20,18 +20,19 @@ use shapes::{Crossing, Limits};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Vector library whose arithmetic is used.
+/// Vector library whose arithmetic an official program uses: the order of operations decides the
+/// last bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vectors {
-    /// The course's own library, 2012 to 2019.
+    /// The course's own library vecmath, 2012 to 2019.
     Vecmath,
     /// The library glm, since 2020.
     Glm,
 }
 
 impl Vectors {
-    /// Starts a sum with a term. The course's own library starts with 0, so the sum is never -0;
-    /// the sign of a zero decides if a ray passes through an octree cell.
+    /// Starts a sum with its first term. The course's own library starts with 0, so its sums are
+    /// never -0. The sign of a zero decides whether a ray passes through an octree cell.
     fn sum_from(self, first: f32) -> f32 {
         match self {
             Vectors::Vecmath => 0.0 + first,
@@ -39,7 +40,8 @@ impl Vectors {
         }
     }
 
-    /// Direction used to traverse an octree; of length 1 in the course's own arithmetic.
+    /// Returns the direction with which an octree is traversed. Of unit length in the course's own
+    /// arithmetic.
     fn walked(self, dir: Vec3) -> Vec3 {
         match self {
             Vectors::Vecmath => self.unit(dir),
@@ -47,7 +49,7 @@ impl Vectors {
         }
     }
 
-    /// Normalizes a vector; NaN for a zero vector.
+    /// Normalizes a vector. Returns NaN for a zero vector.
     pub fn unit(self, v: Vec3) -> Vec3 {
         match self {
             Vectors::Vecmath => v / v.length(),
@@ -56,56 +58,58 @@ impl Vectors {
     }
 }
 
-/// Hit rules of an official program, resolved from a scene's dialect when it is compiled.
+/// Ray intersection rules of an official program, which the dialect determines when a scene is
+/// compiled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HitRules {
-    /// Arithmetic of rays in transforms and of directions to lights. With glm every object
-    /// transforms rays, even by the identity: as the difference of two points.
+    /// Arithmetic of ray transforms and of directions to lights. With glm, each object transforms
+    /// rays, even by the identity, as the difference of two points.
     pub vectors: Vectors,
-    /// True to intersect triangles by the inverse of a matrix, false by plane and areas.
+    /// True to intersect triangles with the inverse of a matrix, false to use their plane and
+    /// areas.
     pub triangle_matrix: bool,
     /// True if a triangle wins over earlier objects that are hit at the same distance.
     pub tied_triangles: bool,
-    /// True if a plane is also hit exactly at the start of a ray.
+    /// True if a hit on a plane exactly at the start of a ray counts.
     pub closed_planes: bool,
-    /// True if a sphere is also hit exactly at the start of a ray, as in the starter code of 2020.
-    /// If false, such a hit is at distance 10000, as in earlier starter code.
+    /// True if a hit on a sphere exactly at the start of a ray counts, as in the starter code of
+    /// 2020. If false, such a hit is at distance 10000, as in earlier starter code.
     pub closed_spheres: bool,
-    /// True if the normal of a plane outside of transforms keeps its length as written.
+    /// True if the normal of an untransformed plane keeps the length that it has in the scene file.
     pub raw_normals: bool,
-    /// True to traverse meshes by an octree that loses the far half of cells.
+    /// True to traverse meshes with an octree that misses the far half of some cells.
     pub octree: bool,
 }
 
-/// Objects of a world, in the form of an official program.
+/// Objects of a world, prepared for intersection as an official program of the course does it.
 #[derive(Clone, Debug)]
 pub struct CourseHits {
     rules: HitRules,
     objects: Vec<CourseObject>,
 }
 
-/// An object.
+/// Object of a world, prepared for intersection as an official program does it.
 #[derive(Clone, Debug)]
 struct CourseObject {
     /// Inverses of the enclosing transforms, outermost first.
     inverses: Vec<Matrix>,
-    /// Traversal of a mesh.
+    /// Order in which the triangles of a mesh are tested; `None` for other shapes.
     walk: Option<Arc<MeshOrder>>,
 }
 
-/// Traversal order of the triangles of a mesh.
+/// How the triangles of a mesh are visited to reproduce an official program's hits.
 #[derive(Debug)]
 enum MeshOrder {
-    /// BVH of all triangles; their order does not matter.
+    /// BVH of all triangles, for programs in which the order of visits does not matter.
     Boxes(Bvh),
-    /// Triangles of the cells that the starter code's octree visits.
+    /// Octree of the starter code, which does not visit all triangles.
     Octree(Octree),
 }
 
 impl CourseHits {
     /// Prepares the objects of a world.
     pub(crate) fn new(rules: HitRules, objects: &[Object]) -> Self {
-        // Objects may share meshes.
+        // Several objects can use the same mesh.
         let mut walks: HashMap<*const MeshTree, Arc<MeshOrder>> = HashMap::new();
         let objects = objects.iter().map(|object| {
             let walk = match &object.geometry {
@@ -121,7 +125,7 @@ impl CourseHits {
         CourseHits { rules, objects: objects.collect() }
     }
 
-    /// Finds the first hit in a ray's interval.
+    /// Returns the first hit in a ray's interval.
     pub(crate) fn closest<T: TraversalCounter>(&self, objects: &[Object], ray: &Ray64, counter: &mut T) -> Option<Hit> {
         let mut best: Option<Hit> = None;
         for (number, (prepared, object)) in (0..).zip(self.objects.iter().zip(objects)) {
@@ -163,7 +167,7 @@ impl CourseHits {
         best
     }
 
-    /// Transforms a ray to the space of an object.
+    /// Transforms a ray into the space of an object.
     fn local(&self, object: &CourseObject, ray: &Ray) -> Ray {
         let mut local = *ray;
         match self.rules.vectors {
@@ -182,9 +186,9 @@ impl CourseHits {
         local
     }
 
-    /// Normal of a sphere or a plane in world space; `None` for other shapes. For ground spheres of
-    /// radius 1000, or planes whose normal is not of length 1, its rounding decides where mirrored
-    /// rays hit the ground again.
+    /// Returns the normal of a sphere or plane in world space, or `None` for other shapes. For
+    /// ground spheres of radius 1000, and for planes whose normal is not of unit length, its
+    /// rounding decides where mirrored rays hit the ground again.
     fn normal(&self, objects: &[Object], ray: &Ray, hit: &Hit) -> Option<Vec3> {
         let (object, vectors) = (&self.objects[hit.object as usize], self.rules.vectors);
         let own = match &objects[hit.object as usize].geometry {
@@ -206,7 +210,7 @@ impl CourseHits {
         n.is_finite().then_some(n)
     }
 
-    /// Returns the size in bytes.
+    /// Returns the memory used, in bytes.
     pub fn memory_usage(&self) -> usize {
         let walk = |object: &CourseObject| match object.walk.as_deref() {
             Some(MeshOrder::Boxes(bvh)) => bvh.memory_usage(),
@@ -218,7 +222,7 @@ impl CourseHits {
 }
 
 impl CourseObject {
-    /// Finds the first hit of a mesh, and its triangle.
+    /// Returns the first hit on a mesh and the index of its triangle.
     fn mesh<T: TraversalCounter>(
         &self,
         tree: &MeshTree,
@@ -241,7 +245,7 @@ impl CourseObject {
                 let Some(crossing) = shapes::triangle(tree.mesh.corners(part), ray, limits, rules) else {
                     return t_max;
                 };
-                // The result is as if all triangles were tested in the order of the file.
+                // The result is the same as if all triangles were tested in the order of the file.
                 let wins = best.is_none_or(|(hit, known)| {
                     crossing.t < hit.t || crossing.t == hit.t && (part > known) == rules.tied_triangles
                 });
@@ -262,7 +266,7 @@ impl MeshOrder {
         if rules.octree {
             return MeshOrder::Octree(Octree::new(boxes.collect()));
         }
-        // In this arithmetic, a ray may hit a triangle slightly outside its box.
+        // In this arithmetic, a ray can hit a triangle slightly outside of its box.
         let whole = tree.bvh.bounds();
         let pad = 1e-5 * (whole.min.abs().max(whole.max.abs()) + whole.size());
         let padded: Vec<Aabb> = boxes.map(|b| Aabb { min: b.min - pad, max: b.max + pad }).collect();
@@ -271,7 +275,7 @@ impl MeshOrder {
 }
 
 impl World {
-    /// Normal at a hit, if the official program's rounding of it matters.
+    /// Returns the normal at a hit in an official program's arithmetic, if its rounding matters.
     pub(super) fn course_normal(&self, ray: &Ray, hit: &Hit) -> Option<Vec3> {
         match self.accel() {
             Accel::Course(hits) => hits.normal(self.objects(), ray, hit),
@@ -279,8 +283,8 @@ impl World {
         }
     }
 
-    /// Returns the direction and distance to a light as in the official program; `None` with
-    /// Dürer's own arithmetic, or for lights that the course does not have.
+    /// Returns the direction and distance to a light in an official program's arithmetic. `None`
+    /// for Dürer's own arithmetic and for lights that the course does not have.
     pub fn course_way(&self, light: usize, point: Vec3) -> Option<(Vec3, f32)> {
         let vectors = self.hit_rules()?.vectors;
         match &self.lights()[light] {

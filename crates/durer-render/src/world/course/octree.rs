@@ -1,26 +1,26 @@
-//! Octree of the course's starter code, which loses hits.
+//! Octree of the course's starter code, which misses some hits.
 //!
-//! A ray visits the eight children of a cell by the `t` at which it crosses the cell's planes and
-//! middle planes. If a component of its direction is exactly 0, these are infinite, their mean is
-//! NaN, and comparisons with NaN are false: the children behind the middle plane of that axis are
-//! never visited.
+//! A ray visits the eight children of a cell in the order of the `t` at which it crosses the cell's
+//! outer and middle planes. If a component of its direction is exactly 0, these are infinite, and
+//! their mean is NaN. Comparisons with NaN are false, so the children behind the middle plane of
+//! that axis are never visited.
 //!
 //! Source: Revelles, Ureña, Lastra, *An Efficient Parametric Algorithm for Octree Traversal*, WSCG
-//! 2000; the constants are the starter code's.
+//! 2000. The constants are those of the starter code.
 
 use durer_scene::math::{Aabb, Vec3};
 use std::ops::Range;
 
-/// Number of triangles above which a cell is divided.
+/// Maximum number of triangles in a cell that is not divided.
 const MOST: usize = 7;
-/// Deepest level whose cells are divided.
+/// Deepest level at which cells are divided.
 const LAST_LEVEL: u32 = 8;
-/// Division stops if all cells together hold `PLENTY` triangles plus `TIMES` those of the mesh:
-/// otherwise, large intersecting triangles would exhaust the memory.
+/// Division stops when all cells together contain more than `PLENTY` + `TIMES` n triangles, where
+/// the mesh has n. Otherwise, large intersecting triangles would exhaust the memory.
 const PLENTY: usize = 1 << 20;
 const TIMES: usize = 64;
 
-/// Tree of cells over the boxes of triangles.
+/// Octree over the triangles of a mesh, as the course's starter code builds and traverses it.
 #[derive(Debug)]
 pub(super) struct Octree {
     bounds: Aabb,
@@ -29,16 +29,17 @@ pub(super) struct Octree {
     triangles: Vec<u32>,
 }
 
+/// Cell of an [`Octree`], divided or with a range of triangles.
 #[derive(Clone, Debug)]
 enum Cell {
-    /// Index of the first of eight children: the bits 4, 2 and 1 of a child's offset mark the upper
-    /// half along x, y and z.
+    /// Index of the first of eight children. In a child's offset, the bits 4, 2 and 1 are set for
+    /// the upper half along x, y and z.
     Divided(u32),
-    /// Range of triangles.
+    /// Range of the cell's triangles in [`Octree::triangles`].
     Whole(Range<u32>),
 }
 
-/// `t` at which a ray enters and leaves a cell along each axis.
+/// Values of `t` at which a ray enters and leaves an octree cell along each axis.
 #[derive(Clone, Copy)]
 struct Span {
     enter: [f32; 3],
@@ -46,7 +47,7 @@ struct Span {
 }
 
 impl Octree {
-    /// Builds the tree from the boxes of a mesh's triangles.
+    /// Builds the octree from the boxes of a mesh's triangles.
     pub fn new(boxes: Vec<Aabb>) -> Self {
         let bounds = boxes.iter().copied().reduce(Aabb::union).unwrap_or(Aabb::EMPTY);
         let mut octree = Octree { bounds, cells: vec![Cell::Whole(0..0)], triangles: Vec::new() };
@@ -54,11 +55,12 @@ impl Octree {
         octree
     }
 
-    /// Returns the size in bytes.
+    /// Returns the memory used, in bytes.
     pub fn memory_usage(&self) -> usize {
         size_of_val(&*self.cells) + size_of_val(&*self.triangles)
     }
 
+    /// Divides a cell, or stores its triangles if there are few.
     fn fill(&mut self, cell: usize, bounds: Aabb, triangles: Vec<u32>, boxes: &[Aabb], level: u32) {
         let plenty = self.triangles.len() > PLENTY + TIMES * boxes.len();
         if triangles.len() <= MOST || level > LAST_LEVEL || plenty {
@@ -83,10 +85,10 @@ impl Octree {
         }
     }
 
-    /// Passes the triangles in the cells that a ray from `origin` visits to `offer`, in visiting
-    /// order; some of them several times.
+    /// Calls `offer` with the triangles in the cells that a ray visits, in visiting order. Some
+    /// triangles are offered several times.
     pub fn walk(&self, mut origin: Vec3, mut dir: Vec3, offer: &mut impl FnMut(u32)) {
-        // Mirror the axes along which the ray runs backwards, and the children with them.
+        // Mirror the axes along which the direction is negative, and with them the children.
         let mut mirrored = 0;
         for axis in 0..3 {
             if dir[axis] < 0.0 {
@@ -97,7 +99,7 @@ impl Octree {
         }
         let at = |planes: Vec3| [0, 1, 2].map(|axis| (planes[axis] - origin[axis]) * (1.0 / dir[axis]));
         let span = Span { enter: at(self.bounds.min), leave: at(self.bounds.max) };
-        // Comparisons as in C++: with NaN, the first operand stays.
+        // Compare as C++ does: with NaN, the first operand is returned.
         let larger = |a: f32, b: f32| if a < b { b } else { a };
         let smaller = |a: f32, b: f32| if b < a { b } else { a };
         let [x, y, z] = span.enter;
@@ -107,6 +109,7 @@ impl Octree {
         }
     }
 
+    /// Visits a cell and its children.
     fn visit(&self, cell: usize, mirrored: usize, Span { enter, leave }: Span, offer: &mut impl FnMut(u32)) {
         if leave.iter().any(|&t| t < 0.0) {
             return;
@@ -126,7 +129,7 @@ impl Octree {
                 leave: [0, 1, 2].map(|axis| if is_upper[axis] { leave[axis] } else { middle[axis] }),
             };
             self.visit(children + (child ^ mirrored), mirrored, own, offer);
-            // Leave through the nearest exit plane; nothing lies behind an outer plane.
+            // Leave through the nearest exit plane. Nothing lies behind an outer plane.
             let axis = first_plane(own.leave);
             if is_upper[axis] {
                 return;
@@ -136,10 +139,10 @@ impl Octree {
     }
 }
 
-/// Returns the child that a ray enters first.
+/// Returns the child that a ray enters first. Planes are given by their `t`.
 fn first_child([x, y, z]: [f32; 3], middle: [f32; 3]) -> usize {
-    // Axis of the entry plane that is crossed last. NaN compares as false, as in the official
-    // programs.
+    // Find the axis of the entry plane that is crossed last. NaN compares as false, as in the
+    // official programs.
     let (axis, t) = match (x > y, x > z, y > z) {
         (true, true, _) => (0, x),
         (false, _, true) => (1, y),
@@ -148,7 +151,7 @@ fn first_child([x, y, z]: [f32; 3], middle: [f32; 3]) -> usize {
     (0..3).filter(|&other| other != axis && middle[other] < t).map(|other| 4 >> other).sum()
 }
 
-/// Returns the axis of the plane through which a ray leaves.
+/// Returns the axis of the plane through which a ray leaves a cell first.
 fn first_plane([x, y, z]: [f32; 3]) -> usize {
     match (x < y, x < z, y < z) {
         (true, true, _) => 0,

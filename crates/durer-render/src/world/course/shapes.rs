@@ -1,19 +1,19 @@
-//! Spheres, planes and triangles in the course's arithmetic.
+//! Intersection of spheres, planes and triangles in the arithmetic of the course's programs.
 
 use super::HitRules;
 use durer_scene::math::{Ray, Vec2, Vec3};
 use durer_scene::shape::{Plane, Sphere};
 
-/// Crossing of a ray with an object.
+/// Intersection of a ray with a shape, in an official program's arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Crossing {
     /// Position along the ray.
     pub t: f32,
-    /// Second and third barycentric coordinate on a triangle.
+    /// Second and third barycentric coordinate on a triangle; 0 on other shapes.
     pub uv: Vec2,
 }
 
-/// Interval in which hits count.
+/// Interval of a ray in which a hit counts, for intersections in an official program's arithmetic.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
     /// Minimum `t`, excluded.
@@ -25,19 +25,22 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    /// True if a hit counts; with `ties` also at the distance of the best hit. False for NaN.
+    /// Returns true if a hit at `t` counts. With `ties`, it may be at the same distance as the best
+    /// hit. False for NaN.
     pub fn takes(&self, t: f32, ties: bool) -> bool {
         t > self.t_min && self.is_nearer(t, ties)
     }
 
+    /// Returns true if `t` is nearer than the best hit or, with `ties`, equally near.
     fn is_nearer(&self, t: f32, ties: bool) -> bool {
-        // The official programs initialise their nearest hit to the end of the ray.
+        // The official programs initialize the nearest hit to the end of the ray.
         let best = self.best.unwrap_or(self.t_max.min(f32::MAX));
         t < best || ties && t == best
     }
 }
 
-/// Solves |o + t d - c|^2 = r^2 by the quadratic formula, without protection from cancellation.
+/// Intersects a sphere: solves |o + t d - c|^2 = r^2 by the quadratic formula, without avoiding
+/// cancellation.
 pub(super) fn sphere(sphere: &Sphere, ray: &Ray, limits: Limits, rules: HitRules) -> Option<Crossing> {
     let Ray { dir, t_min, .. } = *ray;
     let origin = ray.origin - sphere.center;
@@ -60,13 +63,13 @@ pub(super) fn sphere(sphere: &Sphere, ray: &Ray, limits: Limits, rules: HitRules
         }
         () if near > t_min => near,
         () if later > t_min && near < t_min => later,
-        // One crossing is exactly at the start of the ray, or both are NaN.
+        // One hit is exactly at the start of the ray, or both are NaN.
         () => 10_000.0,
     };
     limits.takes(t, false).then_some(Crossing { t, uv: Vec2::ZERO })
 }
 
-/// Solves n·(o + t d) = offset, with n as written.
+/// Intersects a plane: solves n·(o + t d) = offset, with n as in the scene file.
 pub(super) fn plane(plane: &Plane, ray: &Ray, limits: Limits, closed: bool) -> Option<Crossing> {
     let n = plane.normal;
     let t = (plane.offset - n.dot(ray.origin)) / n.dot(ray.dir);
@@ -74,18 +77,18 @@ pub(super) fn plane(plane: &Plane, ray: &Ray, limits: Limits, closed: bool) -> O
     (begins && limits.is_nearer(t, false)).then_some(Crossing { t, uv: Vec2::ZERO })
 }
 
-/// Intersects a triangle, from either side.
+/// Intersects both sides of a triangle.
 pub(super) fn triangle(corners: [Vec3; 3], ray: &Ray, limits: Limits, rules: HitRules) -> Option<Crossing> {
     let (t, uv) = if rules.triangle_matrix { by_matrix(corners, ray)? } else { by_areas(corners, ray)? };
     limits.takes(t, rules.tied_triangles).then_some(Crossing { t, uv })
 }
 
-/// Solves a - o = beta (a - b) + gamma (a - c) + t d, by the inverse of the matrix of the three
-/// columns.
+/// Solves a - o = beta (a - b) + gamma (a - c) + t d with the inverse of the matrix that has these
+/// three columns.
 fn by_matrix([a, b, c]: [Vec3; 3], ray: &Ray) -> Option<(f32, Vec2)> {
     let [x, y, z] = [a - b, a - c, ray.dir];
     let to = a - ray.origin;
-    // Rows of the cofactor matrix are rows of the inverse times the determinant.
+    // The rows of the cofactor matrix are rows of the inverse times the determinant.
     let minor = |p: f32, q: f32, r: f32, s: f32| p * s - q * r;
     let cofactors = [
         [minor(y.y, z.y, y.z, z.z), -minor(y.x, z.x, y.z, z.z), minor(y.x, z.x, y.y, z.y)],
@@ -99,7 +102,8 @@ fn by_matrix([a, b, c]: [Vec3; 3], ray: &Ray) -> Option<(f32, Vec2)> {
     (beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0).then_some((t, Vec2::new(beta, gamma)))
 }
 
-/// Returns the crossing with the plane, and the areas of the three triangles around that point.
+/// Intersects the triangle's plane, and computes barycentric coordinates as areas of the three
+/// triangles around that point.
 fn by_areas([a, b, c]: [Vec3; 3], ray: &Ray) -> Option<(f32, Vec2)> {
     let n = (b - a).cross(c - a);
     let t = n.dot(a - ray.origin) / n.dot(ray.dir);

@@ -1,4 +1,4 @@
-//! Tests of solids against the Boolean of their parts, closed forms and set identities.
+//! Tests of CSG solids against boolean operations on points, closed forms and set identities.
 
 use super::*;
 use crate::compile::{AccelKind, testing};
@@ -79,7 +79,7 @@ fn tree(random: &mut Random, depth: usize) -> scene::Object {
     moved(MatrixOp::Matrix(rows), &inner)
 }
 
-/// Evaluates containment of a point by the definition of the operations.
+/// Returns true if a solid contains a point, by the definition of its operations.
 fn member(object: &scene::Object, p: DVec3) -> bool {
     let count = |parts: &[scene::Object]| parts.iter().filter(|part| member(part, p)).count();
     match &object.node {
@@ -99,7 +99,7 @@ fn member(object: &scene::Object, p: DVec3) -> bool {
     }
 }
 
-/// Returns true if containment changes within this distance of a point.
+/// Returns true if containment changes within a distance from a point.
 fn near_surface(object: &scene::Object, p: DVec3, distance: f64) -> bool {
     let here = member(object, p);
     let around = DVec3::AXES.into_iter().chain(DVec3::AXES.map(|a| -a)).chain([DVec3::ONE, -DVec3::ONE]);
@@ -112,7 +112,7 @@ fn goes_out(world: &World, ray: impl Into<Ray64>, hit: &Hit) -> bool {
 
 #[test]
 fn solids_contain_the_points_of_their_operations() {
-    // Distance to a surface below which single precision may err.
+    // Distance from a surface within which single precision can be wrong.
     const DISTANCE: f64 = 1e-4;
     let wanted = std::env::var("DURER_SOLID_POINTS").ok().and_then(|n| n.parse().ok()).unwrap_or(20_000);
     let folder = tempfile::tempdir().unwrap();
@@ -120,7 +120,8 @@ fn solids_contain_the_points_of_their_operations() {
     let mut random = Random(21);
     let (mut points, mut inside, mut near) = (0, 0, 0);
     while points < wanted {
-        // Parts of a top-level union keep their inner surfaces, so wrap it in another operation.
+        // The parts of a top-level union stay separate objects with inner surfaces, so wrap it in
+        // another operation.
         let solid = join(Operation::Merge, &[&tree(&mut random, 3)]);
         let world = testing::object(solid.clone(), AccelKind::Bvh, folder.path());
         for _ in 0..40 {
@@ -134,7 +135,7 @@ fn solids_contain_the_points_of_their_operations() {
                 let gap = f64::from(pair[1].t - pair[0].t) * ray.dir.as_dvec3().length();
                 assert!(a != b || gap < DISTANCE, "{solid:?} {ray:?} {hits:?}");
             }
-            // A point is inside if the next hit is an exit, or the previous one an entry.
+            // A point is inside if the next hit is an exit or the previous one an entry.
             let Some(first) = hits.first() else { continue };
             for _ in 0..8 {
                 let t = random.between(-3.0, 3.0) / ray.dir.length();
@@ -158,8 +159,8 @@ fn solids_contain_the_points_of_their_operations() {
     assert!(inside > points / 10 && near < points / 10, "{points} {inside} {near}");
 }
 
-/// Returns the volume of a solid inside the cube of half size 2, from rays along x, and its
-/// standard error.
+/// Returns the volume of a solid within the cube of half-width 2, estimated with rays along x, and
+/// its standard error.
 fn volume(solid: &scene::Object, random: &mut Random, rays: usize) -> (f64, f64) {
     let world = world(solid);
     let (mut sum, mut squares) = (0.0, 0.0);
@@ -217,7 +218,8 @@ fn volumes_match_closed_forms() {
     }
 }
 
-/// Asserts that every ray has the same hits and normals on two solids. Returns the number of hits.
+/// Asserts that random rays have the same hits and normals on two solids. Returns the number of
+/// hits.
 fn assert_same(a: &scene::Object, b: &scene::Object, random: &mut Random) -> usize {
     let (first, second) = (world(a), world(b));
     let mut hits = 0;
@@ -251,23 +253,23 @@ fn set_identities_hold_bit_for_bit() {
         let not = |x: &scene::Object| join(Difference, &[&all, x]);
         let both = join(Intersection, &[&a, &b]);
         let mut same = |x: &scene::Object, y: &scene::Object| hits += assert_same(x, y, &mut rays);
-        // A - B is A and not B, and A xor (A and B).
+        // A - B is the intersection of A and not B, and A xor (A and B).
         same(&join(Difference, &[&a, &b]), &join(Intersection, &[&a, &not(&b)]));
         same(&join(Difference, &[&a, &b]), &join(Xor, &[&a, &both]));
         // De Morgan.
         same(&not(&join(Merge, &[&a, &b])), &join(Intersection, &[&not(&a), &not(&b)]));
         same(&not(&both), &join(Merge, &[&not(&a), &not(&b)]));
-        // Distributivity, both ways.
+        // Both distributive laws.
         let either = join(Merge, &[&b, &c]);
         same(&join(Intersection, &[&a, &either]), &join(Merge, &[&both, &join(Intersection, &[&a, &c])]));
         same(
             &join(Merge, &[&a, &join(Intersection, &[&b, &c])]),
             &join(Intersection, &[&join(Merge, &[&a, &b]), &join(Merge, &[&a, &c])]),
         );
-        // Subtracting one after another, or together.
+        // Subtract one after the other, or both together.
         same(&join(Difference, &[&a, &b, &c]), &join(Difference, &[&a, &either]));
         same(&join(Difference, &[&join(Difference, &[&a, &b]), &c]), &join(Difference, &[&a, &either]));
-        // Idempotence, and subtraction of itself.
+        // Idempotence, and a solid minus itself.
         same(&join(Merge, &[&a, &a]), &a);
         same(&join(Intersection, &[&a, &a]), &a);
         same(&join(Xor, &[&a, &a, &a]), &a);
@@ -281,7 +283,7 @@ fn coincident_faces_leave_no_skin() {
     use Operation::*;
     let mut random = Random(25);
     let long = cuboid([0.0; 3], [0.3, 0.1, 0.1]);
-    // The same position from other numbers: 0.1 + 0.2 is not 0.3 in single precision.
+    // Get the same position from other numbers: 0.1 + 0.2 is not 0.3 in single precision.
     let end = moved(MatrixOp::Translate(Vec3::new(0.1, 0.0, 0.0)), &cuboid([0.0; 3], [0.2, 0.1, 0.1]));
     let other = moved(
         MatrixOp::Translate(Vec3::new(0.1, 0.05, 0.05)),
@@ -297,7 +299,7 @@ fn coincident_faces_leave_no_skin() {
         (join(Intersection, &[&long, &start]), start.clone()),
     ];
     for _ in 0..40 {
-        // The full scene rotated, stretched and moved away.
+        // Rotate, stretch and move all objects.
         let rows = glam::DMat4::from(random.affine(2.0, 3.0)).transpose().to_cols_array().map(|x| x as f32);
         let placed = MatrixOp::Matrix(rows);
         let map: DAffine3 = placed.matrix();
@@ -306,11 +308,11 @@ fn coincident_faces_leave_no_skin() {
             for _ in 0..200 {
                 let inside = DVec3::new(0.31, 0.11, 0.11) * (random.point().as_dvec3() * 0.55 + 0.5);
                 let target = map.transform_point3(inside).as_vec3();
-                // From near and far.
+                // Shoot rays from near and far.
                 let origin = target + [0.5, 5.0, 50.0][random.below(3)] * random.direction();
                 let ray = Ray::new(origin, target - origin);
                 let (a, b): (Vec<Hit>, Vec<Hit>) = (found.all_hits(&ray).collect(), wanted.all_hits(&ray).collect());
-                // At an edge, single precision cannot resolve on which side a ray passes.
+                // At an edge, single precision cannot decide on which side a ray passes.
                 let width = b.windows(2).map(|w| (w[1].t - w[0].t) * ray.dir.length()).fold(f32::INFINITY, f32::min);
                 let cuts = a.windows(2).map(|w| (w[1].t - w[0].t) * ray.dir.length()).fold(f32::INFINITY, f32::min);
                 if width < 1e-3 || b.is_empty() && cuts < 1e-3 {
@@ -340,10 +342,10 @@ fn surfaces_have_the_material_of_their_part() {
         let list = |at: SurfaceInteraction| (at.material, at.hit.t, at.surface.n_geo.to_array());
         world.all_hits(&ray).map(|hit| list(world.interaction(&ray, hit))).collect::<Vec<_>>()
     };
-    // Into the dent, whose surface is inverted, and out at the back.
+    // The ray enters through the dent, whose surface is inverted, and leaves at the back.
     let through = seen([0.0, 0.0, 5.0], [0.0, 0.0, -1.0]);
     assert_eq!(through, [(2, 4.5, [0.0, 0.0, 1.0]), (1, 6.0, [0.0, 0.0, -1.0])]);
-    // The right wall is the second box's left one.
+    // The right wall was the left wall of the second box.
     let across = seen([5.0, 0.9, 0.0], [-1.0, 0.0, 0.0]);
     assert_eq!((across[0].0, across[0].2, across[1].0, across[1].2), (2, [1.0, 0.0, 0.0], 1, [-1.0, 0.0, 0.0]));
     // A hollow sphere.
@@ -363,7 +365,7 @@ fn lens_of_two_spheres_focuses_by_the_lensmakers_equation() {
     let world = world(&lens);
     let mut random = Random(28);
     for _ in 0..1000 {
-        // Paraxial rays: the error grows with the square of the height.
+        // For paraxial rays, the error grows with the square of the height.
         let (y, z) = (random.between(-0.05, 0.05), random.between(-0.05, 0.05));
         let mut ray = Ray64::from(Ray::new(Vec3::new(-5.0, y, z), Vec3::X));
         for (eta, outwards) in [(1.0 / 1.5, false), (1.5, true)] {
@@ -388,7 +390,7 @@ fn a_union_keeps_inner_surfaces_and_a_merge_does_not() {
         (world.objects().len(), world.all_hits(&Ray::new(Vec3::new(-5.0, 0.0, 0.0), Vec3::X)).count())
     };
     assert_eq!(hits(Operation::Union), (2, 4));
-    // Also for nested unions.
+    // This also holds for nested unions.
     let nested = join(Operation::Union, &[&join(Operation::Union, &[&a, &b]), &ball([9.0, 0.0, 0.0], 1.0)]);
     assert_eq!(world(&nested).objects().len(), 3);
     assert_eq!(hits(Operation::Merge), (1, 2));
@@ -403,13 +405,13 @@ fn disjoint_parts_become_separate_objects() {
     let list: Vec<&scene::Object> = balls.iter().collect();
     let merged = join(Merge, &list);
     assert_eq!(world(&merged).objects().len(), 1000);
-    // A cut through one sphere affects only that sphere.
+    // Cutting one sphere affects only that sphere.
     let cut = join(Difference, &[&merged, &ball([3.0, 1.0, 0.0], 0.5)]);
     let compiled = world(&cut);
     assert_eq!(compiled.objects().len(), 1000);
     let solids = compiled.objects().iter().filter(|object| matches!(object.geometry, Geometry::Solid(_)));
     assert_eq!(solids.count(), 1);
-    // Intersection with a box keeps only the spheres in it, within tighter bounds.
+    // Intersection with a box keeps only the spheres in it and tightens the bounds.
     let window = join(Intersection, &[&merged, &cuboid([2.5, -0.5, -2.0], [9.5, 0.5, 2.0])]);
     let bounds = world(&window).bounds();
     assert_eq!(world(&window).objects().len(), 3);
@@ -422,7 +424,7 @@ fn disjoint_parts_become_separate_objects() {
 
 #[test]
 fn cluster_of_many_parts_matches_its_parts() {
-    // One cluster with its own tree, from outside and inside.
+    // All parts are in one cluster, which has its own BVH. Rays start outside and inside.
     let mut random = Random(26);
     let balls: Vec<scene::Object> =
         (0..300).map(|i| ball([0.5 * (i % 20) as f32, 0.5 * (i / 20) as f32, random.unit()], 0.4)).collect();
@@ -438,7 +440,7 @@ fn cluster_of_many_parts_matches_its_parts() {
         inner += usize::from(from_inside);
         let hit = world.closest(&ray, &mut ());
         assert_eq!(world.occluded(&ray, &mut ()), hit.is_some());
-        // March along the ray to the first change.
+        // March along the ray up to the first change.
         let step = 1e-3;
         let limit = hit.map_or(14.0, |hit| f64::from(hit.t));
         let mut t = step;
@@ -454,7 +456,8 @@ fn cluster_of_many_parts_matches_its_parts() {
     assert!(inner > 400, "{inner}");
 }
 
-/// Compares a tree over subtracted parts, clipped to the bounds of the whole, with all parts.
+/// Compares a solid with a BVH over its subtracted parts, clipped to the bounds of the solid, with
+/// one that tests all parts.
 #[test]
 fn parts_are_clipped_to_the_bounds_of_the_whole() {
     let (mut random, mut hits) = (Random(28), 0);
@@ -505,7 +508,7 @@ fn rays_that_leave_a_solid_do_not_hit_it_at_their_start() {
                 }
                 let away = spawn_ray(&surface, dir, f32::INFINITY, None);
                 let Some(next) = world.closest(&away, &mut ()) else { continue };
-                // An exit is followed by an entry, and the reverse.
+                // After an exit there must be an entry, and after an entry an exit.
                 count += 1;
                 let turns = goes_out(&world, &away, &next) != (dir.dot(surface.n_geo) > 0.0);
                 assert!(turns, "{solid:?} {ray:?} {surface:?} {away:?} {next:?}");
@@ -515,8 +518,8 @@ fn rays_that_leave_a_solid_do_not_hit_it_at_their_start() {
     assert!(count > 10_000, "{count}");
 }
 
-/// The number of coincident crossings equals the number of parts: each is visited a few times, not
-/// once for every other one.
+/// There are as many coincident crossings as parts. Each must be visited only a few times, not once
+/// for each of the others.
 #[test]
 fn coincident_parts_take_linear_time() {
     let count = 30_000;
@@ -526,7 +529,7 @@ fn coincident_parts_take_linear_time() {
         let ray = Ray::new(Vec3::new(0.1, 0.2, 5.0), Vec3::NEG_Z);
         let hit = world.closest(&ray, &mut ());
         assert_eq!(hit.is_some(), there, "{operation:?}");
-        // The first part in the file is visible.
+        // The visible surface is that of the first part in the file.
         assert!(hit.is_none_or(|hit| hit.part & !(TURNED | ENTERS) == 0), "{operation:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! Emission of photons from lights towards reflective or refractive objects.
+//! Emission of photons from lights towards objects that reflect or refract.
 
 use super::{AreaLight, InfiniteLight, LightEntry, of_light};
 use crate::world::{Geometry, Material, Object, World};
@@ -10,7 +10,7 @@ use durer_scene::texture::Environment;
 use glam::DVec3;
 use std::f32::consts::PI;
 
-/// A bounding sphere of an object that casts caustics.
+/// Bounding sphere of an object that casts caustics; photons are sent to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
     /// Centre.
@@ -21,46 +21,46 @@ pub struct Target {
     pub object: u32,
 }
 
-/// Sources and targets of photons.
+/// Photon emitter of a scene: all light sources, and the targets to which they send photons.
 #[derive(Clone, Debug, Default)]
 pub struct Beams {
     targets: Vec<Target>,
     sources: Vec<PhotonSource>,
-    /// Cumulative power of the sources.
+    /// Cumulative power of the sources, for choosing one.
     sums: Vec<f32>,
-    /// Distance from which the whole scene is ahead.
+    /// Length of the diagonal of the scene's bounds.
     reach: f32,
 }
 
-/// A source of photons.
+/// Light source that emits photons.
 #[derive(Clone, Copy, Debug)]
 enum PhotonSource {
     /// An emissive surface.
     Area(AreaLight),
-    /// A light with a position, by index.
+    /// A light with a position, by its index.
     Near(u32),
-    /// A directional light, by index.
+    /// A light at infinity, by its index.
     Far(u32),
     /// The environment.
     Sky,
 }
 
-/// A photon at emission: ray, and power by colour over the sampling density.
+/// Photon at its emission: ray and power, divided by the sampling density.
 #[derive(Clone, Copy, Debug)]
 pub struct Emitted {
     /// The ray.
     pub ray: Ray64,
-    /// Power; for a light with a position, per squared distance.
+    /// Power per colour channel. For a light with a position, relative to the light's intensity.
     pub power: Color,
-    /// Index of the light with a position that emitted it, whose strength at the hit is applied
-    /// later.
+    /// Index of the light that emitted the photon, if it has a position. Its intensity is applied
+    /// at the hit point.
     pub light: Option<u32>,
-    /// Index of the material that emitted it.
+    /// Index of the material that emitted the photon, if any.
     pub material: Option<u32>,
 }
 
 impl Beams {
-    /// Prepares emission from every light to every reflective or refractive object.
+    /// Prepares emission from all lights to all objects that reflect or refract.
     pub fn new(world: &World) -> Self {
         let targets = targets(world);
         let all = world.objects().iter().filter_map(Object::bounds).reduce(Aabb::union);
@@ -86,8 +86,8 @@ impl Beams {
             let color = world.lights()[light as usize].color().max_element();
             match way != Vec3::ZERO {
                 true => beams.add(PhotonSource::Far(light), PI * color * area),
-                // Attenuation may differ from the inverse square: use the strength at the scene's
-                // own size.
+                // Its attenuation may differ from the inverse square law, so use its strength at a
+                // distance of the scene's size.
                 false => beams.add(PhotonSource::Near(light), 4.0 * PI * PI * color * reach * reach),
             }
         }
@@ -97,6 +97,7 @@ impl Beams {
         beams
     }
 
+    /// Adds a light source with its power.
     fn add(&mut self, source: PhotonSource, power: f32) {
         if power > 0.0 && power.is_finite() {
             self.sources.push(source);
@@ -109,13 +110,13 @@ impl Beams {
         !self.sources.is_empty() && self.targets.binary_search_by_key(&object, |target| target.object).is_ok()
     }
 
-    /// Returns the radius of the smallest target.
+    /// Returns the radius of the smallest target, in world units.
     pub fn finest(&self) -> f32 {
         self.targets.iter().map(|target| target.radius).fold(f32::INFINITY, f32::min)
     }
 
-    /// Emits a photon from numbers in [0, 1) for the source, the target, the point on the source,
-    /// and the direction.
+    /// Emits a photon. `choices` selects the source and the target, `place` the point on the
+    /// source. All numbers are in [0, 1).
     pub fn emit(&self, world: &World, choices: Vec2, place: Vec2, direction: Vec2) -> Option<Emitted> {
         let all = *self.sums.last()?;
         let wanted = choices.x * all;
@@ -132,7 +133,7 @@ impl Beams {
                     return None;
                 }
                 let power = area.radiance * (cosine.abs() / (density * pdf * choice));
-                // Offset the ray from the emitter's own surface.
+                // Offset the ray from the surface of the emitter.
                 let side = if cosine < 0.0 { -normal } else { normal };
                 let origin = point + f64::from(4.0 * area.error) * side.as_dvec3();
                 Some(Emitted {
@@ -162,19 +163,19 @@ impl Beams {
         }
     }
 
-    /// Samples a direction from a point towards a target; also returns its density per solid angle
-    /// over all targets.
+    /// Samples a direction from a point towards a target. Also returns its density per steradian,
+    /// taken over all targets.
     fn towards(&self, point: DVec3, target: usize, u: Vec2) -> Option<(Vec3, f32)> {
         let cone = |target: &Target| {
             let to = (target.center.as_dvec3() - point).as_vec3();
             let (d2, r2) = (to.length_squared(), target.radius * target.radius);
-            // From inside, every direction hits it.
+            // From inside the sphere, all directions hit it.
             let cosine = if d2 > r2 { (1.0 - r2 / d2).sqrt() } else { -1.0 };
             (to.normalize_or(Vec3::Z), cosine)
         };
         let (axis, cosine) = cone(&self.targets[target]);
         let dir = Frame::around(axis).to_world(warp::polar(1.0 - u.x * (1.0 - cosine), u.y)).normalize();
-        // A direction may hit several targets.
+        // A direction can hit several targets.
         let density = |target: &Target| {
             let (axis, cosine) = cone(target);
             if axis.dot(dir) >= cosine - 1e-6 { 1.0 / (2.0 * PI * (1.0 - cosine).max(1e-7)) } else { 0.0 }
@@ -183,8 +184,8 @@ impl Beams {
         (sum > 0.0).then(|| (dir, sum / self.targets.len() as f32))
     }
 
-    /// Samples a ray along a direction through a target, from in front of all targets; also returns
-    /// its density per area over all targets.
+    /// Samples a ray through a target in a given direction. It starts in front of all objects. Also
+    /// returns its density per area, taken over all targets.
     fn across(&self, dir: Vec3, target: usize, u: Vec2) -> (Ray64, f32) {
         let frame = Frame::around(dir);
         let disc = warp::disc(u);
@@ -196,16 +197,16 @@ impl Beams {
             if beside <= square * (1.0 + 1e-5) { 1.0 / (PI * square) } else { 0.0 }
         };
         let sum: f32 = self.targets.iter().map(density).sum();
-        // Objects in front of all targets also cast shadows.
+        // Start in front of all objects, because they can also cast shadows.
         let far = 2.0 * self.reach;
         let origin = through.as_dvec3() - f64::from(far) * dir.as_dvec3();
         (Ray64::new(origin, dir, 0.0, f32::INFINITY), sum / self.targets.len() as f32)
     }
 }
 
-/// Samples a direction of the environment; also returns its radiance and density per solid angle.
-/// Half of the directions are uniform, because only photons carry dim parts of the environment
-/// through mirrors and glass.
+/// Samples a direction to the environment. Also returns its radiance and its density per steradian.
+/// Half of the directions are uniformly distributed, because only photons find dim parts of the
+/// environment through mirrors and glass.
 fn from_all_around(sky: &Environment, u: Vec2) -> Option<(Vec3, Color, f32)> {
     let (wi, light, pdf) = match u.x < 0.5 {
         true => sky.sample(Vec2::new(2.0 * u.x, u.y))?,
@@ -218,11 +219,12 @@ fn from_all_around(sky: &Environment, u: Vec2) -> Option<(Vec3, Color, f32)> {
     Some((wi, light, 0.5 * (pdf + 0.25 / PI)))
 }
 
+/// Returns the intensity of a light with a position.
 fn strength(world: &World, light: u32) -> f32 {
     world.lights()[light as usize].place().map_or(0.0, |(_, intensity)| intensity.max_element()).max(0.0)
 }
 
-/// Returns bounding spheres of all bounded objects with delta lobes, by index.
+/// Returns bounding spheres of all bounded objects with delta lobes, ordered by object.
 fn targets(world: &World) -> Vec<Target> {
     let mut found = Vec::new();
     for (number, object) in world.objects().iter().enumerate() {
@@ -233,7 +235,7 @@ fn targets(world: &World) -> Vec<Target> {
         let (center, half) = (bounds.center(), 0.5 * bounds.size());
         let radius = match &object.geometry {
             Geometry::Primitive(Primitive::Sphere(_)) => half.max_element(),
-            // The sphere contains the corners of the bounds.
+            // This sphere contains the corners of the bounding box.
             Geometry::Primitive(_) | Geometry::Mesh(_) | Geometry::Solid(_) => half.length(),
         };
         if radius > 0.0 && radius.is_finite() {
@@ -243,6 +245,7 @@ fn targets(world: &World) -> Vec<Target> {
     found
 }
 
+/// Returns true if an object may reflect or refract light into single directions.
 fn throws_light(world: &World, object: &Object) -> bool {
     // The parts of a solid have their own materials.
     if matches!(object.geometry, Geometry::Solid(_)) {

@@ -1,4 +1,4 @@
-//! Emitters: emissive surfaces, the scene's lights and the environment, and light sampling.
+//! Light sampling: emissive surfaces, the scene's lights and the environment.
 
 pub mod emission;
 pub mod tree;
@@ -16,59 +16,61 @@ use serde::Serialize;
 use std::f32::consts::PI;
 use tree::{Bounds, LightTree};
 
-/// Number of objects above which containment between objects is not tested.
+/// Maximum number of objects for which containment between objects is tested.
 const MANY: usize = 10_000;
 
-/// An emissive part of an object that can be sampled.
+/// Emissive part of an object that light sampling can choose, such as a triangle or a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AreaLight {
-    /// Shape of the part.
+    /// Shape of the part in world space.
     pub form: EmitterShape,
     /// Unit normal; zero for curved shapes.
     pub normal: Vec3,
     /// Index of the object.
     pub object: u32,
-    /// Index of its part.
+    /// Index of the part in its object.
     pub part: u32,
-    /// True if both sides are sampled, false for the side of the normal only.
+    /// True if both sides are sampled, false if only the side of the normal is.
     pub two_sided: bool,
-    /// Bound of the distance between the sampled and the traced surface, from rounding.
+    /// Bound on the distance between the sampled and the traced surface, due to rounding.
     pub error: f32,
-    /// Radiance, multiplied by the opacity.
+    /// Radiance times opacity.
     pub radiance: Color,
 }
 
-/// An emitter in the light tree.
+/// Emitter in the light tree: an emissive surface or a light with a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum LightEntry {
     /// An emissive surface.
     Area(AreaLight),
-    /// A light of the scene with a position, by index.
+    /// A light with a position, by its index.
     Light(u32),
 }
 
-/// Every emitter of a world, and the tree for light sampling.
+/// Light sampler of a world: all emitters, and the light tree that chooses between them.
 #[derive(Clone, Debug, Default)]
 pub struct LightSampler {
+    /// Emitters in the order of the tree.
     sources: Vec<LightEntry>,
-    /// Index in `parts` of each object's first part; `u32::MAX` for objects that do not emit.
+    /// Index in `parts` of the first part of each object. `u32::MAX` for objects that do not emit.
     first: Vec<u32>,
-    /// Source of each part.
+    /// Index in `sources` of each part.
     parts: Vec<u32>,
-    /// Lights of the scene outside the tree.
+    /// Lights that are not in the tree.
     apart: Vec<InfiniteLight>,
-    /// Lights in `apart` with an angular extent.
+    /// Lights in `apart` that have an angular extent.
     suns: Vec<Sun>,
     tree: LightTree,
 }
 
-/// A light of the scene at infinity, or with another attenuation than the inverse square.
+/// Light outside the light tree: at infinity, or with an attenuation other than the inverse square
+/// law.
 #[derive(Clone, Copy, Debug)]
 struct InfiniteLight {
     light: u32,
-    /// Direction to the light; zero if it is not at infinity.
+    /// Direction to the light; zero if the light is not at infinity.
     way: Vec3,
-    /// Approximate irradiance perpendicular to its direction.
+    /// Approximate irradiance on a surface that faces the light.
     irradiance: f32,
 }
 
@@ -79,7 +81,8 @@ impl InfiniteLight {
         InfiniteLight { light, way, irradiance: PI * color.max_element().max(0.0) }
     }
 
-    /// Estimates the irradiance on a surface with normal `n`; zero for any orientation.
+    /// Returns the estimated irradiance on a surface with normal `n`. A zero normal stands for any
+    /// orientation.
     fn brings(&self, n: Vec3) -> f32 {
         if n == Vec3::ZERO || self.way == Vec3::ZERO {
             self.irradiance
@@ -89,21 +92,22 @@ impl InfiniteLight {
     }
 }
 
-/// Estimated irradiances at a point, for choosing among lights outside the tree, the environment
-/// and the tree.
+/// Estimated irradiances at a point, used to choose between the lights outside the light tree, the
+/// environment and the tree.
 struct LightWeights {
+    /// Number of these choices.
     choices: f32,
-    /// Sum of all estimates.
+    /// Sum of all estimates; NaN if they are not valid.
     total: f32,
     sky: f32,
     tree: f32,
 }
 
-/// Share of uniform choices, because estimates may be wrong.
+/// Fraction of choices that ignore the estimates and are uniform, because estimates can be wrong.
 const EVENLY: f32 = 0.1;
 
 impl LightWeights {
-    /// Returns the probability of choosing a light with an estimated irradiance.
+    /// Returns the probability of choosing a light whose estimated irradiance is `brings`.
     fn of(&self, brings: f32) -> f32 {
         if self.choices == 1.0 {
             return 1.0;
@@ -114,30 +118,30 @@ impl LightWeights {
     }
 }
 
-/// A light at infinity with an angular extent.
+/// Light at infinity with an angular extent, such as the sun.
 #[derive(Clone, Debug)]
 struct Sun {
     light: u32,
     way: Vec3,
-    /// Squared chord of its half angle: the cosine of a small angle is too imprecise.
+    /// Squared chord of half the angle. (The cosine of a small angle is too imprecise.)
     chord2: f32,
     radiance: Color,
 }
 
-/// Identity of an emitter.
+/// Identity of an emitter: a light, a part of an emissive object, or the environment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LightId {
-    /// A light of the scene, by index.
+    /// A light, by its index in the scene.
     Light(u32),
-    /// A part of an object.
+    /// A part of an emissive object: indices of the object and of the part.
     Surface(u32, u32),
     /// The environment.
     Environment,
 }
 
 impl LightId {
-    /// Returns the index of the emissive object.
+    /// Returns the index of the object if the emitter is an emissive surface.
     pub fn object(self) -> Option<u32> {
         match self {
             LightId::Surface(object, _) => Some(object),
@@ -146,77 +150,79 @@ impl LightId {
     }
 }
 
-/// A point for which lights are sampled.
+/// Point for which light sampling chooses a light, with its normal.
 #[derive(Clone, Copy, Debug)]
 pub struct Receiver {
     /// World-space position.
     pub point: DVec3,
-    /// Normal on the lit side; zero if light from all sides is received.
+    /// Normal on the lit side; zero if light from all directions counts.
     pub n: Vec3,
-    /// Ratio of radius to distance, as seen from the group and from the point, below which a group
-    /// of similar emitters is sampled uniformly: each contributes about the same.
+    /// Threshold for sampling a distant group of similar emitters uniformly, since all contribute
+    /// about the same. It is the maximum ratio of the group's radius to its distance, divided by
+    /// the cosines at group and point.
     pub far: f32,
 }
 
 impl Receiver {
-    /// Value of [`Receiver::far`] for visible points.
+    /// Value of [`Receiver::far`] for points that the camera sees, also through delta lobes.
     pub const FAR: f32 = 0.1;
-    /// Value of [`Receiver::far`] for points of later bounces: many of them are averaged, so the
-    /// quality of each choice matters less.
+    /// Value of [`Receiver::far`] for later bounces. Many of them are averaged, so each choice of a
+    /// light matters less.
     pub const FAR_BEYOND: f32 = 0.3;
 }
 
-/// A light chosen for a point, and the probability.
+/// Light that was chosen for a point, with the probability of the choice.
 pub struct Choice {
     of: ChosenLight,
     probability: f32,
 }
 
 impl Choice {
-    /// Returns true for the environment.
+    /// Returns true if the environment was chosen.
     pub fn is_sky(&self) -> bool {
         matches!(self.of, ChosenLight::Sky)
     }
 
-    /// Returns the probability of the choice.
+    /// Returns the probability with which this light was chosen.
     pub fn probability(&self) -> f32 {
         self.probability
     }
 }
 
-/// The chosen light.
+/// Kind and index of a light in a [`Choice`].
 enum ChosenLight {
-    /// A light of the scene outside the tree, by index.
+    /// A light outside the light tree, by its index in the scene.
     Apart(u32),
     /// The environment.
     Sky,
-    /// An emitter of the tree.
+    /// An emitter in the light tree, by its index there.
     Source(u32),
 }
 
-/// A sampled light, seen from a point.
+/// Direction sampled from a point towards a light, with the light's radiance and the densities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSample {
-    /// The emitter.
+    /// Light that was sampled.
     pub light: LightId,
     /// Unit direction to the sampled point.
     pub wi: Vec3,
-    /// Distance to the sampled point.
+    /// Distance to the sampled point; infinite for lights at infinity.
     pub reach: f32,
-    /// Bound of the distance between the sampled and the traced surface, from rounding.
+    /// Bound on the distance between the sampled and the traced surface, due to rounding.
     pub error: f32,
-    /// Cosine between its normal and the direction, or a substitute; more than zero.
+    /// Absolute cosine between the light's normal and the direction, greater than zero. 1 if there
+    /// is no normal.
     pub cosine: f32,
-    /// Radiance; for a light without extent, the irradiance perpendicular to its direction.
+    /// Radiance. For a light without extent, the irradiance on a surface that faces it.
     pub radiance: Color,
-    /// Probability of choosing this emitter.
+    /// Probability with which this light was chosen.
     pub choice: f32,
-    /// Density per solid angle of the direction; 0 for a light without extent.
+    /// Density of the direction per steradian; 0 for a light without extent.
     pub pdf: f32,
 }
 
 impl LightSample {
-    /// Creates a sample of the environment in a direction.
+    /// Creates a sample of the environment in direction `wi`.
     pub fn of_sky(choice: &Choice, wi: Vec3, radiance: Color, pdf: f32) -> Self {
         LightSample {
             light: LightId::Environment,
@@ -230,15 +236,16 @@ impl LightSample {
         }
     }
 
-    /// Returns the length of a shadow ray from a point with an error bound: it ends before both
-    /// errors. For an inclined light the margin is larger by the cosine.
+    /// Returns the length of a shadow ray from a point whose position has this error bound. The ray
+    /// ends early enough for both errors. For an inclined light, the margin grows with the inverse
+    /// cosine.
     pub fn shadow_reach(&self, error: f32) -> f32 {
         (self.reach - 2.0 * (self.error + error) / self.cosine) * (1.0 - gamma(16))
     }
 }
 
 impl LightSampler {
-    /// Collects the emitters of a world.
+    /// Collects all emitters of a world and builds the light tree.
     pub(crate) fn new(world: &World) -> Self {
         let mut emitters = LightSampler { first: vec![u32::MAX; world.objects().len()], ..LightSampler::default() };
         let mut bounds = Vec::new();
@@ -285,7 +292,7 @@ impl LightSampler {
         emitters
     }
 
-    /// Sorts sources into the order of the tree, followed by those that are not in it.
+    /// Sorts the emitters into the order of the tree. Emitters that are not in the tree come last.
     fn arrange(&mut self, order: &[u32]) {
         self.parts = vec![u32::MAX; self.sources.len()];
         let mut sources = room(self.sources.len());
@@ -300,12 +307,12 @@ impl LightSampler {
         self.sources = sources;
     }
 
-    /// Iterates over the sources in the order of the scene.
+    /// Iterates over the emitters in the order of the scene.
     fn as_given(&self) -> impl Iterator<Item = &LightEntry> {
         self.parts.iter().map(|&source| &self.sources[source as usize])
     }
 
-    /// Estimates the irradiances at a point; `None` without emitters.
+    /// Estimates the irradiances at a point. `None` if there are no lights.
     fn chances(&self, world: &World, to: &Receiver) -> Option<LightWeights> {
         let (environment, has_tree) = (world.environment(), !self.tree.is_empty());
         let choices = self.apart.len() + usize::from(environment.is_some()) + usize::from(has_tree);
@@ -315,13 +322,14 @@ impl LightSampler {
             chances.tree = self.tree.importance(to);
             let apart: f32 = self.apart.iter().map(|apart| apart.brings(to.n)).sum();
             let total = apart + chances.sky + chances.tree;
-            // Without valid estimates, choose uniformly.
+            // If the estimates are not valid, NaN makes the choice uniform.
             chances.total = if total.is_finite() { total } else { f32::NAN };
         }
         (choices > 0).then_some(chances)
     }
 
-    /// Chooses a light for a point by a random number. Prefetches the data needed next.
+    /// Chooses a light for a point. `u` in [0, 1) is a random number. Prefetches the data needed to
+    /// sample it.
     pub fn choose(&self, world: &World, to: &Receiver, u: f32) -> Option<Choice> {
         let chances = self.chances(world, to)?;
         let (has_sky, has_tree) = (world.environment().is_some(), !self.tree.is_empty());
@@ -350,7 +358,7 @@ impl LightSampler {
         Some(Choice { of: ChosenLight::Source(source), probability: chance * probability })
     }
 
-    /// Samples a direction to a chosen light by two random numbers.
+    /// Samples a direction from a point to the chosen light. `u` in [0, 1)^2 are random numbers.
     pub fn sample(&self, world: &World, choice: &Choice, point: DVec3, u: Vec2) -> Option<LightSample> {
         let probability = choice.probability;
         match choice.of {
@@ -366,9 +374,9 @@ impl LightSampler {
         }
     }
 
-    /// Returns the random numbers for which [`LightSampler::sample`] returns the centre of the
-    /// surface as seen from the shading point; for a triangle or cylinder, some fixed point. `None`
-    /// if the emitter is not a surface.
+    /// Returns the random numbers with which [`LightSampler::sample`] samples the centre of a
+    /// surface as seen from the point. For a triangle or cylinder, it samples some fixed point.
+    /// `None` if the emitter is not a surface.
     pub fn middle(&self, light: LightId) -> Option<Vec2> {
         let source = *self.parts.get(self.first[light.object()? as usize] as usize)? as usize;
         match self.sources.get(source)? {
@@ -377,7 +385,7 @@ impl LightSampler {
         }
     }
 
-    /// Returns the emitter that was hit, if light sampling can choose the hit side.
+    /// Returns the emitter that a ray hit, if light sampling can choose that side of it.
     fn chosen(&self, hit: &Hit, dir: Vec3) -> Option<(u32, &AreaLight)> {
         let source = *self.parts.get(self.first[hit.object as usize].checked_add(hit.part)? as usize)?;
         match self.sources.get(source as usize)? {
@@ -386,13 +394,13 @@ impl LightSampler {
         }
     }
 
-    /// Returns true if light sampling can choose an emissive hit.
+    /// Returns true if light sampling can choose the emissive surface that a ray hit.
     pub fn chooses(&self, hit: &Hit, dir: Vec3) -> bool {
         self.chosen(hit, dir).is_some()
     }
 
-    /// Returns the density per solid angle with which [`LightSampler::sample`] samples an emissive
-    /// hit; 0 if it never does.
+    /// Returns the density per steradian with which light sampling finds an emissive surface that a
+    /// ray hit. 0 if it never does.
     pub fn pdf_of_hit(&self, world: &World, hit: &Hit, to: &Receiver, wi: Vec3, distance: f32) -> f32 {
         let Some((source, area)) = self.chosen(hit, wi) else { return 0.0 };
         let Some(chances) = self.chances(world, to) else { return 0.0 };
@@ -401,14 +409,14 @@ impl LightSampler {
         if pdf.is_finite() { choice * pdf } else { 0.0 }
     }
 
-    /// Returns the lights at infinity that are visible in a direction, with their radiance.
+    /// Iterates over the lights at infinity that are visible in a direction, with their radiance.
     pub fn suns(&self, dir: Vec3) -> impl Iterator<Item = (LightId, Color)> {
         let dir = if self.suns.is_empty() { dir } else { dir.normalize_or_zero() };
         let seen = self.suns.iter().filter(move |sun| sun.way.distance_squared(dir) <= sun.chord2);
         seen.map(|sun| (LightId::Light(sun.light), sun.radiance))
     }
 
-    /// Returns the radiance from a direction without a hit, and its density in environment
+    /// Returns the background radiance in a direction and, for an environment, its density in light
     /// sampling.
     pub fn sky(&self, world: &World, wi: Vec3) -> (Color, f32) {
         match world.environment() {
@@ -418,14 +426,14 @@ impl LightSampler {
         }
     }
 
-    /// Returns the probability of choosing the environment for a point.
+    /// Returns the probability with which the environment is chosen for a point.
     pub fn chance_of_sky(&self, world: &World, to: &Receiver) -> f32 {
         self.chances(world, to).map_or(0.0, |chances| chances.of(chances.sky))
     }
 }
 
-/// Surface of one part of an object to sample as a light, and its unit normal in world space;
-/// `None` if its light is only found by rays that hit it.
+/// Returns the surface of a part of an object for light sampling, and its unit normal in world
+/// space. `None` if only rays that hit the part find its light.
 pub fn emitter_of(object: &Object, part: u32) -> Option<(EmitterShape, Vec3)> {
     let place = Placement(object.to_world.as_ref());
     match &object.geometry {
@@ -435,14 +443,14 @@ pub fn emitter_of(object: &Object, part: u32) -> Option<(EmitterShape, Vec3)> {
     }
 }
 
-/// Returns true for a closed mesh with outward normals that contains no other object: sampling its
-/// inside would have no effect. Rays that hit the inside still find its emission.
+/// Returns true for a closed mesh with outward normals that contains no other object. Sampling its
+/// inside would have no effect, and rays that hit the inside still find its emission.
 fn has_empty_inside(world: &World, number: usize) -> bool {
     let objects = world.objects();
     let object = &objects[number];
     let (Geometry::Mesh(_), Some(bounds)) = (&object.geometry, object.bounds()) else { return false };
     let center = bounds.center().as_dvec3();
-    // Six times the signed volume of the cone from the centre to a part.
+    // Six times the signed volume of the tetrahedron from the centre to a triangle.
     let cone = |part| match emitter_of(object, part) {
         Some((EmitterShape::Triangle(p, [e, f]), normal)) => {
             e.as_dvec3().cross(f.as_dvec3()).length() * (p - center).dot(normal.as_dvec3())
@@ -458,8 +466,8 @@ fn has_empty_inside(world: &World, number: usize) -> bool {
         && !others().any(within)
 }
 
-/// Samples a light of the scene. The light's colour is the radiance of a white matte surface that
-/// faces it: irradiance over pi.
+/// Samples a light of the scene at its centre. The colour of such a light is the radiance of a
+/// white matte surface that faces it, which is irradiance divided by pi.
 fn of_light(world: &World, light: u32, point: DVec3, choice: f32) -> LightSample {
     let seen = world.illuminate(light as usize, point);
     LightSample {
@@ -475,18 +483,18 @@ fn of_light(world: &World, light: u32, point: DVec3, choice: f32) -> LightSample
 }
 
 impl Sun {
-    /// Returns the light at infinity if it has an angular extent.
+    /// Creates a sun from a light, if the light has an angular extent.
     fn of(world: &World, light: u32) -> Option<Sun> {
         let degrees = world.lights()[light as usize].spread();
         let seen = of_light(world, light, DVec3::ZERO, 1.0);
         let (half, _) = fp::sin_cos_degrees(0.5 * f64::from(degrees.min(90.0)));
-        // The solid angle 2 pi (1 - cos) is pi times this.
+        // The solid angle 2 pi (1 - cos) equals pi times this.
         let chord2 = (4.0 * half * half) as f32;
         (degrees > 0.0).then(|| Sun { light, way: seen.wi, chord2, radiance: seen.radiance / (PI * chord2) })
     }
 }
 
-/// Samples a direction within the angular extent of a light.
+/// Moves a sample to a random direction within the angular extent of its light.
 fn spread(world: &World, light: u32, sample: LightSample, u: Vec2) -> LightSample {
     let degrees = world.lights()[light as usize].spread();
     if degrees == 0.0 {
@@ -498,9 +506,10 @@ fn spread(world: &World, light: u32, sample: LightSample, u: Vec2) -> LightSampl
 }
 
 impl AreaLight {
+    /// Returns the bounds for the light tree.
     fn bounds(&self) -> Bounds {
         let round = self.form.is_round();
-        // On average, a quarter of a convex surface's area is visible.
+        // On average, a quarter of the area of a convex surface is visible.
         let area = self.form.area() * if round { 0.25 } else { 1.0 };
         let power = area * self.radiance.max_element();
         let power = if power.is_finite() { power.max(0.0) } else { 0.0 };
@@ -515,6 +524,7 @@ impl AreaLight {
         }
     }
 
+    /// Samples a point on the surface as seen from `point`.
     fn sample(&self, point: DVec3, choice: f32, u: Vec2) -> Option<LightSample> {
         let place = self.form.sample(self.normal, point, u)?;
         if place.cosine <= 0.0 && !self.two_sided {
@@ -565,7 +575,7 @@ mod tests {
             for i in 0..count {
                 let [choice, u] = [0, 2].map(|dimension| sample_2d(1, 0, 0, i, dimension));
                 let chosen = emitters.choose(&world, &to, choice.x);
-                // The tree returns nothing if it contributes nothing.
+                // The tree returns nothing if no emitter in it contributes.
                 let Some(chosen) = chosen else {
                     found[2] += 1;
                     continue;

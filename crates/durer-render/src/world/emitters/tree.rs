@@ -1,36 +1,38 @@
-//! A light tree: chooses one of many emitters by its estimated contribution to a point.
+//! Light tree, which chooses one of many emitters in proportion to their estimated contributions to
+//! a point.
 //!
 //! Source: Conty Estévez and Kulla, *Importance Sampling of Many Lights with Adaptive Tree
 //! Splitting*, HPG 2018, with the bounds of *Physically Based Rendering*, 4th edition, section
-//! 12.6.3. Nodes have eight children, which are weighted together: fewer steps, and each choice is
-//! among smaller groups. In distant groups of similar emitters, the members are chosen uniformly:
-//! with many lights, most choices then only read the upper nodes, which stay in the cache.
+//! 12.6.3. Unlike there, nodes have eight children that are weighted together, which makes the tree
+//! shallower. In distant groups of similar emitters, the choice is uniform. With many lights, most
+//! choices then read only the upper nodes, which stay in the CPU cache.
 
 use super::Receiver;
 use durer_bvh::internal::{PlainKernel, room, run_plain};
 use durer_scene::math::{Aabb, Vec3, fp};
 use std::f32::consts::PI;
 
-/// Bounds of emitters in position, power and direction.
+/// Bounds of a group of emitters in the light tree: position, power and directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Bounding box.
     pub bounds: Aabb,
-    /// Total power, in any one unit.
+    /// Total power in an arbitrary unit, the same for all emitters.
     pub power: f32,
-    /// Axis of the cone of normals.
+    /// Axis of the cone that contains all normals.
     pub axis: Vec3,
     /// Cosine of the largest angle between the axis and a normal.
     pub cos_normals: f32,
-    /// Cosine of the largest angle between a normal and emitted light.
+    /// Cosine of the largest angle between a normal and the light emitted there.
     pub cos_emission: f32,
-    /// True for two-sided emission.
+    /// True if light is emitted on both sides.
     pub two_sided: bool,
-    /// Power of each emitter, if all are similar in power and direction; otherwise 0.
+    /// Power of each emitter, if all have similar powers and directions; otherwise 0.
     pub each: f32,
 }
 
 impl Bounds {
+    /// Returns bounds of both groups together.
     fn union(&self, other: &Bounds) -> Bounds {
         let (axis, cos_normals) = cone_union((self.axis, self.cos_normals), (other.axis, other.cos_normals));
         let share = self.each.min(other.each) / self.each.max(other.each);
@@ -48,11 +50,12 @@ impl Bounds {
     }
 }
 
+/// Returns the angle with this cosine.
 fn angle(cosine: f32) -> f32 {
     fp::atan2(sine(cosine), cosine)
 }
 
-/// Returns the smallest cone around two cones.
+/// Returns the smallest cone that contains two cones, given by axis and cosine.
 fn cone_union((a, cos_a): (Vec3, f32), (b, cos_b): (Vec3, f32)) -> (Vec3, f32) {
     let (wide_a, wide_b, between) = (angle(cos_a), angle(cos_b), angle(a.dot(b).clamp(-1.0, 1.0)));
     if (between + wide_b).min(PI) <= wide_a {
@@ -68,42 +71,43 @@ fn cone_union((a, cos_a): (Vec3, f32), (b, cos_b): (Vec3, f32)) -> (Vec3, f32) {
     (axis.normalize_or(a), fp::cos(wide))
 }
 
-/// Weight of the cosines at the centre of a node, against the largest cosines in it, which alone
-/// overestimate wide nodes seen from the side.
+/// Weight of the cosines at a node's centre against the largest cosines in the node. The largest
+/// cosines alone would overestimate wide nodes seen from the side.
 const CENTER: f32 = 0.8;
 
-/// Cosine of the largest angle to the mean of normals that count as similar.
+/// Minimum cosine between the axis and the normals of emitters that count as similar.
 const ONE_WAY: f32 = 0.995;
 
-/// Smallest ratio of powers that count as similar.
+/// Minimum ratio between powers that count as similar.
 const ALIKE: f32 = 0.8;
 
 /// Number of children of a node.
 const WIDTH: usize = 8;
 
-/// One number for each child.
+/// One number per child of a [`Node`].
 type Eight = [f32; WIDTH];
 
-/// A node: the bounds of its children in structure-of-arrays form, for SIMD. Nodes are read from
-/// main memory, so derived values are not stored.
+/// Node of the light tree: the bounds of its eight children, as arrays for SIMD. Nodes are often
+/// read from main memory, so values that can be computed are not stored.
 #[derive(Clone, Debug)]
 struct Node {
+    /// Centre of each child's bounds.
     middle: [Eight; 3],
-    /// Squared radius around the centre.
+    /// Squared radius of the bounding sphere around that centre.
     radius2: Eight,
-    /// 0 for a missing child; negative for two-sided emission.
+    /// Power; 0 for a missing child, negative for two-sided emission.
     power: Eight,
     axis: [Eight; 3],
     cos_normals: Eight,
     cos_emission: Eight,
     children: [Child; WIDTH],
-    /// Start of each child's emitters in the tree's order, followed by the end of the last.
+    /// Start of each child's emitters in the tree's order, and the end of the last child's.
     ends: [u32; WIDTH + 1],
-    /// Bit mask of children with several similar emitters.
+    /// Bit mask of the children that contain several similar emitters.
     alike: u8,
 }
 
-/// Index of a node, or of an emitter with [`Child::EMITTER`].
+/// Index of a child node or, with the bit [`Child::EMITTER`], of an emitter.
 #[derive(Clone, Copy, Debug)]
 struct Child(u32);
 
@@ -127,15 +131,16 @@ impl Node {
         }
     }
 
-    /// Estimates the contribution of each child to a point, more than zero wherever it contributes
-    /// any light; also returns true for distant children.
+    /// Estimates the contribution of each child to a point. It is greater than zero wherever the
+    /// child contributes any light. Also returns true for each distant child.
     ///
-    /// Within [`run_plain`], a loop without branches.
+    /// Call it within [`run_plain`]. The loop has no branches.
     #[inline(always)]
     fn importances(&self, to: &Receiver) -> (Eight, [bool; WIDTH]) {
         if to.n == Vec3::ZERO { self.importances_of::<false>(to) } else { self.importances_of::<true>(to) }
     }
 
+    /// Implements [`Node::importances`]. `FACING` is true if the receiver has a normal.
     #[inline(always)]
     fn importances_of<const FACING: bool>(&self, to: &Receiver) -> (Eight, [bool; WIDTH]) {
         let (p, n, far2) = (to.point.as_vec3(), to.n, to.far * to.far);
@@ -153,13 +158,12 @@ impl Node {
             let cos_bounds = (1.0 - sine2).sqrt();
             let inside = distance2 <= radius2;
             let bounds = (if inside { -1.0 } else { cos_bounds }, if inside { 0.0 } else { sine2.sqrt() });
-            // Lower bound of the angle between the direction to the point and any normal, over the
-            // whole bounds.
+            // Lower bound on the angle between the direction to the point and any normal in the
+            // child's bounds.
             let least = minus((cosine, sine(cosine)), (self.cos_normals[i], sine(self.cos_normals[i])));
             let (cos_least, _) = minus(least, bounds);
-            // On the axis of a uniform disc, the mean of 1 / distance^2 with both cosines is 1 /
-            // (d^2 + r^2). A square with its corners at the radius has 0.64 of the area of that
-            // disc.
+            // On the axis of a uniform disc, the mean of 1 / distance^2 times both cosines is 1 /
+            // (d^2 + r^2). A square whose corners are at the radius has 0.64 of the disc's area.
             let spread2 = largest(0.64 * radius2, f32::MIN_POSITIVE);
             let mut importance = power.abs() * usual(least.0, cos_least) / (distance2 + spread2);
             let mut across = least.0;
@@ -176,12 +180,13 @@ impl Node {
     }
 }
 
+/// Returns the sum of eight numbers, in a fixed order.
 #[inline(always)]
 fn sum(x: &Eight) -> f32 {
     ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]))
 }
 
-/// Normalises contributions to probabilities; NaN if no child contributes.
+/// Converts estimated contributions to probabilities. NaN if no child contributes.
 #[inline(always)]
 fn shares(mut importances: Eight) -> Eight {
     let sum = sum(&importances);
@@ -192,24 +197,25 @@ fn shares(mut importances: Eight) -> Eight {
     importances
 }
 
-/// Maximum of two numbers that are not NaN, in one instruction.
+/// Returns the greater of two numbers that are not NaN, with one instruction.
 #[inline(always)]
 fn largest(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
+/// Returns the sine of the angle from 0 to pi with this cosine.
 #[inline(always)]
 fn sine(cosine: f32) -> f32 {
     largest(1.0 - cosine * cosine, 0.0).sqrt()
 }
 
-/// Combines the cosine at the centre of a node with the largest cosine in it.
+/// Combines the cosine at the centre of a node with the largest cosine in the node.
 #[inline(always)]
 fn usual(center: f32, most: f32) -> f32 {
     CENTER * largest(center, 0.0) + (1.0 - CENTER) * most
 }
 
-/// Returns cosine and sine of the difference of two angles, clamped at 0.
+/// Returns cosine and sine of the difference of two angles, or of 0 if it is negative.
 #[inline(always)]
 fn minus((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f32) {
     let (cosine, sine) = (cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b);
@@ -217,14 +223,14 @@ fn minus((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f32) {
     (if is_less { 1.0 } else { cosine }, if is_less { 0.0 } else { sine })
 }
 
-/// Kernel that estimates the contributions of a node's children.
+/// SIMD kernel that estimates the contributions of a node's children to a point.
 struct Estimate<'a> {
     node: &'a Node,
     to: &'a Receiver,
 }
 
 impl PlainKernel for Estimate<'_> {
-    /// The result of [`Node::importances`].
+    /// Result of [`Node::importances`].
     type Output = (Eight, [bool; WIDTH]);
 
     #[inline(always)]
@@ -233,7 +239,7 @@ impl PlainKernel for Estimate<'_> {
     }
 }
 
-/// Kernel of [`LightTree::sample`].
+/// SIMD kernel that chooses an emitter; see [`LightTree::sample`].
 struct Sample<'a> {
     nodes: &'a [Node],
     to: &'a Receiver,
@@ -251,8 +257,8 @@ impl PlainKernel for Sample<'_> {
             let node = nodes.get(place)?;
             let (importances, far) = node.importances(to);
             let shares = shares(importances);
-            // First child whose cumulative probability exceeds the number. Branchless, because the
-            // branch would be unpredictable.
+            // Find the first child whose cumulative probability exceeds the number, without
+            // branches, since they would be unpredictable.
             let (mut slot, mut sum, mut before) = (0, 0.0, 0.0);
             for share in shares {
                 sum += share;
@@ -261,7 +267,7 @@ impl PlainKernel for Sample<'_> {
                 before = if is_passed { sum } else { before };
             }
             if slot == WIDTH {
-                // Rounding remainder: take the last child with a probability.
+                // This is due to rounding: take the last child with a probability above 0.
                 slot = shares.iter().rposition(|&share| share > 0.0)?;
                 before = shares[..slot].iter().sum();
             } else if shares[0].is_nan() {
@@ -283,22 +289,23 @@ impl PlainKernel for Sample<'_> {
     }
 }
 
-/// A light tree.
+/// Light tree over the emitters of a world, from which one is chosen in proportion to its estimated
+/// contribution to a point.
 #[derive(Clone, Debug, Default)]
 pub struct LightTree {
     nodes: Vec<Node>,
-    /// Parent node of each node, and its slot there.
+    /// Parent of each node, and the node's slot there.
     parents: Vec<(u32, u8)>,
-    /// Node of each emitter, and its slot there.
+    /// Node that contains each emitter, and the emitter's slot there.
     leaves: Vec<(u32, u8)>,
 }
 
-/// A node of the binary tree that is built first: its children are at `first` and `first + 1`, or
-/// it is a single emitter.
+/// Node of the binary light tree that is built first, before nodes are merged to have eight
+/// children. Its children are at `first` and `first + 1`, unless it is a single emitter.
 struct BuildNode {
     bounds: Bounds,
     first: usize,
-    /// Range of its emitters in the tree's order.
+    /// Range of the node's emitters in the tree's order.
     range: (u32, u32),
 }
 
@@ -311,15 +318,15 @@ impl BuildNode {
 const BUCKETS: usize = 12;
 
 impl LightTree {
-    /// Builds a tree over emitters with power. Also returns the indices of these emitters in the
-    /// tree's order, in which the tree counts them.
+    /// Builds a tree over the emitters that have power. Also returns the indices of these emitters
+    /// in the tree's order; the other functions use positions in that order.
     pub fn new(emitters: &[Bounds]) -> (Self, Vec<u32>) {
         let (halves, order) = halved(emitters);
         let mut tree = LightTree { leaves: vec![(0, 0); order.len()], ..LightTree::default() };
         let Some(root) = halves.first() else { return (tree, order) };
         let mut open = vec![(if root.is_leaf() { vec![0] } else { vec![root.first, root.first + 1] }, (0, 0))];
         while let Some((mut held, parent)) = open.pop() {
-            // Open the most expensive nodes until all slots are used.
+            // Replace the most expensive nodes by their children until all slots are used.
             while held.len() < WIDTH {
                 let inner = (0..held.len()).filter(|&i| !halves[held[i]].is_leaf());
                 let largest = inner.max_by(|&a, &b| {
@@ -350,24 +357,25 @@ impl LightTree {
             tree.nodes.push(node);
             tree.parents.push(parent);
         }
-        // Move to aligned memory for faster reads.
+        // Move the nodes to aligned memory, where reads are faster.
         let mut placed = room(tree.nodes.len());
         placed.append(&mut tree.nodes);
         tree.nodes = placed;
         (tree, order)
     }
 
-    /// Returns true if the tree is empty.
+    /// Returns true if the tree has no emitters.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
 
-    /// Estimates the irradiance of all emitters at a point.
+    /// Estimates the irradiance from all emitters at a point.
     pub fn importance(&self, to: &Receiver) -> f32 {
         self.nodes.first().map_or(0.0, |node| sum(&run_plain(Estimate { node, to }).0))
     }
 
-    /// Chooses an emitter for a point by a number in [0, 1); also returns its probability.
+    /// Chooses an emitter for a point. `u` in [0, 1) is a random number. Also returns the
+    /// probability.
     pub fn sample(&self, to: &Receiver, u: f32) -> Option<(u32, f32)> {
         run_plain(Sample { nodes: &self.nodes, to, u })
     }
@@ -377,8 +385,8 @@ impl LightTree {
         self.leaves.get(emitter as usize).map_or(0.0, |&(place, slot)| self.reached(place, slot, to).0)
     }
 
-    /// Returns the probability of reaching a child of a node, and true if the choice was uniform
-    /// within a group further up.
+    /// Returns the probability of reaching a child of a node. Also returns true if a uniform choice
+    /// within a group ended the descent before.
     fn reached(&self, place: u32, slot: u8, to: &Receiver) -> (f32, bool) {
         let mut before = 1.0;
         if place > 0 {
@@ -405,7 +413,7 @@ impl LightTree {
     }
 }
 
-/// Builds a binary tree; also returns the emitters in its order.
+/// Builds a binary tree. Also returns the emitters in the tree's order.
 fn halved(emitters: &[Bounds]) -> (Vec<BuildNode>, Vec<u32>) {
     let mut order: Vec<u32> = (0..emitters.len() as u32).filter(|&i| emitters[i as usize].power > 0.0).collect();
     if order.is_empty() {
@@ -431,8 +439,8 @@ fn halved(emitters: &[Bounds]) -> (Vec<BuildNode>, Vec<u32>) {
     (halves, order)
 }
 
-/// Splits emitters so that both sides are compact, weak and similar in direction; returns the
-/// number in the first side.
+/// Splits emitters into two groups that are compact, weak and similar in direction. Returns the
+/// number of emitters in the first group.
 fn split(emitters: &[Bounds], range: &mut [u32], whole: &Bounds) -> usize {
     let middle = |i: u32| emitters[i as usize].bounds.center();
     let middles = Aabb::around(range.iter().map(|&i| middle(i)));
@@ -460,7 +468,7 @@ fn split(emitters: &[Bounds], range: &mut [u32], whole: &Bounds) -> usize {
         for i in 0..BUCKETS - 1 {
             below = join(below, buckets[i]);
             let (Some(low), Some(high)) = (below, above[i]) else { continue };
-            // Long boxes are better split across their length.
+            // Prefer to split long boxes across their longest side.
             let stretch = whole.bounds.size().max_element() / whole.bounds.size()[axis];
             let cost = stretch * (cost(&low) + cost(&high));
             if best.is_none_or(|(least, ..)| cost < least) {
@@ -470,14 +478,14 @@ fn split(emitters: &[Bounds], range: &mut [u32], whole: &Bounds) -> usize {
     }
     let half = range.len() / 2;
     let Some((_, axis, last)) = best else { return half };
-    // Stable partition, so that trees are reproducible.
+    // The partition is stable, so that trees are reproducible.
     let (low, high): (Vec<u32>, Vec<u32>) = range.iter().partition(|&&i| bucket(axis, i) <= last);
     range[..low.len()].copy_from_slice(&low);
     range[low.len()..].copy_from_slice(&high);
     low.len()
 }
 
-/// Returns power times solid angle of emission times area.
+/// Returns the cost of a node: power times solid angle of emission times surface area.
 fn cost(b: &Bounds) -> f32 {
     let (normals, emission) = (angle(b.cos_normals), angle(b.cos_emission));
     let wide = (normals + emission).min(PI);

@@ -1,15 +1,15 @@
-//! Caustics by photons: light that delta lobes focus on other objects.
+//! Photon mapping for caustics: light that mirrors and glass focus on other objects.
 //!
-//! Paths from the camera find such light by chance or never. So photons are sent from the lights to
-//! all objects that mirror or refract, followed over delta lobes, and stored on the first surface
-//! with another lobe, or where a medium scatters them. The light there is a density estimate. Each
-//! sample of a pixel traces new photons and uses a smaller radius than the sample before, so the
-//! mean over samples converges to the true value.
+//! Paths from the camera find such light rarely or never. Photons are therefore sent from the
+//! lights to all objects that mirror or refract. Each one is followed over delta lobes and stored
+//! on the first surface with another lobe, or where a medium scatters it. The light there is then a
+//! density estimate. Each sample of a pixel traces new photons and uses a smaller radius than the
+//! sample before, so the mean over samples converges to the true value.
 //!
-//! Sources: Hachisuka and Jensen, *Stochastic Progressive Photon Mapping*, 2009; the radius without
-//! statistics of pixels: Knaus and Zwicker, *Progressive Photon Mapping: A Probabilistic Approach*,
-//! 2011; in media: Jensen and Christensen, *Efficient Simulation of Light Transport in Scenes with
-//! Participating Media using Photon Maps*, 1998.
+//! Sources: Hachisuka and Jensen, *Stochastic Progressive Photon Mapping*, 2009; for radii that do
+//! not depend on pixel statistics, Knaus and Zwicker, *Progressive Photon Mapping: A Probabilistic
+//! Approach*, 2011; for media, Jensen and Christensen, *Efficient Simulation of Light Transport in
+//! Scenes with Participating Media using Photon Maps*, 1998.
 
 use super::Path;
 use super::propagate::Event;
@@ -29,38 +29,39 @@ use std::collections::VecDeque;
 use std::f32::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Fraction of new photons that is kept as radii shrink. Source: Kaplanyan and Dachsbacher,
-/// *Adaptive Progressive Photon Mapping*, 2013: the error falls fastest at 2/3.
+/// Fraction of the photons in a new sample that the shrinking radius keeps. The error falls fastest
+/// at 2/3; source: Kaplanyan and Dachsbacher, *Adaptive Progressive Photon Mapping*, 2013.
 const ALPHA: f64 = 2.0 / 3.0;
 
-/// Maximum number of cached maps.
+/// Maximum number of cached photon maps.
 const MAX_KEPT: usize = 32;
 
-/// Photons of a picture: a map for each sample of its pixels, built on demand.
+/// Photon tracer of a render: one photon map per sample index, built on demand and cached.
 #[derive(Debug)]
 pub struct Photons {
     beams: Beams,
     seed: u64,
     count: u32,
-    /// Radius of the first sample in units of the world.
+    /// Search radius of the first sample in world units.
     radius: f32,
     /// True if the bias of the estimate is removed to second order.
     corrected: bool,
     kept: Mutex<MapCache>,
 }
 
-/// Cached maps with their samples, the oldest first.
+/// Cached photon maps with their sample indices, oldest first.
 type MapCache = VecDeque<(u32, Arc<PhotonMap>)>;
 
-/// Pairs of random numbers per emission.
+/// Pairs of random numbers that the emission of a photon uses.
 const FIRST_DIMENSION: u32 = 3;
 
-/// Ratio of the radius in media, where photons are sparser, to the radius on surfaces.
+/// Ratio of the search radius in media, where photons are sparser, to that on surfaces.
 const MEDIUM_RADIUS: f32 = 3.0;
 
 impl Photons {
-    /// Sends `count` photons for each sample. `radius` of the first sample is in units of the
-    /// world; by default it follows from the smallest object that photons are sent to.
+    /// Creates a photon tracer with `count` photons per sample. `radius` is the search radius of
+    /// the first sample in world units; the default depends on the smallest object that photons are
+    /// sent to.
     pub fn new(world: &World, seed: u64, count: u32, radius: Option<f32>) -> Self {
         let beams = Beams::new(world);
         let usual = 0.05 * beams.finest();
@@ -68,8 +69,8 @@ impl Photons {
         Photons { beams, seed, count, radius, corrected: false, kept: Mutex::default() }
     }
 
-    /// Removes the bias of the estimates to second order in the radius, for more noise. The
-    /// difference to the uncorrected light estimates the bias.
+    /// Removes the bias of the estimates to second order in the radius, at the cost of more noise.
+    /// The difference from the uncorrected light estimates the bias.
     pub fn corrected(self) -> Self {
         Photons { corrected: true, ..self }
     }
@@ -79,20 +80,20 @@ impl Photons {
         self.beams.reaches(object)
     }
 
-    /// Radius of a sample: r_(i+1)^2 = r_i^2 (i + alpha) / (i + 1).
+    /// Returns the search radius of a sample: r_(i+1)^2 = r_i^2 (i + alpha) / (i + 1).
     fn radius(&self, sample: u32) -> f32 {
         let square = (1..=sample).map(f64::from).fold(1.0, |square, i| square * (i + ALPHA) / (i + 1.0));
         self.radius * square.sqrt() as f32
     }
 
-    /// Photon map of a sample.
+    /// Returns the photon map of a sample, and builds it if it is not cached.
     pub(super) fn map(&self, path: &Path, sample: u32) -> Arc<PhotonMap> {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        // Built by one thread: a parallel job might steal work that waits for the lock.
+        // One thread builds the map. A parallel job could steal work that waits for the lock.
         Self::found(&kept, sample).unwrap_or_else(|| Self::keep(&mut kept, sample, self.make(path, sample, false)))
     }
 
-    /// Builds the map of a sample in advance, on all threads.
+    /// Builds the photon map of a sample in advance, on all threads.
     pub fn prepare(&self, path: &Path, sample: u32) {
         let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         if Self::found(&lock(), sample).is_none() {
@@ -101,10 +102,12 @@ impl Photons {
         }
     }
 
+    /// Returns the map of a sample if it is cached.
     fn found(kept: &MapCache, sample: u32) -> Option<Arc<PhotonMap>> {
         kept.iter().find(|(number, _)| *number == sample).map(|(_, map)| map.clone())
     }
 
+    /// Caches a map, and drops the oldest one if there are too many.
     fn keep(kept: &mut MapCache, sample: u32, map: PhotonMap) -> Arc<PhotonMap> {
         let map = Arc::new(map);
         kept.push_back((sample, map.clone()));
@@ -114,8 +117,9 @@ impl Photons {
         map
     }
 
+    /// Traces the photons of a sample and builds their map.
     fn make(&self, path: &Path, sample: u32, parallel: bool) -> PhotonMap {
-        // Photons have the wavelengths of the sample's paths.
+        // Photons have the same wavelengths as the paths of the sample.
         let lanes = Lanes::new(path.transport.color, SampleId::new(self.seed, (0, 0), sample).wavelength());
         let one = |number: u32| self.trace(path, sample, number, lanes);
         let found: Vec<Photon> = match parallel {
@@ -132,9 +136,9 @@ impl Photons {
         }
     }
 
-    /// Traces one photon and returns its point of absorption.
+    /// Traces one photon until it is absorbed. Returns `None` if it is not stored.
     fn trace(&self, path: &Path, pass: u32, number: u32, lanes: Lanes) -> Option<Photon> {
-        // The photons of a pass are stratified over lights and directions.
+        // The photons of a sample are stratified over lights and directions.
         let id = SampleId::new(self.seed ^ OTHER_SEED, (pass, 0), number);
         let [light, point, direction] = [0, 1, 2].map(|dimension| id.pair(dimension));
         let emitted = self.beams.emit(path.world, light, point, direction)?;
@@ -146,7 +150,7 @@ impl Photons {
         loop {
             let hit = path.world.closest_along(&mut state.ray, &mut ());
             let event = path.propagate(hit, &mut at, &mut state, &context, &mut ());
-            // Paths account for light that a medium scatters before any delta lobe.
+            // Paths already include light that a medium scatters before any delta lobe.
             if let Event::Medium(point, dir, _) = event
                 && !is_first
             {
@@ -158,11 +162,12 @@ impl Photons {
             }
             let Event::Surface(passage) = event else { return None };
             if is_first {
-                // Light sampling accounts for the light on other objects.
+                // Light sampling already includes the light on other objects.
                 if !self.beams.reaches(at.hit.object) {
                     return None;
                 }
-                // The intensity of a light with a position is known only at the hit point.
+                // The intensity of such a light is known only for a given point, here the hit
+                // point.
                 let color = match emitted.light {
                     Some(light) => {
                         let seen = path.world.illuminate(light as usize, at.surface.point());
@@ -177,7 +182,7 @@ impl Photons {
             let eta = passage.as_ref().map_or(1.0, Passage::eta);
             let shading = path.world.shading(&at, eta, &lanes);
             path.select_hero(&at, &mut state, &context, &mut ());
-            // Black surfaces reflect nothing, but their irradiance may be measured.
+            // Black surfaces reflect nothing, but their irradiance can be measured.
             if !is_first && (shading.bsdf.is_broad() || shading.bsdf.is_black()) {
                 let wi = -state.ray.dir().normalize();
                 return Photon::new(at.surface.position, wi, state.throughput, state.depth, Absorber::Surface);
@@ -210,7 +215,7 @@ impl Photons {
     }
 }
 
-/// Separates the random numbers of photons from those of paths.
+/// Distinguishes the random numbers of photons from those of paths.
 const OTHER_SEED: u64 = 0x7068_6f74_6f6e_7321;
 
 mod map;

@@ -1,4 +1,4 @@
-//! Emitters of every shape, found by light sampling and by BSDF sampling.
+//! Tests of emitters of all shapes with light sampling and BSDF sampling.
 
 use super::*;
 
@@ -13,7 +13,7 @@ const SHAPES: [&str; 8] = [
     "Disc { center 0 0 0 normal 0 -1 0.2 radius 0.6 innerRadius 0.2 }",
 ];
 
-/// Transforms: a translation, a slight scaling, and a map that stretches, rotates, shears and
+/// Transforms: a translation, a slight scaling, and one that stretches, rotates, shears and
 /// mirrors.
 const MAPS: [&str; 3] = [
     "Translate 0.4 1.5 0.2",
@@ -21,7 +21,8 @@ const MAPS: [&str; 3] = [
     "Translate 0.4 1.5 0.2 ZRotate 40 Scale -1.5 0.6 0.9 XRotate 30",
 ];
 
-/// z-test of means: a correct result fails once in 15,000.
+/// Asserts that two means with these variances are equal, by a z-test that fails by chance once in
+/// 15,000.
 fn assert_alike(name: &str, a: (f64, f64), b: (f64, f64)) {
     assert!((a.0 - b.0).abs() <= 4.0 * (a.1 + b.1).sqrt() + 1e-5 * a.0, "{name}: {a:?} {b:?}");
 }
@@ -42,8 +43,8 @@ fn light_and_bsdf_sampling_agree_for_every_shape_and_transform() {
 
 #[test]
 fn emissive_shapes_light_their_inside() {
-    // A closed furnace of radiance 1 and albedo 0.5 on both sides: the walls show their emission
-    // and light scattered once, 1 + 0.5.
+    // In a closed furnace with radiance 1 and albedo 0.5 on both sides, the walls show their
+    // emission and light scattered once, 1 + 0.5.
     let material = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 emissionLuminance 1 walls thin }";
     let settings = WhittedOptions { bounces: 0, ..Job::default().settings };
     for shape in &SHAPES[..6] {
@@ -59,7 +60,8 @@ fn emissive_shapes_light_their_inside() {
 
 #[test]
 fn irradiance_of_a_distant_emitter_follows_its_area() {
-    // L A / d^2: the face of a box of 0.1 x 0.1 at a distance of 6, and a cone's base.
+    // E = L A / d^2, for the face of a box of 0.1 x 0.1 at a distance of 6, and for the base of a
+    // cone.
     for (light, area) in [
         ("Box { min -0.05 6 -0.05 max 0.05 6.1 0.05 }", 0.01),
         ("Cone { base 0 6 0 top 0 6.1 0 baseRadius 0.05 }", 0.0025 * std::f64::consts::PI),
@@ -76,7 +78,7 @@ fn convex_emitters_do_not_light_their_own_outside() {
         let world = scene(material, "", &format!("MaterialIndex 0 Transform {{ Scale 1.1 0.9 1 {shape} }}"));
         for y in [0.0, 0.11, 0.23] {
             let ray = Ray::new(Vec3::new(0.05, y, 5.0), Vec3::NEG_Z);
-            // Only the emission is visible.
+            // Only the object's own emission must be visible.
             for way in by_ways(&world, ray, settings, ColorMode::Rgb).map(|way| way[0]) {
                 assert!((way.0 - 0.5).abs() < 1e-6, "{shape}: {way:?}");
             }
@@ -99,11 +101,11 @@ fn without_a_background_only_lights_of_the_scene_emit() {
         let sum: Vec3 = (0..64).map(one).sum();
         sum.dot(durer_scene::math::LUMINANCE) / 64.0
     };
-    // I / d^2, plus pi L of a uniform environment.
+    // E = I / d^2, plus pi L for a uniform environment.
     assert!((lux(&of("")) - 250.0).abs() < 1e-3, "{}", lux(&of("")));
     let grey = lux(&of("Background { color 0.5 0.5 0.5 }")) - 250.0;
     assert!((grey - 0.5 * std::f32::consts::PI).abs() < 0.01, "{grey}");
-    // Whitted's pictures have a grey background.
+    // With Whitted ray tracing, the background is grey.
     assert_eq!(of("").sky(Vec3::Y), Vec3::splat(0.5));
 }
 
@@ -114,7 +116,7 @@ fn errors_account_for_emitters_that_only_bsdf_sampling_finds() {
         let transport = PathOptions { direct, ..PathOptions::default() };
         Path::new(&world, Job::default().settings, transport).most_by_chance(|color| color.x)
     };
-    // Pi times the radiance of 3 of an emitter without light sampling.
+    // The maximum is pi times the radiance of 3 for an emitter that light sampling does not choose.
     let solid = "Intersection { Box { min -1 1 -1 max 1 2 1 } Sphere { center 0 1.5 0 radius 0.6 } }";
     assert!((most(solid, Direct::Both) - 3.0 * std::f32::consts::PI).abs() < 1e-5);
     assert_eq!(most("Box { min -1 1 -1 max 1 2 1 }", Direct::Both), 0.0);

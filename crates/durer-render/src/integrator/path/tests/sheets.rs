@@ -1,17 +1,17 @@
-//! Tests of light through thin sheets.
+//! Tests of light through thin sheets, such as panes of glass.
 
 use super::caustics::by_photons;
 use super::*;
 
 const LIGHTS: [(&str, f64); 3] = [
-    // A light of colour c gives an irradiance of pi c at distance 1; a directional light at any
-    // distance.
+    // A light of colour c gives an irradiance of pi c at distance 1; a directional light does at
+    // any distance.
     ("PointLight { position 0 2 0 color 1 1 1 attenuation 0 0 1 }", 0.25),
     ("DirectionalLight { direction 0 -1 0 color 1 1 1 }", 1.0),
     ("SpotLight { position 0 2 0 direction 0 -1 0 color 1 1 1 angle 60 }", 0.25),
 ];
 
-/// Builds a pane of a material over a floor.
+/// Builds a pane of a material above a floor.
 fn under(pane: &str, light: &str) -> World {
     scene(
         &format!("{MATTE} PrincipledMaterial {{ {pane} }}"),
@@ -20,27 +20,27 @@ fn under(pane: &str, light: &str) -> World {
     )
 }
 
-/// Returns a ray that hits the floor at the origin, from below the pane.
+/// Returns a ray from below the pane that hits the floor at the origin.
 fn below() -> Ray {
     Ray::new(Vec3::new(2.0, 0.9, 0.0), Vec3::new(-2.0, -0.9, 0.0).normalize())
 }
 
 #[test]
 fn pane_transmits_light_by_fresnel_and_its_colour() {
-    // With all inter-reflections, T = (1 - F) / (1 + F) with F = 0.04.
+    // With all interreflections, T = (1 - F) / (1 + F), where F = 0.04.
     let clear = 0.96 / 1.04;
     for (emitter, distance) in LIGHTS {
         for (pane, share) in [
             ("transmissionWeight 1 specularRoughness 0 walls thin", clear),
             ("transmissionWeight 1 specularRoughness 0 transmissionColor 0.5 0.5 0.5 walls thin", 0.5 * clear),
-            // Half of the light is absorbed on each pass: T = (1 - F)² / 2 / (1 - F² / 4).
+            // Each pass absorbs half of the light: T = (1 - F)² / 2 / (1 - F² / 4).
             (
                 "transmissionWeight 1 specularRoughness 0 transmissionColor 0.5 0.5 0.5 transmissionDepth 1 walls thin",
                 0.96 * 0.96 * 0.5 / (1.0 - 0.0016 * 0.25),
             ),
             ("transmissionWeight 1 specularRoughness 0 opacity 0.25 walls thin", 0.75 + 0.25 * clear),
             ("baseColor 0 0 0 transmissionWeight 0.5 specularRoughness 0 walls thin", 0.5 * clear),
-            // Scattered or refracted light arrives by other paths.
+            // Light that is scattered or refracted arrives by other paths.
             ("transmissionWeight 1 specularRoughness 0.5 walls thin", 0.0),
             ("transmissionWeight 1 specularRoughness 0", 0.0),
         ] {
@@ -87,19 +87,19 @@ fn below_disc(pane: &str) -> World {
 #[test]
 fn pane_transmits_the_light_of_a_small_disc() {
     // A disc of angular radius t around the normal gives an irradiance of pi L sin(t)^2. Over such
-    // a small angle the pane's transmittance is constant to 1e-6.
+    // a small angle, the pane's transmittance is constant to 1e-6.
     let irradiance = 3.0 * std::f64::consts::PI * 0.04 / 4.04;
     for (pane, share) in [
         ("transmissionWeight 1 specularRoughness 0 walls thin", 0.96 / 1.04),
         ("transmissionWeight 1 specularRoughness 0 opacity 0.25 walls thin", 0.75 + 0.25 * 0.96 / 1.04),
         ("baseColor 0 0 0 transmissionWeight 0.5 specularRoughness 0 walls thin", 0.5 * 0.96 / 1.04),
     ] {
-        // Paths without bounces end at the pane; with one, MIS combines them with light samples.
+        // Without bounces, paths end at the pane. With one, MIS combines them with light samples.
         for bounces in [0, 1] {
             let (world, expected) = (below_disc(pane), shown(share * irradiance));
             let (mean, error) = light(&world, below(), bounces, 1 << 13);
             assert!((mean - expected).abs() <= 3.0 * error + 1e-3 * expected, "{pane}: {mean}, expected {expected}");
-            // A BSDF sample finds the light once in a hundred times: an error of 0.11.
+            // A BSDF sample finds the light once in a hundred times, which gives an error of 0.11.
             assert!(error < 0.02 * expected, "{pane}, {bounces} bounces: {mean} ± {error}");
         }
     }

@@ -1,4 +1,4 @@
-//! Tests of two-sided emissive meshes: the light does not depend on whether their insides are
+//! Tests of two-sided emissive meshes. Their light must not depend on whether their insides are
 //! sampled.
 
 use super::*;
@@ -8,8 +8,8 @@ use durer_scene::dialect::Dialect;
 use std::path::Path as FilePath;
 use tempfile::TempDir;
 
-/// Returns a cube of half-width `half`, with triangles counter-clockwise seen from outside, or from
-/// inside if `turned`.
+/// Returns a cube of half-width `half`. Its triangles are counter-clockwise as seen from outside
+/// or, if `turned`, from inside.
 fn cube(half: f32, turned: bool) -> String {
     let corner = |i: usize| [1, 2, 4].map(|bit| if i & bit > 0 { half } else { -half });
     let vertices: String = (0..8).map(corner).map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
@@ -19,7 +19,7 @@ fn cube(half: f32, turned: bool) -> String {
     vertices + &faces.into_iter().map(face).collect::<String>()
 }
 
-/// Writes cubes in both orientations into a folder.
+/// Writes a cube in both orientations into a folder.
 fn cubes(half: f32) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, turned) in [("out.obj", false), ("in.obj", true)] {
@@ -28,7 +28,7 @@ fn cubes(half: f32) -> TempDir {
     folder
 }
 
-/// Builds a world with a matte material, a two-sided emitter and a one-sided emitter.
+/// Builds a world with a matte, a two-sided emissive and a one-sided emissive material.
 fn world(folder: &FilePath, group: &str) -> World {
     let text = format!(
         "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }} Background {{ color 0 0 0 }}
@@ -50,10 +50,10 @@ fn emissive_meshes_light_their_inside() {
                  MaterialIndex 0 Rectangle {{ corner -1 0 1 edge0 2 0 0 edge1 0 0 -2 }}"
             ),
         );
-        // The floor sees radiance 3 in all directions.
+        // The floor receives radiance 3 from all directions.
         let (mean, error) = light(&world, to_origin(), 0, 1 << 12);
         assert!((mean - 1.5).abs() < 3.0 * error + 0.0015, "{name}: {mean} ± {error}");
-        // Light sampling is used too: BSDF sampling alone would have no noise.
+        // BSDF sampling alone would have no noise, so light sampling is used too.
         assert!(error > 1e-3, "{name}: {error}");
     }
 }

@@ -1,10 +1,10 @@
-//! Tests of path traces: their sums, and the clamping of individual terms.
+//! Tests of path traces: the sum of their terms, and the clamp on single terms.
 
 use super::*;
 use crate::integrator::{TraceRecorder, Tree};
 
-/// Returns the trace of a sample. Checks that its sum equals the picture bit for bit, and that the
-/// factors along each path multiply to the throughput with which the light was added.
+/// Returns the trace of a sample. Checks that its sum equals the sample's colour bit for bit, and
+/// that the factors along each path multiply to the throughput.
 pub(super) fn tree(path: &Path, ray: &Ray, sample: u32) -> Tree {
     fn check(node: &TraceNode) {
         assert_eq!(node.sum(), node.value, "{:?}", node.what);
@@ -31,8 +31,8 @@ pub(super) fn tree(path: &Path, ray: &Ray, sample: u32) -> Tree {
     tree
 }
 
-/// Collects the sources of light below a node in order, each with the number of scatterings to the
-/// camera and its contribution to the pixel.
+/// Collects the light sources below a node in order, each with the number of scattering events up
+/// to the camera and its contribution to the pixel.
 fn sources(node: &TraceNode, rays: u32, found: &mut Vec<(u32, Spectrum)>) {
     for term in &node.terms {
         let adds = || term.added().unwrap().spectrum();
@@ -45,7 +45,8 @@ fn sources(node: &TraceNode, rays: u32, found: &mut Vec<(u32, Spectrum)>) {
     }
 }
 
-/// Inside of a matte sphere with a point light and a small emissive sphere: light of all depths.
+/// Builds the inside of a matte sphere with a point light and a small emissive sphere, which gives
+/// light of all depths.
 fn closed_room() -> World {
     scene(
         &format!("{MATTE} PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 3 }}"),

@@ -1,4 +1,4 @@
-//! Tests of nested glass: indices along a ray, from Snell's law.
+//! Tests of nested glass: the indices of refraction along a ray, computed with Snell's law.
 
 use super::*;
 use crate::compile::testing;
@@ -12,8 +12,8 @@ const CAMERA: &str = "PerspectiveCamera { center 0 9 0 direction 0 -1 0 up 0 0 1
       Material { transparentColor 1 1 1 indexOfRefraction 1 }
       Material { diffuseColor 1 1 1 } }\n";
 
-/// Returns the indices of the media along a ray, from the sines of its angles to y: in flat layers,
-/// index times sine is constant.
+/// Returns the indices of refraction along a ray from the sines of its angles to the y axis. In
+/// flat layers, index times sine is constant.
 fn indices(objects: &str, origin: [f32; 3], sine: f32) -> Vec<f32> {
     along(&testing::read(&format!("{CAMERA}Group {{ {objects} }}")), origin, sine)
 }
@@ -33,7 +33,7 @@ fn along(world: &World, origin: [f32; 3], sine: f32) -> Vec<f32> {
     Whitted { world, settings, cancel: None }.radiance(&ray, &mut account);
     let mut found = Vec::new();
     transmitted(&account.into_tree().unwrap().root, &mut found);
-    // Rounded to thousandths.
+    // The indices are rounded to thousandths.
     found.iter().map(|dir| (1e3 * sine / dir.x).round() / 1e3).collect()
 }
 
@@ -56,7 +56,8 @@ fn nested_layers_refract_by_their_own_indices_in_any_order() {
         for sine in [0.1, 0.5, 0.9] {
             assert_eq!(indices(&objects, [0.0, 6.0, 0.0], sine), [1.5, 1.33, 1.31, 1.33, 1.5, 1.0]);
         }
-        // From inside the ice, the water and the glass; sines refer to a ray in that medium.
+        // Rays from inside the ice, the water and the glass. The sines are those in the medium
+        // where the ray starts.
         assert_eq!(
             indices(&objects, [0.0, 0.0, 0.0], 0.5).iter().map(|n| n * 1.31).map(short).collect::<Vec<_>>(),
             [1.33, 1.5, 1.0]
@@ -76,7 +77,7 @@ fn short(index: f32) -> f32 {
 fn ice_partly_out_of_water_displaces_it() {
     let (water, ice) = (slab(1, -2.0, 0.0, 20.0), slab(2, -1.0, 1.0, 10.0));
     for objects in [format!("{water}{ice}"), format!("{ice}{water}")] {
-        // The water's surface inside the ice is ignored.
+        // The water's surface inside the ice has no effect.
         assert_eq!(indices(&objects, [0.0, 6.0, 0.0], 0.5), [1.31, 1.33, 1.0]);
         // Beside the ice there is only water.
         assert_eq!(indices(&objects, [12.0, 6.0, 0.0], 0.5), [1.33, 1.0]);
@@ -90,10 +91,10 @@ fn ice_partly_out_of_water_displaces_it() {
 fn bubble_is_air_and_pane_hides_nothing() {
     let bubble = format!("{}{}", slab(0, -2.0, 2.0, 20.0), slab(3, -1.0, 1.0, 10.0));
     assert_eq!(indices(&bubble, [0.0, 6.0, 0.0], 0.5), [1.5, 1.0, 1.5, 1.0]);
-    // Opaque objects inside glass are fully visible.
+    // Opaque objects inside glass are visible.
     let stone = format!("{}MaterialIndex 4 Sphere {{ center 0 0 0 radius 1 }}", slab(0, -2.0, 2.0, 20.0));
     assert_eq!(indices(&stone, [-4.2, 8.0, 0.0], 0.5), [1.5]);
-    // A pane without thickness has no inside; other glass behind it works as usual.
+    // A pane without thickness has no inside. Glass behind it is unaffected.
     let pane = "MaterialIndex 2 Rectangle { corner -30 3 -30 edge0 0 0 60 edge1 60 0 0 } ";
     let behind = indices(&format!("{pane}{}", slab(0, -1.0, 1.0, 20.0)), [0.0, 6.0, 0.0], 0.5);
     assert_eq!(behind[..2], [1.31, 1.5]);
@@ -102,7 +103,7 @@ fn bubble_is_air_and_pane_hides_nothing() {
 #[test]
 fn inverted_mesh_is_the_wall_of_a_cavity() {
     let folder = tempfile::tempdir().unwrap();
-    // A box of twelve triangles with inverted orientation.
+    // A box of twelve triangles that face inwards.
     let corners: String = (0..8)
         .map(|i| format!("v {} {} {}\n", 10 * (2 * (i & 1) - 1), 2 * (i >> 1 & 1) - 1, 10 * (2 * (i >> 2) - 1)))
         .collect();

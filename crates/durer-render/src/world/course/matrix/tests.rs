@@ -54,7 +54,7 @@ fn singular_matrix_is_detected_and_tiny_one_is_skipped() {
     assert!(!Matrix::of(&flat, MatrixRules::default(), Vectors::Vecmath).is_regular());
     let tiny = MatrixRules { dropped_tiny: true, ..MatrixRules::default() };
     assert_eq!(Matrix::of(&flat, tiny, Vectors::Glm), Matrix::IDENTITY);
-    // 0.004^3 is below the rounding of 1, 0.006^3 is not.
+    // 0.004^3 is smaller than the rounding of 1, and 0.006^3 is not.
     let scale = |s: f32| [MatrixOp::Translate(Vec3::X), MatrixOp::UniformScale(s)];
     assert_eq!(Matrix::of(&scale(0.004), tiny, Vectors::Glm), Matrix::IDENTITY);
     assert_ne!(Matrix::of(&scale(0.006), tiny, Vectors::Glm), Matrix::IDENTITY);

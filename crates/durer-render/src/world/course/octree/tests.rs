@@ -2,7 +2,7 @@ use super::*;
 use durer_scene::math::Ray;
 use durer_scene::math::random::Random;
 
-/// Boxes of small triangles in a cube from -1 to 1.
+/// Returns boxes of small triangles in a cube from -1 to 1.
 fn boxes(count: usize, random: &mut Random) -> Vec<Aabb> {
     let mut point = |by: f32| Vec3::from_array([0, 1, 2].map(|_| random.between(-by, by)));
     let corner = |middle: Vec3, off: Vec3| middle + off;
@@ -47,19 +47,19 @@ fn ray_visits_every_box_on_its_way() {
 
 #[test]
 fn axis_parallel_ray_loses_the_far_half_of_divided_cells() {
-    // Eight small boxes at the corners of a cube, each twice, so that the root is divided.
+    // Eight small boxes at the corners of a cube, each twice, so that the root cell is divided.
     let at = |i: u32| Vec3::from_array([4, 2, 1].map(|bit| if i & bit != 0 { 1.0 } else { -1.0 }));
     let small = |i: u32| Aabb { min: at(i) - 0.1, max: at(i) + 0.1 };
     let octree = Octree::new((0..16).map(|i| small(i % 8)).collect());
     let down = |x: f32, y: f32, dir: Vec3| visited(&octree, &Ray::new(Vec3::new(x, y, 5.0), dir));
-    // The middle plane of x is NaN, so the cells behind it are never visited.
+    // The middle plane of x is at NaN, so the cells behind it are never visited.
     let lost = down(1.0, 1.0, Vec3::NEG_Z);
     assert!(!lost.contains(&7) && !lost.contains(&6), "{lost:?}");
     assert!(down(-1.0, -1.0, Vec3::NEG_Z).contains(&1));
-    // A slightly inclined direction loses nothing.
+    // With a slightly inclined direction, no hits are missed.
     let found = down(1.0, 1.0, Vec3::new(-1e-6, -1e-6, -1.0));
     assert!(found.contains(&7) && found.contains(&6), "{found:?}");
-    // A cell of seven triangles is not divided, and none is lost.
+    // A cell of seven triangles is not divided, so none is missed.
     let small_world = Octree::new((0..7).map(|i| small(7 - i)).collect());
     assert_eq!(visited(&small_world, &Ray::new(Vec3::new(1.0, 1.0, 5.0), Vec3::NEG_Z)).len(), 7);
 }

@@ -30,7 +30,7 @@ fn probabilities_match_sampling_and_sum_to_one() {
     for (count, alike) in [(1, false), (2, false), (3, false), (17, false), (400, false), (400, true)] {
         let mut all = lights(&mut random, count);
         if alike {
-            // Close together, so that the group is far from most points.
+            // Move the lights close together, so that the group is far from most points.
             let of = |Bounds { bounds, .. }: Bounds| Aabb { min: 0.1 * bounds.min, max: 0.1 * bounds.max };
             all.iter_mut().for_each(|light| *light = Bounds { bounds: of(*light), power: 1.0, ..all_ways() });
         }
@@ -39,7 +39,7 @@ fn probabilities_match_sampling_and_sum_to_one() {
             let n = if i % 2 == 0 { random.direction() } else { Vec3::ZERO };
             let to = Receiver { point: (12.0 * random.point()).as_dvec3(), n, far: Receiver::FAR_BEYOND };
             let sum: f32 = (0..order.len() as u32).map(|i| tree.probability(&to, i)).sum();
-            // Nothing is chosen if none of a node's children contributes.
+            // If no child of a node contributes, nothing is chosen.
             let always = alike && n == Vec3::ZERO;
             assert!(sum < 1.0 + 1e-4 && (!always || sum > 1.0 - 1e-4), "{sum}");
             for _ in 0..50 {
