@@ -1,4 +1,5 @@
-//! Checks that the integrator supports the scene's light sources and that their light arrives.
+//! Checks that the integrator supports the scene's light sources and that their light reaches the
+//! surfaces.
 
 use super::area_lights::emissive_objects;
 use super::colors::background_span;
@@ -14,9 +15,9 @@ use durer_scene::scene::Material as Written;
 
 /// Radiance below which a surface is black in eight bits.
 const BLACK: f32 = 0.001;
-/// Minimum fraction of black surfaces, in tenths, in a picture without light.
+/// Minimum number of black surface samples, in tenths, for the picture to count as black.
 const MOSTLY: usize = 9;
-/// Minimum number of surface samples for a judgement.
+/// Minimum number of surface samples needed for a conclusion.
 const FEWEST: usize = 20;
 
 /// Reports a scene whose only light is of a kind that Whitted's method does not support.

@@ -1,5 +1,5 @@
-//! Checks of layered materials under path tracing: films, scattering bodies, dispersion, and paths
-//! too short for glass.
+//! Checks of layered materials under path tracing: thin films, scattering bodies, dispersion, and
+//! paths too short for glass.
 
 use super::finding::{Finding, MAX_SOUGHT, number, percent};
 use super::layers::{layers, thickness};
@@ -10,17 +10,18 @@ use durer_scene::material::principled::Walls;
 use durer_scene::scene::{Material as Written, Spanned};
 use durer_scene::spectrum::ColorMode;
 
-/// Thickness in micrometres above which a film shows no colours.
+/// Thickness in micrometres above which a thin film shows no interference colours.
 const THICKEST_FILM: f32 = 10.0;
 /// Mean free path, as a multiple of a body's thickness, above which the body hardly scatters light.
 const LONGEST_WAY: f32 = 30.0;
-/// Minimum difference of the index of refraction from 1 that bends light.
+/// Minimum deviation of the index of refraction from 1 that visibly bends light.
 const BENDS: f32 = 1e-3;
 
-/// A used material: its index, description and parameters.
+/// A layered material that an object uses: index, description in the scene file, and parameters.
 type Used<'s> = (usize, &'s Spanned<Written>, &'s PrincipledMaterial);
 
-/// Reports films too thick to show colours: their thickness is in micrometres.
+/// Reports thin films that are too thick to show colours, usually because a value in nanometres was
+/// written instead of micrometres.
 pub(super) fn thick_film(scout: &SceneProbe) -> Vec<Finding> {
     let say = |(index, written, m): Used| {
         if m.thin_film_weight <= 0.0 || m.thin_film_thickness <= THICKEST_FILM {
@@ -69,7 +70,7 @@ pub(super) fn no_spectrum(scout: &SceneProbe) -> Vec<Finding> {
         if m.transmission_dispersion_scale <= 0.0 || m.transmission_weight < 0.5 || m.walls == Walls::Thin {
             return None;
         }
-        // Ignore dispersion that comes from a preset or model, which is often not intended to be
+        // Ignore dispersion that comes from a preset or a model, because it may not be meant to be
         // visible.
         let value = scout.value(written.span, &["transmissionDispersionScale"])?;
         let diagnostic = Diagnostic::note(format!("material {index} spreads colours, and light has none to spread"))
@@ -81,7 +82,7 @@ pub(super) fn no_spectrum(scout: &SceneProbe) -> Vec<Finding> {
     layers(scout).into_iter().filter_map(say).take(MAX_SOUGHT).collect()
 }
 
-/// Reports glass and mirrors for which paths have too few bounces.
+/// Reports glass and mirrors that need more bounces than the paths have.
 pub(super) fn short_paths(scout: &SceneProbe) -> Vec<Finding> {
     let bounces = scout.subject.job.settings.bounces;
     let say = |(index, written, m): Used| {
@@ -90,7 +91,7 @@ pub(super) fn short_paths(scout: &SceneProbe) -> Vec<Finding> {
         let glass = m.transmission_weight > 0.5 && m.base_metalness < 0.5 && m.opacity > 0.5;
         let mirror = m.base_metalness > 0.9 && m.specular_roughness < 0.2;
         let (least, what) = match (glass, mirror) {
-            // Light needs one bounce to enter a body and one to leave it.
+            // Light needs one bounce to enter an object and one to leave it.
             (true, _) if bends => (2, "of glass"),
             (true, _) => (1, "of glass"),
             (_, true) => (1, "a mirror"),

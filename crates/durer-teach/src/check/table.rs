@@ -7,14 +7,15 @@ use super::{
     names, numbers, objects, optics, patterns, physical, solid, unseen, view, year,
 };
 
-/// A kind of finding.
+/// A kind of finding with its stable code and the function that searches for it; a row of
+/// [`CHECKS`].
 #[derive(Clone, Copy, Debug)]
 pub struct Check {
     /// Stable code.
     pub code: &'static str,
-    /// Short description.
+    /// Short description, as listed by `durer check --list`.
     pub about: &'static str,
-    /// Runs the check; empty for codes that the reader or the compiler reports.
+    /// Runs the check. Returns nothing for codes that the reader or the compiler reports.
     pub(super) find: fn(&SceneProbe) -> Vec<Finding>,
 }
 
@@ -24,7 +25,7 @@ fn reported(_: &SceneProbe) -> Vec<Finding> {
 
 macro_rules! checks {
     ($($code:literal: $about:literal, $find:expr;)+) => {
-        /// Every kind of finding.
+        /// Every kind of finding, in the order of reporting.
         pub const CHECKS: &[Check] = &[$(Check { code: $code, about: $about, find: $find },)+];
     };
 }
@@ -150,7 +151,7 @@ checks! {
     "mesh-file": "a part of a mesh file that was ignored", reported;
 }
 
-/// Returns the position of a code in the order of reporting; unknown codes come before the final
+/// Returns the position of a code in the order of reporting. Unknown codes come before the final
 /// notes.
 pub fn rank(code: &str) -> usize {
     let of = |code: &str| CHECKS.iter().position(|check| check.code == code);
