@@ -42,7 +42,7 @@ fn white(scout: &SceneProbe) -> Vec<Finding> {
     let (shown, what) = if over(all, MAX_WHITE) {
         (all, "the picture")
     } else if objects.len() * 20 > all.len() && over(&objects, MAX_WHITE_THINGS) {
-        (&objects[..], "what is lit")
+        (&objects[..], "the lit surface area")
     } else {
         return Vec::new();
     };

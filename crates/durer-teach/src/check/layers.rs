@@ -119,7 +119,7 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
         let index = number_word(m.specular_ior);
         let message = format!("material {number} is glass with an index of refraction of {index}");
         let effect = match m.specular_ior {
-            // A volume of smoke has no reflecting surface on purpose.
+            // A volume of smoke also has an index of 1, so report only clear glass.
             ior if (ior - 1.0).abs() < 1e-3 && clear && plain && m.transmission_weight > 0.99 => {
                 "light passes straight through without reflection, so its objects are invisible"
             }

@@ -255,10 +255,10 @@ fn models_inside_out(scout: &SceneProbe) -> Vec<Finding> {
         let index = scout.world().objects().iter().position(|object| mesh.is_shown_at(object.span))? as u32;
         let seen = scout.seen().filter(|(_, seen)| mesh.is_shown_at(scout.object_span(seen.object))).count();
         let most = seen * 2 > scout.seen().count();
-        let diagnostic = Diagnostic::warning(format!("the {} is closed, and inside out", scout.object(index)))
+        let diagnostic = Diagnostic::warning(format!("the {} is closed, but inside out", scout.object(index)))
             .at(scout.object_span(index))
-            .effect("programs that leave out backs show its inside; as glass it bends light the wrong way")
-            .help("let its faces go round counter-clockwise, seen from outside");
+            .effect("programs that cull back faces show its inside; as glass it refracts light the wrong way")
+            .help("order the vertices of its faces counter-clockwise, as seen from outside");
         // Modelling programs often leave small inverted pieces, which are hardly visible.
         let severity = if most { Severity::Warning } else { Severity::Note };
         Some(Finding::from(Diagnostic { severity, ..diagnostic }))

@@ -121,7 +121,7 @@ fn without_change(scout: &SceneProbe, look: &PatternSampler, written: &Written) 
     }
     let cell = to_pattern.inverse().matrix3;
     let cell = cell.x_axis.length().min(cell.y_axis.length()).min(cell.z_axis.length()) as f32;
-    // For unbounded objects, use the size of the bounded objects, or the distance from the camera.
+    // A scene of unbounded objects has no size to compare with.
     let size = match scout.world().bounds() {
         bounds if bounds.is_empty() => return None,
         bounds => bounds.size().max_element(),

@@ -230,9 +230,9 @@ fn even_field(scout: &SceneProbe, object: &durer_scene::scene::Object, size: Vec
     if high - low > 0.002 * size.y {
         return None;
     }
-    let diagnostic = Diagnostic::warning("the picture of this landscape has the same value everywhere")
-        .effect("it is flat: there are no hills to be seen")
-        .help("dark is low and bright is high: take a picture of several values");
+    let diagnostic = Diagnostic::warning("the height map of this landscape has the same value everywhere")
+        .effect("the landscape is flat")
+        .help("dark pixels are low and bright ones high: use an image with different values");
     Some(Finding::from(scout.at_value(diagnostic, object.span, &["picture"])))
 }
 

@@ -57,7 +57,7 @@ pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
             .label("this point is inside it")
             .related(scout.object_span(object), "around the camera")
             .effect(match dark {
-                _ if swallowed && own * 100 < rays * 99 => "it is all around: what is seen of it is its inside",
+                _ if swallowed && own * 100 < rays * 99 => "it surrounds the camera, so its inside is visible",
                 _ if walls && own * 100 < rays * 99 => "its walls are visible from behind, and that side gets no \
                                                         light",
                 true => "it blocks the light; everything visible is in its shadow",
@@ -301,8 +301,8 @@ pub(super) fn plane_through(scout: &SceneProbe) -> Vec<Finding> {
         let message = format!("the {} passes through the middle of most objects", scout.object(number));
         let diagnostic = Diagnostic { severity, ..Diagnostic::warning(message) }
             .at(scout.object_span(number))
-            .effect("only what is before it is seen of them")
-            .help("a floor lies below things: which axis is up? Look at its `normal` and `offset`, and what turns it");
+            .effect("only the parts in front of it are visible")
+            .help("a floor should be below the objects: which axis points up? Check its `normal`, its `offset` and the rotations around it");
         Finding::from(diagnostic)
     };
     (0..world.objects().len() as u32).filter(through).take(2).map(say).collect()

@@ -148,8 +148,8 @@ fn no_highlight(scout: &SceneProbe) -> Option<Finding> {
     };
     let (i, written, _) = seen(scout).find(|(.., phong)| bare(phong))?;
     let diagnostic = Diagnostic::note(format!("material {i} has a `specularColor` and no `shininess`"))
-        .effect("this year's program has no highlights, and mirrors with that colour; in others the highlight is everywhere")
-        .help("for a highlight write a `shininess`, 20 say, and take a year that has highlights, as `--dialect f16`");
+        .effect("this year's program has no highlights and uses the colour for a mirror; in other dialects the highlight covers everything")
+        .help("for a highlight, add a `shininess`, such as 20, and use a dialect with highlights, such as `--dialect f16`");
     Some(Finding::from(scout.at_value(diagnostic, written.span, &["specularColor"])))
 }
 
