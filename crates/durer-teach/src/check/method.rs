@@ -84,7 +84,7 @@ pub(super) fn mostly_black(scout: &SceneProbe) -> Vec<Finding> {
         Diagnostic::warning(format!("{} of the visible surface area is black: the scene's lights do not reach it", percent(black, all)))
             .effect("hardly anything except the background is visible")
             .help(match model {
-                true => "`--studio sun` lights a model from outside, instead of its own lights",
+                true => "`--studio sun` lights a model from outside, and replaces its lights",
                 false => {
                     "move the light to the camera's side, add another, or write `Background { color 0.3 0.3 0.3 }`"
                 }

@@ -6,7 +6,7 @@ use durer_render::world::{Geometry, Object};
 use durer_scene::camera::{Camera, CameraSample, Projection};
 use durer_scene::math::{Aabb, Ray, Vec2, Vec3};
 
-/// Where an object is relative to the picture: visible in it, hidden by another object, or outside.
+/// Visibility of an object in the picture: seen, hidden by another object, or outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Visibility {
     /// Some of the object is in the picture.
