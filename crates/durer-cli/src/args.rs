@@ -1,4 +1,4 @@
-//! The command line.
+//! The definition of the command line and its subcommands.
 
 use crate::check::CheckArgs;
 use crate::compare::CompareArgs;

@@ -1,12 +1,12 @@
-//! Options of other programs and their equivalents in Dürer.
+//! Maps options of other programs to their equivalents in Dürer.
 
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, Error};
 use std::ffi::OsString;
 
-/// Equivalent of another program's option: its names, the option that a command needs to have for
-/// the hint to apply, and the hint.
+/// Options of other programs: their names, the option that a command must have for the hint to
+/// apply, and the hint.
 const POINTERS: &[(&[&str], &str, &str)] = &[
     (&["--width", "--height", "--resolution", "--res", "-size"], "size", "`--size 640x480` has both, the width first"),
     (&["--spp", "--aa", "--antialias", "--samples-per-pixel"], "samples", "samples a pixel are `--samples 64`"),
@@ -24,13 +24,13 @@ const POINTERS: &[(&[&str], &str, &str)] = &[
     (&["--jobs", "--cores"], "threads", "threads are `--threads 4`"),
 ];
 
-/// Replaces clap's suggestion for an unknown option with the equivalent option.
+/// Replaces clap's suggestion for an unknown option with a hint at the equivalent option.
 pub fn corrected(mut error: Error, words: &[OsString], program: &Command) -> Error {
     if error.kind() != ErrorKind::UnknownArgument {
         return error;
     }
     let Some(ContextValue::String(given)) = error.get(ContextKind::InvalidArg) else { return error };
-    // A long option with one dash is read as several short ones.
+    // A long option with a single dash is parsed as several short options.
     let one_dash = |word: &&str| word.starts_with('-') && !word.starts_with("--") && word.len() > 2;
     let words: Vec<&str> = words.iter().filter_map(|word| word.to_str()).collect();
     let whole = words.iter().copied().filter(one_dash).find(|word| word.starts_with(given.as_str()));
