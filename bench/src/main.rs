@@ -1,4 +1,4 @@
-//! Traces the same rays with Dürer, Embree and other Rust crates.
+//! `cargo xtask bench-rays`: traces the same rays with Dürer, Embree and other Rust crates.
 
 mod edges;
 mod embree;
@@ -35,7 +35,7 @@ Examples:
 
 Meshes are found in ../shared/meshes, or under DURER_CORPUS; Embree where DURER_EMBREE says.";
 
-/// Options of the command line.
+/// Command-line options of `cargo xtask bench-rays`.
 pub struct Options {
     pub meshes: Vec<PathBuf>,
     pub cases: Vec<String>,

@@ -1,5 +1,5 @@
-//! `cargo xtask attack`: tests the program with hostile input. Each kind of attack is a subcommand,
-//! which counts its trials and failures.
+//! `cargo xtask attack`: tests the program with hostile input. Each kind of attack counts its
+//! trials and its failures.
 
 mod far;
 mod growth;
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// A kind of attack, with its default number of trials and a description of what is counted.
+/// A kind of attack, with its default number of trials and a description of what a trial is.
 struct Kind {
     name: &'static str,
     count: u64,
@@ -32,25 +32,26 @@ const KINDS: [Kind; 7] = [
     Kind { name: "mutated", count: 20_000, of: "mutated files", run: mutated::run },
 ];
 
-/// Settings of an attack.
+/// Settings of one attack: the program, a temporary folder, the number of trials and the seed.
 struct Attack {
     durer: PathBuf,
     folder: tempfile::TempDir,
     count: u64,
     seed: u64,
-    /// Extension of the files that `mutated` uses; empty for all.
+    /// Extension of the files that the attack `mutated` uses; empty for all extensions.
     only: String,
 }
 
-/// Result of an attack.
+/// Result of one attack: the number of trials and the failures.
 struct Outcome {
     tried: u64,
-    /// One line per failure.
+    /// Descriptions of the failures, one line each.
     fallen: Vec<String>,
     /// Text to append to the summary.
     note: String,
 }
 
+/// Runs `cargo xtask attack`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     if arguments.first().is_some_and(|word| word == mutated::WORKER) {
         return mutated::work(&arguments[1..]);
@@ -93,12 +94,13 @@ impl Attack {
         Ok(std::fs::write(path, content)?)
     }
 
-    /// Returns a random number less than `below`, deterministic for each `number` and `place`.
+    /// Returns a random number below `below`, which depends only on the seed, `number` and `place`.
     fn random(&self, number: u64, place: u32, below: u64) -> usize {
         (hash(self.seed, number as u32, place, (number >> 32) as u32, 0) % below.max(1)) as usize
     }
 
-    /// Runs the program in the folder with limits of address space (KiB) and time (seconds).
+    /// Runs the program in the attack's folder with limits for address space (KiB) and time
+    /// (seconds).
     fn limited(&self, arguments: &[&str], space: u64, seconds: u64) -> Result<Output> {
         let limit = format!("ulimit -v {space}; exec timeout -s KILL {seconds} \"$0\" \"$@\"");
         let mut command = Command::new("bash");
@@ -108,7 +110,8 @@ impl Attack {
     }
 }
 
-/// Returns the reason if a run crashed or did not end by itself; `None` for a picture or an error.
+/// Returns the reason if a run crashed or did not end by itself; `None` if it ended with a picture
+/// or an error.
 fn broken(output: &Output) -> Option<String> {
     let messages = String::from_utf8_lossy(&output.stderr);
     let last = messages.lines().last().unwrap_or_default();
@@ -121,7 +124,7 @@ fn broken(output: &Output) -> Option<String> {
     }
 }
 
-/// Runs the property tests of job files, with the requested number of names.
+/// Runs the property tests of job files with the requested number of names.
 fn templates(attack: &Attack) -> Result<Outcome> {
     let rounds = attack.count.div_ceil(2000).to_string();
     let mut command = Command::new(crate::cargo());
@@ -142,7 +145,7 @@ fn kills(attack: &Attack) -> Result<Outcome> {
     })
 }
 
-/// Waits for a child process for at most `most`, then kills it and returns `None`.
+/// Waits at most `most` for a child process. Otherwise kills it and returns `None`.
 fn wait_for(child: &mut std::process::Child, most: Duration) -> Result<Option<Duration>> {
     let start = Instant::now();
     while start.elapsed() < most {
@@ -156,7 +159,7 @@ fn wait_for(child: &mut std::process::Child, most: Duration) -> Result<Option<Du
     Ok(None)
 }
 
-/// Returns the inputs of earlier attacks, if they are available.
+/// Returns inputs of earlier attacks, if they are available.
 fn inputs() -> Vec<PathBuf> {
     let folder = crate::corpus().join("faults/attack");
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
@@ -165,7 +168,7 @@ fn inputs() -> Vec<PathBuf> {
     paths
 }
 
-/// Returns the name of a file.
+/// Returns the name of a file, without its folder.
 fn name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }

@@ -1,5 +1,5 @@
-//! `cargo xtask manual`: writes the language reference with pictures, and a grammar for editors,
-//! from the descriptions in the code.
+//! `cargo xtask manual`: writes the language reference with its pictures, and a grammar for
+//! editors, from the descriptions in the code.
 
 mod python;
 
@@ -11,9 +11,10 @@ use std::process::{Command, ExitCode};
 
 const GENERATED: &str = "Written by `cargo xtask manual` from what the code states; a test holds it to that.";
 
-/// Size of an example picture.
+/// Size of the example pictures in pixels.
 const SIZE: &str = "240x180";
 
+/// Runs `cargo xtask manual`.
 pub fn run() -> Result<ExitCode> {
     for (path, text) in pages() {
         std::fs::create_dir_all(path.parent().context("a folder")?)?;
@@ -49,12 +50,12 @@ fn pictures() -> PathBuf {
 
 fn picture_name(entry: &Entry) -> String {
     let chapter = entry.chapter.title().to_lowercase();
-    // Two keywords can differ only in their context, for example `Noise`.
+    // Two entries can have the same keyword in different contexts, for example `Noise`.
     let kind = if entry.doc.contains("which replace the diffuse") { "-color" } else { "" };
     format!("{chapter}-{}{kind}.png", entry.name().to_lowercase())
 }
 
-/// Returns the generated texts with their paths.
+/// Returns the texts to write, with their paths.
 fn pages() -> Vec<(PathBuf, String)> {
     let folder = docs().join("language");
     let mut pages = vec![(folder.join("index.md"), index()), (docs().join("editors/durer.tmLanguage.json"), grammar())];
@@ -91,12 +92,12 @@ fn index() -> String {
     out
 }
 
-/// Returns a name in Markdown; `<Object>` would be parsed as HTML.
+/// Escapes a name for Markdown, where `<Object>` would be parsed as HTML.
 fn shown(name: &str) -> String {
     if name.contains('<') { format!("`{name}`") } else { name.into() }
 }
 
-/// Returns the anchor of a heading as GitHub and mdBook compute it.
+/// Returns the anchor of a heading, computed as by GitHub and mdBook.
 fn anchor(name: &str) -> String {
     name.to_lowercase().chars().filter(|c| c.is_alphanumeric() || *c == '_' || *c == '-').collect()
 }
@@ -142,7 +143,7 @@ fn spelled(keywords: &[Spelling]) -> String {
     keywords.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-/// Returns a TextMate grammar: comments, numbers, blocks, fields, paths.
+/// Returns a TextMate grammar with comments, numbers, blocks, fields and paths.
 fn grammar() -> String {
     let (mut blocks, mut fields): (Vec<&str>, Vec<&str>) = (Vec::new(), Vec::new());
     for entry in entries() {
