@@ -13,7 +13,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Points of the triangles at which the rays are aimed.
-const AIMS: [&str; 4] = ["vertices", "edge midpoints", "points of edges", "centroids"];
+const AIMS: [&str; 4] = ["vertices", "edge midpoints", "points on edges", "centroids"];
 
 /// Returns a sphere with 10,242 vertices: an icosahedron that is subdivided five times.
 fn sphere(center: Vec3, radius: f32) -> Mesh {
@@ -92,7 +92,7 @@ pub fn run(options: &Options, count: u32) -> Result<()> {
         None => None,
     };
     println!(
-        "Rays lost on the way to the closed sphere of 10,242 vertices, of {count} at each aim, half of them from inside."
+        "Rays that miss a closed sphere of 10,242 vertices, out of {count} for each target, half of them from inside."
     );
     for (center, radius) in [(Vec3::ZERO, 1.0), (Vec3::new(1e6, -1e6, 1e6), 64.0)] {
         let mesh = sphere(center, radius);

@@ -12,10 +12,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 
 /// Instructions for installing Embree.
-pub const HOW: &str = "Embree 4 is not found. One way to it:
+pub const HOW: &str = "Embree 4 was not found. To install it, for example:
   pip download embreex --no-deps -d /tmp/embreex && cd /tmp/embreex && unzip -o embreex-*.whl
-and then DURER_EMBREE=/tmp/embreex/embreex.libs (a folder, or the file libembree4*.so itself); Debian's libembree-dev 4 will
-do too. Without it the command runs with --no-embree.";
+and set DURER_EMBREE=/tmp/embreex/embreex.libs (a folder, or the file libembree4*.so itself). Debian's libembree-dev 4 also
+works. Without Embree, pass --no-embree.";
 
 type Handle = *mut c_void;
 
@@ -125,7 +125,7 @@ impl Embree {
         // SAFETY: the configuration is a C string.
         let device = unsafe { (functions.rtcNewDevice)(config.as_ptr()) };
         if device.is_null() {
-            bail!("Embree gives no device");
+            bail!("Embree cannot create a device");
         }
         let memory = Box::new(AtomicI64::new(0));
         // SAFETY: the counter lives as long as the device.

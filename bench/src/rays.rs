@@ -39,7 +39,7 @@ impl Mesh {
         let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
         let mut diagnostics = Diagnostics::default();
         let data = read_mesh(&bytes, 0, &path.to_string_lossy(), &mut diagnostics);
-        let data = data.with_context(|| format!("{} is no mesh", path.display()))?;
+        let data = data.with_context(|| format!("{} is not a mesh", path.display()))?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         Ok(Mesh { name, vertices: data.positions, triangles: data.triangles })
     }

@@ -128,7 +128,7 @@ pub fn run(options: &Options) -> Result<()> {
     let version = embree.as_ref().map_or("none".into(), |embree| embree.version());
     println!("Embree {version}; Dürer's SIMD {}; threads {}", SimdLevel::chosen().name(), options.threads);
     println!(
-        "Millions of rays a second, medians of {} rounds; a ratio is Dürer's to the better of Embree's.\n",
+        "Millions of rays per second, medians of {} rounds. A ratio compares Dürer with the faster of Embree's qualities.\n",
         options.rounds
     );
     let mut ratios = Vec::new();
@@ -143,7 +143,7 @@ pub fn run(options: &Options) -> Result<()> {
         let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
         let logarithms: f32 = ratios.iter().map(|&ratio| fp::ln(ratio as f32)).sum();
         let mean = fp::exp(logarithms / ratios.len() as f32);
-        println!("least ratio of {} cases of single rays: {least:.2}", ratios.len());
+        println!("lowest ratio of {} cases of single rays: {least:.2}", ratios.len());
         println!("geometric mean of the ratios of single rays: {mean:.3}");
     }
     Ok(())
@@ -318,13 +318,13 @@ fn one_case(
     if let (Some(packets), Some(batch)) = (rate("Embree 16-wide"), rate("Dürer batch")) {
         print!(", batch to packets {:.2}", batch / packets);
     }
-    print!(" | nodes {:.1}, tests {:.1} a ray", per_ray(counts.nodes), per_ray(counts.tests));
+    print!(" | nodes {:.1}, tests {:.1} per ray", per_ray(counts.nodes), per_ray(counts.tests));
     let differ: Vec<String> = (1..tracers.len())
         .map(|i| (tracers[i].name, differences(&found[0], &found[i])))
         .filter(|(_, n)| *n > 0)
         .map(|(name, n)| format!("{name} {n}"))
         .collect();
-    println!("{}{}", if differ.is_empty() { "" } else { " | answers that differ: " }, differ.join(", "));
+    println!("{}{}", if differ.is_empty() { "" } else { " | results that differ: " }, differ.join(", "));
 }
 
 /// Times builds with two qualities of Embree and three presets of Dürer, in alternation. Returns
@@ -354,6 +354,6 @@ fn builds(mesh: &Mesh, embree: &Arc<Embree>, rounds: usize) -> [Scene; 2] {
     for ((name, _), (tree, time)) in BuildQuality::NAMES.iter().zip(trees.iter().zip(times.drain(2..))) {
         print!("; ours {name} {time:.1} ms, {:.0} B, cost {:.1}", of(tree.memory_usage()), tree.sah_cost());
     }
-    println!(" (bytes a triangle)");
+    println!(" (bytes per triangle)");
     scenes
 }

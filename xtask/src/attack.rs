@@ -24,8 +24,8 @@ struct Kind {
 
 const KINDS: [Kind; 7] = [
     Kind { name: "names", count: 2000, of: "names that lead out of a folder", run: names::run },
-    Kind { name: "templates", count: 10_000, of: "names in each job file", run: templates },
-    Kind { name: "growth", count: 200, of: "small files of large things", run: growth::run },
+    Kind { name: "templates", count: 10_000, of: "hostile names in job files", run: templates },
+    Kind { name: "growth", count: 200, of: "small files that describe huge data", run: growth::run },
     Kind { name: "signals", count: 100, of: "signals during all commands", run: signals::run },
     Kind { name: "far", count: 500, of: "closed rooms far from the origin", run: far::run },
     Kind { name: "kills", count: 100, of: "kills during renders", run: kills },
@@ -64,7 +64,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let kinds: Vec<&Kind> =
         KINDS.iter().filter(|kind| requested.is_none_or(|requested| requested == kind.name)).collect();
     if kinds.is_empty() {
-        bail!("there is no such attack; these are: {}", KINDS.map(|kind| kind.name).join(", "));
+        bail!("unknown attack; known attacks: {}", KINDS.map(|kind| kind.name).join(", "));
     }
     let (durer, seed) = (durer()?, number("--seed")?.unwrap_or(1));
     let only = crate::value(arguments, "--only").cloned().unwrap_or_default();
@@ -76,7 +76,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         let attack = Attack { durer: durer.clone(), folder, count, seed, only: only.clone() };
         let found = (kind.run)(&attack).with_context(|| kind.name)?;
         let (tried, fell, seconds) = (found.tried, found.fallen.len(), start.elapsed().as_secs_f64());
-        println!("{:<10}{tried:>9} {}: {fell} fell, {seconds:.0} s{}", kind.name, kind.of, found.note);
+        println!("{:<10}{tried:>9} {}: {fell} failed, {seconds:.0} s{}", kind.name, kind.of, found.note);
         found.fallen.iter().take(20).for_each(|line| println!("    {line}"));
         fallen += fell;
     }
@@ -118,7 +118,7 @@ fn broken(output: &Output) -> Option<String> {
     match output.status.code() {
         Some(0..=2) if !messages.contains("panicked") => None,
         // `timeout -s KILL` exits with 137.
-        Some(137) => Some("no end".into()),
+        Some(137) => Some("did not end".into()),
         Some(code) => Some(format!("exit code {code}: {last}")),
         None => Some(format!("{}: {last}", output.status)),
     }

@@ -63,7 +63,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     println!("{} readings of {} files (some are not scenes)", found.len(), scenes.len());
     println!("{explained} pixels explained with {} samplers: {differ} differ", SAMPLINGS.len());
     found.sort_by_key(|found| std::cmp::Reverse(found.slowest));
-    println!("slowest explanations (16 samples a pixel, 512x512):");
+    println!("slowest explanations (16 samples per pixel, 512x512):");
     for SceneResult { name, slowest, .. } in found.iter().take(SLOWEST) {
         println!("{:>8.2} ms  {name}", slowest.as_secs_f64() * 1e3);
     }

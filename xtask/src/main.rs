@@ -184,5 +184,5 @@ fn root() -> anyhow::Result<PathBuf> {
     std::env::var_os("DURER_ROOT")
         .map_or_else(built, PathBuf::from)
         .canonicalize()
-        .context("the repository is not there")
+        .context("the repository was not found")
 }

@@ -131,7 +131,7 @@ fn module(root: &Path, level: &str, feature: &str, folder: &Path) -> Result<()> 
 /// Writes the page, the WebAssembly library, and the script that caches them for offline use.
 pub fn playground(arguments: &[String]) -> Result<ExitCode> {
     let root = root()?;
-    let folder = PathBuf::from(value(arguments, "-o").context("say where it goes: -o FOLDER")?);
+    let folder = PathBuf::from(value(arguments, "-o").context("the output folder is missing: pass -o FOLDER")?);
     for (level, feature) in LEVELS {
         module(&root, level, feature, &folder.join("wasm").join(level))?;
     }

@@ -74,7 +74,7 @@ fn rules(list: &str) -> Result<Vec<Rule>> {
             "[phrase]" => begin = Some(false),
             _ => {
                 let (phrase, instead) = line.split_once('|').context("a row is `phrase | instead`")?;
-                let begin = begin.context("a row stands below [begin] or [phrase]")?;
+                let begin = begin.context("a row must be below [begin] or [phrase]")?;
                 rules.push(Rule { phrase: phrase.trim().to_lowercase(), instead: instead.trim().into(), begin });
             }
         }

@@ -67,7 +67,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
                 again += 1;
                 ensure!(
                     *before == found,
-                    "another hash of {} under {options:?}: {before:?}, {found:?}",
+                    "the hash of {} with {options:?} changed: {before:?}, {found:?}",
                     path.display()
                 );
             }
@@ -78,7 +78,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
             let own = command(&durer, &path, &options, folder.path())?;
             ensure!(
                 own == found,
-                "the command has another hash of {} under {options:?}: {own}, {found}",
+                "the command gives a different hash for {} with {options:?}: {own}, {found}",
                 path.display()
             );
         }

@@ -27,7 +27,7 @@ pub fn run() -> Result<ExitCode> {
         .env("DURER_SOLID_POINTS", POINTS.to_string())
         .status()
         .context("cannot run cargo")?;
-    println!("{:52} {:>8} {:>12} {:>12}", "a thousand spheres, random rays", "objects", "ns a ray", "tests a ray");
+    println!("{:52} {:>8} {:>12} {:>12}", "a thousand spheres, random rays", "objects", "ns per ray", "tests per ray");
     for (name, radius) in [("apart from each other", 0.3), ("touching: one tree of a thousand parts", 0.6)] {
         let plain = world("Group", radius)?;
         let merged = world("Merge", radius)?;

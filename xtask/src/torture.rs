@@ -97,9 +97,9 @@ fn kills(bench: &Bench, kills: u64, seed: u64) -> Result<()> {
         for name in names(wild.parent().context("a folder")?)? {
             let path = wild.with_file_name(&name);
             match name.as_str() {
-                "p.exr" => drop(read(&fs::read(path)?, &name).with_context(|| format!("torn: {name}"))?),
+                "p.exr" => drop(read(&fs::read(path)?, &name).with_context(|| format!("damaged: {name}"))?),
                 "p.exr.part" => {
-                    PartialRender::read(&fs::read(path)?).with_context(|| format!("torn: {name}"))?;
+                    PartialRender::read(&fs::read(path)?).with_context(|| format!("damaged: {name}"))?;
                     parts += 1;
                 }
                 _ => litter += 1,
@@ -110,10 +110,10 @@ fn kills(bench: &Bench, kills: u64, seed: u64) -> Result<()> {
     ensure!(last_line(&output) == expected, "the final hash differs");
     ensure!(fs::read(&wild)? == fs::read(&calm)?, "the final file differs");
     let left = names(wild.parent().context("a folder")?)?;
-    ensure!(left == ["p.exr"], "litter: {left:?}");
+    ensure!(left == ["p.exr"], "files left over: {left:?}");
     println!(
-        "{killed} kills: {parts} checkpoints met, none torn; {finished} runs ended in between, all with one hash; \
-         temporary files seen {litter}, 0 left at the end"
+        "{killed} kills: {parts} checkpoints read, none damaged; {finished} runs finished, all with the same hash; \
+         {litter} temporary files seen, 0 left at the end"
     );
     Ok(())
 }
@@ -139,7 +139,7 @@ fn full_disks(bench: &Bench, offsets: u64) -> Result<()> {
             let output = command.arg(inner.get_program()).args(inner.get_args()).output()?;
             refused(&output, "cannot write", name, limit)?;
             ensure!(fs::read(&path)? == b"old", "{name}: the old file is not intact at {limit}");
-            ensure!(names(&place)? == [name.clone()], "{name}: litter at {limit}: {:?}", names(&place)?);
+            ensure!(names(&place)? == [name.clone()], "{name}: files left over at {limit}: {:?}", names(&place)?);
             fs::remove_file(path)?;
         }
         // Each try has fewer free pages, and never enough for the file.
@@ -172,7 +172,7 @@ fn tiny_disk(bench: &Bench, name: &str, options: &str, spoil: &str, tries: u64) 
             // This user is not allowed to mount disks.
             Some(99) | None => return Ok(0),
             Some(98) => bail!("{name}: the old file is not intact"),
-            Some(97) => bail!("{name}: litter"),
+            Some(97) => bail!("{name}: files left over"),
             _ => refused(&output, "cannot write", name, fill)?,
         }
     }

@@ -90,12 +90,12 @@ fn cause(world: &World) -> Option<String> {
         Material::Solid(..) => false,
     };
     if let Some(number) = world.materials().iter().position(below) {
-        return Some(format!("the shininess of material {number} is below 0, and its highlight grows without end"));
+        return Some(format!("the shininess of material {number} is below 0, so its highlight has no upper bound"));
     }
     let highlights = |material: &Material| matches!(material, Material::Phong(phong) if phong.highlight.is_some());
     let has_highlight = |number: u32| world.materials().get(number as usize).is_some_and(highlights);
     let is_long = world.objects().iter().any(|object| object.normal_length > 1.0 && has_highlight(object.material));
-    is_long.then(|| "the normal of a plane is longer than 1, and its highlight exceeds all numbers".into())
+    is_long.then(|| "the normal of a plane is longer than 1, so its highlight overflows".into())
 }
 
 /// Returns the failure for an unreadable scene file.

@@ -219,6 +219,6 @@ fn options_of_other_programs_are_pointed_to_ours() {
         assert!(!output.err.contains("similar argument") && !output.err.contains("as a value"), "{}", output.err);
     }
     let output = place.expect_exit(2, "check scene.txt --verbose");
-    assert!(output.err.contains("`--json` prints everything"), "{}", output.err);
+    assert!(output.err.contains("use `--json` for the full output"), "{}", output.err);
     assert!(!output.err.contains("--stats"), "{}", output.err);
 }

@@ -65,8 +65,8 @@ fn class(entry: &Entry, word: &str, base: &str) -> String {
     let _ = write!(out, "\n\nclass {word}({base}):\n    \"\"\"{}\n", entry.doc.replace('\\', "\\\\"));
     for (field, _) in &fields {
         let default = match (&field.default, field.required) {
-            (Some(default), _) => format!("; {default} where it is not given"),
-            (None, true) => "; must be given".into(),
+            (Some(default), _) => format!("; default {default}"),
+            (None, true) => "; required".into(),
             (None, false) => String::new(),
         };
         let _ = write!(out, "\n    {}: {}{default}. {}\n", name(field), field.value, field.doc);

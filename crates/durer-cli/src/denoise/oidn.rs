@@ -4,7 +4,7 @@
 //! Source: the documentation at <https://www.openimagedenoise.org>. Results differ in their last
 //! bits between machines.
 
-#![expect(unsafe_code, reason = "a library of C is called")]
+#![expect(unsafe_code, reason = "calls a C library")]
 
 use durer::image::Image;
 use durer::math::Vec3;
