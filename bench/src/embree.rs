@@ -17,6 +17,7 @@ pub const HOW: &str = "Embree 4 was not found. To install it, for example:
 and set DURER_EMBREE=/tmp/embreex/embreex.libs (a folder, or the file libembree4*.so itself). Debian's libembree-dev 4 also
 works. Without Embree, pass --no-embree.";
 
+/// Handle of an Embree object: a device, scene, geometry or buffer.
 type Handle = *mut c_void;
 
 /// Embree's `RTCRayHit`: a ray and its hit.
@@ -69,6 +70,7 @@ const COHERENT: c_uint = 1 << 16;
 macro_rules! functions {
     ($($name:ident: fn($($arg:ty),*) $(-> $out:ty)?;)*) => {
         // Use the names of the header.
+        /// Embree's functions, looked up by name in the loaded library.
         #[allow(non_snake_case)]
         struct Functions { $($name: unsafe extern "C" fn($($arg),*) $(-> $out)?,)* }
         impl Functions {
@@ -85,6 +87,7 @@ macro_rules! functions {
     };
 }
 
+/// Callback that Embree calls when it allocates or frees memory.
 type Monitor = unsafe extern "C" fn(Handle, isize, bool) -> bool;
 
 functions! {
@@ -312,6 +315,7 @@ impl Scene {
             callback: std::ptr::null_mut(),
             min_width_distance_factor: 0.0,
         };
+        /// Validity mask of a packet of sixteen rays, aligned as Embree requires.
         #[repr(align(64))]
         struct Valid([c_int; 16]);
         for (rays, found) in rays.chunks(16).zip(found.chunks_mut(16)) {

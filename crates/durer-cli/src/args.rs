@@ -33,6 +33,7 @@ pub struct Cli {
     pub command: Command,
 }
 
+// The subcommands of `durer`. A doc comment here would replace the description of the program.
 #[derive(Subcommand)]
 pub enum Command {
     Render(Box<RenderCommand>),

@@ -53,6 +53,7 @@ fn what_happens_to_the_files_ends_no_watch() {
     };
     for name in ["scene.txt", "mesh.obj"] {
         let whole = if name == "scene.txt" { scene("0.9 0.1 0.1") } else { MESH.replace("v 1 0 0", "v 2 0 0") };
+        /// A way to change a watched file: its name in messages, and a function that does it.
         type Fire<'a> = (&'a str, Box<dyn Fn() + 'a>);
         let fires: [Fire; 9] = [
             ("a removal", Box::new(|| remove(name))),

@@ -30,6 +30,7 @@ const NAME: &str = if cfg!(windows) {
 const CPU: c_int = 1;
 const FLOAT3: c_int = 3;
 
+/// Handle of an object of the library: a device, buffer or filter.
 type Object = *mut c_void;
 
 /// Denoises a picture with Open Image Denoise.

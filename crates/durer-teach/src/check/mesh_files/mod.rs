@@ -62,6 +62,7 @@ pub(in crate::check) fn models<'s>(grid: &ProbeGrid<'s>) -> Vec<MeshFile<'s>> {
     uses.into_iter().filter_map(own).collect()
 }
 
+/// Mesh files of a scene, each with the objects that use it.
 type Uses<'s> = Vec<(&'s FileName, Vec<&'s Object>)>;
 
 fn collect<'s>(group: &'s Group, uses: &mut Uses<'s>) {
